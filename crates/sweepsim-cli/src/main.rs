@@ -1,0 +1,2 @@
+//! The `sweepsim` command.
+fn main() {}

@@ -1,0 +1,1 @@
+//! Dexel grids: exact intervals on parallel lines, coverage counting, stock, and surfaces from dexels

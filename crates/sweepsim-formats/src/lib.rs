@@ -1,0 +1,1 @@
+//! Readers and writers for milling simulation: jobs, NC programs, meshes, dexels, reports

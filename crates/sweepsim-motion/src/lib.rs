@@ -1,0 +1,7 @@
+//! Milling tools as exact B-spline boundaries, and their rational rigid motions.
+mod pose;
+mod profile;
+pub use pose::{Pose, PoseError};
+pub use profile::{Profile, ProfileError, ProfileSegment, Turn};
+mod tool;
+pub use tool::Tool;

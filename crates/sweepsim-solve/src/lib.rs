@@ -1,0 +1,1 @@
+//! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems

@@ -1,0 +1,1 @@
+//! Multivariate tensor-product B-splines and Bernstein forms, rational or not, and their algebra

@@ -1,0 +1,1 @@
+//! What crosses crates: conformance of the algorithms, oracles, end to end.
