@@ -1,1 +1,4 @@
 //! What crosses crates: conformance of the algorithms, oracles, end to end.
+
+pub mod oracle;
+pub mod tools;

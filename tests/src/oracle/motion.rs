@@ -1,0 +1,219 @@
+//! The pose at an instant of a move, from the written law alone.
+//!
+//! `tip(t) = (1−t) p₀ + t p₁`; the axis turns about `k = o₀ × o₁ / |o₀ × o₁|` by `α(t)` with `cos α = c/w`, `sin α = s/w`, where in
+//! Bernstein form of degree 2 `w = (1, cos θ/2, 1)`, `c = (1, cos θ/2, cos θ)`, `s = (0, sin θ/2, sin θ)`.
+//! A turn `θ` of more than 90° is two such arcs of `θ/2`, one for each half of the time.
+
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
+use sweepsim_motion::Pose;
+
+/// A placed tool: its tip and its unit axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// The tip.
+    pub tip: Vector3<f64>,
+    /// The unit axis, from the tip towards the holder.
+    pub axis: Vector3<f64>,
+}
+
+/// A part of a move in which the axis turns by at most 90° along one rational arc.
+#[derive(Clone, Debug)]
+pub struct Arc {
+    /// Which move of the path it belongs to, from 0.
+    pub segment: usize,
+    /// The part of the move's time `[0, 1]` that it takes.
+    pub time: [f64; 2],
+    tips: [Vector3<f64>; 2],
+    /// The axis at the start, and the direction a quarter turn ahead of it.
+    axis: Vector3<f64>,
+    ahead: Vector3<f64>,
+    angle: f64,
+}
+
+/// `(1−t)² a + 2t(1−t) b + t² c`.
+fn quadratic([a, b, c]: [f64; 3], t: f64) -> f64 {
+    let u = 1.0 - t;
+    u * u * a + 2.0 * t * u * b + t * t * c
+}
+
+impl Arc {
+    /// The placement at `t` in `[0, 1]` of this arc.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Placement {
+        let (half, full) = (0.5 * self.angle, self.angle);
+        let w = quadratic([1.0, half.cos(), 1.0], t);
+        let c = quadratic([1.0, half.cos(), full.cos()], t);
+        let s = quadratic([0.0, half.sin(), full.sin()], t);
+        Placement {
+            tip: self.tips[0] * (1.0 - t) + self.tips[1] * t,
+            axis: self.axis * (c / w) + self.ahead * (s / w),
+        }
+    }
+
+    /// A bound of how fast a point `p` at rest moves as seen from the tool, per unit of this arc's own time.
+    ///
+    /// The tip's speed is constant. The angular speed is `α′ = 2 sin(θ/2)/w ≤ 4 sin(θ/2)/(1 + cos(θ/2))` since `w` is least at
+    /// `t = 1/2`, and the lever `|p − tip|` is convex in `t`, so largest at an end.
+    #[must_use]
+    pub fn speed_bound(&self, p: &Vector3<f64>) -> f64 {
+        let half = 0.5 * self.angle;
+        let turning = 4.0 * half.sin() / (1.0 + half.cos());
+        let lever = (p - self.tips[0]).norm().max((p - self.tips[1]).norm());
+        (self.tips[1] - self.tips[0]).norm() + turning * lever
+    }
+
+    /// Whether the tool rests during it.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        self.tips[0] == self.tips[1] && self.angle == 0.0
+    }
+
+    /// The move's time at `t` of this arc.
+    #[must_use]
+    pub fn time_at(&self, t: f64) -> f64 {
+        self.time[0] * (1.0 - t) + self.time[1] * t
+    }
+}
+
+/// A polyline of poses as a motion.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    arcs: Vec<Arc>,
+}
+
+impl Motion {
+    /// The motion through `poses`: at least one (one alone rests). Consecutive axes must not be opposite.
+    ///
+    /// # Panics
+    /// When there is no pose.
+    #[must_use]
+    pub fn new(poses: &[Pose]) -> Self {
+        assert!(!poses.is_empty(), "a motion needs a pose");
+        let rest = [poses[0], poses[0]];
+        let pairs = if poses.len() == 1 { &rest[..] } else { poses };
+        let mut arcs = Vec::new();
+        for (segment, pair) in pairs.windows(2).enumerate() {
+            add_move(segment, &pair[0], &pair[1], &mut arcs);
+        }
+        Self { arcs }
+    }
+
+    /// Its arcs, in order.
+    #[must_use]
+    pub fn arcs(&self) -> &[Arc] {
+        &self.arcs
+    }
+
+    /// The placement at time `t` in `[0, 1]` of move `segment`.
+    ///
+    /// # Panics
+    /// When there is no such move.
+    #[must_use]
+    pub fn at(&self, segment: usize, t: f64) -> Placement {
+        let arc = self
+            .arcs
+            .iter()
+            .find(|arc| arc.segment == segment && t <= arc.time[1])
+            .expect("a move of this motion and a time in [0, 1]");
+        arc.at((t - arc.time[0]) / (arc.time[1] - arc.time[0]))
+    }
+}
+
+fn add_move(segment: usize, from: &Pose, to: &Pose, arcs: &mut Vec<Arc>) {
+    let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+    let (p0, p1) = (from.tip(), to.tip());
+    let cross = o0.cross(&o1);
+    let sine = cross.norm();
+    let angle = sine.atan2(o0.dot(&o1));
+    // k × o₀: where the axis goes; any direction serves when it does not turn.
+    let ahead = if sine > 0.0 {
+        (cross / sine).cross(&o0)
+    } else {
+        Vector3::zeros()
+    };
+    let parts = if angle > FRAC_PI_2 { 2 } else { 1 };
+    let part = angle / f64::from(parts);
+    for i in 0..parts {
+        let time = [f64::from(i) / f64::from(parts), f64::from(i + 1) / f64::from(parts)];
+        let turned = f64::from(i) * part;
+        arcs.push(Arc {
+            segment,
+            time,
+            tips: [p0 * (1.0 - time[0]) + p1 * time[0], p0 * (1.0 - time[1]) + p1 * time[1]],
+            axis: o0 * turned.cos() + ahead * turned.sin(),
+            ahead: ahead * turned.cos() - o0 * turned.sin(),
+            angle: part,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+        Pose::new(tip, axis).unwrap()
+    }
+
+    fn turned(degrees: f64) -> [f64; 3] {
+        let a = degrees.to_radians();
+        [a.sin(), 0.0, a.cos()]
+    }
+
+    #[test]
+    fn the_axis_stays_a_unit_vector_and_meets_both_ends() {
+        for degrees in [1e-7, 1.0, 60.0, 89.0, 91.0, 170.0, 179.0] {
+            let motion = Motion::new(&[pose([0.0; 3], turned(0.0)), pose([1.0, 2.0, 3.0], turned(degrees))]);
+            for i in 0..=64 {
+                let placement = motion.at(0, f64::from(i) / 64.0);
+                assert!((placement.axis.norm() - 1.0).abs() < 1e-14);
+            }
+            let end = motion.at(0, 1.0);
+            assert!((end.axis - Vector3::from(turned(degrees))).norm() < 1e-14, "{degrees}");
+            assert!((end.tip - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn half_the_time_is_half_the_angle_but_a_quarter_is_not_a_quarter() {
+        let motion = Motion::new(&[pose([0.0; 3], turned(0.0)), pose([0.0; 3], turned(80.0))]);
+        let angle = |t| motion.at(0, t).axis.x.atan2(motion.at(0, t).axis.z).to_degrees();
+        assert!((angle(0.5) - 40.0).abs() < 1e-12);
+        // tan α = s/c at t = 1/4, by hand.
+        let (h, f) = (40.0_f64.to_radians(), 80.0_f64.to_radians());
+        let s = 0.375 * h.sin() + 0.0625 * f.sin();
+        let c = 0.5625 + 0.375 * h.cos() + 0.0625 * f.cos();
+        assert!((angle(0.25) - s.atan2(c).to_degrees()).abs() < 1e-12);
+        assert!((angle(0.25) - 20.0).abs() > 0.1);
+    }
+
+    #[test]
+    fn more_than_a_right_angle_is_two_arcs_that_join() {
+        let motion = Motion::new(&[pose([0.0; 3], turned(0.0)), pose([4.0, 0.0, 0.0], turned(170.0))]);
+        assert_eq!(motion.arcs().len(), 2);
+        let (before, after) = (motion.arcs()[0].at(1.0), motion.arcs()[1].at(0.0));
+        assert!((before.axis - after.axis).norm() < 1e-15 && (before.tip - after.tip).norm() < 1e-15);
+        assert!((before.axis - Vector3::from(turned(85.0))).norm() < 1e-15);
+        // A quarter of the time is the middle of the first arc.
+        assert!((motion.at(0, 0.25).axis - Vector3::from(turned(42.5))).norm() < 1e-15);
+    }
+
+    #[test]
+    fn no_point_moves_faster_than_the_bound() {
+        let motion = Motion::new(&[pose([0.0; 3], turned(-30.0)), pose([4.0, 1.0, -2.0], turned(130.0))]);
+        let p = Vector3::new(3.0, -7.0, 11.0);
+        for arc in motion.arcs() {
+            let seen = |t: f64| {
+                let placed = arc.at(t);
+                let r = p - placed.tip;
+                (r.dot(&placed.axis), r.cross(&placed.axis).norm())
+            };
+            for i in 0..1000 {
+                let t = f64::from(i) / 1000.0;
+                let ((a, b), (c, d)) = (seen(t), seen(t + 1e-3));
+                assert!((a - c).hypot(b - d) <= 1e-3 * arc.speed_bound(&p) * (1.0 + 1e-9));
+            }
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! The union over time of the chords of one line: dense sampling with local refinement.
+
+use super::chord::chords;
+use super::minimum::minimise;
+use super::motion::Motion;
+use super::outline::Outline;
+use nalgebra::Vector3;
+
+/// How often the time between two samples with different numbers of chords is halved.
+const HALVINGS: u32 = 10;
+/// Chords this near to a span belong to it: gaps thinner than a tenth of any tolerance tested are none.
+const TOUCHING: f64 = 1e-7;
+
+/// An interval of the swept set on a line, with estimates of the errors of its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// How far off the ends may be.
+    pub error: [f64; 2],
+}
+
+/// What a sweep cuts out of a vertical line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SweptLine {
+    /// The intervals, ascending.
+    pub spans: Vec<Span>,
+    /// A gap or an interval is thinner than the tool moves between two samples, so it may be there or not.
+    pub ambiguous: bool,
+}
+
+struct Sample {
+    arc: usize,
+    t: f64,
+    chords: Vec<[f64; 2]>,
+}
+
+struct Sampler<'a> {
+    outline: &'a Outline,
+    motion: &'a Motion,
+    x: f64,
+    y: f64,
+    samples: Vec<Sample>,
+}
+
+/// What the tool sweeps of the vertical line through `(x, y)`, from `density` samples of each arc of the motion.
+#[must_use]
+pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, density: usize) -> SweptLine {
+    let mut sampler = Sampler {
+        outline,
+        motion,
+        x,
+        y,
+        samples: Vec::new(),
+    };
+    sampler.sample(density);
+    let mut spans = sampler.union();
+    // Refined ends may close a gap, and then there are other ends.
+    loop {
+        for span in &mut spans {
+            sampler.refine(span);
+        }
+        let merged = merge(&spans);
+        let done = merged.len() == spans.len();
+        spans = merged;
+        if done {
+            break;
+        }
+    }
+    let ambiguous = sampler.unresolved(&spans, density);
+    SweptLine { spans, ambiguous }
+}
+
+impl Sampler<'_> {
+    fn chords(&self, arc: usize, t: f64) -> Vec<[f64; 2]> {
+        chords(self.outline, &self.motion.arcs()[arc].at(t), self.x, self.y)
+    }
+
+    fn sample(&mut self, density: usize) {
+        for (arc, moving) in self.motion.arcs().iter().enumerate() {
+            let count = if moving.rests() { 1 } else { density };
+            let mut last: Option<(f64, usize)> = None;
+            for i in 0..=count {
+                let t = i as f64 / count as f64;
+                let chords = self.chords(arc, t);
+                if let Some((before, number)) = last
+                    && number != chords.len()
+                {
+                    self.close_in(arc, [before, t], [number, chords.len()], HALVINGS);
+                }
+                last = Some((t, chords.len()));
+                self.samples.push(Sample { arc, t, chords });
+            }
+        }
+    }
+
+    /// Samples where the number of chords changes between two times.
+    fn close_in(&mut self, arc: usize, time: [f64; 2], number: [usize; 2], halvings: u32) {
+        if halvings == 0 {
+            return;
+        }
+        let t = 0.5 * (time[0] + time[1]);
+        let chords = self.chords(arc, t);
+        let count = chords.len();
+        if count != number[0] {
+            self.close_in(arc, [time[0], t], [number[0], count], halvings - 1);
+        }
+        self.samples.push(Sample { arc, t, chords });
+        if count != number[1] {
+            self.close_in(arc, [t, time[1]], [count, number[1]], halvings - 1);
+        }
+    }
+
+    fn union(&self) -> Vec<Span> {
+        let mut all: Vec<Span> = self
+            .samples
+            .iter()
+            .flat_map(|sample| &sample.chords)
+            .map(|&[low, high]| Span {
+                low,
+                high,
+                error: [0.0; 2],
+            })
+            .collect();
+        all.sort_by(|a, b| a.low.total_cmp(&b.low));
+        merge(&all)
+    }
+
+    /// Moves both ends of a span outwards, to the extremes over time near the samples that may hold them.
+    fn refine(&self, span: &mut Span) {
+        let (low, low_error) = self.extreme(span, 1.0);
+        let (high, high_error) = self.extreme(span, -1.0);
+        *span = Span {
+            low,
+            high: -high,
+            error: [low_error, high_error],
+        };
+    }
+
+    /// The least `sign · z` of the chords that overlap the span, and an estimate of its error.
+    fn extreme(&self, span: &Span, sign: f64) -> (f64, f64) {
+        let [bottom, top] = if sign > 0.0 {
+            [span.low, span.high]
+        } else {
+            [-span.high, -span.low]
+        };
+        // A chord counts if it overlaps what is known of the span, which reaches down to `reach`, or all but touches it.
+        let end = |chords: &[[f64; 2]], reach: f64| -> f64 {
+            let turned = chords.iter().map(|c| if sign > 0.0 { *c } else { [-c[1], -c[0]] });
+            let overlapping = turned.filter(|c| c[1] >= reach - TOUCHING && c[0] <= top);
+            overlapping.map(|c| c[0]).fold(f64::INFINITY, f64::min)
+        };
+        let values: Vec<f64> = self.samples.iter().map(|sample| end(&sample.chords, bottom)).collect();
+        let least = (0..values.len()).min_by(|&a, &b| values[a].total_cmp(&values[b]));
+        let least = least.expect("a span comes from samples");
+        let (mut best, mut error) = (values[least], f64::INFINITY);
+        for k in 0..values.len() {
+            let left = if k > 0 { values[k - 1] } else { f64::INFINITY };
+            let right = values.get(k + 1).copied().unwrap_or(f64::INFINITY);
+            // Between this sample and its neighbours the end will not gain more than what they differ by.
+            let gain = (left - values[k]).max(right - values[k]);
+            let hopeful = values[k] <= left && values[k] <= right && values[k] - gain < best - 1e-10;
+            if k != least && !hopeful {
+                continue;
+            }
+            let arc = self.samples[k].arc;
+            let beside = |other: Option<&Sample>| match other {
+                Some(sample) if sample.arc == arc => sample.t,
+                _ => self.samples[k].t,
+            };
+            let from = beside(k.checked_sub(1).and_then(|i| self.samples.get(i)));
+            let to = beside(self.samples.get(k + 1));
+            // A short chord on the move may leave the span as it was sampled: what is found extends it.
+            let mut reach = best;
+            let extending = |t: f64| {
+                let value = end(&self.chords(arc, t), reach);
+                reach = reach.min(value);
+                value
+            };
+            let found = minimise(extending, from, to, 1e-11);
+            if found.value <= best {
+                (best, error) = (found.value, found.rise);
+            }
+        }
+        (best, error + 1e-10)
+    }
+
+    fn unresolved(&self, spans: &[Span], density: usize) -> bool {
+        let step_at = |z: f64| {
+            let p = Vector3::new(self.x, self.y, z);
+            let speeds = self.motion.arcs().iter().map(|arc| arc.speed_bound(&p));
+            speeds.fold(0.0, f64::max) / density as f64
+        };
+        let thin = spans.iter().any(|span| span.high - span.low < step_at(span.low));
+        thin || spans
+            .windows(2)
+            .any(|pair| pair[1].low - pair[0].high < step_at(pair[1].low))
+    }
+}
+
+/// The union of spans sorted by their lower ends.
+fn merge(spans: &[Span]) -> Vec<Span> {
+    let mut merged: Vec<Span> = Vec::new();
+    for span in spans {
+        match merged.last_mut() {
+            Some(last) if span.low <= last.high => {
+                if span.high > last.high {
+                    (last.high, last.error[1]) = (span.high, span.error[1]);
+                }
+            }
+            _ => merged.push(*span),
+        }
+    }
+    merged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tools;
+    use sweepsim_motion::{Pose, Tool};
+
+    fn line(tool: &Tool, poses: &[([f64; 3], [f64; 3])], x: f64, y: f64) -> SweptLine {
+        let poses: Vec<Pose> = poses.iter().map(|p| Pose::new(p.0, p.1).unwrap()).collect();
+        swept_line(&Outline::new(tool.profile()), &Motion::new(&poses), x, y, 200)
+    }
+
+    fn assert_spans(found: &SweptLine, expected: &[[f64; 2]]) {
+        assert_eq!(found.spans.len(), expected.len(), "{found:?} for {expected:?}");
+        for (span, ends) in found.spans.iter().zip(expected) {
+            for (z, e, error) in [(span.low, ends[0], span.error[0]), (span.high, ends[1], span.error[1])] {
+                assert!(error <= 1e-9, "{found:?}");
+                assert!((z - e).abs() <= error, "{found:?} for {expected:?}");
+            }
+        }
+    }
+
+    const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+    #[test]
+    fn a_ball_along_a_slope_is_a_capsule_below() {
+        let (radius, from, to) = (3.0_f64, [0.0, 0.0, 0.0], [20.0, 4.0, 10.0]);
+        let tool = Tool::ball(radius, 50.0).unwrap();
+        // The lowest z with distance `radius` from the centres' line c(λ) = from + λ d + (0, 0, radius).
+        let d = Vector3::from(to) - Vector3::from(from);
+        for (x, y) in [(5.0, 1.0), (10.3, 3.0), (14.0, 1.2), (9.0, 0.0)] {
+            // With e = (x, y, z − radius) and |e|² − (e·d)²/|d|² = r²: a quadratic in ζ = z − radius.
+            let (flat, dd): (f64, f64) = (x * d.x + y * d.y, d.norm_squared());
+            let a = 1.0 - d.z * d.z / dd;
+            let b = -2.0 * flat * d.z / dd;
+            let c = x * x + y * y - flat * flat / dd - radius * radius;
+            let lower = (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a);
+            let foot = (flat + lower * d.z) / dd;
+            assert!((0.1..0.9).contains(&foot), "the case must lie between the ends");
+            // Above: the top of the shank at the last instant that covers the line.
+            let along = d.xy().normalize();
+            let side = along.perp(&nalgebra::Vector2::new(x, y));
+            let last =
+                (along.dot(&nalgebra::Vector2::new(x, y)) + (radius * radius - side * side).sqrt()) / d.xy().norm();
+            let found = line(&tool, &[(from, UP), (to, UP)], x, y);
+            assert_spans(&found, &[[lower + radius, 50.0 + 10.0 * last]]);
+        }
+    }
+
+    #[test]
+    fn a_vertical_cylinder_moved_sideways_is_a_slab() {
+        let tool = Tool::flat(2.0, 30.0).unwrap();
+        let poses = [([-5.0, 0.0, 1.0], UP), ([5.0, 0.0, 1.0], UP)];
+        assert_spans(&line(&tool, &poses, 0.7, 1.999), &[[1.0, 31.0]]);
+        assert_spans(&line(&tool, &poses, 6.9, 0.1), &[[1.0, 31.0]]);
+        assert_spans(&line(&tool, &poses, 0.7, 2.001), &[]);
+        assert_spans(&line(&tool, &poses, 7.1, 0.0), &[]);
+    }
+
+    #[test]
+    fn a_plunge_is_one_long_cylinder() {
+        let tool = Tool::flat(2.0, 3.0).unwrap();
+        assert_spans(
+            &line(&tool, &[([0.0; 3], UP), ([0.0, 0.0, -17.0], UP)], 1.0, 1.0),
+            &[[-17.0, 3.0]],
+        );
+    }
+
+    #[test]
+    fn a_zero_move_is_the_tool() {
+        let tool = Tool::ball(2.0, 9.0).unwrap();
+        let low = 2.0 - 3.0_f64.sqrt();
+        assert_spans(&line(&tool, &[([0.0; 3], UP), ([0.0; 3], UP)], 1.0, 0.0), &[[low, 9.0]]);
+        assert_spans(&line(&tool, &[([0.0; 3], UP)], 1.0, 0.0), &[[low, 9.0]]);
+    }
+
+    #[test]
+    fn a_tilted_cylinder_along_itself() {
+        // Moved along its own axis by 20 it is a cylinder of length 60.
+        let (s, c) = (0.6, 0.8);
+        let tool = Tool::flat(2.0, 40.0).unwrap();
+        let axis = [s, 0.0, c];
+        let found = line(&tool, &[([0.0; 3], axis), ([20.0 * s, 0.0, 20.0 * c], axis)], 15.0, 1.0);
+        let half = 3.0_f64.sqrt();
+        assert_spans(&found, &[[(15.0 * c - half) / s, (15.0 * c + half) / s]]);
+    }
+
+    #[test]
+    fn a_long_cylinder_turned_in_place_is_a_sector() {
+        // In the plane y = 0 it turns about the tip from −60° to +60°: a fan of radius √(L² + R²) above,
+        // the flank's lines below.
+        let (radius, length) = (1.0_f64, 30.0_f64);
+        let tool = Tool::flat(radius, length).unwrap();
+        let (s, c) = 60.0_f64.to_radians().sin_cos();
+        let poses = [([0.0; 3], [-s, 0.0, c]), ([0.0; 3], [s, 0.0, c])];
+        let (x, y) = (10.0, 0.25);
+        // The flank of the last placement from below, where x c − z s = half its chord at y; the rim's sphere on top.
+        let half = (radius * radius - y * y).sqrt();
+        let top = (length * length + half * half - x * x).sqrt();
+        assert_spans(&line(&tool, &poses, x, y), &[[(x * c - half) / s, top]]);
+    }
+
+    #[test]
+    fn two_visits_leave_a_gap_and_a_third_closes_it() {
+        let tool = Tool::ball(1.0, 3.0).unwrap();
+        let at = |z: f64| [([-9.0, 0.0, z], UP), ([9.0, 0.0, z], UP)];
+        let mut poses = at(0.0).to_vec();
+        poses.extend(at(10.0).iter().rev());
+        let side = Tool::ball(1.0, 3.0).unwrap();
+        assert_spans(&line(&side, &poses, 0.0, 0.0), &[[0.0, 3.0], [10.0, 13.0]]);
+        poses.extend(at(5.0));
+        poses.extend([([0.0, 0.0, 5.0], UP), ([0.0, 0.0, 9.0], UP)]);
+        let found = line(&tool, &poses, 0.0, 0.0);
+        assert_spans(&found, &[[0.0, 3.0], [5.0, 13.0]]);
+        assert!(!found.ambiguous);
+    }
+
+    #[test]
+    fn the_ends_do_not_depend_on_the_density() {
+        let poses: Vec<Pose> = [
+            ([0.0, 0.0, 0.0], [0.1, 0.2, 1.0]),
+            ([14.0, 5.0, -3.0], [0.7, -0.4, 0.6]),
+        ]
+        .map(|(tip, axis)| Pose::new(tip, axis).unwrap())
+        .to_vec();
+        let motion = Motion::new(&poses);
+        let mut clear = 0;
+        for tool in tools::zoo() {
+            let outline = Outline::new(tool.profile());
+            for k in 0..49 {
+                let (x, y) = (-8.0 + 5.17 * f64::from(k % 7), -11.0 + 4.03 * f64::from(k / 7));
+                let coarse = swept_line(&outline, &motion, x, y, 97);
+                let fine = swept_line(&outline, &motion, x, y, 1000);
+                if coarse.ambiguous || fine.ambiguous {
+                    continue;
+                }
+                clear += usize::from(!fine.spans.is_empty());
+                assert_eq!(coarse.spans.len(), fine.spans.len(), "({x}, {y})");
+                for (a, b) in coarse.spans.iter().zip(&fine.spans) {
+                    assert!((a.low - b.low).abs() <= a.error[0] + b.error[0], "{coarse:?} {fine:?}");
+                    assert!(
+                        (a.high - b.high).abs() <= a.error[1] + b.error[1],
+                        "{coarse:?} {fine:?}"
+                    );
+                }
+            }
+        }
+        assert!(clear > 60, "{clear} lines compared");
+    }
+}
