@@ -38,7 +38,8 @@ pub enum Verdict {
 /// Judges `found`, the intervals of the line through `(x, y)`, which may be off by `tolerance` in space.
 #[must_use]
 pub fn compare(found: &[[f64; 2]], line: &SweptLine, depth: &Depth<'_>, [x, y]: [f64; 2], tolerance: f64) -> Verdict {
-    let near = |z: f64, end: f64, error: f64| (z - end).abs() <= tolerance + error;
+    // An end that the sampling knows no better than this has to be judged by its distance.
+    let near = |z: f64, end: f64, error: f64| error <= tolerance && (z - end).abs() <= tolerance + error;
     let same = found.len() == line.spans.len()
         && found.iter().zip(&line.spans).all(|(interval, span)| {
             near(interval[0], span.low, span.error[0]) && near(interval[1], span.high, span.error[1])

@@ -108,6 +108,10 @@ fn add_candidates(line: &Line, piece: &Piece, cuts: &mut Vec<f64>) {
     let heights = [zeta_from.min(zeta_to), zeta_from.max(zeta_to)];
     // A little wider, so that a root at the very end of a piece is not lost.
     let slack = 1e-9 * (1.0 + heights[0].abs().max(heights[1].abs()));
+    if line.zeta[1] != 0.0 {
+        // The levels of the joints: between them a double root too flat to be found does no harm.
+        cuts.extend(heights.map(|height| (height - line.zeta[0]) / line.zeta[1]));
+    }
     let heights = [heights[0] - slack, heights[1] + slack];
     let largest = match *piece {
         Piece::Line { .. } => rho_from.max(rho_to),

@@ -101,7 +101,8 @@ impl<'a> Depth<'a> {
         }
         let mut best = stretches.iter().map(Stretch::least).fold(f64::INFINITY, f64::min);
         for _ in 0..HALVINGS {
-            stretches.retain(|stretch| stretch.bound() < best);
+            // The one with the best sample stays, whatever the rounding of its bound.
+            stretches.retain(|stretch| stretch.bound() < best || stretch.least() <= best);
             let mut halves = Vec::with_capacity(2 * stretches.len());
             for stretch in &stretches {
                 let t = 0.5 * (stretch.time[0] + stretch.time[1]);
@@ -130,7 +131,7 @@ impl<'a> Depth<'a> {
             let known = refined
                 .iter()
                 .any(|&(arc, t)| arc == stretch.arc && (t - at).abs() < 1.5 * width);
-            if known || stretch.bound() >= nearest.distance {
+            if known || (stretch.bound() >= nearest.distance && !refined.is_empty()) {
                 continue;
             }
             if refined.len() == REFINED {

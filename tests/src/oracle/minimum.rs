@@ -10,8 +10,7 @@ pub struct Minimum {
     pub at: f64,
     /// The value there.
     pub value: f64,
-    /// The rise to the neighbouring samples of the last bracket (to those that are finite): an estimate of the error, generous for a
-    /// smooth minimum.
+    /// The smaller rise to a neighbouring sample of the last bracket: an estimate of the error, generous for a smooth minimum.
     pub rise: f64,
 }
 
@@ -44,10 +43,18 @@ pub fn minimise(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, fine: f64
             (best.at, best.value) = (at(least), values[least]);
         }
         let (left, right) = (least.saturating_sub(1), (least + 1).min(PARTS));
-        let rises = [values[left] - values[least], values[right] - values[least]];
-        best.rise = rises.into_iter().filter(|rise| rise.is_finite()).fold(0.0, f64::max);
-        let bounded = rises.iter().all(|rise| rise.is_finite());
-        if (bounded && best.rise <= fine) || b - a < 1e-14 {
+        let rise = |i: usize| {
+            if i == least {
+                f64::INFINITY
+            } else {
+                values[i] - values[least]
+            }
+        };
+        let rises = [rise(left), rise(right)];
+        // At a jump the lower side tells how exact the value is.
+        best.rise = rises[0].min(rises[1]);
+        let settled = |i: usize| i == least || values[i] - values[least] <= fine;
+        if (settled(left) && settled(right)) || b - a < 1e-14 {
             break;
         }
         (a, b) = (at(left), at(right));

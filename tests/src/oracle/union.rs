@@ -6,8 +6,10 @@ use super::motion::Motion;
 use super::outline::Outline;
 use nalgebra::Vector3;
 
-/// How often the time between two samples with different numbers of chords is halved.
-const HALVINGS: u32 = 10;
+/// How often the time between two samples with different numbers of chords is halved: ends at which a chord vanishes are as exact as that time.
+const HALVINGS: u32 = 40;
+/// How often it is halved where a chord is so short that it does not overlap with itself one sample later.
+const HALVINGS_TORN: u32 = 5;
 /// Chords this near to a span belong to it: gaps thinner than a tenth of any tolerance tested are none.
 const TOUCHING: f64 = 1e-7;
 
@@ -43,6 +45,8 @@ struct Sampler<'a> {
     x: f64,
     y: f64,
     samples: Vec<Sample>,
+    /// What chords pass through between two samples in which they do not overlap.
+    bridges: Vec<[f64; 2]>,
 }
 
 /// What the tool sweeps of the vertical line through `(x, y)`, from `density` samples of each arc of the motion.
@@ -54,6 +58,7 @@ pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, density: u
         x,
         y,
         samples: Vec::new(),
+        bridges: Vec::new(),
     };
     sampler.sample(density);
     let mut spans = sampler.union();
@@ -81,36 +86,40 @@ impl Sampler<'_> {
     fn sample(&mut self, density: usize) {
         for (arc, moving) in self.motion.arcs().iter().enumerate() {
             let count = if moving.rests() { 1 } else { density };
-            let mut last: Option<(f64, usize)> = None;
-            for i in 0..=count {
-                let t = i as f64 / count as f64;
-                let chords = self.chords(arc, t);
-                if let Some((before, number)) = last
-                    && number != chords.len()
-                {
-                    self.close_in(arc, [before, t], [number, chords.len()], HALVINGS);
-                }
-                last = Some((t, chords.len()));
-                self.samples.push(Sample { arc, t, chords });
+            self.push(arc, 0.0);
+            for i in 0..count {
+                let before = self.samples.len() - 1;
+                self.advance(arc, (i + 1) as f64 / count as f64, before, HALVINGS);
             }
         }
     }
 
-    /// Samples where the number of chords changes between two times.
-    fn close_in(&mut self, arc: usize, time: [f64; 2], number: [usize; 2], halvings: u32) {
-        if halvings == 0 {
+    fn push(&mut self, arc: usize, t: f64) {
+        let chords = self.chords(arc, t);
+        self.samples.push(Sample { arc, t, chords });
+    }
+
+    /// Samples at `t` and, where the chords since sample `before` (the last one) do not clearly continue, between.
+    fn advance(&mut self, arc: usize, t: f64, before: usize, halvings: u32) {
+        let chords = self.chords(arc, t);
+        let old = &self.samples[before].chords;
+        let same_number = old.len() == chords.len();
+        let apart = |(a, b): (&[f64; 2], &[f64; 2])| a[1] < b[0] || b[1] < a[0];
+        let torn = same_number && old.iter().zip(&chords).any(apart);
+        if halvings > 0 && !same_number || halvings > HALVINGS - HALVINGS_TORN && torn {
+            let middle = 0.5 * (self.samples[before].t + t);
+            self.advance(arc, middle, before, halvings - 1);
+            let before = self.samples.len() - 1;
+            self.advance(arc, t, before, halvings - 1);
             return;
         }
-        let t = 0.5 * (time[0] + time[1]);
-        let chords = self.chords(arc, t);
-        let count = chords.len();
-        if count != number[0] {
-            self.close_in(arc, [time[0], t], [number[0], count], halvings - 1);
+        if torn {
+            // A short chord on the move: by continuity it passes through what lies between.
+            for (a, b) in old.iter().zip(&chords) {
+                self.bridges.push([a[0].min(b[0]), a[1].max(b[1])]);
+            }
         }
         self.samples.push(Sample { arc, t, chords });
-        if count != number[1] {
-            self.close_in(arc, [t, time[1]], [count, number[1]], halvings - 1);
-        }
     }
 
     fn union(&self) -> Vec<Span> {
@@ -118,6 +127,7 @@ impl Sampler<'_> {
             .samples
             .iter()
             .flat_map(|sample| &sample.chords)
+            .chain(&self.bridges)
             .map(|&[low, high]| Span {
                 low,
                 high,
@@ -154,14 +164,18 @@ impl Sampler<'_> {
         };
         let values: Vec<f64> = self.samples.iter().map(|sample| end(&sample.chords, bottom)).collect();
         let least = (0..values.len()).min_by(|&a, &b| values[a].total_cmp(&values[b]));
-        let least = least.expect("a span comes from samples");
-        let (mut best, mut error) = (values[least], f64::INFINITY);
+        let least = least.expect("a motion has samples");
+        let (mut best, mut error) = (values[least].min(bottom), f64::INFINITY);
         for k in 0..values.len() {
-            let left = if k > 0 { values[k - 1] } else { f64::INFINITY };
-            let right = values.get(k + 1).copied().unwrap_or(f64::INFINITY);
-            // Between this sample and its neighbours the end will not gain more than what they differ by.
-            let gain = (left - values[k]).max(right - values[k]);
-            let hopeful = values[k] <= left && values[k] <= right && values[k] - gain < best - 1e-10;
+            let value = |i: Option<usize>| i.and_then(|i| values.get(i)).copied().unwrap_or(f64::INFINITY);
+            let (left, right) = (value(k.checked_sub(1)), value(Some(k + 1)));
+            // Between this sample and its neighbours the end gains less than it differs over two samples: a parabola that is level at
+            // both ends of a step dips by an eighth of its second difference, which shows two samples away.
+            let further = value(k.checked_sub(2)).max(value(Some(k + 2)));
+            let gain = left.max(right).max(further) - values[k];
+            // The end of one arc and the start of the next are the same pose, but for rounding.
+            let lowest = values[k] <= left + 1e-12 && values[k] <= right + 1e-12;
+            let hopeful = lowest && values[k] - gain < best - 1e-10;
             if k != least && !hopeful {
                 continue;
             }
