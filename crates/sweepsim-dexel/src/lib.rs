@@ -1,1 +1,32 @@
-//! Dexel grids: exact intervals on parallel lines, coverage counting, stock, and surfaces from dexels
+//! Dexel grids: exact intervals on parallel lines.
+//!
+//! A *dexel* is a line parallel to `z` with the intervals of it that lie in material. A [`Grid`] places the lines,
+//! [`Dexels`] hold the intervals, whose [ends](End) know the surface's normal and which cut made them. [`cover`] turns
+//! signed [`Crossing`]s into intervals and audits them: see there for why a lost crossing cannot pass unnoticed.
+//!
+//! This crate knows no spline, no solver and no tool: whatever finds crossings can use it.
+//!
+//! ```
+//! use sweepsim_dexel::{Dexels, End, Grid, Interval, Source, Stock};
+//! let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [5, 5])?;
+//! let mut part = Stock::Block { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 4.0] }.dexels(&grid)?;
+//! let end = |z, up| End { z, normal: [0.0, 0.0, up], source: Source { path: 0, segment: 3, t: 0.5 } };
+//! part.subtract(grid.index(2, 2), &[Interval { lower: end(1.0, -1.0), upper: end(9.0, 1.0) }]);
+//! assert_eq!(part.at(grid.index(2, 2))[0].upper.z, 1.0);
+//! assert_eq!(part.volume(), 400.0 - 3.0 * 4.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod crossing;
+mod dexels;
+mod grid;
+mod interval;
+mod mesh;
+mod stock;
+
+pub use crossing::{AuditFailure, Crossing, cover};
+pub use dexels::{Dexels, GridMismatch};
+pub use grid::{Grid, GridError};
+pub use interval::{End, Interval, Source};
+pub use mesh::{Mesh, MeshError, TriangleSoup};
+pub use stock::{Stock, StockError};

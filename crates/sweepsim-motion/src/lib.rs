@@ -1,9 +1,14 @@
 //! Milling tools as exact B-spline boundaries, and their rational rigid motions.
+mod boundary;
 mod path;
 mod pose;
 mod profile;
+mod segment;
+mod tool;
+
+pub use boundary::{Edge, NormalField, Patch};
 pub use path::{Path, PathError};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, Turn};
-mod tool;
+pub use segment::Segment;
 pub use tool::Tool;

@@ -48,6 +48,11 @@ impl Pose {
         })
     }
 
+    /// A pose whose parts are known to be good.
+    pub(crate) fn at(tip: Vector3<f64>, axis: Unit<Vector3<f64>>) -> Self {
+        Self { tip, axis }
+    }
+
     /// The tip.
     #[must_use]
     pub fn tip(&self) -> Vector3<f64> {

@@ -135,7 +135,7 @@ pub(crate) struct Arc {
     pub sweep: f64,
 }
 
-/// Radii of an arc may differ by this part of the radius (files give few digits); the end is then moved onto the circle's ray.
+/// The distances of an arc's two ends from its centre may differ by this part of the radius.
 const ARC_SLACK: f64 = 1e-6;
 
 impl Piece {
@@ -171,6 +171,11 @@ impl Piece {
                         to: rb,
                     });
                 }
+                // Files give few digits: the centre is moved along its bisector, so that both ends lie on one circle exactly.
+                let chord = (to - from).normalize();
+                let centre = centre + chord * (from + (to - from) * 0.5 - centre).dot(&chord);
+                let (a, b) = (from - centre, to - centre);
+                let (ra, rb) = (a.norm(), b.norm());
                 let start = a.y.atan2(a.x);
                 let mut sweep = a.perp(&b).atan2(a.dot(&b));
                 match turn {

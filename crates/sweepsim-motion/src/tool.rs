@@ -1,11 +1,14 @@
 //! Tools of revolution and their boundary.
 
+use crate::boundary::{self, Edge, Patch};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 
 /// A milling tool: a solid with an exact B-spline boundary. Its origin is the tip, its `+z` runs along the axis to the holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
     profile: Profile,
+    patches: Vec<Patch>,
+    edges: Vec<Edge>,
 }
 
 fn check(what: &'static str, value: f64, good: bool, expected: &'static str) -> Result<(), ProfileError> {
@@ -82,12 +85,24 @@ impl Tool {
     /// The solid of revolution of a profile.
     #[must_use]
     pub fn from_profile(profile: Profile) -> Self {
-        Self { profile }
+        Self { patches: boundary::patches(&profile), edges: boundary::edges(&profile), profile }
     }
 
     /// The outline.
     #[must_use]
     pub fn profile(&self) -> &Profile {
         &self.profile
+    }
+
+    /// The smooth patches of the boundary.
+    #[must_use]
+    pub fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// The sharp edges between the patches.
+    #[must_use]
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
     }
 }

@@ -1,0 +1,107 @@
+//! Where the dexels stand.
+
+use thiserror::Error;
+
+/// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    min: [f64; 2],
+    max: [f64; 2],
+    cells: [usize; 2],
+}
+
+/// Why numbers make no grid.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum GridError {
+    /// A corner is not finite, or the area is empty.
+    #[error("the grid's area from ({}, {}) to ({}, {}) is empty or not finite", .min[0], .min[1], .max[0], .max[1])]
+    Area {
+        /// Lower corner.
+        min: [f64; 2],
+        /// Upper corner.
+        max: [f64; 2],
+    },
+    /// No cells, or more than [`Grid::MOST`] in all.
+    #[error("the grid has {} x {} cells: expected at least one, and at most {} in all", .0[0], .0[1], Grid::MOST)]
+    Cells([usize; 2]),
+}
+
+impl Grid {
+    /// The most cells of a grid: their numbers fit 32 bits.
+    pub const MOST: usize = 4_000_000_000;
+
+    /// A grid over the rectangle from `min` to `max`.
+    ///
+    /// # Errors
+    /// [`GridError`]: an empty area, no cells, or too many.
+    pub fn new(min: [f64; 2], max: [f64; 2], cells: [usize; 2]) -> Result<Self, GridError> {
+        let good = (0..2).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k] && (max[k] - min[k]).is_finite());
+        if !good {
+            return Err(GridError::Area { min, max });
+        }
+        match cells[0].checked_mul(cells[1]) {
+            Some(count) if count > 0 && count <= Self::MOST => Ok(Self { min, max, cells }),
+            _ => Err(GridError::Cells(cells)),
+        }
+    }
+
+    /// Lower corner of the area.
+    #[must_use]
+    pub fn min(&self) -> [f64; 2] {
+        self.min
+    }
+
+    /// Upper corner of the area.
+    #[must_use]
+    pub fn max(&self) -> [f64; 2] {
+        self.max
+    }
+
+    /// Cells along `x` and along `y`.
+    #[must_use]
+    pub fn cells(&self) -> [usize; 2] {
+        self.cells
+    }
+
+    /// The number of dexels: never zero.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.cells[0] * self.cells[1]
+    }
+
+    /// Distance of neighbouring dexels along `x` and along `y`.
+    #[must_use]
+    pub fn spacing(&self) -> [f64; 2] {
+        [0, 1].map(|k| (self.max[k] - self.min[k]) / self.cells[k] as f64)
+    }
+
+    fn centre(&self, k: usize, n: usize) -> f64 {
+        self.min[k] + (n as f64 + 0.5) * (self.max[k] - self.min[k]) / self.cells[k] as f64
+    }
+
+    /// Where column `i` stands: `min + (i + 1/2)·(max − min)/cells`.
+    #[must_use]
+    pub fn x(&self, i: usize) -> f64 {
+        self.centre(0, i)
+    }
+
+    /// Where row `j` stands.
+    #[must_use]
+    pub fn y(&self, j: usize) -> f64 {
+        self.centre(1, j)
+    }
+
+    /// The number of a dexel: sorted by `i`, then `j`.
+    #[must_use]
+    pub fn index(&self, i: usize, j: usize) -> usize {
+        i * self.cells[1] + j
+    }
+
+    /// The column and row of a dexel.
+    #[must_use]
+    pub fn place(&self, index: usize) -> (usize, usize) {
+        (index / self.cells[1], index % self.cells[1])
+    }
+}

@@ -1,0 +1,85 @@
+//! Triangles, going in and coming out.
+
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Triangles with shared vertices and a normal at each: for pictures and files.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Places.
+    pub vertices: Vec<[f64; 3]>,
+    /// Unit normals, one per vertex.
+    pub normals: Vec<[f32; 3]>,
+    /// Whether a tool made the surface at the vertex.
+    pub cut: Vec<bool>,
+    /// Vertex numbers, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Loose triangles that enclose a solid, as in an STL file: corners counter-clockwise seen from outside.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleSoup {
+    /// The corners of each triangle.
+    pub triangles: Vec<[[f64; 3]; 3]>,
+}
+
+/// Why triangles enclose no solid.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There are none.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// A coordinate is not finite.
+    #[error("triangle {triangle} of the mesh has a coordinate that is not finite")]
+    NotFinite {
+        /// Which, from 0.
+        triangle: usize,
+    },
+    /// An edge has more triangles on one side than on the other: the surface has holes or flipped triangles.
+    #[error("the mesh is not closed: {edges} edges lack a partner of opposite direction, the first from ({}, {}, {}) to ({}, {}, {})",
+        .from[0], .from[1], .from[2], .to[0], .to[1], .to[2])]
+    Open {
+        /// How many edges.
+        edges: usize,
+        /// Start of the first of them.
+        from: [f64; 3],
+        /// Its end.
+        to: [f64; 3],
+    },
+}
+
+impl TriangleSoup {
+    /// Whether every edge is used as often in one direction as in the other (corners compared exactly).
+    ///
+    /// # Errors
+    /// [`MeshError`]: empty, not finite, or open.
+    pub fn check_closed(&self) -> Result<(), MeshError> {
+        if self.triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        // Adding 0 makes −0 and 0 one.
+        let key = |p: [f64; 3]| p.map(|c| (c + 0.0).to_bits());
+        let mut edges: BTreeMap<([u64; 3], [u64; 3]), i64> = BTreeMap::new();
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            if !corners.iter().flatten().all(|c| c.is_finite()) {
+                return Err(MeshError::NotFinite { triangle });
+            }
+            for k in 0..3 {
+                let (a, b) = (key(corners[k]), key(corners[(k + 1) % 3]));
+                if a < b {
+                    *edges.entry((a, b)).or_default() += 1;
+                } else if b < a {
+                    *edges.entry((b, a)).or_default() -= 1;
+                }
+            }
+        }
+        let open = edges.values().filter(|count| **count != 0).count();
+        match edges.iter().find(|(_, count)| **count != 0) {
+            None => Ok(()),
+            Some(((a, b), _)) => {
+                Err(MeshError::Open { edges: open, from: a.map(f64::from_bits), to: b.map(f64::from_bits) })
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! One motion between two poses: straight tip, axis along a rational arc (`SLERP`).
+//!
+//! Legend: `A(t) = R(t) A₀` turns tool coordinates into space, `b(t)` is the tip, `k` the axis and `θ` the angle of the turn,
+//! `w, c, s` the quadratic Bernstein forms with `cos α = c/w`, `sin α = s/w`. Because `c s′ − s c′ = κ w` with the constant
+//! `κ = 2 sin(θ/2)`, the angular velocity is `(κ/w) k`.
+
+use crate::pose::Pose;
+use nalgebra::{Matrix3, Unit, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// A rigid motion for `t` in `[0, 1]`: the tip on a straight line, the axis on a great circle as one rational arc of at most 90°.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    tips: [Vector3<f64>; 2],
+    /// Homogeneous `ŵ A(t)`: one matrix per Bernstein coefficient in `t`; one alone when the axis stands still.
+    turns: Vec<Matrix3<f64>>,
+    weights: Vec<f64>,
+    spin: Vector3<f64>,
+}
+
+/// A right-handed frame whose third vector is `axis`: a function of the axis alone, continuous but at `−z`.
+fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
+    let z = axis.into_inner();
+    let (first, second) = if z.z > -0.5 {
+        let f = 1.0 / (1.0 + z.z);
+        (Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, -z.x), Vector3::new(-z.x * z.y * f, 1.0 - z.y * z.y * f, -z.y))
+    } else {
+        let f = 1.0 / (1.0 - z.z);
+        (Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, z.x), Vector3::new(z.x * z.y * f, z.y * z.y * f - 1.0, -z.y))
+    };
+    Matrix3::from_columns(&[first, second, z])
+}
+
+impl Segment {
+    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis turns by more than 90°.
+    ///
+    /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
+    #[must_use]
+    pub fn between(from: &Pose, to: &Pose) -> Vec<Self> {
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let cross = o0.cross(&o1);
+        let angle = cross.norm().atan2(o0.dot(&o1));
+        if angle <= FRAC_PI_2 * (1.0 + 1e-12) {
+            return vec![Self::arc(from, to)];
+        }
+        let k = cross.normalize();
+        let half = 0.5 * angle;
+        let axis = Unit::new_normalize(o0 * half.cos() + k.cross(&o0) * half.sin());
+        let middle = Pose::at(0.5 * (from.tip() + to.tip()), axis);
+        let mut parts = Self::between(from, &middle);
+        parts.extend(Self::between(&middle, to));
+        parts
+    }
+
+    fn arc(from: &Pose, to: &Pose) -> Self {
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let start = frame(from.axis());
+        let tips = [from.tip(), to.tip()];
+        let cross = o0.cross(&o1);
+        let sine = cross.norm();
+        let angle = sine.atan2(o0.dot(&o1));
+        if sine < 1e-15 {
+            return Self { tips, turns: vec![start], weights: vec![1.0], spin: Vector3::zeros() };
+        }
+        let k = cross / sine;
+        let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
+        let (w, c, s) =
+            ([1.0, half_cosine, 1.0], [1.0, half_cosine, angle.cos()], [0.0, half_sine, angle.sin()]);
+        let along = k * k.transpose();
+        let across = Matrix3::identity() - along;
+        let turns = (0..3).map(|i| (along * w[i] + across * c[i] + k.cross_matrix() * s[i]) * start).collect();
+        Self { tips, turns, weights: w.to_vec(), spin: k * (2.0 * half_sine) }
+    }
+
+    /// The tip at the start and at the end.
+    #[must_use]
+    pub fn tips(&self) -> &[Vector3<f64>; 2] {
+        &self.tips
+    }
+
+    /// The same motion with the tip's ends moved.
+    #[must_use]
+    pub fn with_tips(mut self, tips: [Vector3<f64>; 2]) -> Self {
+        self.tips = tips;
+        self
+    }
+
+    /// Bernstein coefficients in `t` of `ŵ A(t)`, tool coordinates to space: three, or one when the axis stands still.
+    #[must_use]
+    pub fn turns(&self) -> &[Matrix3<f64>] {
+        &self.turns
+    }
+
+    /// Bernstein coefficients in `t` of the weight `ŵ`, as many as [`turns`](Self::turns).
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// `κ k`: the angular velocity times the weight, in space.
+    #[must_use]
+    pub fn spin(&self) -> Vector3<f64> {
+        self.spin
+    }
+
+    /// `b′`: the velocity of the tip.
+    #[must_use]
+    pub fn travel(&self) -> Vector3<f64> {
+        self.tips[1] - self.tips[0]
+    }
+
+    /// `A` at the start.
+    #[must_use]
+    pub fn start(&self) -> Matrix3<f64> {
+        self.turns[0]
+    }
+
+    /// `A` at the end.
+    #[must_use]
+    pub fn end(&self) -> Matrix3<f64> {
+        self.turns[self.turns.len() - 1]
+    }
+}

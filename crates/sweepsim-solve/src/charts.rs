@@ -1,0 +1,475 @@
+//! Charts: one subdivision for a whole family of systems `Φ(x) = q`.
+//!
+//! A box on which `Φ: R^N → R^N` is injective is a *chart*: it holds at most one preimage of each target `q`, and a
+//! certificate found once serves all targets. The search
+//!
+//! 1. drops a box whose image holds no target;
+//! 2. encloses the Jacobian over the box and preconditions it with the inverse `K` of its midpoint. With `R = |I − K J(box)|`
+//!    (entrywise bound, in coordinates scaled to the box) every preimage `x` in the box satisfies, by the mean value theorem
+//!    around the centre `m`, `|x − m + K(Φ(m) − q)| ≤ R·1` componentwise: targets that fail it have none;
+//! 3. if `‖R‖∞ < 1` the box is a chart: two preimages `p, q` of one target would give `(I − K J*)(p − q) = p − q`. Newton's
+//!    method finds the preimage, or the interval iteration of step 2 around better and better centres proves that there is none;
+//! 4. else it is split.
+//!
+//! What is *not* found: nothing. Boxes too small to split further are handed out as [`Undecided`] with their targets.
+//! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
+
+use crate::Interval;
+use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
+
+/// A map `R^N → R^N` with enclosures over boxes.
+pub trait ChartMap<const N: usize> {
+    /// A box, with whatever the map keeps of it.
+    type Cell: Clone;
+
+    /// The box, an interval per variable.
+    fn bounds(&self, cell: &Self::Cell) -> [Interval; N];
+
+    /// Encloses `Φ` over the box; `None` when the box holds no solution that is asked for.
+    fn values(&mut self, cell: &Self::Cell) -> Option<[Interval; N]>;
+
+    /// Encloses `∂Φᵢ/∂xⱼ` over the box, as `[i][j]`.
+    fn jacobian(&mut self, cell: &Self::Cell) -> [[Interval; N]; N];
+
+    /// The two parts of the box, cut across `axis`; the first is the lower one.
+    fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2];
+
+    /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
+    fn evaluate(&self, x: &[f64; N]) -> ([f64; N], [[f64; N]; N]);
+
+    /// What counts as a large difference of each value: for the choice of the direction to split.
+    fn scales(&self) -> [f64; N];
+}
+
+/// A set of right-hand sides with a range query.
+pub trait Targets<const N: usize> {
+    /// Whether any target lies in the range.
+    fn any(&self, range: &[Interval; N]) -> bool;
+
+    /// Calls `visit` with each target in the range until that returns `false`.
+    fn visit(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool);
+}
+
+/// A solution `Φ(x) = q` of one target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preimage<const N: usize> {
+    /// The target's number.
+    pub target: usize,
+    /// The solution.
+    pub x: [f64; N],
+    /// The sign of `det ∂Φ` there: 1 or −1.
+    pub orientation: i8,
+}
+
+/// Why a box could not be decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It is as small as numbers allow.
+    Smallest,
+    /// The budget of boxes is spent.
+    Budget,
+}
+
+/// A box that may hold solutions for a target: neither found nor excluded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undecided<const N: usize> {
+    /// The target's number.
+    pub target: usize,
+    /// The box.
+    pub bounds: [Interval; N],
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Receives what the search finds.
+pub trait Sink<const N: usize> {
+    /// A solution.
+    fn found(&mut self, preimage: Preimage<N>);
+    /// A box and a target that remain open.
+    fn undecided(&mut self, undecided: Undecided<N>);
+}
+
+/// Limits of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartOptions {
+    /// The most boxes that one call may look at.
+    pub boxes: u64,
+    /// A box whose sides are all at most this part of the domain is not split further.
+    pub smallest: f64,
+}
+
+impl Default for ChartOptions {
+    fn default() -> Self {
+        Self { boxes: 400_000, smallest: 1e-14 }
+    }
+}
+
+/// What a search did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ChartStatistics {
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// Of these, boxes that were charts.
+    pub charts: u64,
+    /// Evaluations of the map.
+    pub evaluations: u64,
+}
+
+/// The search, with its stack kept from one call to the next.
+#[derive(Debug)]
+pub struct ChartSolver<C> {
+    /// Limits.
+    pub options: ChartOptions,
+    /// What all calls together did.
+    pub statistics: ChartStatistics,
+    stack: Vec<(C, u32)>,
+}
+
+/// Steps of Newton's method before the box is split instead.
+const NEWTON_STEPS: usize = 12;
+/// A Newton step below this part of the box's half width (plus rounding of the coordinate) has converged.
+const CONVERGED: f64 = 1e-13;
+/// Boxes with at most this many targets have each of them tested before a split.
+const FEW: usize = 4;
+
+type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// The linear picture of `Φ` over a box, in coordinates `s ∈ [−1, 1]^N` scaled to it.
+struct Linear<const N: usize> {
+    centre: [f64; N],
+    half: [f64; N],
+    /// `K`: inverse of the scaled midpoint Jacobian.
+    inverse: Square<N>,
+    /// Entrywise bound of `|I − K J|`, rounding included.
+    rest: Square<N>,
+    /// Radius part of it alone, for the choice of the split.
+    smear: [f64; N],
+    orientation: i8,
+}
+
+impl<const N: usize> Linear<N> {
+    /// The largest row sum of `rest`.
+    fn norm(&self) -> f64 {
+        (0..N).map(|i| self.rest.row(i).iter().sum::<f64>()).fold(0.0, f64::max)
+    }
+
+    fn new(bounds: &[Interval; N], jacobian: &[[Interval; N]; N]) -> Option<Self>
+    where
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let half = bounds.map(Interval::radius);
+        let mid = Square::<N>::from_fn(|i, j| jacobian[i][j].mid() * half[j]);
+        // Columns of length one: how far the directions are from lying in a plane, whatever the box's sides.
+        let lengths: [f64; N] = std::array::from_fn(|j| mid.column(j).norm());
+        if lengths.iter().any(|l| !(*l > 0.0 && l.is_finite())) {
+            return None;
+        }
+        let directions = Square::<N>::from_fn(|i, j| mid[(i, j)] / lengths[j]);
+        let rows: [f64; N] = std::array::from_fn(|i| directions.row(i).iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+        if rows.iter().any(|r| *r == 0.0) {
+            return None;
+        }
+        let balanced = Square::<N>::from_fn(|i, j| directions[(i, j)] / rows[i]);
+        let determinant = balanced.determinant();
+        if !(determinant.abs() > 1e-10) {
+            return None;
+        }
+        let inverse = balanced.try_inverse()?;
+        let inverse = Square::<N>::from_fn(|i, j| inverse[(i, j)] / (lengths[i] * rows[j]));
+        let mut rest = Square::<N>::zeros();
+        let mut smear = [0.0; N];
+        for i in 0..N {
+            for j in 0..N {
+                let (mut product, mut radius, mut rounding) = (0.0, 0.0, 0.0);
+                for k in 0..N {
+                    let factor = inverse[(i, k)];
+                    product += factor * mid[(k, j)];
+                    radius += factor.abs() * jacobian[k][j].radius() * half[j];
+                    rounding += factor.abs() * jacobian[k][j].magnitude() * half[j];
+                }
+                let unit = if i == j { 1.0 } else { 0.0 };
+                rest[(i, j)] = (product - unit).abs() + radius + 16.0 * f64::EPSILON * rounding;
+                smear[j] += radius;
+            }
+        }
+        if !rest.iter().all(|r| r.is_finite()) {
+            return None;
+        }
+        let orientation = if determinant > 0.0 { 1 } else { -1 };
+        Some(Self { centre: bounds.map(Interval::mid), half, inverse, rest, smear, orientation })
+    }
+
+    /// `s − K(Φ(x(s)) − q)`: where a preimage of `q` should be, seen from `s`.
+    fn predict(&self, s: &SVector<f64, N>, value: &[f64; N], q: &[f64; N]) -> SVector<f64, N> {
+        s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
+    }
+
+    fn point(&self, s: &SVector<f64, N>) -> [f64; N] {
+        std::array::from_fn(|i| self.centre[i] + s[i] * self.half[i])
+    }
+}
+
+/// What became of a target in a chart.
+enum Outcome<const N: usize> {
+    Found([f64; N]),
+    Absent,
+    Unclear,
+}
+
+impl<C: Clone> ChartSolver<C> {
+    /// A search with these limits.
+    #[must_use]
+    pub fn new(options: ChartOptions) -> Self {
+        Self { options, statistics: ChartStatistics::default(), stack: Vec::new() }
+    }
+
+    /// Finds, for every target, all its preimages in the box `root`.
+    ///
+    /// Every preimage of every target is handed to `sink` once, or the box where it may hide is.
+    pub fn solve<const N: usize, M, T, S>(&mut self, map: &mut M, root: C, targets: &T, sink: &mut S)
+    where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let domain = map.bounds(&root);
+        let mut budget = self.options.boxes;
+        self.stack.clear();
+        self.stack.push((root, 0));
+        while let Some((cell, depth)) = self.stack.pop() {
+            let Some(values) = map.values(&cell) else {
+                self.statistics.boxes += 1;
+                continue;
+            };
+            self.statistics.boxes += 1;
+            if !targets.any(&values) {
+                continue;
+            }
+            let bounds = map.bounds(&cell);
+            let jacobian = map.jacobian(&cell);
+            // Directions in which nothing changes need no splitting: a continuum of solutions must not flood the search.
+            let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
+            let idle = |j: usize| (0..N).all(|i| jacobian[i][j].magnitude() == 0.0);
+            let tiny = (0..N).all(|j| small(j) || idle(j));
+            if tiny || budget == 0 {
+                let reason = if tiny { Reason::Smallest } else { Reason::Budget };
+                targets.visit(&values, &mut |target, _| {
+                    sink.undecided(Undecided { target, bounds, reason });
+                    true
+                });
+                continue;
+            }
+            budget -= 1;
+            let linear = Linear::new(&bounds, &jacobian);
+            let mut axis = widest(&bounds, &domain, &jacobian, &map.scales());
+            if let Some(linear) = linear {
+                let (value, _) = map.evaluate(&linear.centre);
+                self.statistics.evaluations += 1;
+                let chart = linear.norm() < 1.0;
+                let first_found = chart.then(|| self.chart(map, &linear, &bounds, &domain, &value, &values, targets, sink));
+                match first_found {
+                    Some(true) => {
+                        self.statistics.charts += 1;
+                        continue;
+                    }
+                    // Newton's method went astray for some target: nothing of this box was handed out yet.
+                    Some(false) => {}
+                    None => {
+                        if few_and_absent(&linear, &value, &values, targets) {
+                            continue;
+                        }
+                    }
+                }
+                if depth % 3 != 2 {
+                    axis = largest(&linear.smear);
+                }
+            }
+            if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
+                axis = (0..N)
+                    .max_by(|a, b| {
+                        let part = |j: usize| bounds[j].radius() / domain[j].radius();
+                        part(*a).total_cmp(&part(*b))
+                    })
+                    .unwrap_or(0);
+            }
+            let [lower, upper] = map.split(&cell, axis);
+            self.stack.push((upper, depth + 1));
+            self.stack.push((lower, depth + 1));
+        }
+    }
+
+    /// Solves all targets of a chart; `false` when one stayed unclear (then none was handed out).
+    #[allow(clippy::too_many_arguments)]
+    fn chart<const N: usize, M, T, S>(
+        &mut self,
+        map: &M,
+        linear: &Linear<N>,
+        bounds: &[Interval; N],
+        domain: &[Interval; N],
+        value: &[f64; N],
+        values: &[Interval; N],
+        targets: &T,
+        sink: &mut S,
+    ) -> bool
+    where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N>,
+    {
+        let origin = SVector::<f64, N>::zeros();
+        let rows: [f64; N] = std::array::from_fn(|i| linear.rest.row(i).iter().sum());
+        let mut found: smallvec::SmallVec<[(usize, [f64; N]); 16]> = smallvec::SmallVec::new();
+        let mut clear = true;
+        let evaluations = &mut self.statistics.evaluations;
+        targets.visit(values, &mut |target, q| {
+            let start = linear.predict(&origin, value, q);
+            if (0..N).any(|i| start[i].abs() > 1.0 + rows[i]) {
+                return true;
+            }
+            match solve_in_chart(map, linear, bounds, domain, &start, q, evaluations) {
+                Outcome::Found(x) => found.push((target, x)),
+                Outcome::Absent => {}
+                Outcome::Unclear => clear = false,
+            }
+            clear
+        });
+        if clear {
+            for (target, x) in found {
+                sink.found(Preimage { target, x, orientation: linear.orientation });
+            }
+        }
+        clear
+    }
+}
+
+/// Newton's method from the prediction; then, if it ends outside the box, a proof that the box holds no preimage.
+fn solve_in_chart<const N: usize, M: ChartMap<N>>(
+    map: &M,
+    linear: &Linear<N>,
+    bounds: &[Interval; N],
+    domain: &[Interval; N],
+    start: &SVector<f64, N>,
+    q: &[f64; N],
+    evaluations: &mut u64,
+) -> Outcome<N> {
+    let mut x = linear.point(&start.map(|s| s.clamp(-1.0, 1.0)));
+    let mut converged = false;
+    for _ in 0..NEWTON_STEPS {
+        let (value, jacobian) = map.evaluate(&x);
+        *evaluations += 1;
+        let scaled = Square::<N>::from_fn(|i, j| jacobian[i][j] * linear.half[j]);
+        let rest = SVector::<f64, N>::from_fn(|i, _| value[i] - q[i]);
+        let Some(step) = solve_linear(&scaled, &rest) else { break };
+        let mut small = true;
+        for i in 0..N {
+            let change = step[i] * linear.half[i];
+            x[i] -= change;
+            small &= change.abs() <= CONVERGED * linear.half[i] + 2.0 * f64::EPSILON * x[i].abs();
+        }
+        if !x.iter().all(|c| c.is_finite()) || (0..N).any(|i| (x[i] - linear.centre[i]).abs() > 4.0 * linear.half[i]) {
+            break;
+        }
+        if small || step.amax() < 1e-9 {
+            // Quadratic convergence: a step of 1e-9 leaves an error of its square.
+            converged = true;
+            break;
+        }
+    }
+    if converged && (0..N).all(|i| x[i] >= bounds[i].lo && (x[i] < bounds[i].hi || (x[i] <= bounds[i].hi && bounds[i].hi == domain[i].hi))) {
+        return Outcome::Found(x);
+    }
+    // Absence: shrink the box around where a preimage would have to be, until nothing is left.
+    let mut box_lo = SVector::<f64, N>::repeat(-1.0);
+    let mut box_hi = SVector::<f64, N>::repeat(1.0);
+    for _ in 0..40 {
+        let centre = (box_lo + box_hi) * 0.5;
+        let half = (box_hi - box_lo) * 0.5;
+        let (value, _) = map.evaluate(&linear.point(&centre));
+        *evaluations += 1;
+        let predicted = linear.predict(&centre, &value, q);
+        let reach = linear.rest * half;
+        for i in 0..N {
+            box_lo[i] = box_lo[i].max(predicted[i] - reach[i]);
+            box_hi[i] = box_hi[i].min(predicted[i] + reach[i]);
+            if box_lo[i] > box_hi[i] {
+                return Outcome::Absent;
+            }
+        }
+        let width = (box_hi - box_lo).amax();
+        if width < 1e-11 {
+            // On a face to within rounding: Newton's answer says on which side.
+            return if converged { Outcome::Absent } else { Outcome::Unclear };
+        }
+    }
+    Outcome::Unclear
+}
+
+/// `A⁻¹ b` for a small matrix.
+fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Option<SVector<f64, N>> {
+    let mut a = *matrix;
+    let mut x = *b;
+    for k in 0..N {
+        let pivot = (k..N).max_by(|i, j| a[(*i, k)].abs().total_cmp(&a[(*j, k)].abs()))?;
+        if a[(pivot, k)] == 0.0 || !a[(pivot, k)].is_finite() {
+            return None;
+        }
+        a.swap_rows(k, pivot);
+        x.swap_rows(k, pivot);
+        for i in k + 1..N {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k..N {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+            x[i] -= factor * x[k];
+        }
+    }
+    for k in (0..N).rev() {
+        for j in k + 1..N {
+            x[k] -= a[(k, j)] * x[j];
+        }
+        x[k] /= a[(k, k)];
+    }
+    Some(x)
+}
+
+/// Whether the range holds few targets and the mean value test excludes each of them.
+fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
+    linear: &Linear<N>,
+    value: &[f64; N],
+    values: &[Interval; N],
+    targets: &T,
+) -> bool {
+    let mut count = 0;
+    let mut absent = true;
+    let origin = SVector::<f64, N>::zeros();
+    targets.visit(values, &mut |_, q| {
+        count += 1;
+        let start = linear.predict(&origin, value, q);
+        absent = count <= FEW && (0..N).any(|i| start[i].abs() > 1.0 + linear.rest.row(i).iter().sum::<f64>());
+        absent
+    });
+    absent
+}
+
+fn largest<const N: usize>(weights: &[f64; N]) -> usize {
+    (0..N).fold(0, |best, j| if weights[j] > weights[best] { j } else { best })
+}
+
+/// The variable that moves the values most, measured in `scales`, over the box.
+fn widest<const N: usize>(
+    bounds: &[Interval; N],
+    domain: &[Interval; N],
+    jacobian: &[[Interval; N]; N],
+    scales: &[f64; N],
+) -> usize {
+    let weights: [f64; N] = std::array::from_fn(|j| {
+        let reach: f64 = (0..N).map(|i| jacobian[i][j].magnitude() / scales[i]).sum();
+        reach * bounds[j].radius()
+    });
+    if weights.iter().all(|w| *w == 0.0) {
+        return largest::<N>(&std::array::from_fn(|j| bounds[j].radius() / domain[j].radius()));
+    }
+    largest(&weights)
+}

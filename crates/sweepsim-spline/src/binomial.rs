@@ -1,0 +1,77 @@
+//! Binomial coefficients as `f64`.
+//!
+//! Exact up to row 56 (`C(56, 28) < 2⁵³`); beyond, each carries at most the row's number of roundings; beyond row 1029
+//! they overflow, and whatever is made of them becomes a form with an infinite error bound.
+
+use smallvec::SmallVec;
+
+const TABLED: usize = 33;
+
+static ROWS: [[f64; TABLED]; TABLED] = {
+    let mut rows = [[0.0; TABLED]; TABLED];
+    let mut n = 0;
+    while n < TABLED {
+        rows[n][0] = 1.0;
+        let mut k = 1;
+        while k <= n {
+            rows[n][k] = rows[n - 1][k - 1] + rows[n - 1][k];
+            k += 1;
+        }
+        n += 1;
+    }
+    rows
+};
+
+/// A row `C(n, 0), …, C(n, n)` of Pascal's triangle.
+pub(crate) enum Row {
+    Tabled(&'static [f64]),
+    Computed(SmallVec<[f64; 64]>),
+}
+
+impl std::ops::Deref for Row {
+    type Target = [f64];
+    fn deref(&self) -> &[f64] {
+        match self {
+            Row::Tabled(row) => row,
+            Row::Computed(row) => row,
+        }
+    }
+}
+
+/// Row `n` of Pascal's triangle.
+pub(crate) fn row(n: usize) -> Row {
+    if n < TABLED {
+        return Row::Tabled(&ROWS[n][..=n]);
+    }
+    let mut row: SmallVec<[f64; 64]> = SmallVec::from_slice(&ROWS[TABLED - 1]);
+    for m in TABLED..=n {
+        row.push(1.0);
+        for k in (1..m).rev() {
+            row[k] += row[k - 1];
+        }
+    }
+    Row::Computed(row)
+}
+
+/// How many roundings an entry of row `n` may carry.
+pub(crate) fn roundings(n: usize) -> usize {
+    n.saturating_sub(56)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_symmetric_and_sum_to_powers_of_two() {
+        for n in [0, 1, 2, 7, 32, 33, 40, 52] {
+            let row = row(n);
+            assert_eq!(row.len(), n + 1);
+            assert_eq!(row.iter().sum::<f64>(), 2f64.powi(n as i32));
+            for k in 0..=n {
+                assert_eq!(row[k], row[n - k]);
+            }
+        }
+        assert_eq!(row(40)[20], 137_846_528_820.0);
+    }
+}

@@ -1,0 +1,259 @@
+//! All crossings of dexel lines with the boundary of a stretch of path: envelope, edges, kinks and the two caps.
+
+use crate::element::{Cells, Element};
+use crate::envelope::{Face, Joint, ROOT, Rim, Side, Size, Twist};
+use crate::lattice::Lattice;
+use crate::time::Times;
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_dexel::{Crossing, Source};
+use sweepsim_motion::{Segment, Tool};
+use sweepsim_solve::{ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, Undecided};
+
+/// A tool, prepared.
+pub(crate) struct Cutter {
+    pub faces: Vec<Element>,
+    pub rims: Vec<Element>,
+    /// No point of the tool is farther from its tip.
+    pub reach: f64,
+}
+
+impl Cutter {
+    pub fn new(tool: &Tool) -> Self {
+        let (faces, rims) = Element::all(tool);
+        let reach = tool
+            .patches()
+            .iter()
+            .flat_map(|patch| {
+                let weights = patch.weight.coefficients();
+                (0..weights.len()).map(move |i| {
+                    Vector3::from([0, 1, 2].map(|k| patch.position[k].coefficients()[i] / weights[i])).norm()
+                })
+            })
+            .fold(0.0, f64::max);
+        Self { faces, rims, reach }
+    }
+}
+
+/// What one worker keeps from segment to segment.
+pub(crate) struct Workspace {
+    pub faces: Vec<Cells>,
+    pub rims: Vec<Cells>,
+    pub bricks: ChartSolver<(u32, u32)>,
+    pub placed: ChartSolver<u32>,
+}
+
+impl Workspace {
+    pub fn new(cutter: &Cutter) -> Self {
+        let options = ChartOptions::default();
+        Self {
+            faces: cutter.faces.iter().map(Cells::new).collect(),
+            rims: cutter.rims.iter().map(Cells::new).collect(),
+            bricks: ChartSolver::new(options),
+            placed: ChartSolver::new(options),
+        }
+    }
+}
+
+/// A crossing and the number of its line.
+pub(crate) type Numbered = (u32, Crossing);
+
+/// What a search found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Harvest {
+    pub crossings: Vec<Numbered>,
+    /// Lines with a box that could not be decided.
+    pub open: Vec<(u32, Reason)>,
+    pub statistics: ChartStatistics,
+}
+
+/// Preimages of one map.
+pub(crate) struct Collector<const N: usize> {
+    pub found: Vec<Preimage<N>>,
+    pub open: Vec<(u32, Reason)>, pub boxes: Vec<Undecided<N>>,
+}
+
+impl<const N: usize> Collector<N> {
+    pub fn new() -> Self {
+        Self { found: Vec::new(), open: Vec::new(), boxes: Vec::new() }
+    }
+}
+
+impl<const N: usize> Sink<N> for Collector<N> {
+    fn found(&mut self, preimage: Preimage<N>) {
+        self.found.push(preimage);
+    }
+
+    fn undecided(&mut self, undecided: Undecided<N>) {
+        self.boxes.push(undecided); self.open.push((undecided.target as u32, undecided.reason));
+    }
+}
+
+fn unit(normal: Vector3<f64>) -> [f32; 3] {
+    let length = normal.norm();
+    let normal = if length > 0.0 { normal / length } else { normal };
+    [normal.x as f32, normal.y as f32, normal.z as f32]
+}
+
+/// A placement between two motions.
+struct Placed {
+    turn: Matrix3<f64>,
+    tip: Vector3<f64>,
+    before: Side,
+    after: Side,
+    source: Source,
+}
+
+/// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
+pub(crate) fn twist(segment: &Segment, turn: &Matrix3<f64>) -> Side {
+    let back = turn.transpose();
+    Side::Moving(Twist { spin: (back * segment.spin()).into(), travel: (back * segment.travel()).into() })
+}
+
+/// A search of some lines along some segments.
+pub(crate) struct Search<'a> {
+    pub cutter: &'a Cutter,
+    pub lattice: &'a Lattice<'a>,
+    pub size: Size,
+    pub path: u16,
+    /// Number of the first segment.
+    pub first: usize,
+}
+
+impl Search<'_> {
+    /// The crossings of `segments[at]`: its envelope and edges, the joint at its start, and the cap at the end of the last.
+    pub fn segment(&self, segments: &[Segment], at: usize, space: &mut Workspace, harvest: &mut Harvest) {
+        let segment = &segments[at];
+        if !self.reaches(segment) {
+            return;
+        }
+        let number = (self.first + at) as u32;
+        let source = |t: f64| Source { path: self.path, segment: number, t: t as f32 };
+        let mut times = Times::new(segment);
+        self.faces(&mut times, &source, space, harvest);
+        self.rims(&mut times, &source, space, harvest);
+        let turn = segment.start();
+        let before = at.checked_sub(1).map_or(Side::Beyond(false), |k| twist(&segments[k], &turn));
+        let placed =
+            Placed { turn, tip: segment.tips()[0], before, after: twist(segment, &turn), source: source(0.0) };
+        self.joint(&placed, space, harvest);
+        if at + 1 == segments.len() {
+            let turn = segment.end();
+            let placed = Placed {
+                turn,
+                tip: segment.tips()[1],
+                before: twist(segment, &turn),
+                after: Side::Beyond(true),
+                source: source(1.0),
+            };
+            self.joint(&placed, space, harvest);
+        }
+        for cells in space.faces.iter_mut().chain(&mut space.rims) {
+            cells.trim();
+        }
+    }
+
+    /// Whether any line passes near the segment.
+    fn reaches(&self, segment: &Segment) -> bool {
+        let [a, b] = segment.tips();
+        let window = [self.lattice.i, self.lattice.j];
+        (0..2).all(|k| {
+            let grid = self.lattice.grid;
+            let at = |n: usize| if k == 0 { grid.x(n) } else { grid.y(n) };
+            let margin = self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
+            a[k].min(b[k]) - margin <= at(window[k][1]) && a[k].max(b[k]) + margin >= at(window[k][0])
+        })
+    }
+
+    fn faces(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
+        for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
+            let mut map = Face { element, cells, times, size: self.size };
+            let mut sink = Collector::<3>::new();
+            space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+            for Preimage { target, x, orientation } in sink.found {
+                let (point, moment) = (element.evaluate(&x[..2]), times.at(x[2]));
+                harvest.crossings.push((
+                    target as u32,
+                    Crossing {
+                        z: (moment.turn * point.position).z + moment.tip.z,
+                        jump: orientation,
+                        normal: unit(moment.turn * point.fields[0].normal[0]),
+                        source: source(x[2]),
+                    },
+                ));
+            }
+            harvest.open.extend(sink.open);
+        }
+        harvest.count(&mut space.bricks.statistics);
+    }
+
+    fn rims(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
+        for (element, cells) in self.cutter.rims.iter().zip(&mut space.rims) {
+            let mut map = Rim { element, cells, times, size: self.size };
+            let mut sink = Collector::<2>::new();
+            space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+            for Preimage { target, x, orientation } in sink.found {
+                let point = element.evaluate(&x[..1]);
+                let [a, b] = map.sides(&point, x[1]);
+                if (a < 0.0) == (b < 0.0) {
+                    continue;
+                }
+                let moment = map.times.at(x[1]);
+                // The envelope's normal lies in the fan of the two faces, where g = 0.
+                let [n, m] = [0, 1].map(|side| point.fields[side].normal[0].normalize());
+                let (a, b) = (a.abs() / point.fields[0].normal[0].norm(), b.abs() / point.fields[1].normal[0].norm());
+                harvest.crossings.push((
+                    target as u32,
+                    Crossing {
+                        z: (moment.turn * point.position).z + moment.tip.z,
+                        jump: if a_below(map.sides(&point, x[1])) { -orientation } else { orientation },
+                        normal: unit(moment.turn * (n * b + m * a)),
+                        source: source(x[1]),
+                    },
+                ));
+            }
+            harvest.open.extend(sink.open);
+        }
+        harvest.count(&mut space.bricks.statistics);
+    }
+
+    fn joint(&self, placed: &Placed, space: &mut Workspace, harvest: &mut Harvest) {
+        for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
+            let Placed { turn, tip, before, after, source } = *placed;
+            let mut map = Joint { element, cells, turn, tip, before, after, size: self.size };
+            let mut sink = Collector::<2>::new();
+            space.placed.solve(&mut map, 0, self.lattice, &mut sink);
+            for Preimage { target, x, orientation } in sink.found {
+                let point = element.evaluate(&x);
+                let change = i8::from(after.negative_at(&point)) - i8::from(before.negative_at(&point));
+                if change == 0 {
+                    continue;
+                }
+                harvest.crossings.push((
+                    target as u32,
+                    Crossing {
+                        z: (turn * point.position).z + tip.z,
+                        jump: -orientation * change,
+                        normal: unit(turn * point.fields[0].normal[0]),
+                        source,
+                    },
+                ));
+            }
+            harvest.open.extend(sink.open);
+        }
+        harvest.count(&mut space.placed.statistics);
+    }
+}
+
+/// Whether `g_B − g_A` is positive, given that just one of the two is negative.
+fn a_below([a, _]: [f64; 2]) -> bool {
+    a < 0.0
+}
+
+impl Harvest {
+    fn count(&mut self, statistics: &mut ChartStatistics) {
+        self.statistics.boxes += statistics.boxes;
+        self.statistics.charts += statistics.charts;
+        self.statistics.evaluations += statistics.evaluations;
+        *statistics = ChartStatistics::default();
+    }
+}

@@ -1,0 +1,352 @@
+//! The envelope systems as charts: one map per kind of boundary point of the sweep over a dexel line.
+//!
+//! | map | the paper | unknowns | values | jump going up |
+//! | --- | --- | --- | --- | --- |
+//! | [`Face`] | Eq. 6 | `u, v, t` | `X, Y, g` | `sign det ∂(X, Y, g)` |
+//! | [`Rim`] | Eq. 7 | `r, t` | `X, Y` | `−sign(g_B − g_A) · sign det ∂(X, Y)` where just one of `g_A, g_B` is negative |
+//! | [`Joint`] | caps and kinks | `u, v` | `X, Y` | `−sign N_z · ([g₊ < 0] − [g₋ < 0])` |
+//!
+//! `X = ⟨row of A(t), F(u, v)⟩ + b(t)` is bounded by the dot products of control rows and control points, which are its
+//! control values (coefficient over weight); likewise its derivatives. `g = ⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩` is polynomial of
+//! degree 2 in `t`, and of the degree of `N` in `(u, v)`. `g = 0` counts as `g ≥ 0` everywhere.
+
+use crate::element::{Cells, Element, Point, Triples};
+use crate::time::Times;
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_solve::{ChartMap, Interval};
+
+/// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Range of `⟨row, point⟩` over all rows and points.
+fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for row in rows {
+        for i in 0..points.len() {
+            let value = points.dot(row, i);
+            lo = if value < lo { value } else { lo };
+            hi = if value > hi { value } else { hi };
+        }
+    }
+    (lo, hi)
+}
+
+/// Range of `⟨constant, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all rows and coefficients.
+fn envelope(constant: &[f64; 3], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for i in 0..n.len() {
+        let fixed = m.dot(constant, i);
+        for row in rows {
+            let value = fixed + n.dot(row, i);
+            lo = if value < lo { value } else { lo };
+            hi = if value > hi { value } else { hi };
+        }
+    }
+    (lo, hi)
+}
+
+/// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
+fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
+    (if lo < 0.0 { lo * b } else { lo * a }, if hi > 0.0 { hi * b } else { hi * a })
+}
+
+fn interval((lo, hi): (f64, f64)) -> Interval {
+    Interval::new(lo, hi)
+}
+
+/// The size of things: what differences count as large, and how far rounding reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    /// Distance of neighbouring lines.
+    pub spacing: [f64; 2],
+    /// Rounding of a coordinate.
+    pub slack: f64,
+}
+
+/// A patch under a motion.
+pub(crate) struct Face<'a> {
+    pub element: &'a Element,
+    pub cells: &'a mut Cells,
+    pub times: &'a mut Times,
+    pub size: Size,
+}
+
+/// A cell of an element in a piece of time.
+pub(crate) type Brick = (u32, u32);
+
+pub(crate) const ROOT: Brick = (0, 0);
+
+/// A bound of `|g|`, and so of its rounding.
+fn envelope_size(element: &Element, times: &Times) -> f64 {
+    let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
+    sum(&times.spin) * element.largest_moment + sum(&times.velocity.into()) * element.largest_normal
+}
+
+impl ChartMap<3> for Face<'_> {
+    type Cell = Brick;
+
+    fn bounds(&self, cell: &Brick) -> [Interval; 3] {
+        let of = |axis| interval(self.cells.bounds(cell.0, axis));
+        [of(0), of(1), interval(self.times.bounds(cell.1))]
+    }
+
+    fn values(&mut self, cell: &Brick) -> Option<[Interval; 3]> {
+        let field = self.cells.field(self.element, cell.0, 0);
+        let g = envelope(&self.times.spin, self.times.travel(cell.1), &field);
+        let error = ROUNDING * envelope_size(self.element, self.times);
+        if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
+            return None;
+        }
+        let [x, y] = plane_values(self.element, self.cells, self.times, *cell, &self.size);
+        Some([x, y, Interval::new(g.0 - error, g.1 + error)])
+    }
+
+    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 3]; 3] {
+        let zero = Interval::new(0.0, 0.0);
+        let mut jacobian = [[zero; 3]; 3];
+        for axis in 0..2 {
+            let slope = self.cells.slope(self.element, cell.0, axis);
+            for r in 0..2 {
+                jacobian[r][axis] = interval(products(self.times.rows(cell.1, r), &slope));
+            }
+            let slopes = self.cells.field_slope(cell.0, 0, axis);
+            jacobian[2][axis] = interval(envelope(&self.times.spin, self.times.travel(cell.1), &slopes));
+        }
+        let turning = turning(self.element, self.cells, self.times, *cell);
+        for r in 0..2 {
+            jacobian[r][2] = turning[r];
+        }
+        if self.times.count > 1 {
+            let [normals, _] = self.cells.field(self.element, cell.0, 0);
+            jacobian[2][2] = interval(products(self.times.travel_slope(cell.1), &normals));
+        }
+        jacobian
+    }
+
+    fn split(&mut self, cell: &Brick, axis: usize) -> [Brick; 2] {
+        if axis == 2 {
+            self.times.split(cell.1).map(|piece| (cell.0, piece))
+        } else {
+            self.cells.split(self.element, cell.0, axis).map(|part| (part, cell.1))
+        }
+    }
+
+    fn evaluate(&self, x: &[f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let point = self.element.evaluate(&x[..2]);
+        let moment = self.times.at(x[2]);
+        let spin = Vector3::from(self.times.spin);
+        let place = moment.turn * point.position + moment.tip;
+        let slopes = [moment.turn * point.slopes[0], moment.turn * point.slopes[1]];
+        let moving = moment.spin * point.position + self.times.velocity;
+        let field = &point.fields[0];
+        let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
+        let g_t = moment.travel_slope.dot(&field.normal[0]);
+        (
+            [place.x, place.y, g(0)],
+            [
+                [slopes[0].x, slopes[1].x, moving.x],
+                [slopes[0].y, slopes[1].y, moving.y],
+                [g(1), g(2), g_t],
+            ],
+        )
+    }
+
+    fn scales(&self) -> [f64; 3] {
+        let [x, y] = self.size.spacing;
+        [x, y, 0.25 * envelope_size(self.element, self.times).max(f64::MIN_POSITIVE)]
+    }
+}
+
+/// Ranges of X and Y.
+fn plane_values(element: &Element, cells: &Cells, times: &Times, (cell, piece): Brick, size: &Size) -> [Interval; 2] {
+    let position = cells.position(element, cell);
+    [0, 1].map(|r| {
+        let (lo, hi) = products(times.rows(piece, r), &position);
+        let (a, b) = times.tip(piece, r);
+        Interval::new(lo + a - size.slack, hi + b + size.slack)
+    })
+}
+
+/// Ranges of `∂X/∂t` and `∂Y/∂t`: `b′ + (κ/w) k × A F`.
+fn turning(element: &Element, cells: &Cells, times: &Times, (cell, piece): Brick) -> [Interval; 2] {
+    let position = cells.position(element, cell);
+    [0, 1].map(|r| {
+        let (rows, pace) = times.spin_rows(piece, r);
+        let (lo, hi) = scaled(products(rows, &position), pace);
+        Interval::new(lo + times.velocity[r], hi + times.velocity[r])
+    })
+}
+
+/// A sharp edge under a motion.
+pub(crate) struct Rim<'a> {
+    pub element: &'a Element,
+    pub cells: &'a mut Cells,
+    pub times: &'a mut Times,
+    pub size: Size,
+}
+
+/// The sign of `g` over a cell: `Some(true)` negative, `Some(false)` not negative, `None` both or unclear.
+fn negative((lo, hi): (f64, f64), error: f64) -> Option<bool> {
+    if hi < -error {
+        Some(true)
+    } else if lo > error || (lo == 0.0 && hi == 0.0) {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+impl ChartMap<2> for Rim<'_> {
+    type Cell = Brick;
+
+    fn bounds(&self, cell: &Brick) -> [Interval; 2] {
+        [interval(self.cells.bounds(cell.0, 0)), interval(self.times.bounds(cell.1))]
+    }
+
+    fn values(&mut self, cell: &Brick) -> Option<[Interval; 2]> {
+        let error = ROUNDING * envelope_size(self.element, self.times);
+        let [a, b] = [0, 1].map(|side| {
+            let field = self.cells.field(self.element, cell.0, side);
+            negative(envelope(&self.times.spin, self.times.travel(cell.1), &field), error)
+        });
+        if a.is_some() && a == b {
+            return None;
+        }
+        Some(plane_values(self.element, self.cells, self.times, *cell, &self.size))
+    }
+
+    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 2]; 2] {
+        let slope = self.cells.slope(self.element, cell.0, 0);
+        let turning = turning(self.element, self.cells, self.times, *cell);
+        [0, 1].map(|r| [interval(products(self.times.rows(cell.1, r), &slope)), turning[r]])
+    }
+
+    fn split(&mut self, cell: &Brick, axis: usize) -> [Brick; 2] {
+        if axis == 1 {
+            self.times.split(cell.1).map(|piece| (cell.0, piece))
+        } else {
+            self.cells.split(self.element, cell.0, 0).map(|part| (part, cell.1))
+        }
+    }
+
+    fn evaluate(&self, x: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+        let point = self.element.evaluate(&x[..1]);
+        let moment = self.times.at(x[1]);
+        let place = moment.turn * point.position + moment.tip;
+        let slope = moment.turn * point.slopes[0];
+        let moving = moment.spin * point.position + self.times.velocity;
+        ([place.x, place.y], [[slope.x, moving.x], [slope.y, moving.y]])
+    }
+
+    fn scales(&self) -> [f64; 2] {
+        self.size.spacing
+    }
+}
+
+impl Rim<'_> {
+    /// `g_A` and `g_B` at a point.
+    pub fn sides(&self, point: &Point, t: f64) -> [f64; 2] {
+        let travel = self.times.at(t).travel;
+        let spin = Vector3::from(self.times.spin);
+        [0, 1].map(|side| {
+            let field = &point.fields[side];
+            spin.dot(&field.moment[0]) + travel.dot(&field.normal[0])
+        })
+    }
+}
+
+/// What the tool does just before or after a pose, as its velocity there: in the tool's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Twist {
+    pub spin: [f64; 3],
+    pub travel: [f64; 3],
+}
+
+/// A side of a joint: the motion there, or none at the end of a path. The sign of `g` is then fixed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Side {
+    Moving(Twist),
+    /// Beyond the end: `true` counts as `g < 0`.
+    Beyond(bool),
+}
+
+impl Side {
+    fn negative(&self, field: &[Triples; 2], element: &Element) -> Option<bool> {
+        match self {
+            Self::Beyond(negative) => Some(*negative),
+            Self::Moving(twist) => {
+                let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
+                let size = sum(&twist.spin) * element.largest_moment + sum(&twist.travel) * element.largest_normal;
+                negative(envelope(&twist.spin, &[twist.travel], field), ROUNDING * size)
+            }
+        }
+    }
+
+    pub fn negative_at(&self, point: &Point) -> bool {
+        match self {
+            Self::Beyond(negative) => *negative,
+            Self::Moving(twist) => {
+                let field = &point.fields[0];
+                Vector3::from(twist.spin).dot(&field.moment[0]) + Vector3::from(twist.travel).dot(&field.normal[0]) < 0.0
+            }
+        }
+    }
+}
+
+/// A placed patch between two motions: a kink of the path, or a cap at its start or end.
+pub(crate) struct Joint<'a> {
+    pub element: &'a Element,
+    pub cells: &'a mut Cells,
+    pub turn: Matrix3<f64>,
+    pub tip: Vector3<f64>,
+    pub before: Side,
+    pub after: Side,
+    pub size: Size,
+}
+
+impl Joint<'_> {
+    fn row(&self, r: usize) -> [[f64; 3]; 1] {
+        [[self.turn[(r, 0)], self.turn[(r, 1)], self.turn[(r, 2)]]]
+    }
+}
+
+impl ChartMap<2> for Joint<'_> {
+    type Cell = u32;
+
+    fn bounds(&self, cell: &u32) -> [Interval; 2] {
+        [0, 1].map(|axis| interval(self.cells.bounds(*cell, axis)))
+    }
+
+    fn values(&mut self, cell: &u32) -> Option<[Interval; 2]> {
+        let field = self.cells.field(self.element, *cell, 0);
+        let before = self.before.negative(&field, self.element);
+        if before.is_some() && before == self.after.negative(&field, self.element) {
+            return None;
+        }
+        let position = self.cells.position(self.element, *cell);
+        Some([0, 1].map(|r| {
+            let (lo, hi) = products(&self.row(r), &position);
+            Interval::new(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
+        }))
+    }
+
+    fn jacobian(&mut self, cell: &u32) -> [[Interval; 2]; 2] {
+        let slopes = [0, 1].map(|axis| self.cells.slope(self.element, *cell, axis));
+        [0, 1].map(|r| [0, 1].map(|axis| interval(products(&self.row(r), &slopes[axis]))))
+    }
+
+    fn split(&mut self, cell: &u32, axis: usize) -> [u32; 2] {
+        self.cells.split(self.element, *cell, axis)
+    }
+
+    fn evaluate(&self, x: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+        let point = self.element.evaluate(x);
+        let place = self.turn * point.position + self.tip;
+        let slopes = [self.turn * point.slopes[0], self.turn * point.slopes[1]];
+        ([place.x, place.y], [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]])
+    }
+
+    fn scales(&self) -> [f64; 2] {
+        self.size.spacing
+    }
+}

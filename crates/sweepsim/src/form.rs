@@ -1,0 +1,191 @@
+//! Coefficient lists of bivariate Bernstein forms on `[0, 1]²`, first variable fastest: what a tool's surfaces are made of
+//! before they are cut into cells.
+
+use sweepsim_spline::Bernstein;
+
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Form {
+    pub degrees: [usize; 2],
+    pub c: Vec<f64>,
+}
+
+impl Form {
+    /// A form in two variables, or in one (then constant in the second).
+    pub fn of(bernstein: &Bernstein) -> Self {
+        let degree = |axis: usize| bernstein.degrees().get(axis).copied().unwrap_or(0);
+        Self { degrees: [degree(0), degree(1)], c: bernstein.coefficients().to_vec() }
+    }
+
+    fn from_fn(degrees: [usize; 2], mut f: impl FnMut(usize, usize) -> f64) -> Self {
+        let mut c = Vec::with_capacity((degrees[0] + 1) * (degrees[1] + 1));
+        for j in 0..=degrees[1] {
+            for i in 0..=degrees[0] {
+                c.push(f(i, j));
+            }
+        }
+        Self { degrees, c }
+    }
+
+    pub fn at(&self, i: usize, j: usize) -> f64 {
+        self.c[i + (self.degrees[0] + 1) * j]
+    }
+
+    pub fn largest(&self) -> f64 {
+        self.c.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+    }
+
+    /// The two factors of `a(u) b(v)`, where it is such a product up to rounding; constant factors have degree 0.
+    pub fn factors(&self) -> Option<[Self; 2]> {
+        let [p, q] = self.degrees;
+        let corner = self.at(0, 0);
+        let slack = 8.0 * f64::EPSILON * self.largest() * self.largest();
+        let rank_one = (0..=q)
+            .all(|j| (0..=p).all(|i| (self.at(i, j) * corner - self.at(i, 0) * self.at(0, j)).abs() <= slack));
+        if !rank_one || corner == 0.0 {
+            return None;
+        }
+        let in_u = Self::from_fn([p, 0], |i, _| self.at(i, 0));
+        let in_v = Self::from_fn([0, q], |_, j| self.at(0, j) / corner);
+        Some([in_u.lowered(), in_v.lowered()])
+    }
+
+    /// Degree 0 where all coefficients are equal.
+    pub fn lowered(self) -> Self {
+        if self.c.iter().all(|c| *c == self.c[0]) { Self { degrees: [0, 0], c: vec![self.c[0]] } } else { self }
+    }
+
+    pub fn derivative(&self, axis: usize) -> Self {
+        let [p, q] = self.degrees;
+        let n = self.degrees[axis];
+        if n == 0 {
+            return Self { degrees: self.degrees, c: vec![0.0; self.c.len()] };
+        }
+        let factor = n as f64;
+        if axis == 0 {
+            Self::from_fn([p - 1, q], |i, j| factor * (self.at(i + 1, j) - self.at(i, j)))
+        } else {
+            Self::from_fn([p, q - 1], |i, j| factor * (self.at(i, j + 1) - self.at(i, j)))
+        }
+    }
+
+    pub fn times(&self, other: &Self) -> Self {
+        let ([p, q], [r, s]) = (self.degrees, other.degrees);
+        let degrees = [p + r, q + s];
+        let mut product = Self { degrees, c: vec![0.0; (p + r + 1) * (q + s + 1)] };
+        for l in 0..=s {
+            for k in 0..=r {
+                let scaled = other.at(k, l) * binomial(r, k) * binomial(s, l);
+                for j in 0..=q {
+                    for i in 0..=p {
+                        product.c[i + k + (p + r + 1) * (j + l)] +=
+                            scaled * self.at(i, j) * binomial(p, i) * binomial(q, j);
+                    }
+                }
+            }
+        }
+        for j in 0..=q + s {
+            for i in 0..=p + r {
+                product.c[i + (p + r + 1) * j] /= binomial(p + r, i) * binomial(q + s, j);
+            }
+        }
+        product
+    }
+
+    /// The same function in higher degrees.
+    pub fn raised(&self, degrees: [usize; 2]) -> Self {
+        let by = [degrees[0] - self.degrees[0], degrees[1] - self.degrees[1]];
+        if by == [0, 0] {
+            return self.clone();
+        }
+        self.times(&Self { degrees: by, c: vec![1.0; (by[0] + 1) * (by[1] + 1)] })
+    }
+
+    /// `self − other`, in the larger degrees of the two.
+    pub fn minus(&self, other: &Self) -> Self {
+        let degrees = [0, 1].map(|a| self.degrees[a].max(other.degrees[a]));
+        let (a, b) = (self.raised(degrees), other.raised(degrees));
+        Self { degrees, c: a.c.iter().zip(&b.c).map(|(x, y)| x - y).collect() }
+    }
+}
+
+pub(crate) fn binomial(n: usize, k: usize) -> f64 {
+    (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
+}
+
+/// Cuts one coefficient tensor across an axis at the part `at`, into two of the same degrees.
+pub(crate) fn cut(source: &[f64], degrees: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
+    let [p, q] = degrees;
+    let (n, stride, lines, step) = if axis == 0 { (p, 1, q + 1, p + 1) } else { (q, p + 1, p + 1, 1) };
+    upper.copy_from_slice(source);
+    for line in 0..lines {
+        let base = line * step;
+        lower[base] = upper[base];
+        for level in 1..=n {
+            for i in 0..=n - level {
+                let k = base + i * stride;
+                upper[k] += at * (upper[k + stride] - upper[k]);
+            }
+            lower[base + level * stride] = upper[base];
+        }
+    }
+}
+
+/// Values and derivatives of the Bernstein polynomials of degree `n` at `x` (also outside `[0, 1]`).
+pub(crate) fn basis(n: usize, x: f64, value: &mut [f64; MOST], slope: &mut [f64; MOST]) {
+    value[0] = 1.0;
+    slope[0] = 0.0;
+    let y = 1.0 - x;
+    for level in 1..=n {
+        if level == n {
+            // The derivatives come from the polynomials of degree n − 1.
+            slope[0] = -(n as f64) * value[0];
+            for i in 1..n {
+                slope[i] = n as f64 * (value[i - 1] - value[i]);
+            }
+            slope[n] = n as f64 * value[n - 1];
+        }
+        value[level] = x * value[level - 1];
+        for i in (1..level).rev() {
+            value[i] = y * value[i] + x * value[i - 1];
+        }
+        value[0] *= y;
+    }
+}
+
+/// One more than the largest degree of a coefficient tensor.
+pub(crate) const MOST: usize = 32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(form: &Form, u: f64, v: f64) -> f64 {
+        let (mut a, mut b, mut s) = ([0.0; MOST], [0.0; MOST], [0.0; MOST]);
+        basis(form.degrees[0], u, &mut a, &mut s);
+        basis(form.degrees[1], v, &mut b, &mut s);
+        (0..=form.degrees[1]).map(|j| (0..=form.degrees[0]).map(|i| a[i] * b[j] * form.at(i, j)).sum::<f64>()).sum()
+    }
+
+    #[test]
+    fn algebra_agrees_with_values() {
+        let f = Form { degrees: [2, 1], c: vec![1.0, -2.0, 0.5, 3.0, 1.5, -1.0] };
+        let g = Form { degrees: [1, 2], c: vec![0.5, 2.0, -1.0, 1.0, 4.0, 0.25] };
+        for (u, v) in [(0.0, 0.0), (0.3, 0.8), (1.0, 0.5), (1.2, -0.1)] {
+            let (a, b) = (value(&f, u, v), value(&g, u, v));
+            assert!((value(&f.times(&g), u, v) - a * b).abs() < 1e-13 * (1.0 + a.abs() * b.abs()));
+            assert!((value(&f.minus(&g), u, v) - (a - b)).abs() < 1e-13);
+            let h = 1e-6;
+            let slope = (value(&f, u + h, v) - value(&f, u - h, v)) / (2.0 * h);
+            assert!((value(&f.derivative(0), u, v) - slope).abs() < 1e-8);
+        }
+        let (mut lower, mut upper) = (vec![0.0; 6], vec![0.0; 6]);
+        for axis in [0, 1] {
+            cut(&f.c, f.degrees, axis, 0.3, &mut lower, &mut upper);
+            let part = |c: &[f64]| Form { degrees: f.degrees, c: c.to_vec() };
+            let at = |x: f64| if axis == 0 { (x, 0.7) } else { (0.7, x) };
+            let (l, u) = (at(0.3 * 0.4), at(0.3 + 0.7 * 0.4));
+            assert!((value(&part(&lower), at(0.4).0, at(0.4).1) - value(&f, l.0, l.1)).abs() < 1e-14);
+            assert!((value(&part(&upper), at(0.4).0, at(0.4).1) - value(&f, u.0, u.1)).abs() < 1e-14);
+        }
+    }
+}

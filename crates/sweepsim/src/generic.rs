@@ -1,0 +1,65 @@
+//! Generic position: moves and lines are displaced by a small part of the tolerance, so that nothing is degenerate.
+//!
+//! Programs are full of coincidences: a flat bottom moving sideways (`g ≡ 0` on a whole patch), a wall along a row of
+//! dexels, a tip exactly over a line. The result is exact for tips within [`TIPS`] and lines within [`LINES`] of the given
+//! ones, both in parts of the tolerance.
+//!
+//! Every tip is moved a little farther along one fixed direction than the one before it. So each translation changes by the
+//! *same* generic vector, the sign of `g` on a patch that it decides is the same for all moves, and no kink arises.
+
+use nalgebra::Vector3;
+use sweepsim_motion::{Pose, Segment};
+
+/// Tips move by at most this part of the tolerance.
+const TIPS: f64 = 1e-2;
+/// Lines move by this part of the tolerance.
+const LINES: f64 = 1e-3;
+/// After so many poses the displacement starts again from zero.
+const PERIOD: usize = 61;
+
+/// A direction without a simple relation to anything.
+fn direction() -> Vector3<f64> {
+    Vector3::new(0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331).normalize()
+}
+
+/// How far the lines are moved, at the given attempt: each farther, and another way, than the one before.
+pub(crate) fn shift(tolerance: f64, attempt: usize) -> [f64; 2] {
+    let reach = LINES * tolerance * [1.0, 3.0, 10.0, 30.0, 100.0][attempt.min(4)];
+    // Steps of the golden angle.
+    let angle = 0.7391 + 2.399_963_229_728_653 * attempt as f64;
+    [reach * angle.cos(), reach * angle.sin()]
+}
+
+/// The motions from pose to pose, tips displaced, with the number of the move that each belongs to. Moves that do not move
+/// are left out.
+pub(crate) fn segments(poses: &[Pose], tolerance: f64) -> Vec<(u32, Segment)> {
+    let displaced = |k: usize| {
+        let part = (k % PERIOD) as f64 / PERIOD as f64;
+        poses[k].tip() + direction() * (TIPS * tolerance * part)
+    };
+    let mut segments = Vec::with_capacity(poses.len());
+    let mut from = 0;
+    for to in 1..poses.len() {
+        if poses[from] == poses[to] {
+            continue;
+        }
+        let ends = [displaced(from), displaced(to)];
+        let parts = Segment::between(&poses[from], &poses[to]);
+        let count = parts.len() as f64;
+        let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 / count);
+        for (n, part) in parts.into_iter().enumerate() {
+            let last = if n + 1 == count as usize { ends[1] } else { at(n + 1) };
+            segments.push(((to - 1) as u32, part.with_tips([at(n), last])));
+        }
+        from = to;
+    }
+    if segments.is_empty()
+        && let Some(pose) = poses.first()
+    {
+        // A tool that stands still: sweep it along the displacement.
+        let tip = displaced(0);
+        let parts = Segment::between(pose, pose);
+        segments.extend(parts.into_iter().map(|part| (0, part.with_tips([tip, tip + direction() * (TIPS * tolerance)]))));
+    }
+    segments
+}
