@@ -1,1 +1,61 @@
-//! Readers and writers for milling simulation: jobs, NC programs, meshes, dexels, reports
+//! Readers and writers for milling simulation: jobs, NC programs, meshes, dexels, reports.
+//!
+//! ```no_run
+//! use std::path::Path;
+//! use sweepsim_formats::Job;
+//!
+//! let job = match Job::read(Path::new("fixtures/jobs/quickstart.ron")) {
+//!     Ok(job) => job,
+//!     Err(error) => {
+//!         eprintln!("{}", error.render(true));
+//!         std::process::exit(2);
+//!     }
+//! };
+//! println!("{} moves", job.moves());
+//! ```
+//!
+//! | what | read | write |
+//! | --- | --- | --- |
+//! | jobs (RON) | [`Job::read`] | |
+//! | paths as tables (`.csv`) | [`csv::read_path`] | [`csv::write_path`] |
+//! | paths as programs (`.nc`, `.ngc`, …) | [`gcode::read`] | |
+//! | either, by extension | [`read_path_file`] | |
+//! | triangles (STL) | [`read_stl`] | [`write_stl`] |
+//! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |
+//! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
+//! | dexels, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
+//! | reports (`report.json`) | serde | [`Report::to_json`] |
+//!
+//! What is wrong with a file is a [`FormatError`]: one message with file, line, column, and what was expected. Files are
+//! written whole or not at all ([`AtomicFile`]). No input makes a reader panic.
+
+mod apt;
+mod atomic;
+pub mod csv;
+mod dexels_csv;
+mod error;
+mod fixtures;
+pub mod gcode;
+mod job;
+mod locate;
+mod numbers;
+mod paths;
+mod ply;
+mod program;
+mod raw;
+mod report;
+mod stl;
+mod text;
+mod tools;
+
+pub use atomic::{AtomicFile, write_atomically};
+pub use dexels_csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
+pub use error::{FormatError, Place, Problem};
+pub use fixtures::{Difference, Fixture};
+pub use job::{Job, Limits, Target, Units};
+pub use numbers::shortest;
+pub use paths::{JobPath, PathOptions, read_path_file};
+pub use ply::{read_ply, write_ply};
+pub use program::{Note, Program, ProgramPose};
+pub use report::{Collision, Deviation, DexelCounts, Report, UnresolvedDexel};
+pub use stl::{parse_stl, read_stl, write_stl};

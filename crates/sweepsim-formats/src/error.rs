@@ -1,0 +1,237 @@
+//! What can be wrong with a file, and where: one message a person can act on.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use sweepsim_dexel::{GridError, StockError};
+use sweepsim_motion::{PathError, PoseError, ProfileError};
+use thiserror::Error;
+
+/// A file that cannot be read, understood or written.
+///
+/// Its `Display` is one line, `file:line:column: what, and what was expected`, as far as each of them is known;
+/// [`FormatError::render`] adds the line of the file with the place marked.
+#[derive(Debug)]
+pub struct FormatError(Box<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    file: Option<PathBuf>,
+    place: Option<Place>,
+    problem: Problem,
+}
+
+/// Where in a text something is. Lines and columns count from 1, columns in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The line.
+    pub line: usize,
+    /// The column of the first character.
+    pub column: usize,
+    /// How many characters of this line are meant, at least 1.
+    pub width: usize,
+    /// The whole line.
+    pub excerpt: String,
+}
+
+/// What is wrong, without the place.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The file could not be read.
+    #[error("cannot read this file: {0}")]
+    Read(#[source] io::Error),
+    /// The file could not be written.
+    #[error("cannot write this file: {0}")]
+    Write(#[source] io::Error),
+    /// Another file that is named here could not be read.
+    #[error("cannot read the {what} file {}: {source}", .file.display())]
+    Named {
+        /// What the file is for.
+        what: &'static str,
+        /// Which file.
+        file: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// The text does not follow the grammar of its format.
+    #[error("{message}")]
+    Syntax {
+        /// What was found, and what was expected.
+        message: String,
+    },
+    /// A value is not allowed.
+    #[error("{what} is {found}, but must be {expected}")]
+    Value {
+        /// Which value.
+        what: String,
+        /// What it is.
+        found: String,
+        /// What it must be.
+        expected: String,
+    },
+    /// Something that is understood, but cannot be done.
+    #[error("{what} not supported yet: {instead}")]
+    Unsupported {
+        /// What (with its verb: "surface tools are").
+        what: String,
+        /// What to do instead.
+        instead: String,
+    },
+    /// A path names a tool that the job does not have.
+    #[error("there is no tool {number} in this job; it has {}", list(.known))]
+    NoSuchTool {
+        /// The number.
+        number: u32,
+        /// The numbers that there are.
+        known: Vec<u32>,
+    },
+    /// A tool's outline is none.
+    #[error("tool {number}: {source}")]
+    Tool {
+        /// Which tool.
+        number: u32,
+        /// Why.
+        source: ProfileError,
+    },
+    /// A pose is none.
+    #[error("{0}")]
+    Pose(#[source] PoseError),
+    /// A path is none.
+    #[error("{0}")]
+    Path(#[source] PathError),
+    /// A grid is none.
+    #[error("{0}")]
+    Grid(#[source] GridError),
+    /// A stock is none.
+    #[error("{0}")]
+    Stock(#[source] StockError),
+}
+
+fn list(numbers: &[u32]) -> String {
+    if numbers.is_empty() {
+        return "none".into();
+    }
+    let words: Vec<String> = numbers.iter().map(u32::to_string).collect();
+    words.join(", ")
+}
+
+impl Problem {
+    pub(crate) fn syntax(message: impl Into<String>) -> Self {
+        Self::Syntax {
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn value(what: impl Into<String>, found: impl fmt::Display, expected: impl Into<String>) -> Self {
+        Self::Value {
+            what: what.into(),
+            found: found.to_string(),
+            expected: expected.into(),
+        }
+    }
+
+    pub(crate) fn unsupported(what: impl Into<String>, instead: impl Into<String>) -> Self {
+        Self::Unsupported {
+            what: what.into(),
+            instead: instead.into(),
+        }
+    }
+}
+
+impl FormatError {
+    pub(crate) fn new(problem: Problem, place: Option<Place>) -> Self {
+        Self(Box::new(Inner {
+            file: None,
+            place,
+            problem,
+        }))
+    }
+
+    /// The same in `file`, unless a file is already named.
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
+        self.0.file.get_or_insert_with(|| file.to_owned());
+        self
+    }
+
+    /// The file, where there is one.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file.as_deref()
+    }
+
+    /// The place in the file, where there is one.
+    #[must_use]
+    pub fn place(&self) -> Option<&Place> {
+        self.0.place.as_ref()
+    }
+
+    /// What is wrong.
+    #[must_use]
+    pub fn problem(&self) -> &Problem {
+        &self.0.problem
+    }
+
+    /// The message over the line of the file with the place marked, in colour for a terminal that has it.
+    #[must_use]
+    pub fn render(&self, colour: bool) -> String {
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let title = Level::ERROR.primary_title(self.0.problem.to_string());
+        let Some(place) = &self.0.place else {
+            let file = self.0.file.as_ref().map(|file| file.display().to_string());
+            let group = title.elements(file.map(annotate_snippets::Origin::path));
+            return renderer.render(&[group]);
+        };
+        let bytes = |characters: usize| {
+            place
+                .excerpt
+                .char_indices()
+                .nth(characters)
+                .map_or(place.excerpt.len(), |(byte, _)| byte)
+        };
+        let span = bytes(place.column - 1)..bytes(place.column - 1 + place.width);
+        let mut snippet = Snippet::source(place.excerpt.as_str())
+            .line_start(place.line)
+            .annotation(AnnotationKind::Primary.span(span));
+        if let Some(file) = &self.0.file {
+            snippet = snippet.path(file.display().to_string());
+        }
+        renderer.render(&[title.element(snippet)])
+    }
+}
+
+impl fmt::Display for FormatError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.0.file {
+            write!(f, "{}:", file.display())?;
+        }
+        if let Some(place) = &self.0.place {
+            write!(f, "{}:{}:", place.line, place.column)?;
+        }
+        if self.0.file.is_some() || self.0.place.is_some() {
+            f.write_str(" ")?;
+        }
+        write!(f, "{}", self.0.problem)
+    }
+}
+
+impl std::error::Error for FormatError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        std::error::Error::source(&self.0.problem)
+    }
+}
+
+impl FormatError {
+    /// The system's error, when this file could not be read at all.
+    pub(crate) fn into_read_error(self) -> Result<io::Error, Self> {
+        match *self.0 {
+            Inner {
+                problem: Problem::Read(error),
+                ..
+            } => Ok(error),
+            inner => Err(Self(Box::new(inner))),
+        }
+    }
+}

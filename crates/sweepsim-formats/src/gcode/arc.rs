@@ -1,0 +1,214 @@
+//! Circles and helices of G2/G3, divided into chords.
+//!
+//! Words: *u, v* are the axes of the plane so that a counter-clockwise (G3) turn goes from u to v, *w* is the third one:
+//! G17 XY Z, G18 ZX Y, G19 YZ X.
+
+use std::f64::consts::TAU;
+
+/// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
+pub(crate) type Plane = [usize; 3];
+
+/// An arc with its place in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    pub start: [f64; 3],
+    pub end: [f64; 3],
+    pub plane: Plane,
+    /// `(u, v)`.
+    pub centre: [f64; 2],
+    /// Signed, in radians: positive counter-clockwise.
+    pub sweep: f64,
+}
+
+/// Two radii (in mm) of one arc may differ so much in any case,
+const RADIUS_SLACK: f64 = 0.0127;
+/// so much in proportion,
+const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
+/// but never so much. (What LinuxCNC allows, whose programs are about.)
+const RADIUS_SLACK_LARGEST: f64 = 0.5;
+
+/// Chords of one arc, at most.
+const MOST_CHORDS: f64 = 1e6;
+
+impl Arc {
+    /// The arc about `centre`; `turns` counts full turns, the last one begun included, from 1.
+    pub(crate) fn about(
+        (start, end): ([f64; 3], [f64; 3]),
+        plane: Plane,
+        centre: [f64; 2],
+        counter_clockwise: bool,
+        turns: f64,
+    ) -> Result<Self, String> {
+        let [u, v, _] = plane;
+        let from = [start[u] - centre[0], start[v] - centre[1]];
+        let to = [end[u] - centre[0], end[v] - centre[1]];
+        let (ra, rb) = (from[0].hypot(from[1]), to[0].hypot(to[1]));
+        if !(ra > 0.0 && rb > 0.0 && ra.is_finite() && rb.is_finite()) {
+            return Err(format!(
+                "the arc has no radius: its ends are {ra} and {rb} mm from its centre"
+            ));
+        }
+        let apart = (ra - rb).abs();
+        if apart > RADIUS_SLACK_LARGEST || apart > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * ra.max(rb)) {
+            return Err(format!(
+                "the arc has two radii: its start is {ra} mm and its end {rb} mm from its centre, expected the same"
+            ));
+        }
+        let cross = from[0] * to[1] - from[1] * to[0];
+        let dot = from[0] * to[0] + from[1] * to[1];
+        let mut sweep = cross.atan2(dot);
+        // The same start and end means a whole turn.
+        if counter_clockwise {
+            if sweep <= 0.0 {
+                sweep += TAU;
+            }
+            sweep += (turns - 1.0) * TAU;
+        } else {
+            if sweep >= 0.0 {
+                sweep -= TAU;
+            }
+            sweep -= (turns - 1.0) * TAU;
+        }
+        Ok(Self {
+            start,
+            end,
+            plane,
+            centre,
+            sweep,
+        })
+    }
+
+    /// The arc with `radius` from `start` to `end`: the shorter way for a positive one, the longer for a negative one.
+    pub(crate) fn with_radius(
+        (start, end): ([f64; 3], [f64; 3]),
+        plane: Plane,
+        radius: f64,
+        counter_clockwise: bool,
+        turns: f64,
+    ) -> Result<Self, String> {
+        let [u, v, _] = plane;
+        let chord = [end[u] - start[u], end[v] - start[v]];
+        let length = chord[0].hypot(chord[1]);
+        if length <= 0.0 {
+            return Err(
+                "an arc with R must end elsewhere than it starts (a full circle needs its centre: I, J, K)".into(),
+            );
+        }
+        let square = radius * radius - 0.25 * length * length;
+        if square < 0.0 && 0.5 * length - radius.abs() > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * radius.abs()) {
+            return Err(format!(
+                "the arc's radius {} mm is too small: its ends are {length} mm apart",
+                radius.abs()
+            ));
+        }
+        let height = square.max(0.0).sqrt() / length;
+        let side = if counter_clockwise == (radius > 0.0) { 1.0 } else { -1.0 };
+        let centre = [
+            start[u] + 0.5 * chord[0] - side * height * chord[1],
+            start[v] + 0.5 * chord[1] + side * height * chord[0],
+        ];
+        Self::about((start, end), plane, centre, counter_clockwise, turns)
+    }
+
+    /// How many chords stay within `tolerance` (mm) of the arc.
+    pub(crate) fn chords(&self, tolerance: f64) -> Result<usize, String> {
+        let [u, v, _] = self.plane;
+        let radius = |p: &[f64; 3]| (p[u] - self.centre[0]).hypot(p[v] - self.centre[1]);
+        let radius = radius(&self.start).max(radius(&self.end));
+        // A chord over 2h leaves r (1 - cos h) = 2 r sin²(h/2).
+        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
+        let chords = (self.sweep.abs() / (2.0 * half)).ceil().max(1.0);
+        if chords <= MOST_CHORDS {
+            Ok(chords as usize)
+        } else {
+            Err(format!(
+                "an arc of radius {radius} mm takes {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
+            ))
+        }
+    }
+
+    /// The point at `s` in `[0, 1]`: exactly the ends there.
+    pub(crate) fn at(&self, s: f64) -> [f64; 3] {
+        if s >= 1.0 {
+            return self.end;
+        }
+        let [u, v, w] = self.plane;
+        let from = [self.start[u] - self.centre[0], self.start[v] - self.centre[1]];
+        let to = [self.end[u] - self.centre[0], self.end[v] - self.centre[1]];
+        let (ra, rb) = (from[0].hypot(from[1]), to[0].hypot(to[1]));
+        // Where the two radii differ a little, the radius goes evenly from one to the other.
+        let scale = (ra + s * (rb - ra)) / ra;
+        let (sin, cos) = (s * self.sweep).sin_cos();
+        let mut point = self.start;
+        point[u] = self.centre[0] + scale * (cos * from[0] - sin * from[1]);
+        point[v] = self.centre[1] + scale * (sin * from[0] + cos * from[1]);
+        point[w] = self.start[w] + s * (self.end[w] - self.start[w]);
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const XY: Plane = [0, 1, 2];
+
+    #[test]
+    fn quarter_and_full_circle() {
+        let quarter = Arc::about(([1.0, 0.0, 0.0], [0.0, 1.0, 2.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        assert!((quarter.sweep - TAU / 4.0).abs() < 1e-15);
+        let middle = quarter.at(0.5);
+        assert!((middle[0] - 0.5_f64.sqrt()).abs() < 1e-15 && (middle[2] - 1.0).abs() < 1e-15);
+        let full = Arc::about(([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), XY, [0.0; 2], false, 2.0).unwrap();
+        assert!((full.sweep + 2.0 * TAU).abs() < 1e-15);
+    }
+
+    #[test]
+    fn radius_picks_the_side() {
+        let ends = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        for (radius, counter_clockwise, sweep) in [
+            (1.0, true, 0.25),
+            (-1.0, true, 0.75),
+            (1.0, false, -0.25),
+            (-1.0, false, -0.75),
+        ] {
+            let arc = Arc::with_radius(ends, XY, radius, counter_clockwise, 1.0).unwrap();
+            assert!((arc.sweep / TAU - sweep).abs() < 1e-12, "{radius} {counter_clockwise}");
+        }
+    }
+
+    #[test]
+    fn chords_keep_the_tolerance() {
+        let arc = Arc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        for tolerance in [1.0, 0.1, 1e-3, 1e-5] {
+            let n = arc.chords(tolerance).unwrap();
+            let sagitta = |n: usize| 5.0 * (1.0 - (0.5 * arc.sweep / n as f64).cos());
+            assert!(sagitta(n) <= tolerance * (1.0 + 1e-9), "{tolerance}");
+            assert!(
+                n <= 3 || sagitta(n - 1) > tolerance,
+                "not more than needed at {tolerance}"
+            );
+        }
+    }
+
+    #[test]
+    fn bad_arcs_say_why() {
+        let ends = ([1.0, 0.0, 0.0], [0.0, 3.0, 0.0]);
+        assert!(
+            Arc::about(ends, XY, [0.0; 2], true, 1.0)
+                .unwrap_err()
+                .contains("two radii")
+        );
+        assert!(
+            Arc::about((ends.0, ends.0), XY, [1.0, 0.0], true, 1.0)
+                .unwrap_err()
+                .contains("no radius")
+        );
+        assert!(
+            Arc::with_radius(ends, XY, 1.0, true, 1.0)
+                .unwrap_err()
+                .contains("too small")
+        );
+        assert!(Arc::with_radius((ends.0, ends.0), XY, 1.0, true, 1.0).is_err());
+    }
+}

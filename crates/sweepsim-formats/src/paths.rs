@@ -1,0 +1,169 @@
+//! The paths of a job: poses in the job itself, or a file whose extension says its format.
+
+use std::path::{Path as FilePath, PathBuf};
+
+use sweepsim_motion::{Path, PathError, Pose};
+
+use crate::error::{FormatError, Problem};
+use crate::program::{Note, Program, ProgramPose};
+use crate::{csv, gcode, text};
+
+/// A path of a job, with its tool. A path file gives several of them when its path breaks or its tool changes.
+#[derive(Clone, Debug)]
+pub struct JobPath {
+    /// The number of the tool that goes along it: a key of [`Job::tools`](crate::Job::tools).
+    pub tool: u32,
+    /// The poses, in millimetres.
+    pub path: Path,
+    /// Where it comes from, for people: a file's name, or its place in the job.
+    pub source: String,
+    /// For each move whether it is a rapid one.
+    pub rapid: Vec<bool>,
+    /// For each pose its line in the file; empty when it is in the job itself.
+    pub lines: Vec<usize>,
+    /// What was ignored or decided in reading the file: with the first path of it.
+    pub notes: Vec<Note>,
+}
+
+/// How to read path files.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathOptions {
+    /// Millimetres per unit: of all lengths of a table, and of a program until it says otherwise.
+    pub unit: f64,
+    /// How to read programs. [`gcode::Options::inch`] is taken from `unit`.
+    pub program: gcode::Options,
+}
+
+impl Default for PathOptions {
+    fn default() -> Self {
+        Self {
+            unit: 1.0,
+            program: gcode::Options::default(),
+        }
+    }
+}
+
+/// Reads a path file: `.csv`, or a program `.nc .ngc .gcode .tap .mpf`.
+///
+/// # Errors
+/// [`FormatError`]: no such file, an extension that is not known, or what the reader of the format says.
+pub fn read_path_file(file: &FilePath, options: &PathOptions) -> Result<Program, FormatError> {
+    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let bytes = || std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None));
+    match extension.as_deref() {
+        Some("csv") => text::read(file).and_then(|text| csv::read_path(&text, options.unit)),
+        Some("nc" | "ngc" | "gcode" | "tap" | "mpf") => bytes().and_then(|bytes| {
+            let program = gcode::Options {
+                inch: options.unit != 1.0,
+                ..options.program
+            };
+            // Comments come in all encodings; what is not ASCII elsewhere is an error of the reader.
+            gcode::read(&String::from_utf8_lossy(&bytes), &program)
+        }),
+        Some("apt" | "cls" | "clsf" | "cl") => Err(FormatError::new(
+            Problem::unsupported(
+                "APT and CLSF paths are",
+                "expected .csv, .nc, .ngc, .gcode, .tap or .mpf",
+            ),
+            None,
+        )),
+        _ => Err(FormatError::new(
+            Problem::value(
+                "the extension of this path file",
+                extension.map_or("missing".into(), |e| format!(".{e}")),
+                ".csv, .nc, .ngc, .gcode, .tap or .mpf",
+            ),
+            None,
+        )),
+    }
+    .map_err(|error| error.in_file(file))
+}
+
+/// The paths of a program. `tool` is that of the job for all of it; without it the program's numbers hold.
+pub(crate) fn of_program(
+    mut program: Program,
+    file: &FilePath,
+    shown: &str,
+    tool: Option<u32>,
+    has_tool: impl Fn(u32) -> Result<(), Problem>,
+) -> Result<Vec<JobPath>, FormatError> {
+    let at = |problem: Problem, line: usize| {
+        let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        let whole = text.ok().and_then(|text| text.lines().nth(line - 1).map(str::to_owned));
+        let whole = whole.unwrap_or_default();
+        let place = text::place_in_line(line, &whole, 1, whole.chars().count());
+        FormatError::new(problem, Some(place)).in_file(file)
+    };
+    if let (Some(tool), Some(other)) = (tool, second_tool(&program)) {
+        program.notes.push(Note {
+            line: other.line,
+            message: format!("the program changes tools; the job's tool {tool} is used throughout"),
+        });
+    }
+    let mut notes = std::mem::take(&mut program.notes);
+    let mut paths = Vec::new();
+    for section in program.sections() {
+        let first = section[0];
+        let number = match (tool, first.tool) {
+            (Some(tool), _) | (None, Some(tool)) => tool,
+            (None, None) => {
+                let problem = Problem::syntax(
+                    "no tool is named for this path: expected `tool:` in the job, or a tool in the file",
+                );
+                return Err(at(problem, first.line));
+            }
+        };
+        has_tool(number).map_err(|problem| at(problem, first.line))?;
+        let path = Path::new(section.iter().map(|pose| pose.pose).collect()).map_err(|error| {
+            let line = match error {
+                PathError::OppositeAxes { index } => section.get(index + 1).map_or(first.line, |pose| pose.line),
+                _ => first.line,
+            };
+            at(Problem::Path(error), line)
+        })?;
+        paths.push(JobPath {
+            tool: number,
+            path,
+            source: shown.to_owned(),
+            rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
+            lines: section.iter().map(|pose| pose.line).collect(),
+            notes: std::mem::take(&mut notes),
+        });
+    }
+    Ok(paths)
+}
+
+fn second_tool(program: &Program) -> Option<&ProgramPose> {
+    let first = program.poses.iter().find_map(|pose| pose.tool)?;
+    program
+        .poses
+        .iter()
+        .find(|pose| pose.tool.is_some_and(|tool| tool != first))
+}
+
+/// What is wrong with inline poses: the problem, and which pose and part of it (0: tip, 1: axis).
+pub(crate) type PoseFault = (Problem, Option<(usize, usize)>);
+
+/// The path through poses of the job itself.
+pub(crate) fn of_poses(raw: &[([f64; 3], [f64; 3])], unit: f64) -> Result<Path, PoseFault> {
+    let mut poses = Vec::with_capacity(raw.len());
+    for (index, &(tip, axis)) in raw.iter().enumerate() {
+        let pose = Pose::new(tip.map(|c| c * unit), axis).map_err(|error| {
+            let part = usize::from(tip.iter().all(|c| (c * unit).is_finite()));
+            (Problem::Pose(error), Some((index, part)))
+        })?;
+        poses.push(pose);
+    }
+    Path::new(poses).map_err(|error| {
+        let place = match error {
+            PathError::OppositeAxes { index } => Some((index + 1, 1)),
+            _ => None,
+        };
+        (Problem::Path(error), place)
+    })
+}
+
+/// `file` as named in `job`: relative to the folder of the job.
+pub(crate) fn beside(job: &FilePath, file: &str) -> PathBuf {
+    job.parent().unwrap_or(FilePath::new("")).join(file)
+}

@@ -1,0 +1,151 @@
+//! A job as the RON text has it, before anything is checked. Names and fields are those of the file format.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Job {
+    #[serde(default)]
+    pub name: Option<String>,
+    #[serde(default)]
+    pub units: Units,
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+    pub grid: Grid,
+    pub stock: Stock,
+    pub tools: BTreeMap<u32, Tool>,
+    pub paths: Vec<Path>,
+    #[serde(default)]
+    pub target: Option<Target>,
+    #[serde(default)]
+    pub limits: Option<Limits>,
+}
+
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+pub(crate) enum Units {
+    #[default]
+    Mm,
+    Inch,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Grid {
+    pub min: [f64; 2],
+    pub max: [f64; 2],
+    pub cells: [i64; 2],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Stock {
+    Block {
+        min: [f64; 3],
+        max: [f64; 3],
+    },
+    Cylinder {
+        #[serde(default)]
+        base: [f64; 3],
+        #[serde(default = "z_axis")]
+        axis: [f64; 3],
+        radius: f64,
+        height: f64,
+    },
+    Mesh(String),
+}
+
+fn z_axis() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Tool {
+    Ball {
+        radius: f64,
+        length: f64,
+    },
+    Flat {
+        radius: f64,
+        length: f64,
+    },
+    Bull {
+        radius: f64,
+        corner: f64,
+        length: f64,
+    },
+    Apt {
+        d: f64,
+        r: f64,
+        e: f64,
+        f: f64,
+        a: f64,
+        b: f64,
+        h: f64,
+    },
+    Profile {
+        start: [f64; 2],
+        segments: Vec<Segment>,
+    },
+    #[expect(dead_code, reason = "the file is named, but not opened yet")]
+    Surface(String),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Segment {
+    Line([f64; 2]),
+    Arc {
+        to: [f64; 2],
+        centre: [f64; 2],
+        turn: Turn,
+    },
+    #[expect(dead_code, reason = "named, but not understood yet")]
+    Spline(ron::Value),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) enum Turn {
+    Cw,
+    Ccw,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Path {
+    #[serde(default)]
+    pub tool: Option<u32>,
+    #[serde(default)]
+    pub poses: Option<Vec<([f64; 3], [f64; 3])>>,
+    #[serde(default)]
+    pub file: Option<String>,
+    #[serde(default)]
+    pub arc_tolerance: Option<f64>,
+    #[serde(default)]
+    pub table: Option<Table>,
+    #[serde(default)]
+    pub tip_control: Option<bool>,
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) enum Table {
+    #[serde(rename = "AC")]
+    Ac,
+    #[serde(rename = "BC")]
+    Bc,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Target {
+    Mesh(String),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Limits {
+    pub gouge: f64,
+    pub excess: f64,
+}

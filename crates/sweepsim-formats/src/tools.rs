@@ -1,0 +1,126 @@
+//! The tools of a job.
+
+use sweepsim_motion::{Profile, ProfileError, ProfileSegment, Tool, Turn};
+
+use crate::apt::Apt;
+use crate::error::Problem;
+use crate::raw;
+
+/// What is wrong with a tool, and in which of its fields (the keys or positions from the tool on).
+pub(crate) struct Fault {
+    pub problem: Problem,
+    pub field: Vec<Step>,
+}
+
+/// A step into a value of the job's text.
+#[derive(Clone, Debug)]
+pub(crate) enum Step {
+    Key(String),
+    Item(usize),
+}
+
+impl From<&str> for Step {
+    fn from(key: &str) -> Self {
+        Self::Key(key.to_owned())
+    }
+}
+
+/// Makes tool `number`; lengths are multiplied by `unit`.
+pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Fault> {
+    let made = match *raw {
+        raw::Tool::Ball { radius, length } => Tool::ball(radius * unit, length * unit),
+        raw::Tool::Flat { radius, length } => Tool::flat(radius * unit, length * unit),
+        raw::Tool::Bull { radius, corner, length } => Tool::bull(radius * unit, corner * unit, length * unit),
+        raw::Tool::Apt { d, r, e, f, a, b, h } => {
+            let [d, r, e, f, h] = [d, r, e, f, h].map(|length| length * unit);
+            return match (Apt { d, r, e, f, a, b, h }).profile() {
+                Ok(profile) => Ok(Tool::from_profile(profile)),
+                Err((parameter, problem)) => Err(Fault {
+                    problem,
+                    field: if parameter.is_empty() {
+                        vec![]
+                    } else {
+                        vec![parameter.into()]
+                    },
+                }),
+            };
+        }
+        raw::Tool::Profile { start, ref segments } => profile(start, segments, unit)?,
+        raw::Tool::Surface(_) => {
+            return Err(Fault {
+                problem: Problem::unsupported(
+                    "tools of B-spline surfaces (Surface) are",
+                    "expected Ball, Flat, Bull, Apt or Profile",
+                ),
+                field: vec![],
+            });
+        }
+    };
+    made.map_err(|error| {
+        let field = match error {
+            ProfileError::Measure { what, .. } => vec![what.into()],
+            ProfileError::Open { which, .. } if which.contains("start") => vec!["start".into()],
+            ProfileError::NotFinite { segment }
+            | ProfileError::AcrossAxis { segment, .. }
+            | ProfileError::NoLength { segment }
+            | ProfileError::NoArc { segment, .. }
+            | ProfileError::SelfCrossing { second: segment, .. } => vec!["segments".into(), Step::Item(segment)],
+            ProfileError::Open { .. } | ProfileError::UpsideDown { .. } => last(raw),
+            _ => vec![],
+        };
+        Fault {
+            problem: Problem::Tool {
+                number,
+                source: unscaled(error, unit),
+            },
+            field,
+        }
+    })
+}
+
+/// The last segment of a profile.
+fn last(raw: &raw::Tool) -> Vec<Step> {
+    match raw {
+        raw::Tool::Profile { segments, .. } if !segments.is_empty() => {
+            vec!["segments".into(), Step::Item(segments.len() - 1)]
+        }
+        _ => vec![],
+    }
+}
+
+/// Measures as the job has them, for the message.
+fn unscaled(error: ProfileError, unit: f64) -> ProfileError {
+    match error {
+        ProfileError::Measure { what, value, expected } => ProfileError::Measure {
+            what,
+            value: value / unit,
+            expected,
+        },
+        other => other,
+    }
+}
+
+fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Result<Tool, ProfileError>, Fault> {
+    let scaled = |point: [f64; 2]| point.map(|c| c * unit);
+    let mut made = Vec::with_capacity(segments.len());
+    for (index, segment) in segments.iter().enumerate() {
+        made.push(match *segment {
+            raw::Segment::Line(to) => ProfileSegment::Line { to: scaled(to) },
+            raw::Segment::Arc { to, centre, turn } => ProfileSegment::Arc {
+                to: scaled(to),
+                centre: scaled(centre),
+                turn: match turn {
+                    raw::Turn::Cw => Turn::Cw,
+                    raw::Turn::Ccw => Turn::Ccw,
+                },
+            },
+            raw::Segment::Spline(_) => {
+                return Err(Fault {
+                    problem: Problem::unsupported("spline segments of a profile are", "expected Line or Arc"),
+                    field: vec!["segments".into(), Step::Item(index)],
+                });
+            }
+        });
+    }
+    Ok(Profile::new(scaled(start), made).map(Tool::from_profile))
+}

@@ -1,0 +1,320 @@
+//! Jobs with one thing wrong: each gives one line that names the file, the line and the column, and what was expected.
+
+use std::path::Path;
+
+use sweepsim_formats::Job;
+
+/// A job without a fault, with marks to put one in.
+const GOOD: &str = "\
+Job(
+    units: Mm,
+    tolerance: 1e-6,
+    grid: Grid(min: (0, 0), max: (10, 10), cells: (4, 5)),
+    stock: Block(min: (0, 0, 0), max: (10, 10, 5)),
+    tools: {
+        1: Ball(radius: 2.0, length: 30.0),
+    },
+    paths: [
+        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),
+    ],
+)
+";
+
+fn message(text: &str, folder: &Path) -> String {
+    let file = folder.join("job.ron");
+    std::fs::write(&file, text).unwrap();
+    let error = Job::read(&file).expect_err(text);
+    let rendered = error.render(false);
+    assert!(rendered.contains(&error.problem().to_string()), "{rendered}");
+    let message = error.to_string();
+    assert!(!message.contains('\n'), "one line: {message}");
+    message.replace(&format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR), "")
+}
+
+#[test]
+fn the_good_one_is_good() {
+    let job = Job::parse(GOOD, Path::new("fixtures/good.ron")).unwrap();
+    assert_eq!(
+        (job.name.as_str(), job.moves(), job.paths[0].rapid.len()),
+        ("good", 1, 1)
+    );
+}
+
+#[test]
+fn one_message_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    file(
+        "text.stl",
+        "this is a text, long enough to have a header of eighty-four bytes, but it is no STL file at all",
+    );
+    file("short.stl", "no");
+    file(
+        "broken.stl",
+        "solid x\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 nan\n",
+    );
+    file("bad.csv", "x,y,z,i,j,k\n0,0,0,0,0,1\n0,0,0,0,zero,1\n");
+    file("axis.csv", "x,y,z,i,j,k\n0,0,0,0,0,0\n");
+    file("turn.csv", "x,y,z,i,j,k\n0,0,0,0,0,1\n0,0,0,0,0,-1\n");
+    file("bad.ngc", "G0 X0 Y0 Z5\nG1 Z-1\nG5 X1\n");
+    file("two.ngc", "T7 M6\nG0 X0 Y0 Z5\nG1 Z-1\n");
+    file("path.xyz", "");
+    let stock = "Block(min: (0, 0, 0), max: (10, 10, 5))";
+    let tool = "Ball(radius: 2.0, length: 30.0)";
+    let grid = "Grid(min: (0, 0), max: (10, 10), cells: (4, 5))";
+    let poses = "poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]";
+    let profile = |segments: &str| format!("Profile(start: (0, 0), segments: [{segments}])");
+    let cases: Vec<(&str, String, &str)> = vec![
+        // Grammar.
+        ("units: Mm", "units: Furlong".into(), "job.ron:2:12: Unexpected"),
+        (
+            "units: Mm",
+            "unit: Mm".into(),
+            "job.ron:2:5: Unexpected field named `unit`",
+        ),
+        ("units: Mm,", "units: Mm".into(), "job.ron:3:5: Expected comma"),
+        ("1e-6", "\"small\"".into(), "job.ron:3:16: Expected float"),
+        (tool, "Ball(radius: 2.0)".into(), "job.ron:7:"),
+        (
+            tool,
+            "Ball(radius: 2.0, lenght: 30.0)".into(),
+            "job.ron:7:30: Unexpected field named `lenght`",
+        ),
+        (
+            tool,
+            "Cone(radius: 2.0)".into(),
+            "job.ron:7:12: Unexpected variant named `Cone`",
+        ),
+        ("    ],\n)", "    ],".into(), "job.ron:11:7: Unexpected end of RON"),
+        // Values.
+        (
+            "1e-6",
+            "0".into(),
+            "job.ron:3:16: tolerance is 0, but must be a positive number",
+        ),
+        ("1e-6", "NaN".into(), "job.ron:3:16: tolerance is NaN"),
+        (
+            grid,
+            grid.replace("(4, 5)", "(4, 0)"),
+            "job.ron:4:55: a number of cells is 0",
+        ),
+        (
+            grid,
+            grid.replace("(4, 5)", "(1000000, 1000000)"),
+            "job.ron:4:51: 1000000",
+        ),
+        (
+            grid,
+            grid.replace("(4, 5)", "(1000000000000, 5)"),
+            "job.ron:4:51: 1000000000000",
+        ),
+        (
+            grid,
+            grid.replace("(4, 5)", "(-4, 5)"),
+            "job.ron:4:52: a number of cells is -4",
+        ),
+        (
+            grid,
+            grid.replace("max: (10, 10)", "max: (10, inf)"),
+            "job.ron:4:39: a corner of the grid is inf",
+        ),
+        (
+            grid,
+            grid.replace("max: (10, 10)", "max: (10, -10)"),
+            "job.ron:4:21: the grid is empty in y",
+        ),
+        (
+            stock,
+            stock.replace("max: (10, 10, 5)", "max: (10, 10, 0)"),
+            "job.ron:5:48: the z of max is 0",
+        ),
+        (
+            stock,
+            stock.replace("(0, 0, 0)", "(0, NaN, 0)"),
+            "job.ron:5:27: min is NaN",
+        ),
+        (
+            stock,
+            "Cylinder(radius: -1, height: 5)".into(),
+            "job.ron:5:29: radius is -1, but must be positive",
+        ),
+        (
+            stock,
+            "Cylinder(axis: (0, 0, 0), radius: 1, height: 5)".into(),
+            "job.ron:5:27: axis is zero",
+        ),
+        (
+            stock,
+            "Mesh(\"none.stl\")".into(),
+            "job.ron:5:12: cannot read the stock file none.stl: ",
+        ),
+        (stock, "Mesh(\"text.stl\")".into(), "text.stl: this is no STL"),
+        (stock, "Mesh(\"short.stl\")".into(), "short.stl: this is no STL"),
+        (
+            stock,
+            "Mesh(\"broken.stl\")".into(),
+            "broken.stl:4:1: `vertex 0 0 nan`: expected",
+        ),
+        // Tools.
+        (
+            tool,
+            tool.replace("2.0", "-2.0"),
+            "job.ron:7:25: tool 1: radius is -2, but must be positive",
+        ),
+        (tool, tool.replace("2.0", "NaN"), "job.ron:7:25: tool 1: radius is NaN"),
+        (tool, tool.replace("30.0", "1.0"), "job.ron:7:38: tool 1: length is 1"),
+        (
+            tool,
+            profile("Line((2, 0)), Line((2, 9))"),
+            "job.ron:7:60: tool 1: the profile is open",
+        ),
+        (
+            tool,
+            profile("Line((4, 0)), Line((4, 4)), Line((1, 4)), Line((6, 2)), Line((6, 9)), Line((0, 9))"),
+            "job.ron:7:88: tool 1: the profile crosses or touches itself: segments 1 and 3",
+        ),
+        (
+            tool,
+            profile("Arc(to: (2, 3), centre: (0, 2), turn: Ccw), Line((0, 9))"),
+            "job.ron:7:46: tool 1: profile segment 0 is no arc",
+        ),
+        (
+            tool,
+            profile("Line((2, inf)), Line((0, 9))"),
+            "job.ron:7:46: tool 1: profile segment 0 has a number that is not finite",
+        ),
+        (
+            tool,
+            "Surface(\"x.ron\")".into(),
+            "job.ron:7:12: tools of B-spline surfaces (Surface) are not supported yet",
+        ),
+        (
+            tool,
+            "Apt(d: 10, r: -1, e: 4, f: 1, a: 0, b: 0, h: 30)".into(),
+            "job.ron:7:26: `r` of the APT cutter is -1",
+        ),
+        // Paths.
+        (
+            "tool: 1",
+            "tool: 3".into(),
+            "job.ron:10:20: there is no tool 3 in this job; it has 1",
+        ),
+        ("tool: 1, ", String::new(), "job.ron:10:9: this path has no tool"),
+        (
+            poses,
+            "poses: []".into(),
+            "job.ron:10:30: a path needs at least one pose",
+        ),
+        (
+            poses,
+            poses.replace("(1, 0, 1)", "(0, 0, 0)"),
+            "job.ron:10:67: the axis (0, 0, 0) has no direction",
+        ),
+        (
+            poses,
+            poses.replace("(9, 9, 3)", "(9, NaN, 3)"),
+            "job.ron:10:56: the tip (9, NaN, 3) is not finite",
+        ),
+        (
+            poses,
+            poses.replace("(1, 0, 1)", "(0, 0, -1)"),
+            "job.ron:10:67: the axes of poses 0 and 1",
+        ),
+        (
+            poses,
+            format!("{poses}, file: \"bad.csv\""),
+            "job.ron:10:86: both `poses` and `file`",
+        ),
+        (
+            ", poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]",
+            String::new(),
+            "job.ron:10:9: this path has no poses",
+        ),
+        (
+            poses,
+            "file: \"none.ngc\"".into(),
+            "job.ron:10:29: cannot read the path file none.ngc: ",
+        ),
+        (
+            poses,
+            "file: \"path.xyz\"".into(),
+            "path.xyz: the extension of this path file is .xyz",
+        ),
+        (
+            poses,
+            "file: \"bad.csv\"".into(),
+            "bad.csv:3:9: j is \"zero\", but must be a number",
+        ),
+        (
+            poses,
+            "file: \"axis.csv\"".into(),
+            "axis.csv:2:1: the axis (0, 0, 0) has no direction",
+        ),
+        (
+            poses,
+            "file: \"turn.csv\"".into(),
+            "turn.csv:3:1: the axes of poses 0 and 1",
+        ),
+        (
+            poses,
+            "file: \"bad.ngc\"".into(),
+            "bad.ngc:3:1: G5: splines are not supported yet",
+        ),
+        (
+            poses,
+            "file: \"bad.ngc\", arc_tolerance: -1".into(),
+            "job.ron:10:55: arc_tolerance is -1",
+        ),
+        // Target and limits.
+        (
+            "    ],\n)",
+            "    ],\n    target: Some(Mesh(\"none.stl\")),\n)".into(),
+            "job.ron:12:13: cannot read the target file none.stl",
+        ),
+        (
+            "    ],\n)",
+            "    ],\n    limits: Some(Limits(gouge: -1, excess: 0)),\n)".into(),
+            "job.ron:12:32: gouge is -1",
+        ),
+    ];
+    let mut wrong = String::new();
+    for (from, to, expected) in cases {
+        assert!(GOOD.contains(from), "{from}");
+        let found = message(&GOOD.replace(from, &to), folder.path());
+        if !found.starts_with(expected) {
+            wrong += &format!("{to}\n  expected {expected}\n  found    {found}\n");
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    let text = GOOD.replace(poses, "file: \"two.ngc\"").replace("tool: 1, ", "");
+    assert!(message(&text, folder.path()).starts_with("two.ngc:2:1: there is no tool 7 in this job"));
+}
+
+#[test]
+fn files_that_are_no_jobs() {
+    let folder = tempfile::tempdir().unwrap();
+    let missing = Job::read(&folder.path().join("none.ron")).unwrap_err().to_string();
+    assert!(missing.contains("none.ron: cannot read this file"), "{missing}");
+    assert!(message("", folder.path()).starts_with("job.ron:1:1: "));
+    assert!(message("Job(", folder.path()).starts_with("job.ron:1:"));
+    let file = folder.path().join("bytes.ron");
+    std::fs::write(&file, b"Job(\n name: \"\xff\"").unwrap();
+    let error = Job::read(&file).unwrap_err().to_string();
+    assert!(error.contains("bytes.ron:2:9: this is no text"), "{error}");
+    // Deeper than any job: an error, not an overflow.
+    assert!(message(&"(".repeat(100_000), folder.path()).starts_with("job.ron:1:"));
+}
+
+#[test]
+fn rendered_with_the_line() {
+    let text = GOOD.replace("radius: 2.0", "radius: -2.0");
+    let error = Job::parse(&text, Path::new("jobs/part.ron")).unwrap_err();
+    let expected = "\
+error: tool 1: radius is -2, but must be positive
+ --> jobs/part.ron:7:25
+  |
+7 |         1: Ball(radius: -2.0, length: 30.0),
+  |                         ^^^^";
+    assert_eq!(error.render(false), expected);
+    assert!(error.render(true).contains("\u{1b}["));
+}

@@ -1,0 +1,90 @@
+//! Jobs that are right.
+
+use std::path::Path;
+
+use sweepsim_dexel::Stock;
+use sweepsim_formats::{Job, Units};
+
+#[test]
+fn everything_that_a_job_may_have() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &[u8]| std::fs::write(folder.path().join(name), text).unwrap();
+    let mut stl = Vec::new();
+    sweepsim_formats::write_stl(&[[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]], &mut stl).unwrap();
+    write("part.stl", &stl);
+    write(
+        "a.csv",
+        b"x,y,z,i,j,k,rapid,tool\n0,0,1,0,0,1,1,1\n1,0,0,0,0,1,0,1\n2,0,0,0,0,1,0,2\n3,0,0,0,1,0,0,2\n",
+    );
+    write("b.tap", b"G90\nT2 M6\nM428\nG0 X0 Y0 Z1 A0 C0\nG1 Z0\nX1 A90\n");
+    let text = r#"
+Job(
+    units: Inch,
+    tolerance: 1e-6,
+    grid: Grid(min: (-1, -1), max: (1, 1), cells: (20, 10)),
+    stock: Cylinder(base: (0, 0, -1), radius: 1.0, height: 2.0),
+    tools: {
+        1: Ball(radius: 5.0, length: 30.0),
+        2: Flat(radius: 5.0, length: 30.0),
+        3: Bull(radius: 5.0, corner: 1.0, length: 30.0),
+        4: Apt(d: 10.0, r: 1.0, e: 4.0, f: 1.0, a: 0.0, b: 0.0, h: 30.0),
+        5: Profile(start: (0.0, 0.0), segments: [
+               Line((2.0, 0.0)), Line((2.0, 2.0)), Arc(to: (8.0, 8.0), centre: (8.0, 2.0), turn: Cw), Line((8.0, 30.0)), Line((0.0, 30.0)) ]),
+    },
+    paths: [
+        Path(tool: 4, poses: [ ((-20.0, -10.0, 0.0), (0.0, 0.0, 1.0)), ((20.0, 10.0, 8.0), (0.1, 0.0, 1.0)) ]),
+        Path(file: "a.csv"),
+        Path(tool: 2, file: "b.tap", table: AC, arc_tolerance: 0.001),
+    ],
+    target: Some(Mesh("part.stl")),
+    limits: Some(Limits(gouge: 0.02, excess: 0.1)),
+)"#;
+    write("all.ron", text.as_bytes());
+    let job = Job::read(&folder.path().join("all.ron")).unwrap_or_else(|error| panic!("{}", error.render(false)));
+    assert_eq!((job.name.as_str(), job.units), ("all", Units::Inch));
+    assert_eq!(job.tolerance, 1e-6 * 25.4);
+    assert_eq!(job.grid.max(), [25.4, 25.4]);
+    assert!(matches!(
+        job.stock,
+        Stock::Cylinder {
+            axis: [0.0, 0.0, 1.0],
+            radius: 25.4,
+            ..
+        }
+    ));
+    assert_eq!(job.tools.len(), 5);
+    // The path of the table divides where its tool changes.
+    let tools: Vec<u32> = job.paths.iter().map(|path| path.tool).collect();
+    assert_eq!(tools, [4, 1, 2, 2]);
+    assert_eq!(job.moves(), 1 + 1 + 1 + 2);
+    assert_eq!(
+        job.paths[0].path.poses()[1].tip().as_slice(),
+        [20.0 * 25.4, 10.0 * 25.4, 8.0 * 25.4]
+    );
+    let last = &job.paths[3];
+    assert_eq!(last.lines, [4, 5, 6]);
+    assert_eq!(last.path.poses()[2].axis().as_slice(), [0.0, 1.0, 0.0]);
+    assert_eq!(
+        last.path.poses()[2].tip().x,
+        25.4,
+        "the job's units hold for programs that say none"
+    );
+    assert_eq!(job.limits.unwrap().gouge, 0.02 * 25.4);
+    assert_eq!(job.target.unwrap().mesh.triangles()[0][1][0], 25.4);
+}
+
+/// The jobs of the project itself.
+#[test]
+fn fixtures() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/jobs");
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let file = entry.unwrap().path();
+        if file.extension().is_some_and(|extension| extension == "ron") {
+            let job = Job::read(&file).unwrap_or_else(|error| panic!("{}", error.render(false)));
+            assert!(job.moves() > 0);
+            count += 1;
+        }
+    }
+    assert!(count >= 3);
+}

@@ -1,0 +1,142 @@
+//! Programs that nobody here wrote (`../shared/data` beside the project's folder). Skipped where they are absent.
+
+use std::path::{Path, PathBuf};
+
+use sweepsim_formats::{PathOptions, Program, gcode, read_path_file};
+
+/// The folder of the data, or why not.
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
+    let found = [folder, other].into_iter().find(|folder| folder.is_dir());
+    if found.is_none() {
+        println!("skipped: no folder ../shared/data beside the project");
+    }
+    found
+}
+
+fn tilt(pose: &sweepsim_motion::Pose) -> f64 {
+    pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees()
+}
+
+fn read(file: &Path) -> Program {
+    read_path_file(file, &PathOptions::default()).unwrap_or_else(|error| panic!("{}", error.render(false)))
+}
+
+#[test]
+fn impeller() {
+    let Some(data) = data() else { return };
+    let program = read(&data.join("5axis/linuxcnc/impeller-7bl-xyzac.ngc"));
+    let tilts: Vec<f64> = program.poses.iter().map(|pose| tilt(&pose.pose)).collect();
+    let (low, high) = tilts
+        .iter()
+        .fold((f64::MAX, 0.0_f64), |(low, high), &t| (low.min(t), high.max(t)));
+    println!(
+        "{} poses, tilt {low}..{high}, {:#?}",
+        program.poses.len(),
+        program.notes
+    );
+    assert!((4400..=4600).contains(&program.poses.len()), "{}", program.poses.len());
+    assert!(low < 1e-9 && (high - 74.49).abs() < 0.01);
+    assert_eq!(program.sections().count(), 1);
+    // The first cutting move, by hand from A -71.841, C -35.930.
+    let pose = program.poses[2].pose;
+    assert_eq!(pose.tip().as_slice(), [6.302, -11.560, 27.743]);
+    let (a, c) = (f64::to_radians(-71.841), f64::to_radians(-35.930));
+    let axis = [c.sin() * a.sin(), c.cos() * a.sin(), a.cos()];
+    assert!(
+        pose.axis()
+            .iter()
+            .zip(axis)
+            .all(|(found, expected)| (found - expected).abs() < 1e-15)
+    );
+    assert!(program.poses[1].rapid && !program.poses[2].rapid);
+}
+
+#[test]
+fn boats() {
+    let Some(data) = data() else { return };
+    for name in ["boat-xyzac.ngc", "boat-xyzbc.ngc"] {
+        let program = read(&data.join("5axis/linuxcnc").join(name));
+        println!("{name}: {} poses, {:#?}", program.poses.len(), program.notes);
+        assert!(program.poses.len() > 100);
+        assert!(program.poses.iter().all(|pose| pose.tool == Some(1)));
+        assert!(program.poses.iter().any(|pose| tilt(&pose.pose) > 1.0), "{name} tilts");
+    }
+}
+
+#[test]
+fn three_axes() {
+    let Some(data) = data() else { return };
+    let options = PathOptions {
+        program: gcode::Options {
+            arc_tolerance: 1e-2,
+            ..gcode::Options::default()
+        },
+        ..PathOptions::default()
+    };
+    let mut poses = 0;
+    let mut refused = Vec::new();
+    for folder in [
+        "3axis/linuxcnc",
+        "3axis/camotics",
+        "5axis/linuxcnc",
+        "5axis/spinner_u5_840d",
+    ] {
+        let mut files: Vec<PathBuf> = std::fs::read_dir(data.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .collect();
+        files.sort();
+        for file in files {
+            let extension = file.extension().unwrap_or_default().to_string_lossy().into_owned();
+            if !["nc", "ngc", "gcode", "mpf"].contains(&extension.as_str()) {
+                continue;
+            }
+            let name = file.file_name().unwrap().to_string_lossy().into_owned();
+            match read_path_file(&file, &options) {
+                Ok(program) => {
+                    println!(
+                        "{name}: {} poses in {} sections",
+                        program.poses.len(),
+                        program.sections().count()
+                    );
+                    for note in &program.notes {
+                        println!("    {note}");
+                    }
+                    poses += program.poses.len();
+                    assert!(
+                        program
+                            .poses
+                            .windows(2)
+                            .all(|pair| !pair[1].joined || pair[0].pose != pair[1].pose)
+                    );
+                }
+                Err(error) => {
+                    println!("{}", error.render(false));
+                    assert!(error.place().is_some(), "{error}");
+                    refused.push(name);
+                }
+            }
+        }
+    }
+    println!("{poses} poses");
+    // Expressions and calls, and Siemens statements.
+    let expected = [
+        "428remap.ngc",
+        "xyzab-tdr-demo.ngc",
+        "Achskreuz.mpf",
+        "Bottle_opener.mpf",
+        "Keychain.mpf",
+    ];
+    assert_eq!(refused, expected);
+}
+
+#[test]
+fn meshes() {
+    let Some(data) = data() else { return };
+    for (name, least) in [("Dem-target2.STL", 10), ("SupPetriLED.STL", 10)] {
+        let soup = sweepsim_formats::read_stl(&data.join("3axis/solidworks_apt").join(name)).unwrap();
+        assert!(soup.triangles().len() > least);
+    }
+}

@@ -1,0 +1,276 @@
+//! Every format reads back what was written, and no reader panics on anything.
+
+use proptest::prelude::*;
+use sweepsim_dexel::{Dexels, Grid, Interval, Mesh};
+use sweepsim_formats::{
+    DexelRow, Fixture, Job, ProgramPose, Report, UnresolvedDexel, csv, dexels_from_rows, gcode, parse_stl,
+    read_dexels_csv, read_ply, write_dexels_csv, write_ply, write_stl,
+};
+use sweepsim_motion::Pose;
+
+fn length() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -100.0..100.0,
+        (-1000i32..1000).prop_map(|n| f64::from(n) * 0.1),
+        Just(0.0),
+        -1e-12..1e-12,
+        -1e12..1e12
+    ]
+}
+
+fn pose() -> impl Strategy<Value = ProgramPose> {
+    let axis = [-1.0..1.0, -1.0..1.0, 0.1..1.0];
+    let extras = (any::<bool>(), prop::option::of(0.0..1e4), prop::option::of(0u32..3));
+    ([length(), length(), length()], axis, extras).prop_map(|(tip, axis, (rapid, feed, tool))| ProgramPose {
+        pose: Pose::new(tip, axis).unwrap(),
+        rapid,
+        line: 0,
+        joined: true,
+        tool,
+        feed,
+    })
+}
+
+/// Dexels with 0 to 3 intervals on slopes and flats.
+fn dexels() -> impl Strategy<Value = Dexels> {
+    let column = prop::collection::vec((1e-3..3.0, 1e-3..3.0), 0..4);
+    let columns = prop::collection::vec((column, 1usize..4), 1..60);
+    (columns, 1usize..7, -50.0..50.0).prop_map(|(columns, ny, z)| {
+        let flat: Vec<_> = columns
+            .iter()
+            .flat_map(|(column, count)| std::iter::repeat_n(column, *count))
+            .collect();
+        let nx = flat.len().div_ceil(ny);
+        let grid = Grid::new([-1.0, 0.25], [2.5, 7.0], [nx, ny]).unwrap();
+        let mut dexels = Dexels::empty(grid);
+        for (index, column) in flat.iter().enumerate() {
+            let mut at = z;
+            let intervals = column.iter().map(|(gap, length)| {
+                let lower = at + gap;
+                at = lower + length;
+                Interval::between(lower, at)
+            });
+            let intervals: Vec<Interval> = intervals.collect();
+            dexels.set(index, intervals);
+        }
+        dexels
+    })
+}
+
+fn ends(dexels: &Dexels) -> Vec<Vec<f64>> {
+    let of = |index| dexels.at(index).iter().flat_map(|a| [a.lower.z, a.upper.z]).collect();
+    (0..dexels.grid().len()).map(of).collect()
+}
+
+/// Texts that look like the format, with things wrong in them.
+fn like(words: &'static [&'static str]) -> impl Strategy<Value = String> {
+    prop::collection::vec(
+        (prop::sample::select(words), "[ \n,]|", prop::option::of(-1e3..1e3)),
+        0..60,
+    )
+    .prop_map(|parts| {
+        let word = |(word, space, number): (&str, String, Option<f64>)| match number {
+            Some(number) => format!("{word}{number:.3}{space}"),
+            None => format!("{word}{space}"),
+        };
+        parts.into_iter().map(word).collect()
+    })
+}
+
+proptest! {
+    #[test]
+    fn path_csv(poses in prop::collection::vec(pose(), 1..20)) {
+        let mut bytes = Vec::new();
+        csv::write_path(&poses, &mut bytes).unwrap();
+        let read = csv::read_path(std::str::from_utf8(&bytes).unwrap(), 1.0).unwrap();
+        prop_assert_eq!(read.poses.len(), poses.len());
+        for (a, b) in read.poses.iter().zip(&poses) {
+            prop_assert_eq!(a.pose.tip(), b.pose.tip());
+            prop_assert!((a.pose.axis().into_inner() - b.pose.axis().into_inner()).norm() < 1e-15);
+            prop_assert_eq!((a.rapid, a.feed, a.tool), (b.rapid, b.feed, b.tool));
+        }
+    }
+
+    #[test]
+    fn programs(poses in prop::collection::vec([length(), length(), length()], 1..20)) {
+        let text: String = poses.iter().map(|[x, y, z]| format!("G1 X{x} Y{y} Z{z}\n")).collect();
+        let read = gcode::read(&text, &gcode::Options::default()).unwrap();
+        let mut expected = poses.clone();
+        expected.dedup();
+        let found: Vec<[f64; 3]> = read.poses.iter().map(|pose| pose.pose.tip().into()).collect();
+        prop_assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn dexel_csv(dexels in dexels()) {
+        let mut bytes = Vec::new();
+        write_dexels_csv(&dexels, &mut bytes).unwrap();
+        let rows: Vec<DexelRow> = read_dexels_csv(&bytes[..]).unwrap();
+        let read = dexels_from_rows(*dexels.grid(), &rows).unwrap();
+        prop_assert_eq!(ends(&read), ends(&dexels));
+        let mut again = Vec::new();
+        write_dexels_csv(&read, &mut again).unwrap();
+        prop_assert_eq!(again, bytes);
+    }
+
+    #[test]
+    fn fixtures(dexels in dexels(), digits in 1i32..7) {
+        let tolerance = 10.0_f64.powi(-digits);
+        let fixture = Fixture::new("a job", &dexels, tolerance).unwrap();
+        let read = Fixture::parse(&fixture.text()).unwrap_or_else(|error| panic!("{error}\n{}", fixture.text()));
+        prop_assert_eq!(&read, &fixture);
+        prop_assert_eq!(read.differences(&dexels).unwrap(), vec![]);
+        for (index, ends) in ends(&dexels).iter().enumerate() {
+            for (a, b) in read.ends(index).iter().zip(ends) {
+                prop_assert!((a - b).abs() <= 0.0501 * tolerance);
+            }
+        }
+    }
+
+    #[test]
+    fn ply(vertices in prop::collection::vec(([length(), length(), length()], [-1f32..1.0, -1f32..1.0, -1f32..1.0]), 3..20), corners in prop::collection::vec([0usize..20, 0usize..20, 0usize..20], 0..20)) {
+        let count = vertices.len();
+        let mesh = Mesh {
+            vertices: vertices.iter().map(|v| v.0).collect(),
+            normals: vertices.iter().map(|v| v.1).collect(),
+            triangles: corners.iter().map(|t| t.map(|k| (k % count) as u32)).collect(),
+        };
+        let mut bytes = Vec::new();
+        write_ply(&mesh, &mut bytes).unwrap();
+        let read = read_ply(&bytes).unwrap();
+        prop_assert_eq!((read.vertices, read.normals, read.triangles), (mesh.vertices, mesh.normals, mesh.triangles));
+        let cut = bytes.len() * 2 / 3;
+        prop_assert!(read_ply(&bytes[..cut]).is_err(), "a part is no mesh");
+    }
+
+    #[test]
+    fn stl(triangles in prop::collection::vec([[-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [-1e3f32..1e3, -1e3f32..1e3, -1e3f32..1e3], [0f32..1.0, 0f32..1.0, 0f32..1.0]], 1..9)) {
+        let triangles: Vec<[[f64; 3]; 3]> = triangles.iter().map(|t| t.map(|p| p.map(f64::from))).collect();
+        let mut bytes = Vec::new();
+        write_stl(&triangles, &mut bytes).unwrap();
+        let soup = parse_stl(&bytes).unwrap();
+        prop_assert_eq!(soup.triangles(), &triangles[..]);
+        prop_assert!(parse_stl(&bytes[..bytes.len() - 7]).is_err());
+        let facet = |t: &[[f64; 3]; 3]| {
+            let corners: String = t.iter().map(|[x, y, z]| format!("vertex {x} {y:e} {z}\n")).collect();
+            format!("facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n")
+        };
+        let ascii: String = triangles.iter().map(facet).collect();
+        let ascii = format!("solid \u{e4} b\n{ascii}endsolid\n");
+        let soup = parse_stl(ascii.as_bytes()).unwrap();
+        prop_assert_eq!(soup.triangles(), &triangles[..]);
+    }
+
+    #[test]
+    fn no_reader_panics_on_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        let text = String::from_utf8_lossy(&bytes);
+        let _ = parse_stl(&bytes);
+        let _ = parse_stl(&[b"solid ", &bytes[..]].concat());
+        let _ = read_ply(&bytes);
+        let _ = read_ply(&[b"ply\n", &bytes[..]].concat());
+        let _ = read_dexels_csv(&bytes[..]);
+        let _ = Fixture::parse(&text);
+        let _ = csv::read_path(&text, 1.0);
+        let _ = gcode::read(&text, &gcode::Options::default());
+        let _ = Job::parse(&text, "x.ron".as_ref());
+    }
+
+    #[test]
+    fn no_reader_panics_on_what_looks_right(
+        program in like(&["G0", "G1", "G2", "G3", "G18", "G91", "G53", "G92", "G10 L2 P1", "G28", "M428", "M6", "T1", "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "P1", "\n", "\n", "(", "é", "%"]),
+        table in like(&["x,y,z,i,j,k\n", "tool", "1,2,3,0,0,1\n", ",", "\"", "\n", "rapid", "é"]),
+        fixture in like(&["sweepsim dexels 1\njob a\ngrid 0 0 1 1 2 3\ntolerance 1e-3\n", "*3", "*", "1 0 5 ", "\n", "2 ", "-5 ", "9223372036854775807 "]),
+        ply in like(&["ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n", "element face 9999999999\n", "property list uchar int vertex_indices\n", "end_header\n", "1 ", "\n"]),
+        job in like(&["Job(", "grid: Grid(", "min: (", "cells: (", "stock: Block(", "tools: {", "1: Ball(", "radius: ", "paths: [", "poses: [", ")", "]", "}", ",", "\"", "//", "/*", "\n"]),
+    ) {
+        let _ = gcode::read(&program, &gcode::Options { tip_control: true, ..gcode::Options::default() });
+        let _ = csv::read_path(&table, 25.4);
+        let _ = Fixture::parse(&fixture);
+        let _ = read_ply(ply.as_bytes());
+        let _ = Job::parse(&job, "x.ron".as_ref());
+    }
+}
+
+#[test]
+fn reports() {
+    let mut report = Report::default();
+    report.job = "quickstart".into();
+    report.method = "charts".into();
+    report.seconds.insert("sweep".into(), 1.5);
+    report.seconds.insert("audit".into(), 0.25);
+    report.dexels.unresolved.push(UnresolvedDexel {
+        i: 3,
+        j: 4,
+        reason: "singular".into(),
+    });
+    report.volume_removed = Some(12.5);
+    let text = report.to_json().unwrap();
+    assert!(text.find("sweep") < text.find("audit"), "phases in their order");
+    for field in [
+        "job",
+        "method",
+        "cells",
+        "moves",
+        "seconds",
+        "crossings",
+        "dexels",
+        "covered",
+        "repaired",
+        "unresolved",
+        "volume_removed",
+    ] {
+        assert!(text.contains(&format!("\"{field}\"")), "{field}");
+    }
+    assert!(!text.contains("gouge"), "only with verify");
+    assert_eq!(serde_json::from_str::<Report>(&text).unwrap(), report);
+}
+
+#[test]
+fn fixtures_name_what_differs() {
+    let grid = Grid::new([0.0; 2], [1.0; 2], [2, 2]).unwrap();
+    let mut dexels = Dexels::empty(grid);
+    dexels.set(1, vec![Interval::between(0.0, 1.0)]);
+    let fixture = Fixture::new("job", &dexels, 1e-3).unwrap();
+    dexels.set(1, vec![Interval::between(0.0, 1.0019)]);
+    assert!(fixture.differences(&dexels).unwrap().is_empty());
+    dexels.set(1, vec![Interval::between(0.0, 1.0021)]);
+    dexels.set(2, vec![Interval::between(0.0, 1.0)]);
+    let found: Vec<String> = fixture
+        .differences(&dexels)
+        .unwrap()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        found,
+        [
+            "dexel (0, 1): stored [0.0, 1.0], found [0.0, 1.0021]",
+            "dexel (1, 0): stored nothing, found [0.0, 1.0]"
+        ]
+    );
+}
+
+#[test]
+fn a_file_is_whole_or_not_there() {
+    use std::io::Write;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("part.ply");
+    let names = || std::fs::read_dir(folder.path()).unwrap().count();
+    let failed = sweepsim_formats::write_atomically(&path, |file| {
+        file.write_all(b"half")?;
+        Err(std::io::Error::other("no more"))
+    });
+    let message = failed.unwrap_err().to_string();
+    assert!(
+        message.ends_with("part.ply: cannot write this file: no more"),
+        "{message}"
+    );
+    assert_eq!(names(), 0);
+    for text in ["one", "two"] {
+        sweepsim_formats::write_atomically(&path, |file| file.write_all(text.as_bytes())).unwrap();
+        assert_eq!((std::fs::read_to_string(&path).unwrap().as_str(), names()), (text, 1));
+    }
+    let nowhere = sweepsim_formats::AtomicFile::create(&folder.path().join("none/part.ply")).unwrap_err();
+    assert!(nowhere.to_string().contains("none/part.ply: cannot write this file"));
+    assert!(sweepsim_formats::AtomicFile::create(folder.path()).is_err());
+}
