@@ -6,18 +6,12 @@ use std::path::{Path as FilePath, PathBuf};
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
 use sweepsim_motion::Tool;
 
-use crate::error::{FormatError, Problem};
-use crate::locate::Node;
-use crate::paths::{self, JobPath, PathOptions};
-use crate::stl::read_stl;
-use crate::tools::{self, Step};
-use crate::{gcode, raw, text};
+use crate::error::FormatError;
+use crate::paths::JobPath;
+use crate::{read_job, text};
 
 /// Millimetres of an inch.
 const INCH: f64 = 25.4;
-
-/// Chords of arcs may be so many times the job's tolerance away from them, where a path does not say otherwise.
-const ARC_TOLERANCE: f64 = 10.0;
 
 /// The unit of the lengths in a job's file. A [`Job`] itself is in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +34,29 @@ impl Units {
 }
 
 /// A job as read: every value checked, every file read, every length in millimetres.
+///
+/// ```
+/// use std::path::Path;
+/// let text = r#"Job(
+///     units: Mm,                                     // or Inch: of all lengths here
+///     tolerance: 1e-6,                               // of interval ends
+///     grid: Grid(min: (0, 0), max: (20, 10), cells: (200, 100)),
+///     stock: Cylinder(base: (10, 5, 0), radius: 4, height: 5),   // axis: (0, 0, 1); or Block(min:, max:), Mesh("file.stl")
+///     tools: { 1: Ball(radius: 2, length: 30) },     // Flat, Bull(corner:), Apt(d:, r:, e:, f:, a:, b:, h:), Profile(start:, segments:)
+///     paths: [
+///         Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1)), ((20, 5, 3), (1, 0, 2))]),
+///         // Path(tool: 1, file: "finish.ngc"),      // relative to the job; without `tool`: those of the file
+///     ],
+/// )"#;
+/// let job = sweepsim_formats::Job::parse(text, Path::new("part.ron"))?;
+/// assert_eq!((job.name.as_str(), job.moves()), ("part", 1));
+/// # Ok::<(), sweepsim_formats::FormatError>(())
+/// ```
+///
+/// A path of a program takes further `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
+/// use) and `tip_control: true` (the coordinates are the tip in the part's frame without a word in the program); see
+/// [`gcode::Options`](crate::gcode::Options).
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Job {
     /// The name: given in the file, or the file's own.
     pub name: String,
@@ -96,330 +111,12 @@ impl Job {
     /// # Errors
     /// As [`Job::read`].
     pub fn parse(text: &str, file: &FilePath) -> Result<Self, FormatError> {
-        let raw: raw::Job = syntax(text).map_err(|error| error.in_file(file))?;
-        let reader = Reader {
-            text,
-            file,
-            places: Node::of(text),
-            unit: match raw.units {
-                raw::Units::Mm => 1.0,
-                raw::Units::Inch => INCH,
-            },
-        };
-        reader.job(raw).map_err(|error| error.in_file(file))
+        read_job::parse(text, file).map_err(|error| error.in_file(file))
     }
 
     /// The number of moves of all paths.
     #[must_use]
     pub fn moves(&self) -> usize {
         self.paths.iter().map(|path| path.path.moves()).sum()
-    }
-}
-
-/// The values of the text, not checked yet.
-fn syntax(text: &str) -> Result<raw::Job, FormatError> {
-    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    options.from_str(text).map_err(|error| {
-        // Positions are lines and characters from 1; the text around them is found again by bytes.
-        let byte = |position: ron::error::Position| {
-            let start: usize = text
-                .split_inclusive('\n')
-                .take(position.line.saturating_sub(1))
-                .map(str::len)
-                .sum();
-            let column = text[start..].char_indices().nth(position.col.saturating_sub(1));
-            start + column.map_or(text.len() - start, |(byte, _)| byte)
-        };
-        let span = byte(error.span.start)..byte(error.span.end);
-        // The span may have space around what is meant.
-        let skipped = text[span.start..].len() - text[span.start..].trim_start().len();
-        let start = if error.code == ron::Error::Eof {
-            span.start
-        } else {
-            span.start + skipped
-        };
-        FormatError::new(
-            Problem::syntax(error.code.to_string()),
-            Some(text::place(text, start..span.end.max(start))),
-        )
-    })
-}
-
-struct Reader<'a> {
-    text: &'a str,
-    file: &'a FilePath,
-    places: Node,
-    unit: f64,
-}
-
-impl Reader<'_> {
-    /// A problem with the value that the steps lead to.
-    fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
-        let node = steps.iter().fold(&self.places, |node, step| match step {
-            Step::Key(key) => node.key(key),
-            Step::Item(index) => node.item(*index),
-        });
-        FormatError::new(problem, Some(text::place(self.text, node.span.clone())))
-    }
-
-    fn check(&self, what: &str, value: f64, good: bool, expected: &str, steps: &[Step]) -> Result<(), FormatError> {
-        if good && value.is_finite() {
-            Ok(())
-        } else {
-            Err(self.error(Problem::value(what, value, expected), steps))
-        }
-    }
-
-    fn job(&self, raw: raw::Job) -> Result<Job, FormatError> {
-        let tolerance = match raw.tolerance {
-            None => 1e-6,
-            Some(tolerance) => {
-                self.check(
-                    "tolerance",
-                    tolerance,
-                    tolerance > 0.0,
-                    "a positive number",
-                    &["tolerance".into()],
-                )?;
-                tolerance * self.unit
-            }
-        };
-        let grid = self.grid(&raw.grid)?;
-        let stock = self.stock(&raw.stock)?;
-        let mut tools = BTreeMap::new();
-        for (&number, tool) in &raw.tools {
-            let made = tools::tool(number, tool, self.unit).map_err(|fault| {
-                let mut steps = vec!["tools".into(), Step::Key(number.to_string())];
-                steps.extend(fault.field);
-                self.error(fault.problem, &steps)
-            })?;
-            tools.insert(number, made);
-        }
-        let mut paths = Vec::new();
-        for (index, path) in raw.paths.iter().enumerate() {
-            paths.extend(self.path(index, path, &tools, tolerance)?);
-        }
-        let target = match &raw.target {
-            None => None,
-            Some(raw::Target::Mesh(name)) => Some(Target {
-                file: paths::beside(self.file, name),
-                mesh: self.mesh(name, "target", &["target".into()])?,
-            }),
-        };
-        let limits = match raw.limits {
-            None => None,
-            Some(limits) => {
-                for (name, value) in [("gouge", limits.gouge), ("excess", limits.excess)] {
-                    self.check(
-                        name,
-                        value,
-                        value >= 0.0,
-                        "0 or greater",
-                        &["limits".into(), name.into()],
-                    )?;
-                }
-                Some(Limits {
-                    gouge: limits.gouge * self.unit,
-                    excess: limits.excess * self.unit,
-                })
-            }
-        };
-        let stem = self.file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        Ok(Job {
-            name: raw.name.or(stem).unwrap_or_else(|| "job".into()),
-            units: match raw.units {
-                raw::Units::Mm => Units::Mm,
-                raw::Units::Inch => Units::Inch,
-            },
-            tolerance,
-            grid,
-            stock,
-            tools,
-            paths,
-            target,
-            limits,
-        })
-    }
-
-    fn grid(&self, raw: &raw::Grid) -> Result<Grid, FormatError> {
-        let scale = |corner: [f64; 2]| corner.map(|c| c * self.unit);
-        let mut cells = [0; 2];
-        for (k, cell) in cells.iter_mut().enumerate() {
-            *cell = usize::try_from(raw.cells[k]).ok().filter(|&n| n > 0).ok_or_else(|| {
-                let problem = Problem::value("a number of cells", raw.cells[k], "a positive whole number");
-                self.error(problem, &["grid".into(), "cells".into(), Step::Item(k)])
-            })?;
-        }
-        for (name, corner) in [("min", raw.min), ("max", raw.max)] {
-            for (k, value) in corner.into_iter().enumerate() {
-                let steps = ["grid".into(), name.into(), Step::Item(k)];
-                self.check("a corner of the grid", value, true, "finite", &steps)?;
-            }
-        }
-        Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
-            let ordered = (0..2).all(|k| raw.min[k] < raw.max[k]);
-            let field = if ordered { "cells" } else { "min" };
-            self.error(Problem::Grid(error), &["grid".into(), field.into()])
-        })
-    }
-
-    fn stock(&self, raw: &raw::Stock) -> Result<Stock, FormatError> {
-        let scale = |point: [f64; 3]| point.map(|c| c * self.unit);
-        let steps = |name: &str, k: Option<usize>| -> Vec<Step> {
-            let path = [Some("stock".into()), Some(name.into()), k.map(Step::Item)];
-            path.into_iter().flatten().collect()
-        };
-        let finite = |name: &str, point: [f64; 3]| {
-            (0..3).try_for_each(|k| self.check(name, point[k], true, "finite", &steps(name, Some(k))))
-        };
-        match *raw {
-            raw::Stock::Block { min, max } => {
-                finite("min", min)?;
-                finite("max", max)?;
-                for k in 0..3 {
-                    let expected = format!("greater than that of min, {}", min[k]);
-                    let what = format!("the {} of max", ['x', 'y', 'z'][k]);
-                    self.check(&what, max[k], min[k] < max[k], &expected, &steps("max", Some(k)))?;
-                }
-                Ok(Stock::Block {
-                    min: scale(min),
-                    max: scale(max),
-                })
-            }
-            raw::Stock::Cylinder {
-                base,
-                axis,
-                radius,
-                height,
-            } => {
-                finite("base", base)?;
-                finite("axis", axis)?;
-                if axis == [0.0; 3] {
-                    let problem = Problem::value("axis", "zero", "a direction, such as (0, 0, 1)");
-                    return Err(self.error(problem, &steps("axis", None)));
-                }
-                self.check("radius", radius, radius > 0.0, "positive", &steps("radius", None))?;
-                self.check("height", height, height > 0.0, "positive", &steps("height", None))?;
-                Ok(Stock::Cylinder {
-                    base: scale(base),
-                    axis,
-                    radius: radius * self.unit,
-                    height: height * self.unit,
-                })
-            }
-            raw::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", &["stock".into()])?)),
-        }
-    }
-
-    /// The triangles of a file that is named at the steps, in millimetres.
-    fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
-        let file = paths::beside(self.file, name);
-        let mesh = self.named(read_stl(&file), &file, what, steps)?;
-        Ok(if self.unit == 1.0 {
-            mesh
-        } else {
-            let scaled = mesh.triangles().iter().map(|t| t.map(|p| p.map(|c| c * self.unit)));
-            TriangleSoup::new(scaled.collect())
-        })
-    }
-
-    /// A file that cannot be opened is an error of the job, at the place that names it.
-    fn named<T>(
-        &self,
-        read: Result<T, FormatError>,
-        file: &FilePath,
-        what: &'static str,
-        steps: &[Step],
-    ) -> Result<T, FormatError> {
-        read.map_err(|error| match error.into_read_error() {
-            Ok(source) => {
-                let file = file.to_owned();
-                self.error(Problem::Named { what, file, source }, steps)
-            }
-            Err(error) => error,
-        })
-    }
-
-    fn path(
-        &self,
-        index: usize,
-        raw: &raw::Path,
-        tools: &BTreeMap<u32, Tool>,
-        tolerance: f64,
-    ) -> Result<Vec<JobPath>, FormatError> {
-        let steps = |rest: &[Step]| {
-            let mut steps = vec!["paths".into(), Step::Item(index)];
-            steps.extend_from_slice(rest);
-            steps
-        };
-        let has_tool = |number: u32| {
-            let known = || tools.keys().copied().collect();
-            tools
-                .contains_key(&number)
-                .then_some(())
-                .ok_or_else(|| Problem::NoSuchTool { number, known: known() })
-        };
-        if let Some(number) = raw.tool {
-            has_tool(number).map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
-        }
-        match (&raw.poses, &raw.file) {
-            (Some(poses), None) => {
-                let tool = raw.tool.ok_or_else(|| {
-                    let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
-                    self.error(problem, &steps(&[]))
-                })?;
-                let path = paths::of_poses(poses, self.unit).map_err(|(problem, place)| {
-                    let mut path = steps(&["poses".into()]);
-                    path.extend(
-                        place
-                            .iter()
-                            .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]),
-                    );
-                    self.error(problem, &path)
-                })?;
-                Ok(vec![JobPath {
-                    tool,
-                    rapid: vec![false; path.moves()],
-                    path,
-                    source: format!("path {index} of the job"),
-                    lines: Vec::new(),
-                    notes: Vec::new(),
-                }])
-            }
-            (None, Some(name)) => {
-                let arc_tolerance = match raw.arc_tolerance {
-                    None => ARC_TOLERANCE * tolerance,
-                    Some(value) => {
-                        let place = steps(&["arc_tolerance".into()]);
-                        self.check("arc_tolerance", value, value > 0.0, "a positive number", &place)?;
-                        value * self.unit
-                    }
-                };
-                let options = PathOptions {
-                    unit: self.unit,
-                    program: gcode::Options {
-                        arc_tolerance,
-                        table: raw.table.map(|table| match table {
-                            raw::Table::Ac => gcode::RotaryTable::Ac,
-                            raw::Table::Bc => gcode::RotaryTable::Bc,
-                        }),
-                        tip_control: raw.tip_control.unwrap_or(false),
-                        ..gcode::Options::default()
-                    },
-                };
-                let file = paths::beside(self.file, name);
-                let read = paths::read_path_file(&file, &options);
-                let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
-                paths::of_program(program, &file, name, raw.tool, has_tool)
-            }
-            (Some(_), Some(_)) => {
-                let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
-                Err(self.error(problem, &steps(&["file".into()])))
-            }
-            (None, None) => {
-                let problem = Problem::syntax("this path has no poses: expected `poses` or `file`");
-                Err(self.error(problem, &steps(&[])))
-            }
-        }
     }
 }

@@ -43,6 +43,7 @@ mod paths;
 mod ply;
 mod program;
 mod raw;
+mod read_job;
 mod report;
 mod stl;
 mod text;

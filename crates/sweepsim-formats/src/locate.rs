@@ -4,6 +4,7 @@
 //! been parsed already (so it is well-formed) and notes the spans of all values as a tree. It never fails: where the text is not as
 //! expected it stops, and a value that is not found has the place of the nearest one around it.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 /// A value, with the values in it.
@@ -36,6 +37,17 @@ impl Node {
             (None, [(None, wrapped)]) if wrapped.children.iter().any(|(name, _)| name.is_some()) => wrapped.key(key),
             _ => self,
         }
+    }
+
+    /// A key that is there before, with the place of its value: parsers of maps take the last one without a word.
+    pub fn second_key(&self) -> Option<(&str, Range<usize>)> {
+        let mut seen = BTreeSet::new();
+        let keys = self
+            .children
+            .iter()
+            .filter_map(|(name, node)| Some((name.as_deref()?, node)));
+        let second = keys.into_iter().find(|(key, _)| !seen.insert(*key));
+        second.map(|(key, node)| (key, node.span.clone()))
     }
 
     /// The item at `index` of a list or tuple; `self` when there is none.

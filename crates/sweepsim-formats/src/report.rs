@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 /// A run in numbers. Lengths in mm, volumes in mm³. What is `None` is not in the file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct Report {
     /// The name of the job.
     pub job: String,

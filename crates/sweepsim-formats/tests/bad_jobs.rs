@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use proptest::prelude::*;
 use sweepsim_formats::Job;
 
 /// A job without a fault, with marks to put one in.
@@ -193,6 +194,7 @@ fn one_message_with_its_place() {
             "Apt(d: 10, r: -1, e: 4, f: 1, a: 0, b: 0, h: 30)".into(),
             "job.ron:7:26: `r` of the APT cutter is -1",
         ),
+        (tool, format!("{tool}, 1: {tool}"), "job.ron:7:48: a second tool 1"),
         // Paths.
         (
             "tool: 1",
@@ -317,4 +319,25 @@ error: tool 1: radius is -2, but must be positive
   |                         ^^^^";
     assert_eq!(error.render(false), expected);
     assert!(error.render(true).contains("\u{1b}["));
+}
+
+proptest! {
+    /// Whatever is changed: a job, or an error with its place in the text.
+    #[test]
+    fn changes_are_read_or_refused_with_a_place(
+        at in any::<prop::sample::Index>(),
+        length in 0usize..6,
+        with in prop::sample::select(&["", "(", ")", "]", "}", "\"", ",", ":", "-", "0", "9e999", "inf", "NaN", "x", "\n", "/*", "//", "'", "r#", "é", "Some(", "tool: "][..]),
+    ) {
+        let at = at.index(GOOD.len());
+        let end = (at + length).min(GOOD.len());
+        let text = format!("{}{with}{}", &GOOD[..at], &GOOD[end..]);
+        if let Err(error) = Job::parse(&text, Path::new("job.ron")) {
+            let place = error.place();
+            prop_assert!(place.is_some(), "{error}");
+            let lines = text.lines().count() + 1;
+            prop_assert!(place.is_some_and(|place| (1..=lines).contains(&place.line) && place.column >= 1));
+            let _ = error.render(true);
+        }
+    }
 }

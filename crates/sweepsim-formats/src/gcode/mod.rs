@@ -22,6 +22,7 @@ mod arc;
 mod codes;
 mod lexer;
 mod machine;
+mod moves;
 mod offsets;
 mod program;
 mod rotary;

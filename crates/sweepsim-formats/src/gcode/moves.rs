@@ -1,0 +1,209 @@
+//! The moves of a block: where it goes, and along what.
+
+use super::arc::Arc;
+use super::codes::{Code, Motion};
+use super::machine::Target;
+use super::program::{Reader, Values};
+use crate::error::Problem;
+
+/// Millimetres of an inch.
+const INCH: f64 = 25.4;
+
+impl Reader {
+    fn unit(&self) -> f64 {
+        if self.modes.inch { INCH } else { 1.0 }
+    }
+
+    /// X, Y, Z in millimetres, as written.
+    fn lengths(&self, values: &Values, letters: [char; 3]) -> [Option<f64>; 3] {
+        letters.map(|letter| values.get(letter).map(|value| value * self.unit()))
+    }
+
+    /// The angles that a block goes to.
+    fn angles(&self, values: &Values) -> [f64; 3] {
+        let mut abc = self.machine.abc;
+        for (angle, letter) in abc.iter_mut().zip(['A', 'B', 'C']) {
+            if let Some(value) = values.get(letter) {
+                *angle = if self.modes.absolute { value } else { *angle + value };
+            }
+        }
+        abc
+    }
+
+    /// A move in machine coordinates: where it ends in the part's frame is not known.
+    pub(super) fn leave_frame(&mut self, values: &Values, line: usize) {
+        self.machine
+            .notes
+            .add(line, "moves in machine coordinates are left out: the path breaks here");
+        for (coordinate, letter) in self.machine.xyz.iter_mut().zip(['X', 'Y', 'Z']) {
+            if values.get(letter).is_some() {
+                *coordinate = None;
+            }
+        }
+        self.machine.abc = self.angles(values);
+        self.machine.leave();
+    }
+
+    pub(super) fn act(&mut self, code: Code, values: &Values, line: usize) -> Result<(), Problem> {
+        let words = self.lengths(values, ['X', 'Y', 'Z']);
+        match code {
+            Code::Home => {
+                let any = values.first("XYZABC").is_some();
+                for k in 0..3 {
+                    if !any || words[k].is_some() {
+                        self.machine.xyz[k] = None;
+                    }
+                }
+                for (angle, letter) in self.machine.abc.iter_mut().zip(['A', 'B', 'C']) {
+                    if !any || values.get(letter).is_some() {
+                        *angle = 0.0;
+                    }
+                }
+                self.machine
+                    .notes
+                    .add(line, "moves to the machine's home are left out: the path breaks here");
+                self.machine.leave();
+            }
+            Code::SetOffsets => {
+                if values.get('R').is_some_and(|r| r != 0.0) || values.first("ABC").is_some_and(|w| w.value != 0.0) {
+                    return Err(Problem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                }
+                let index = values.get('P').unwrap_or(0.0);
+                match values.get('L') {
+                    Some(2.0) => self.offsets.set(index, words)?,
+                    Some(20.0) => self.offsets.set_here(index, words, self.machine.xyz)?,
+                    _ => self.machine.notes.add(line, "G10 other than L2 and L20 is ignored"),
+                }
+            }
+            Code::LocalShift => self.offsets.set_local(words),
+            Code::ShiftHere => self.offsets.shift_here(words, self.machine.xyz)?,
+            Code::CancelShift { forget } => self.offsets.cancel_shift(forget),
+            Code::RestoreShift => self.offsets.restore_shift(),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A move in the part's frame.
+    pub(super) fn go(&mut self, motion: Motion, values: &Values, line: usize) -> Result<(), Problem> {
+        let words = self.lengths(values, ['X', 'Y', 'Z']);
+        let abc = self.angles(values);
+        let cuts = motion != Motion::Rapid;
+        if cuts || !self.modes.absolute {
+            let relative = !self.modes.absolute || matches!(motion, Motion::Arc { .. });
+            self.machine.assume(line, |k| words[k].is_none() || relative);
+        }
+        let mut xyz = self.machine.xyz;
+        for k in 0..3 {
+            if let Some(word) = words[k] {
+                xyz[k] = Some(match xyz[k] {
+                    Some(now) if !self.modes.absolute => now + word,
+                    _ => word + self.offsets.total()[k],
+                });
+            }
+        }
+        if self.offsets.total() != [0.0; 3] {
+            self.machine.notes.add(
+                line,
+                "the program's work offsets are included: poses are in the frame of the machine",
+            );
+        }
+        let [Some(x), Some(y), Some(z)] = xyz else {
+            // A rapid move on the way to the first place that is known.
+            self.machine.xyz = xyz;
+            self.machine.abc = abc;
+            return Ok(());
+        };
+        let target = Target { xyz: [x, y, z], abc };
+        if cuts {
+            if self.machine.known().is_none() {
+                self.machine.notes.add(
+                    line,
+                    "where this cutting move starts is not known: the path begins at its end",
+                );
+            }
+            self.machine.start_here(line)?;
+        }
+        match (motion, self.machine.known()) {
+            (Motion::Arc { counter_clockwise }, Some(start)) => {
+                self.arc(counter_clockwise, start, target, values, line)
+            }
+            _ if values.first("IJK").is_some() => {
+                Err(Problem::syntax("I, J, K outside an arc: expected G2 or G3 with them"))
+            }
+            _ => self.machine.line_to(target, !cuts, line),
+        }
+    }
+
+    fn arc(
+        &mut self,
+        counter_clockwise: bool,
+        start: [f64; 3],
+        target: Target,
+        values: &Values,
+        line: usize,
+    ) -> Result<(), Problem> {
+        let turns = values.get('P').unwrap_or(1.0);
+        if turns.fract() != 0.0 || !(1.0..=1e4).contains(&turns) {
+            return Err(Problem::value(
+                "the number of turns P",
+                turns,
+                "a whole number from 1 on",
+            ));
+        }
+        let plane = self.modes.plane;
+        let [u, v, w] = plane;
+        let offsets = self.lengths(values, ['I', 'J', 'K']);
+        let ends = (start, target.xyz);
+        let arc = match values.get('R') {
+            Some(_) if offsets.iter().any(Option::is_some) => {
+                return Err(Problem::syntax(
+                    "an arc with both R and a centre: expected R, or I, J, K",
+                ));
+            }
+            Some(radius) => Arc::with_radius(ends, plane, radius * self.unit(), counter_clockwise, turns),
+            None => {
+                if offsets[w].is_some_and(|offset| offset != 0.0) {
+                    return Err(Problem::syntax(format!(
+                        "{} does not belong to the arc's plane: expected {} and {}",
+                        ['I', 'J', 'K'][w],
+                        ['I', 'J', 'K'][u],
+                        ['I', 'J', 'K'][v]
+                    )));
+                }
+                let total = self.offsets.total();
+                let centre = match (self.modes.absolute_centres, offsets[u], offsets[v]) {
+                    (true, Some(cu), Some(cv)) => [cu + total[u], cv + total[v]],
+                    (false, None, None) | (true, _, _) => {
+                        return Err(Problem::syntax(format!(
+                            "this arc has no centre: expected {} and {}, or R",
+                            ['I', 'J', 'K'][u],
+                            ['I', 'J', 'K'][v]
+                        )));
+                    }
+                    (false, cu, cv) => [start[u] + cu.unwrap_or(0.0), start[v] + cv.unwrap_or(0.0)],
+                };
+                Arc::about(ends, plane, centre, counter_clockwise, turns)
+            }
+        }
+        .map_err(Problem::syntax)?;
+        let chords = arc.chords(self.arc_tolerance).map_err(Problem::syntax)?;
+        self.machine.notes.add(
+            line,
+            format!("arcs are divided into chords within {} mm", self.arc_tolerance),
+        );
+        let from = self.machine.abc;
+        for chord in 1..=chords {
+            let s = chord as f64 / chords as f64;
+            let abc = std::array::from_fn(|k| {
+                if chord == chords {
+                    target.abc[k]
+                } else {
+                    from[k] + s * (target.abc[k] - from[k])
+                }
+            });
+            self.machine.line_to(Target { xyz: arc.at(s), abc }, false, line)?;
+        }
+        Ok(())
+    }
+}
