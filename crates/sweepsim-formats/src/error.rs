@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use sweepsim_dexel::{GridError, StockError};
+use sweepsim_dexel::GridError;
 use sweepsim_motion::{PathError, PoseError, ProfileError};
 use thiserror::Error;
 
@@ -105,9 +105,6 @@ pub enum Problem {
     /// A grid is none.
     #[error("{0}")]
     Grid(#[source] GridError),
-    /// A stock is none.
-    #[error("{0}")]
-    Stock(#[source] StockError),
 }
 
 fn list(numbers: &[u32]) -> String {

@@ -193,9 +193,12 @@ proptest! {
 
 #[test]
 fn reports() {
-    let mut report = Report::default();
-    report.job = "quickstart".into();
-    report.method = "charts".into();
+    let mut report = Report {
+        job: "quickstart".into(),
+        method: "charts".into(),
+        volume_removed: Some(12.5),
+        ..Report::default()
+    };
     report.seconds.insert("sweep".into(), 1.5);
     report.seconds.insert("audit".into(), 0.25);
     report.dexels.unresolved.push(UnresolvedDexel {
@@ -203,7 +206,6 @@ fn reports() {
         j: 4,
         reason: "singular".into(),
     });
-    report.volume_removed = Some(12.5);
     let text = report.to_json().unwrap();
     assert!(text.find("sweep") < text.find("audit"), "phases in their order");
     for field in [

@@ -128,9 +128,9 @@ impl Reader {
             (Motion::Arc { counter_clockwise }, Some(start)) => {
                 self.arc(counter_clockwise, start, target, values, line)
             }
-            _ if values.first("IJK").is_some() => {
-                Err(Problem::syntax("I, J, K outside an arc: expected G2 or G3 with them"))
-            }
+            _ if values.first("IJKR").is_some() => Err(Problem::syntax(
+                "I, J, K or R outside an arc: expected G2 or G3 with them",
+            )),
             _ => self.machine.line_to(target, !cuts, line),
         }
     }
