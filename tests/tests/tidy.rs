@@ -1,0 +1,124 @@
+//! House rules that no lint knows.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longer files hold more than one story.
+const LONGEST: usize = 700;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// All files with the extension below the folders; build output, version control and results left out.
+fn files(folders: &[&str], extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open: Vec<PathBuf> = folders.iter().map(|folder| root().join(folder)).collect();
+    while let Some(folder) = open.pop() {
+        for entry in fs::read_dir(&folder).expect("folders of the workspace can be read") {
+            let path = entry.expect("and so can their entries").path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if path.is_dir() && !name.starts_with('.') && name != "target" && name != "out" {
+                open.push(path);
+            } else if path.extension().is_some_and(|found| found == extension) {
+                found.push(path);
+            }
+        }
+    }
+    assert!(!found.is_empty(), "no .{extension} below {folders:?}");
+    found.sort();
+    found
+}
+
+fn text(path: &Path) -> String {
+    fs::read_to_string(path).expect("text files are UTF-8")
+}
+
+/// Lines that break a rule, as `file:line: text`.
+fn offences(files: &[PathBuf], offends: impl Fn(&str) -> bool) -> Vec<String> {
+    let offending = |path: &PathBuf| -> Vec<String> {
+        text(path)
+            .lines()
+            .enumerate()
+            .filter(|(_, line)| offends(line))
+            .map(|(number, line)| format!("{}:{}: {}", path.display(), number + 1, line.trim()))
+            .collect()
+    };
+    files.iter().flat_map(offending).collect()
+}
+
+fn assert_none(offences: &[String], rule: &str) {
+    assert!(offences.is_empty(), "{rule}:\n{}", offences.join("\n"));
+}
+
+#[test]
+fn files_are_short() {
+    let long: Vec<String> = files(&["crates", "xtask", "tests"], "rs")
+        .iter()
+        .map(|path| (path, text(path).lines().count()))
+        .filter(|(_, lines)| *lines > LONGEST)
+        .map(|(path, lines)| format!("{}: {lines} lines", path.display()))
+        .collect();
+    assert_none(&long, "a file tells one story");
+}
+
+#[test]
+fn nothing_is_left_to_do() {
+    // Put together here, so that this file does not offend.
+    let marks = ["todo", "unimplemented", "dbg"].map(|name| format!("{name}!("));
+    let found = offences(&files(&["crates", "xtask", "tests"], "rs"), |line| {
+        marks.iter().any(|mark| line.contains(mark))
+    });
+    assert_none(&found, "no stubs");
+}
+
+#[test]
+fn only_the_command_prints() {
+    let marks = ["println!(", "print!(", "process::exit("];
+    let libraries: Vec<PathBuf> = files(&["crates"], "rs")
+        .into_iter()
+        .filter(|path| {
+            let has = |name: &str| path.components().any(|part| part.as_os_str() == name);
+            has("src") && !has("sweepsim-cli")
+        })
+        .collect();
+    let found = offences(&libraries, |line| {
+        !line.trim_start().starts_with("//") && marks.iter().any(|mark| line.contains(mark))
+    });
+    assert_none(&found, "libraries return errors and take a monitor");
+}
+
+#[test]
+fn every_folder_of_fixtures_says_where_it_comes_from() {
+    let missing: Vec<String> = fs::read_dir(root().join("fixtures"))
+        .expect("there are fixtures")
+        .map(|entry| entry.expect("that can be read").path())
+        .filter(|path| path.is_dir() && !path.join("README.md").is_file())
+        .map(|path| path.display().to_string())
+        .collect();
+    assert_none(&missing, "a README for each");
+}
+
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let mut broken = Vec::new();
+    let mut links = 0;
+    for page in files(&["."], "md") {
+        let text = text(&page);
+        for link in text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split([')', '#']).next())
+        {
+            if link.is_empty() || link.contains("://") || link.contains(char::is_whitespace) {
+                continue;
+            }
+            links += 1;
+            if !page.with_file_name(link).exists() {
+                broken.push(format!("{}: {link}", page.display()));
+            }
+        }
+    }
+    assert!(links > 5, "only {links} links seen");
+    assert_none(&broken, "a link to nothing");
+}
