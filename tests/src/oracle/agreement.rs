@@ -82,7 +82,7 @@ pub fn compare(found: &[[f64; 2]], line: &SweptLine, depth: &Depth<'_>, [x, y]: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::oracle::{Motion, Outline, swept_line};
+    use crate::oracle::{Motion, Outline, Sampling, swept_line};
     use sweepsim_motion::{Pose, Tool};
 
     /// A judge who never says no is none: every kind of wrong answer must be caught.
@@ -97,7 +97,7 @@ mod tests {
         let motion = Motion::new(&poses);
         let depth = Depth::new(&outline, &motion);
         let judge = |found: &[[f64; 2]], y: f64| {
-            let line = swept_line(&outline, &motion, 0.3, y, 200);
+            let line = swept_line(&outline, &motion, 0.3, y, Sampling::number(200));
             compare(found, &line, &depth, [0.3, y], 1e-6)
         };
         let wrong = |verdict| matches!(verdict, Verdict::Wrong(_));

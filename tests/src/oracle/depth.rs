@@ -229,7 +229,7 @@ mod tests {
             let depth = Depth::new(&outline, &motion);
             for k in 0..25 {
                 let (x, y) = (-8.0 + 5.17 * f64::from(k % 5), -8.0 + 4.03 * f64::from(k / 5));
-                let line = crate::oracle::swept_line(&outline, &motion, x, y, 200);
+                let line = crate::oracle::swept_line(&outline, &motion, x, y, crate::oracle::Sampling::number(200));
                 if line.ambiguous {
                     continue;
                 }

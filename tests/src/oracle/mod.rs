@@ -39,4 +39,4 @@ pub use depth::{Depth, Nearest};
 pub use motion::{Arc, Motion, Placement};
 pub use outline::Outline;
 pub use roots::{Polynomial, roots_between};
-pub use union::{Span, SweptLine, swept_line};
+pub use union::{Sampling, Span, SweptLine, swept_line};

@@ -2,7 +2,7 @@
 
 use super::chord::chords;
 use super::minimum::minimise;
-use super::motion::Motion;
+use super::motion::{Arc, Motion};
 use super::outline::Outline;
 use nalgebra::Vector3;
 
@@ -49,9 +49,37 @@ struct Sampler<'a> {
     bridges: Vec<[f64; 2]>,
 }
 
-/// What the tool sweeps of the vertical line through `(x, y)`, from `density` samples of each arc of the motion.
+/// How densely time is sampled to begin with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling {
+    /// The least number of samples of an arc.
+    pub least: usize,
+    /// How far the tool may move past the line, at the height of its tip, between two samples.
+    pub step: f64,
+}
+
+impl Sampling {
+    /// So many samples of each arc, however long.
+    #[must_use]
+    pub fn number(least: usize) -> Self {
+        let step = f64::INFINITY;
+        Self { least, step }
+    }
+
+    /// How many samples an arc takes.
+    fn count(&self, arc: &Arc, x: f64, y: f64) -> usize {
+        if arc.rests() {
+            return 1;
+        }
+        let beside = |t: f64| arc.speed_bound(&Vector3::new(x, y, arc.at(t).tip.z));
+        let steps = beside(0.0).max(beside(1.0)) / self.step;
+        self.least.max(steps.ceil() as usize)
+    }
+}
+
+/// What the tool sweeps of the vertical line through `(x, y)`.
 #[must_use]
-pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, density: usize) -> SweptLine {
+pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, sampling: Sampling) -> SweptLine {
     let mut sampler = Sampler {
         outline,
         motion,
@@ -60,7 +88,7 @@ pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, density: u
         samples: Vec::new(),
         bridges: Vec::new(),
     };
-    sampler.sample(density);
+    sampler.sample(sampling);
     let mut spans = sampler.union();
     // Refined ends may close a gap, and then there are other ends.
     loop {
@@ -74,7 +102,7 @@ pub fn swept_line(outline: &Outline, motion: &Motion, x: f64, y: f64, density: u
             break;
         }
     }
-    let ambiguous = sampler.unresolved(&spans, density);
+    let ambiguous = sampler.unresolved(&spans, sampling);
     SweptLine { spans, ambiguous }
 }
 
@@ -83,9 +111,9 @@ impl Sampler<'_> {
         chords(self.outline, &self.motion.arcs()[arc].at(t), self.x, self.y)
     }
 
-    fn sample(&mut self, density: usize) {
+    fn sample(&mut self, sampling: Sampling) {
         for (arc, moving) in self.motion.arcs().iter().enumerate() {
-            let count = if moving.rests() { 1 } else { density };
+            let count = sampling.count(moving, self.x, self.y);
             self.push(arc, 0.0);
             for i in 0..count {
                 let before = self.samples.len() - 1;
@@ -201,11 +229,11 @@ impl Sampler<'_> {
         (best, error + 1e-10)
     }
 
-    fn unresolved(&self, spans: &[Span], density: usize) -> bool {
+    fn unresolved(&self, spans: &[Span], sampling: Sampling) -> bool {
         let step_at = |z: f64| {
             let p = Vector3::new(self.x, self.y, z);
-            let speeds = self.motion.arcs().iter().map(|arc| arc.speed_bound(&p));
-            speeds.fold(0.0, f64::max) / density as f64
+            let step = |arc: &Arc| arc.speed_bound(&p) / sampling.count(arc, self.x, self.y) as f64;
+            self.motion.arcs().iter().map(step).fold(0.0, f64::max)
         };
         let thin = spans.iter().any(|span| span.high - span.low < step_at(span.low));
         thin || spans
@@ -238,7 +266,13 @@ mod tests {
 
     fn line(tool: &Tool, poses: &[([f64; 3], [f64; 3])], x: f64, y: f64) -> SweptLine {
         let poses: Vec<Pose> = poses.iter().map(|p| Pose::new(p.0, p.1).unwrap()).collect();
-        swept_line(&Outline::new(tool.profile()), &Motion::new(&poses), x, y, 200)
+        swept_line(
+            &Outline::new(tool.profile()),
+            &Motion::new(&poses),
+            x,
+            y,
+            Sampling::number(200),
+        )
     }
 
     fn assert_spans(found: &SweptLine, expected: &[[f64; 2]]) {
@@ -360,8 +394,8 @@ mod tests {
             let outline = Outline::new(tool.profile());
             for k in 0..49 {
                 let (x, y) = (-8.0 + 5.17 * f64::from(k % 7), -11.0 + 4.03 * f64::from(k / 7));
-                let coarse = swept_line(&outline, &motion, x, y, 97);
-                let fine = swept_line(&outline, &motion, x, y, 1000);
+                let coarse = swept_line(&outline, &motion, x, y, Sampling::number(97));
+                let fine = swept_line(&outline, &motion, x, y, Sampling::number(1000));
                 if coarse.ambiguous || fine.ambiguous {
                     continue;
                 }
