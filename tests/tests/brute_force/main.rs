@@ -1,0 +1,16 @@
+//! The sweep against brute force, with random tools and moves.
+//!
+//! Every test draws cases of one family (a tool, poses, a grid), sweeps them, and has each dexel judged by the oracle of this
+//! package, which shares no code with the solver. Cases are drawn from a fixed seed, so a failure is a failure everywhere; it prints a
+//! reproducer. More cases: `SWEEPSIM_ORACLE_CASES=20 cargo test -p sweepsim-tests --release --test brute_force` takes 20 times as many.
+//!
+//! Tolerances. A sweep with tolerance ε is exact for an input within ε of the given one: its motion and its lines are moved by less
+//! than that to avoid degenerate positions. So an end may be off by ε *in space*, which along a steep wall is much more in z. The judge
+//! therefore takes the signed distance of the true swept volume at the points where the two answers differ, and demands |D| ≤ ε (plus its own
+//! error of 1e-8). That is neither looser nor tighter than what is promised, at any slope.
+
+mod cases;
+mod degenerate;
+mod generic;
+mod judge;
+mod metamorphic;
