@@ -42,14 +42,20 @@ pub struct AuditFailure {
 pub fn cover(crossings: &mut [Crossing], intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     crossings.sort_by(|a, b| {
         let source = |c: &Crossing| (c.source.path, c.source.segment, c.source.t.to_bits());
-        a.z.total_cmp(&b.z).then(b.jump.cmp(&a.jump)).then_with(|| source(a).cmp(&source(b)))
+        a.z.total_cmp(&b.z)
+            .then(b.jump.cmp(&a.jump))
+            .then_with(|| source(a).cmp(&source(b)))
     });
     intervals.clear();
     let (mut sum, mut lowest, mut place) = (0_i32, 0_i32, f64::NAN);
     let mut lower: Option<End> = None;
     for (index, crossing) in crossings.iter().enumerate() {
         sum += i32::from(crossing.jump);
-        let end = End { z: crossing.z, normal: crossing.normal, source: crossing.source };
+        let end = End {
+            z: crossing.z,
+            normal: crossing.normal,
+            source: crossing.source,
+        };
         if sum > 0 && lower.is_none() {
             lower = Some(end);
         }
@@ -81,7 +87,12 @@ mod tests {
     use proptest::prelude::*;
 
     fn crossing(z: f64, jump: i8) -> Crossing {
-        Crossing { z, jump, normal: [0.0, 0.0, 1.0], source: Source::STOCK }
+        Crossing {
+            z,
+            jump,
+            normal: [0.0, 0.0, 1.0],
+            source: Source::STOCK,
+        }
     }
 
     proptest! {
@@ -114,7 +125,8 @@ mod tests {
     #[test]
     fn nested_starts_are_one_interval() {
         // `start start end start end end`: where the paper's Algorithm 2 returns two.
-        let mut crossings = [(0.0, 1), (1.0, 1), (2.0, -1), (3.0, 1), (4.0, -1), (5.0, -1)].map(|(z, j)| crossing(z, j));
+        let mut crossings =
+            [(0.0, 1), (1.0, 1), (2.0, -1), (3.0, 1), (4.0, -1), (5.0, -1)].map(|(z, j)| crossing(z, j));
         let mut intervals = Vec::new();
         cover(&mut crossings, &mut intervals).unwrap();
         assert_eq!(intervals.len(), 1);

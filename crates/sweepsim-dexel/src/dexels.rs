@@ -25,7 +25,10 @@ impl Dexels {
     /// No material anywhere.
     #[must_use]
     pub fn empty(grid: Grid) -> Self {
-        Self { lines: vec![None; grid.len()], grid }
+        Self {
+            lines: vec![None; grid.len()],
+            grid,
+        }
     }
 
     /// The grid.
@@ -37,7 +40,10 @@ impl Dexels {
     /// The intervals of a line; none beyond the grid.
     #[must_use]
     pub fn at(&self, index: usize) -> &[Interval] {
-        self.lines.get(index).and_then(Option::as_deref).map_or(&[], |line| line.as_slice())
+        self.lines
+            .get(index)
+            .and_then(Option::as_deref)
+            .map_or(&[], |line| line.as_slice())
     }
 
     /// The intervals of column `i`, row `j`.
@@ -81,16 +87,23 @@ impl Dexels {
         self.put(index, &all);
     }
 
-    fn combine(&mut self, other: &Self, operation: fn(&[Interval], &[Interval], &mut Vec<Interval>)) -> Result<(), GridMismatch> {
+    fn combine(
+        &mut self,
+        other: &Self,
+        operation: fn(&[Interval], &[Interval], &mut Vec<Interval>),
+    ) -> Result<(), GridMismatch> {
         if self.grid != other.grid {
             return Err(GridMismatch);
         }
-        self.lines.par_iter_mut().zip(&other.lines).for_each_init(Vec::new, |out, (line, more)| {
-            if let Some(more) = more {
-                operation(line.as_deref().map_or(&[], |l| l.as_slice()), more, out);
-                *line = (!out.is_empty()).then(|| Box::new(Line::from_slice(out)));
-            }
-        });
+        self.lines
+            .par_iter_mut()
+            .zip(&other.lines)
+            .for_each_init(Vec::new, |out, (line, more)| {
+                if let Some(more) = more {
+                    operation(line.as_deref().map_or(&[], |l| l.as_slice()), more, out);
+                    *line = (!out.is_empty()).then(|| Box::new(Line::from_slice(out)));
+                }
+            });
         Ok(())
     }
 
@@ -112,7 +125,9 @@ impl Dexels {
 
     /// All lines with material: their number and intervals, in order.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &[Interval])> {
-        (0..self.lines.len()).map(|index| (index, self.at(index))).filter(|(_, intervals)| !intervals.is_empty())
+        (0..self.lines.len())
+            .map(|index| (index, self.at(index)))
+            .filter(|(_, intervals)| !intervals.is_empty())
     }
 
     /// How many lines have material.
@@ -125,6 +140,10 @@ impl Dexels {
     #[must_use]
     pub fn volume(&self) -> f64 {
         let [dx, dy] = self.grid.spacing();
-        self.iter().map(|(_, line)| line.iter().map(Interval::length).sum::<f64>()).sum::<f64>() * dx * dy
+        self.iter()
+            .map(|(_, line)| line.iter().map(Interval::length).sum::<f64>())
+            .sum::<f64>()
+            * dx
+            * dy
     }
 }

@@ -36,7 +36,8 @@ impl Grid {
     /// # Errors
     /// [`GridError`]: an empty area, no cells, or too many.
     pub fn new(min: [f64; 2], max: [f64; 2], cells: [usize; 2]) -> Result<Self, GridError> {
-        let good = (0..2).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k] && (max[k] - min[k]).is_finite());
+        let good = (0..2)
+            .all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k] && (max[k] - min[k]).is_finite());
         if !good {
             return Err(GridError::Area { min, max });
         }

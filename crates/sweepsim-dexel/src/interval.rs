@@ -13,7 +13,11 @@ pub struct Source {
 
 impl Source {
     /// An end that no tool made.
-    pub const STOCK: Self = Self { path: u16::MAX, segment: 0, t: 0.0 };
+    pub const STOCK: Self = Self {
+        path: u16::MAX,
+        segment: 0,
+        t: 0.0,
+    };
 }
 
 /// An end of an interval.
@@ -31,7 +35,10 @@ impl End {
     /// The same place seen from the other side.
     #[must_use]
     pub fn flipped(self) -> Self {
-        Self { normal: self.normal.map(|c| -c), ..self }
+        Self {
+            normal: self.normal.map(|c| -c),
+            ..self
+        }
     }
 }
 
@@ -45,6 +52,20 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Material between two heights that no tool made, with horizontal ends.
+    #[must_use]
+    pub fn between(lower: f64, upper: f64) -> Self {
+        let end = |z, up| End {
+            z,
+            normal: [0.0, 0.0, up],
+            source: Source::STOCK,
+        };
+        Self {
+            lower: end(lower, -1.0),
+            upper: end(upper, 1.0),
+        }
+    }
+
     /// Length.
     #[must_use]
     pub fn length(&self) -> f64 {
@@ -66,12 +87,18 @@ pub(crate) fn difference(a: &[Interval], b: &[Interval], out: &mut Vec<Interval>
                 break;
             }
             if cut.lower.z > lower.z {
-                out.push(Interval { lower, upper: cut.lower.flipped() });
+                out.push(Interval {
+                    lower,
+                    upper: cut.lower.flipped(),
+                });
             }
             lower = cut.upper.flipped();
         }
         if lower.z < piece.upper.z {
-            out.push(Interval { lower, upper: piece.upper });
+            out.push(Interval {
+                lower,
+                upper: piece.upper,
+            });
         }
     }
 }
@@ -104,16 +131,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn interval(lower: f64, upper: f64) -> Interval {
-        let end = |z: f64, up: f32| End { z, normal: [0.0, 0.0, up], source: Source::STOCK };
-        Interval { lower: end(lower, -1.0), upper: end(upper, 1.0) }
-    }
-
     /// Disjoint, sorted, with gaps: from a set of distinct heights.
     fn intervals() -> impl Strategy<Value = Vec<Interval>> {
         proptest::collection::btree_set(0..40u32, 0..12).prop_map(|heights| {
             let z: Vec<f64> = heights.into_iter().map(f64::from).collect();
-            z.chunks_exact(2).map(|pair| interval(pair[0], pair[1])).collect()
+            z.chunks_exact(2)
+                .map(|pair| Interval::between(pair[0], pair[1]))
+                .collect()
         })
     }
 

@@ -77,9 +77,11 @@ impl TriangleSoup {
         let open = edges.values().filter(|count| **count != 0).count();
         match edges.iter().find(|(_, count)| **count != 0) {
             None => Ok(()),
-            Some(((a, b), _)) => {
-                Err(MeshError::Open { edges: open, from: a.map(f64::from_bits), to: b.map(f64::from_bits) })
-            }
+            Some(((a, b), _)) => Err(MeshError::Open {
+                edges: open,
+                from: a.map(f64::from_bits),
+                to: b.map(f64::from_bits),
+            }),
         }
     }
 }

@@ -67,7 +67,11 @@ pub enum StockError {
 }
 
 fn end(z: f64, normal: [f64; 3]) -> End {
-    End { z, normal: normal.map(|c| c as f32), source: Source::STOCK }
+    End {
+        z,
+        normal: normal.map(|c| c as f32),
+        source: Source::STOCK,
+    }
 }
 
 impl Stock {
@@ -80,7 +84,12 @@ impl Stock {
     pub fn dexels(&self, grid: &Grid) -> Result<Dexels, StockError> {
         match self {
             Self::Block { min, max } => block(grid, *min, *max),
-            Self::Cylinder { base, axis, radius, height } => cylinder(grid, *base, *axis, *radius, *height),
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => cylinder(grid, *base, *axis, *radius, *height),
             Self::Mesh(soup) => mesh(grid, soup),
         }
     }
@@ -91,7 +100,10 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
         return Err(StockError::Block { min, max });
     }
     let mut dexels = Dexels::empty(*grid);
-    let piece = [Interval { lower: end(min[2], [0.0, 0.0, -1.0]), upper: end(max[2], [0.0, 0.0, 1.0]) }];
+    let piece = [Interval {
+        lower: end(min[2], [0.0, 0.0, -1.0]),
+        upper: end(max[2], [0.0, 0.0, 1.0]),
+    }];
     for index in 0..grid.len() {
         let (i, j) = grid.place(index);
         let p = [grid.x(i), grid.y(j)];
@@ -166,7 +178,11 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
             let [a, b, c] = *corners;
             let normal = {
                 let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-                [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+                [
+                    u[1] * v[2] - u[2] * v[1],
+                    u[2] * v[0] - u[0] * v[2],
+                    u[0] * v[1] - u[1] * v[0],
+                ]
             };
             let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
             let range = |k: usize, cells: usize, first: f64, step: f64| {
@@ -174,28 +190,41 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
                 let hi = a[k].max(b[k]).max(c[k]);
                 let from = ((lo - first) / step - 1.0).ceil().clamp(0.0, cells as f64) as usize;
                 let to = ((hi - first) / step + 1.0).floor().clamp(-1.0, cells as f64 - 1.0);
-                if normal[2] == 0.0 || to < 0.0 { 0..0 } else { from..to as usize + 1 }
+                if normal[2] == 0.0 || to < 0.0 {
+                    0..0
+                } else {
+                    from..to as usize + 1
+                }
             };
             let is = range(0, columns, grid.x(0), dx);
             let js = range(1, rows, grid.y(0), dy);
-            is.flat_map(move |i| js.clone().map(move |j| (i, j))).filter_map(move |(i, j)| {
-                let (x, y) = (grid.x(i) + shift[0], grid.y(j) + shift[1]);
-                // Each edge is looked at from its lower end, so that both its triangles see the same number.
-                let side = |p: [f64; 3], q: [f64; 3]| {
-                    let ordered = (p[0], p[1]) < (q[0], q[1]);
-                    let (p, q) = if ordered { (p, q) } else { (q, p) };
-                    let area = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
-                    (area > 0.0) == ordered
-                };
-                let sides = [side(a, b), side(b, c), side(c, a)];
-                if sides.iter().any(|s| *s != sides[0]) || sides[0] != (normal[2] > 0.0) {
-                    return None;
-                }
-                let z = a[2] - (normal[0] * (x - a[0]) + normal[1] * (y - a[1])) / normal[2];
-                let jump = if normal[2] < 0.0 { 1 } else { -1 };
-                let normal = normal.map(|c| (c / length) as f32);
-                Some((grid.index(i, j) as u32, Crossing { z, jump, normal, source: Source::STOCK }))
-            })
+            is.flat_map(move |i| js.clone().map(move |j| (i, j)))
+                .filter_map(move |(i, j)| {
+                    let (x, y) = (grid.x(i) + shift[0], grid.y(j) + shift[1]);
+                    // Each edge is looked at from its lower end, so that both its triangles see the same number.
+                    let side = |p: [f64; 3], q: [f64; 3]| {
+                        let ordered = (p[0], p[1]) < (q[0], q[1]);
+                        let (p, q) = if ordered { (p, q) } else { (q, p) };
+                        let area = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
+                        (area > 0.0) == ordered
+                    };
+                    let sides = [side(a, b), side(b, c), side(c, a)];
+                    if sides.iter().any(|s| *s != sides[0]) || sides[0] != (normal[2] > 0.0) {
+                        return None;
+                    }
+                    let z = a[2] - (normal[0] * (x - a[0]) + normal[1] * (y - a[1])) / normal[2];
+                    let jump = if normal[2] < 0.0 { 1 } else { -1 };
+                    let normal = normal.map(|c| (c / length) as f32);
+                    Some((
+                        grid.index(i, j) as u32,
+                        Crossing {
+                            z,
+                            jump,
+                            normal,
+                            source: Source::STOCK,
+                        },
+                    ))
+                })
         })
         .collect();
     found.sort_by_key(|(index, _)| *index);
@@ -206,7 +235,10 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
         let index = group[0].0 as usize;
         if cover(&mut crossings, &mut intervals).is_err() {
             let (i, j) = grid.place(index);
-            return Err(StockError::Tangled { x: grid.x(i), y: grid.y(j) });
+            return Err(StockError::Tangled {
+                x: grid.x(i),
+                y: grid.y(j),
+            });
         }
         dexels.set(index, &intervals);
     }
@@ -224,8 +256,18 @@ mod tests {
     /// A box as 12 triangles, facing outwards.
     fn cube(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
         let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|q| [[p(q[0]), p(q[1]), p(q[2])], [p(q[0]), p(q[2]), p(q[3])]]).collect();
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads
+            .iter()
+            .flat_map(|q| [[p(q[0]), p(q[1]), p(q[2])], [p(q[0]), p(q[2]), p(q[3])]])
+            .collect();
         TriangleSoup { triangles }
     }
 
@@ -241,14 +283,31 @@ mod tests {
 
     #[test]
     fn cylinders_of_all_directions_have_their_volume() {
-        for axis in [[0.0, 0.0, 2.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], [0.3, -0.4, 0.5], [0.3, 0.9, -1e-3]] {
+        for axis in [
+            [0.0, 0.0, 2.0],
+            [0.0, 0.0, -1.0],
+            [1.0, 0.0, 0.0],
+            [0.3, -0.4, 0.5],
+            [0.3, 0.9, -1e-3],
+        ] {
             let length = f64::sqrt(axis.iter().map(|c| c * c).sum());
             // Centred at the origin.
             let base = axis.map(|c| -c / length * 3.0);
-            let dexels = Stock::Cylinder { base, axis, radius: 2.0, height: 6.0 }.dexels(&grid()).unwrap();
+            let dexels = Stock::Cylinder {
+                base,
+                axis,
+                radius: 2.0,
+                height: 6.0,
+            }
+            .dexels(&grid())
+            .unwrap();
             let exact = std::f64::consts::PI * 4.0 * 6.0;
             // The midpoint rule on cells of 0.2, for a height that ends like a square root: under 2 %.
-            assert!((dexels.volume() - exact).abs() < 0.02 * exact, "{axis:?}: {}", dexels.volume());
+            assert!(
+                (dexels.volume() - exact).abs() < 0.02 * exact,
+                "{axis:?}: {}",
+                dexels.volume()
+            );
             for (_, line) in dexels.iter() {
                 for interval in line {
                     assert!(interval.lower.normal[2] <= 0.0 && interval.upper.normal[2] >= 0.0);
@@ -259,17 +318,33 @@ mod tests {
 
     #[test]
     fn bad_stock_is_refused() {
-        let bad = Stock::Block { min: [0.0; 3], max: [1.0, 0.0, 1.0] }.dexels(&grid());
+        let bad = Stock::Block {
+            min: [0.0; 3],
+            max: [1.0, 0.0, 1.0],
+        }
+        .dexels(&grid());
         assert!(matches!(bad, Err(StockError::Block { .. })));
         let mut open = cube([0.0; 3], [1.0; 3]);
         open.triangles.pop();
-        assert!(matches!(Stock::Mesh(open).dexels(&grid()), Err(StockError::Mesh(MeshError::Open { edges: 3, .. }))));
+        assert!(matches!(
+            Stock::Mesh(open).dexels(&grid()),
+            Err(StockError::Mesh(MeshError::Open { edges: 3, .. }))
+        ));
         let mut inside_out = cube([-5.0; 3], [5.0; 3]);
         for corners in &mut inside_out.triangles {
             corners.swap(0, 1);
         }
-        assert!(matches!(Stock::Mesh(inside_out).dexels(&grid()), Err(StockError::Tangled { .. })));
-        let nothing = Stock::Cylinder { base: [0.0; 3], axis: [0.0; 3], radius: 1.0, height: 1.0 }.dexels(&grid());
+        assert!(matches!(
+            Stock::Mesh(inside_out).dexels(&grid()),
+            Err(StockError::Tangled { .. })
+        ));
+        let nothing = Stock::Cylinder {
+            base: [0.0; 3],
+            axis: [0.0; 3],
+            radius: 1.0,
+            height: 1.0,
+        }
+        .dexels(&grid());
         assert!(matches!(nothing, Err(StockError::Cylinder { .. })));
     }
 }

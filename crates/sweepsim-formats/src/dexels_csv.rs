@@ -149,7 +149,7 @@ pub fn dexels_from_rows(grid: Grid, rows: &[DexelRow]) -> Result<Dexels, FormatE
     let mut dexels = Dexels::empty(grid);
     for chunk in rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)) {
         let intervals: Vec<Interval> = chunk.iter().map(|row| Interval::between(row.z0, row.z1)).collect();
-        dexels.set(grid.index(chunk[0].i, chunk[0].j), intervals);
+        dexels.set(grid.index(chunk[0].i, chunk[0].j), &intervals);
     }
     Ok(dexels)
 }

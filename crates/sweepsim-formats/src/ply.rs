@@ -1,4 +1,4 @@
-//! PLY: binary little-endian, vertices with normals, triangles.
+//! PLY: binary little-endian, vertices with normals and whether a tool cut there, triangles.
 //!
 //! Positions are `double`, so that a mesh reads back to the same bits; normals are `float`. The reader takes what the writer
 //! writes and the usual other forms: ASCII or binary of either byte order, further elements and properties, polygons.
@@ -15,6 +15,7 @@ use crate::error::{FormatError, Problem};
 /// What the writer says.
 pub fn write_ply(mesh: &Mesh, writer: &mut impl Write) -> std::io::Result<()> {
     let with_normals = mesh.normals.len() == mesh.vertices.len();
+    let with_cut = mesh.cut.len() == mesh.vertices.len();
     write!(
         writer,
         "ply\nformat binary_little_endian 1.0\ncomment lengths in mm\nelement vertex {}\n\
@@ -23,6 +24,9 @@ pub fn write_ply(mesh: &Mesh, writer: &mut impl Write) -> std::io::Result<()> {
     )?;
     if with_normals {
         writer.write_all(b"property float nx\nproperty float ny\nproperty float nz\n")?;
+    }
+    if with_cut {
+        writer.write_all(b"property uchar cut\n")?;
     }
     write!(
         writer,
@@ -37,6 +41,9 @@ pub fn write_ply(mesh: &Mesh, writer: &mut impl Write) -> std::io::Result<()> {
             for coordinate in mesh.normals[index] {
                 writer.write_all(&coordinate.to_le_bytes())?;
             }
+        }
+        if with_cut {
+            writer.write_all(&[u8::from(mesh.cut[index])])?;
         }
     }
     for triangle in &mesh.triangles {
@@ -153,17 +160,13 @@ impl Body<'_> {
     }
 }
 
-/// Reads a mesh. Polygons become fans of triangles; normals are kept when the file has them.
+/// Reads a mesh. Polygons become fans of triangles; normals and the marks of cut vertices are kept when the file has them.
 ///
 /// # Errors
 /// [`FormatError`]: no PLY, shorter than it says, corners that are none, coordinates that are not finite.
 pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let (elements, mut body) = header(bytes)?;
-    let mut mesh = Mesh {
-        vertices: Vec::new(),
-        normals: Vec::new(),
-        triangles: Vec::new(),
-    };
+    let mut mesh = Mesh::default();
     for element in &elements {
         // An element without data would let a count of the header make work without end.
         if element.properties.is_empty() && element.count > 0 {
@@ -177,6 +180,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
         };
         let position = [place("x"), place("y"), place("z")];
         let normal = [place("nx"), place("ny"), place("nz")];
+        let cut = place("cut");
         let mut scalars = vec![0.0; element.properties.len()];
         for _ in 0..element.count {
             let mut corners: Vec<f64> = Vec::new();
@@ -210,6 +214,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
                     mesh.normals
                         .push([scalars[x] as f32, scalars[y] as f32, scalars[z] as f32]);
                 }
+                mesh.cut.extend(cut.map(|at| scalars[at] != 0.0));
             }
             for k in 2..corners.len() {
                 let corner = |value: f64| match value {

@@ -235,8 +235,10 @@ impl Reader<'_> {
         Ok(if self.unit == 1.0 {
             mesh
         } else {
-            let scaled = mesh.triangles().iter().map(|t| t.map(|p| p.map(|c| c * self.unit)));
-            TriangleSoup::new(scaled.collect())
+            let scaled = mesh.triangles.iter().map(|t| t.map(|p| p.map(|c| c * self.unit)));
+            TriangleSoup {
+                triangles: scaled.collect(),
+            }
         })
     }
 

@@ -55,7 +55,7 @@ pub fn parse_stl(bytes: &[u8]) -> Result<TriangleSoup, FormatError> {
         let problem = Problem::syntax("this STL has no triangle: expected at least one");
         return Err(FormatError::new(problem, None));
     }
-    Ok(TriangleSoup::new(triangles))
+    Ok(TriangleSoup { triangles })
 }
 
 fn binary_count(bytes: &[u8]) -> Option<u32> {

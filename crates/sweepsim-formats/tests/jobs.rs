@@ -70,7 +70,7 @@ Job(
         "the job's units hold for programs that say none"
     );
     assert_eq!(job.limits.unwrap().gouge, 0.02 * 25.4);
-    assert_eq!(job.target.unwrap().mesh.triangles()[0][1][0], 25.4);
+    assert_eq!(job.target.unwrap().mesh.triangles[0][1][0], 25.4);
 }
 
 /// The jobs of the project itself.

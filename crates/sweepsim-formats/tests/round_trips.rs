@@ -51,7 +51,7 @@ fn dexels() -> impl Strategy<Value = Dexels> {
                 Interval::between(lower, at)
             });
             let intervals: Vec<Interval> = intervals.collect();
-            dexels.set(index, intervals);
+            dexels.set(index, &intervals);
         }
         dexels
     })
@@ -133,12 +133,13 @@ proptest! {
         let mesh = Mesh {
             vertices: vertices.iter().map(|v| v.0).collect(),
             normals: vertices.iter().map(|v| v.1).collect(),
+            cut: vertices.iter().map(|v| v.0[0] > 0.0).collect(),
             triangles: corners.iter().map(|t| t.map(|k| (k % count) as u32)).collect(),
         };
         let mut bytes = Vec::new();
         write_ply(&mesh, &mut bytes).unwrap();
         let read = read_ply(&bytes).unwrap();
-        prop_assert_eq!((read.vertices, read.normals, read.triangles), (mesh.vertices, mesh.normals, mesh.triangles));
+        prop_assert_eq!(read, mesh);
         let cut = bytes.len() * 2 / 3;
         prop_assert!(read_ply(&bytes[..cut]).is_err(), "a part is no mesh");
     }
@@ -149,7 +150,7 @@ proptest! {
         let mut bytes = Vec::new();
         write_stl(&triangles, &mut bytes).unwrap();
         let soup = parse_stl(&bytes).unwrap();
-        prop_assert_eq!(soup.triangles(), &triangles[..]);
+        prop_assert_eq!(soup.triangles, &triangles[..]);
         prop_assert!(parse_stl(&bytes[..bytes.len() - 7]).is_err());
         let facet = |t: &[[f64; 3]; 3]| {
             let corners: String = t.iter().map(|[x, y, z]| format!("vertex {x} {y:e} {z}\n")).collect();
@@ -158,7 +159,7 @@ proptest! {
         let ascii: String = triangles.iter().map(facet).collect();
         let ascii = format!("solid \u{e4} b\n{ascii}endsolid\n");
         let soup = parse_stl(ascii.as_bytes()).unwrap();
-        prop_assert_eq!(soup.triangles(), &triangles[..]);
+        prop_assert_eq!(soup.triangles, &triangles[..]);
     }
 
     #[test]
@@ -231,12 +232,12 @@ fn reports() {
 fn fixtures_name_what_differs() {
     let grid = Grid::new([0.0; 2], [1.0; 2], [2, 2]).unwrap();
     let mut dexels = Dexels::empty(grid);
-    dexels.set(1, vec![Interval::between(0.0, 1.0)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0)]);
     let fixture = Fixture::new("job", &dexels, 1e-3).unwrap();
-    dexels.set(1, vec![Interval::between(0.0, 1.0019)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0019)]);
     assert!(fixture.differences(&dexels).unwrap().is_empty());
-    dexels.set(1, vec![Interval::between(0.0, 1.0021)]);
-    dexels.set(2, vec![Interval::between(0.0, 1.0)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0021)]);
+    dexels.set(2, &[Interval::between(0.0, 1.0)]);
     let found: Vec<String> = fixture
         .differences(&dexels)
         .unwrap()

@@ -81,7 +81,10 @@ impl Quarter {
         // The last quarter must end, to the bit, where the first begins.
         let end = if number == 3 { at(0.0) } else { at(k + 1.0) };
         let (start, middle) = (at(k), at(k + 0.5));
-        Self { cosine: [start.0, middle.0, end.0], sine: [start.1, middle.1, end.1] }
+        Self {
+            cosine: [start.0, middle.0, end.0],
+            sine: [start.1, middle.1, end.1],
+        }
     }
 }
 
@@ -119,7 +122,11 @@ impl Meridian {
         let points = [from, tangents, to];
         let weight = vec![1.0, middle, 1.0];
         let out = sweep.signum() / arc.radius;
-        let normals: Vec<_> = points.iter().zip(&weight).map(|(p, w)| (p - arc.centre * *w) * out).collect();
+        let normals: Vec<_> = points
+            .iter()
+            .zip(&weight)
+            .map(|(p, w)| (p - arc.centre * *w) * out)
+            .collect();
         Self {
             rho: points.iter().map(|p| p.x).collect(),
             zeta: points.iter().map(|p| p.y).collect(),
@@ -147,7 +154,11 @@ impl Meridian {
                     product(&quarter.sine, &self.normal_rho),
                     product(&QUARTER_WEIGHT, &self.normal_zeta),
                 ],
-                moment: [product(&minus, &self.moment), product(&quarter.cosine, &self.moment), zero()],
+                moment: [
+                    product(&minus, &self.moment),
+                    product(&quarter.cosine, &self.moment),
+                    zero(),
+                ],
             },
         }
     }
@@ -193,8 +204,17 @@ fn half_ball(radius: f64, zeta: f64, above: bool) -> Vec<Patch> {
     let side = Vector3::new(-sin, cos, 0.0);
     let turn = Matrix3::from_columns(&[side, Vector3::z(), pole]);
     let shift = Vector3::new(0.0, 0.0, zeta);
-    let arc = Arc { centre: Vector2::zeros(), radius, start: -FRAC_PI_2, sweep: 2.0 * FRAC_PI_2 };
-    let (south, equator, north) = (Vector2::new(0.0, -radius), Vector2::new(radius, 0.0), Vector2::new(0.0, radius));
+    let arc = Arc {
+        centre: Vector2::zeros(),
+        radius,
+        start: -FRAC_PI_2,
+        sweep: 2.0 * FRAC_PI_2,
+    };
+    let (south, equator, north) = (
+        Vector2::new(0.0, -radius),
+        Vector2::new(radius, 0.0),
+        Vector2::new(0.0, radius),
+    );
     let meridians = [
         Meridian::arc(&arc, -FRAC_PI_2, FRAC_PI_2, south, equator),
         Meridian::arc(&arc, 0.0, FRAC_PI_2, equator, north),
@@ -284,7 +304,11 @@ fn arc_patches(piece: &Piece, arc: &Arc) -> Vec<Patch> {
             let angle = start + step * part as f64;
             let at = |angle: f64| arc.centre + Vector2::new(angle.cos(), angle.sin()) * arc.radius;
             let a = if part == 0 { from } else { at(angle) };
-            let b = if part + 1 == parts { to } else { at(start + step * (part + 1) as f64) };
+            let b = if part + 1 == parts {
+                to
+            } else {
+                at(start + step * (part + 1) as f64)
+            };
             let meridian = Meridian::arc(arc, angle, step, a, b);
             patches.extend(quarters().iter().map(|q| meridian.revolve(q)));
         }
@@ -310,8 +334,16 @@ pub(crate) fn edges(profile: &Profile) -> Vec<Edge> {
                 let (n, m) = (direction.y, -direction.x);
                 let moment = point.y * n - point.x * m;
                 NormalField {
-                    normal: [scale(&quarter.cosine, n), scale(&quarter.sine, n), scale(&QUARTER_WEIGHT, m)],
-                    moment: [scale(&quarter.sine, -moment), scale(&quarter.cosine, moment), scale(&[0.0; 3], 0.0)],
+                    normal: [
+                        scale(&quarter.cosine, n),
+                        scale(&quarter.sine, n),
+                        scale(&QUARTER_WEIGHT, m),
+                    ],
+                    moment: [
+                        scale(&quarter.sine, -moment),
+                        scale(&quarter.cosine, moment),
+                        scale(&[0.0; 3], 0.0),
+                    ],
                 }
             };
             edges.push(Edge {

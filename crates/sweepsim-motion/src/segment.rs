@@ -23,10 +23,16 @@ fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
     let z = axis.into_inner();
     let (first, second) = if z.z > -0.5 {
         let f = 1.0 / (1.0 + z.z);
-        (Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, -z.x), Vector3::new(-z.x * z.y * f, 1.0 - z.y * z.y * f, -z.y))
+        (
+            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, -z.x),
+            Vector3::new(-z.x * z.y * f, 1.0 - z.y * z.y * f, -z.y),
+        )
     } else {
         let f = 1.0 / (1.0 - z.z);
-        (Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, z.x), Vector3::new(z.x * z.y * f, z.y * z.y * f - 1.0, -z.y))
+        (
+            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, z.x),
+            Vector3::new(z.x * z.y * f, z.y * z.y * f - 1.0, -z.y),
+        )
     };
     Matrix3::from_columns(&[first, second, z])
 }
@@ -60,16 +66,31 @@ impl Segment {
         let sine = cross.norm();
         let angle = sine.atan2(o0.dot(&o1));
         if sine < 1e-15 {
-            return Self { tips, turns: vec![start], weights: vec![1.0], spin: Vector3::zeros() };
+            return Self {
+                tips,
+                turns: vec![start],
+                weights: vec![1.0],
+                spin: Vector3::zeros(),
+            };
         }
         let k = cross / sine;
         let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
-        let (w, c, s) =
-            ([1.0, half_cosine, 1.0], [1.0, half_cosine, angle.cos()], [0.0, half_sine, angle.sin()]);
+        let (w, c, s) = (
+            [1.0, half_cosine, 1.0],
+            [1.0, half_cosine, angle.cos()],
+            [0.0, half_sine, angle.sin()],
+        );
         let along = k * k.transpose();
         let across = Matrix3::identity() - along;
-        let turns = (0..3).map(|i| (along * w[i] + across * c[i] + k.cross_matrix() * s[i]) * start).collect();
-        Self { tips, turns, weights: w.to_vec(), spin: k * (2.0 * half_sine) }
+        let turns = (0..3)
+            .map(|i| (along * w[i] + across * c[i] + k.cross_matrix() * s[i]) * start)
+            .collect();
+        Self {
+            tips,
+            turns,
+            weights: w.to_vec(),
+            spin: k * (2.0 * half_sine),
+        }
     }
 
     /// The tip at the start and at the end.

@@ -85,7 +85,11 @@ impl Tool {
     /// The solid of revolution of a profile.
     #[must_use]
     pub fn from_profile(profile: Profile) -> Self {
-        Self { patches: boundary::patches(&profile), edges: boundary::edges(&profile), profile }
+        Self {
+            patches: boundary::patches(&profile),
+            edges: boundary::edges(&profile),
+            profile,
+        }
     }
 
     /// The outline.

@@ -10,20 +10,38 @@ fn at(form: &Bernstein, u: f64, v: f64) -> [f64; 3] {
     let (p, q) = (form.degrees()[0], form.degrees().get(1).copied().unwrap_or(0));
     let basis = |n: usize, x: f64| -> Vec<f64> {
         let choose = |k: usize| (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64);
-        (0..=n).map(|k| choose(k) * x.powi(k as i32) * (1.0 - x).powi((n - k) as i32)).collect()
+        (0..=n)
+            .map(|k| choose(k) * x.powi(k as i32) * (1.0 - x).powi((n - k) as i32))
+            .collect()
     };
     let slope = |n: usize, x: f64| -> Vec<f64> {
         if n == 0 {
             return vec![0.0];
         }
         let lower = basis(n - 1, x);
-        let get = |k: isize| usize::try_from(k).ok().and_then(|k| lower.get(k)).copied().unwrap_or(0.0);
+        let get = |k: isize| {
+            usize::try_from(k)
+                .ok()
+                .and_then(|k| lower.get(k))
+                .copied()
+                .unwrap_or(0.0)
+        };
         (0..=n as isize).map(|k| n as f64 * (get(k - 1) - get(k))).collect()
     };
     let sum = |a: &[f64], b: &[f64]| -> f64 {
-        (0..=q).map(|j| (0..=p).map(|i| a[i] * b[j] * form.coefficients()[i + (p + 1) * j]).sum::<f64>()).sum()
+        (0..=q)
+            .map(|j| {
+                (0..=p)
+                    .map(|i| a[i] * b[j] * form.coefficients()[i + (p + 1) * j])
+                    .sum::<f64>()
+            })
+            .sum()
     };
-    [sum(&basis(p, u), &basis(q, v)), sum(&slope(p, u), &basis(q, v)), sum(&basis(p, u), &slope(q, v))]
+    [
+        sum(&basis(p, u), &basis(q, v)),
+        sum(&slope(p, u), &basis(q, v)),
+        sum(&basis(p, u), &slope(q, v)),
+    ]
 }
 
 /// `F, F_u, F_v` of a patch.
@@ -46,7 +64,11 @@ fn form_tool() -> Tool {
         vec![
             line([2.0, 0.0]),
             line([2.0, 2.0]),
-            ProfileSegment::Arc { to: [8.0, 8.0], centre: [8.0, 2.0], turn: Turn::Cw },
+            ProfileSegment::Arc {
+                to: [8.0, 8.0],
+                centre: [8.0, 2.0],
+                turn: Turn::Cw,
+            },
             line([8.0, 30.0]),
             line([0.0, 30.0]),
         ],
@@ -58,7 +80,11 @@ fn lollipop() -> Tool {
     let (r, neck) = (4.0_f64, 1.5_f64);
     let top = r + (r * r - neck * neck).sqrt();
     let segments = vec![
-        ProfileSegment::Arc { to: [neck, top], centre: [0.0, r], turn: Turn::Ccw },
+        ProfileSegment::Arc {
+            to: [neck, top],
+            centre: [0.0, r],
+            turn: Turn::Ccw,
+        },
         ProfileSegment::Line { to: [neck, 25.0] },
         ProfileSegment::Line { to: [0.0, 25.0] },
     ];
@@ -103,14 +129,20 @@ fn patches_enclose_the_volume() {
         for patch in tool.patches() {
             for (i, j) in (0..parts).flat_map(|i| (0..parts).map(move |j| (i, j))) {
                 for ((a, wa), (b, wb)) in NODES.into_iter().flat_map(|a| NODES.map(|b| (a, b))) {
-                    let (u, v) = ((f64::from(i) + a) / f64::from(parts), (f64::from(j) + b) / f64::from(parts));
+                    let (u, v) = (
+                        (f64::from(i) + a) / f64::from(parts),
+                        (f64::from(j) + b) / f64::from(parts),
+                    );
                     let [f, f_u, f_v] = surface(patch, u, v);
                     volume += f.dot(&f_u.cross(&f_v)) / 3.0 * wa * wb / f64::from(parts * parts);
                 }
             }
         }
         // Gauss with 3 nodes: error of the sixth power of the cell; 24 cells leave far less than this.
-        assert!((volume - expected).abs() < 1e-8 * expected, "{name}: {volume} for {expected}");
+        assert!(
+            (volume - expected).abs() < 1e-8 * expected,
+            "{name}: {volume} for {expected}"
+        );
     }
 }
 
@@ -123,7 +155,10 @@ fn normals_are_normals_and_moments_are_moments() {
                 let [n, m] = field(&patch.field, u, v);
                 let size = n.norm();
                 assert!(size > 0.1, "{name}: the normal vanishes");
-                assert!(n.dot(&f_u).abs() < 1e-13 * size * 50.0 && n.dot(&f_v).abs() < 1e-13 * size * 50.0, "{name}");
+                assert!(
+                    n.dot(&f_u).abs() < 1e-13 * size * 50.0 && n.dot(&f_v).abs() < 1e-13 * size * 50.0,
+                    "{name}"
+                );
                 assert!(n.dot(&f_u.cross(&f_v)) > -1e-12, "{name}: the normal points inwards");
                 assert!((m - f.cross(&n)).norm() < 1e-13 * size * 50.0, "{name}: moment");
             }
@@ -135,7 +170,10 @@ fn normals_are_normals_and_moments_are_moments() {
                 let c = Vector3::from([0, 1, 2].map(|k| at(&edge.position[k], r, 0.0)[0] / w));
                 for side in [&edge.before, &edge.after] {
                     let [n, m] = field(side, r, 0.0);
-                    assert!((m - c.cross(&n)).norm() < 1e-13 * n.norm() * 50.0, "{name}: moment of an edge");
+                    assert!(
+                        (m - c.cross(&n)).norm() < 1e-13 * n.norm() * 50.0,
+                        "{name}: moment of an edge"
+                    );
                 }
             }
         }

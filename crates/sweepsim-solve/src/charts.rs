@@ -101,7 +101,10 @@ pub struct ChartOptions {
 
 impl Default for ChartOptions {
     fn default() -> Self {
-        Self { boxes: 400_000, smallest: 1e-14 }
+        Self {
+            boxes: 400_000,
+            smallest: 1e-14,
+        }
     }
 }
 
@@ -197,7 +200,14 @@ impl<const N: usize> Linear<N> {
             return None;
         }
         let orientation = if determinant > 0.0 { 1 } else { -1 };
-        Some(Self { centre: bounds.map(Interval::mid), half, inverse, rest, smear, orientation })
+        Some(Self {
+            centre: bounds.map(Interval::mid),
+            half,
+            inverse,
+            rest,
+            smear,
+            orientation,
+        })
     }
 
     /// `s − K(Φ(x(s)) − q)`: where a preimage of `q` should be, seen from `s`.
@@ -221,7 +231,11 @@ impl<C: Clone> ChartSolver<C> {
     /// A search with these limits.
     #[must_use]
     pub fn new(options: ChartOptions) -> Self {
-        Self { options, statistics: ChartStatistics::default(), stack: Vec::new() }
+        Self {
+            options,
+            statistics: ChartStatistics::default(),
+            stack: Vec::new(),
+        }
     }
 
     /// Finds, for every target, all its preimages in the box `root`.
@@ -268,7 +282,8 @@ impl<C: Clone> ChartSolver<C> {
                 let (value, _) = map.evaluate(&linear.centre);
                 self.statistics.evaluations += 1;
                 let chart = linear.norm() < 1.0;
-                let first_found = chart.then(|| self.chart(map, &linear, &bounds, &domain, &value, &values, targets, sink));
+                let first_found =
+                    chart.then(|| self.chart(map, &linear, &bounds, &domain, &value, &values, targets, sink));
                 match first_found {
                     Some(true) => {
                         self.statistics.charts += 1;
@@ -337,7 +352,11 @@ impl<C: Clone> ChartSolver<C> {
         });
         if clear {
             for (target, x) in found {
-                sink.found(Preimage { target, x, orientation: linear.orientation });
+                sink.found(Preimage {
+                    target,
+                    x,
+                    orientation: linear.orientation,
+                });
             }
         }
         clear
@@ -361,7 +380,9 @@ fn solve_in_chart<const N: usize, M: ChartMap<N>>(
         *evaluations += 1;
         let scaled = Square::<N>::from_fn(|i, j| jacobian[i][j] * linear.half[j]);
         let rest = SVector::<f64, N>::from_fn(|i, _| value[i] - q[i]);
-        let Some(step) = solve_linear(&scaled, &rest) else { break };
+        let Some(step) = solve_linear(&scaled, &rest) else {
+            break;
+        };
         let mut small = true;
         for i in 0..N {
             let change = step[i] * linear.half[i];
@@ -377,7 +398,11 @@ fn solve_in_chart<const N: usize, M: ChartMap<N>>(
             break;
         }
     }
-    if converged && (0..N).all(|i| x[i] >= bounds[i].lo && (x[i] < bounds[i].hi || (x[i] <= bounds[i].hi && bounds[i].hi == domain[i].hi))) {
+    if converged
+        && (0..N).all(|i| {
+            x[i] >= bounds[i].lo && (x[i] < bounds[i].hi || (x[i] <= bounds[i].hi && bounds[i].hi == domain[i].hi))
+        })
+    {
         return Outcome::Found(x);
     }
     // Absence: shrink the box around where a preimage would have to be, until nothing is left.

@@ -1,5 +1,5 @@
 //! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems
 mod charts;
 mod interval;
-pub use charts::{ChartMap, ChartOptions, ChartStatistics, ChartSolver, Preimage, Reason, Sink, Targets, Undecided};
+pub use charts::{ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, Targets, Undecided};
 pub use interval::Interval;

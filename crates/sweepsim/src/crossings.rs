@@ -69,12 +69,17 @@ pub(crate) struct Harvest {
 /// Preimages of one map.
 pub(crate) struct Collector<const N: usize> {
     pub found: Vec<Preimage<N>>,
-    pub open: Vec<(u32, Reason)>, pub boxes: Vec<Undecided<N>>,
+    pub open: Vec<(u32, Reason)>,
+    pub boxes: Vec<Undecided<N>>,
 }
 
 impl<const N: usize> Collector<N> {
     pub fn new() -> Self {
-        Self { found: Vec::new(), open: Vec::new(), boxes: Vec::new() }
+        Self {
+            found: Vec::new(),
+            open: Vec::new(),
+            boxes: Vec::new(),
+        }
     }
 }
 
@@ -84,7 +89,8 @@ impl<const N: usize> Sink<N> for Collector<N> {
     }
 
     fn undecided(&mut self, undecided: Undecided<N>) {
-        self.boxes.push(undecided); self.open.push((undecided.target as u32, undecided.reason));
+        self.boxes.push(undecided);
+        self.open.push((undecided.target as u32, undecided.reason));
     }
 }
 
@@ -106,7 +112,10 @@ struct Placed {
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(crate) fn twist(segment: &Segment, turn: &Matrix3<f64>) -> Side {
     let back = turn.transpose();
-    Side::Moving(Twist { spin: (back * segment.spin()).into(), travel: (back * segment.travel()).into() })
+    Side::Moving(Twist {
+        spin: (back * segment.spin()).into(),
+        travel: (back * segment.travel()).into(),
+    })
 }
 
 /// A search of some lines along some segments.
@@ -127,14 +136,25 @@ impl Search<'_> {
             return;
         }
         let number = (self.first + at) as u32;
-        let source = |t: f64| Source { path: self.path, segment: number, t: t as f32 };
+        let source = |t: f64| Source {
+            path: self.path,
+            segment: number,
+            t: t as f32,
+        };
         let mut times = Times::new(segment);
         self.faces(&mut times, &source, space, harvest);
         self.rims(&mut times, &source, space, harvest);
         let turn = segment.start();
-        let before = at.checked_sub(1).map_or(Side::Beyond(false), |k| twist(&segments[k], &turn));
-        let placed =
-            Placed { turn, tip: segment.tips()[0], before, after: twist(segment, &turn), source: source(0.0) };
+        let before = at
+            .checked_sub(1)
+            .map_or(Side::Beyond(false), |k| twist(&segments[k], &turn));
+        let placed = Placed {
+            turn,
+            tip: segment.tips()[0],
+            before,
+            after: twist(segment, &turn),
+            source: source(0.0),
+        };
         self.joint(&placed, space, harvest);
         if at + 1 == segments.len() {
             let turn = segment.end();
@@ -159,14 +179,20 @@ impl Search<'_> {
         (0..2).all(|k| {
             let grid = self.lattice.grid;
             let at = |n: usize| if k == 0 { grid.x(n) } else { grid.y(n) };
-            let margin = self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
+            let margin =
+                self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
             a[k].min(b[k]) - margin <= at(window[k][1]) && a[k].max(b[k]) + margin >= at(window[k][0])
         })
     }
 
     fn faces(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
         for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
-            let mut map = Face { element, cells, times, size: self.size };
+            let mut map = Face {
+                element,
+                cells,
+                times,
+                size: self.size,
+            };
             let mut sink = Collector::<3>::new();
             space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             for Preimage { target, x, orientation } in sink.found {
@@ -188,7 +214,12 @@ impl Search<'_> {
 
     fn rims(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
         for (element, cells) in self.cutter.rims.iter().zip(&mut space.rims) {
-            let mut map = Rim { element, cells, times, size: self.size };
+            let mut map = Rim {
+                element,
+                cells,
+                times,
+                size: self.size,
+            };
             let mut sink = Collector::<2>::new();
             space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             for Preimage { target, x, orientation } in sink.found {
@@ -200,12 +231,19 @@ impl Search<'_> {
                 let moment = map.times.at(x[1]);
                 // The envelope's normal lies in the fan of the two faces, where g = 0.
                 let [n, m] = [0, 1].map(|side| point.fields[side].normal[0].normalize());
-                let (a, b) = (a.abs() / point.fields[0].normal[0].norm(), b.abs() / point.fields[1].normal[0].norm());
+                let (a, b) = (
+                    a.abs() / point.fields[0].normal[0].norm(),
+                    b.abs() / point.fields[1].normal[0].norm(),
+                );
                 harvest.crossings.push((
                     target as u32,
                     Crossing {
                         z: (moment.turn * point.position).z + moment.tip.z,
-                        jump: if a_below(map.sides(&point, x[1])) { -orientation } else { orientation },
+                        jump: if a_below(map.sides(&point, x[1])) {
+                            -orientation
+                        } else {
+                            orientation
+                        },
                         normal: unit(moment.turn * (n * b + m * a)),
                         source: source(x[1]),
                     },
@@ -218,8 +256,22 @@ impl Search<'_> {
 
     fn joint(&self, placed: &Placed, space: &mut Workspace, harvest: &mut Harvest) {
         for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
-            let Placed { turn, tip, before, after, source } = *placed;
-            let mut map = Joint { element, cells, turn, tip, before, after, size: self.size };
+            let Placed {
+                turn,
+                tip,
+                before,
+                after,
+                source,
+            } = *placed;
+            let mut map = Joint {
+                element,
+                cells,
+                turn,
+                tip,
+                before,
+                after,
+                size: self.size,
+            };
             let mut sink = Collector::<2>::new();
             space.placed.solve(&mut map, 0, self.lattice, &mut sink);
             for Preimage { target, x, orientation } in sink.found {

@@ -50,7 +50,10 @@ struct Layout {
 
 impl Element {
     pub fn all(tool: &Tool) -> (Vec<Self>, Vec<Self>) {
-        (tool.patches().iter().map(Self::patch).collect(), tool.edges().iter().map(Self::edge).collect())
+        (
+            tool.patches().iter().map(Self::patch).collect(),
+            tool.edges().iter().map(Self::edge).collect(),
+        )
     }
 
     fn patch(patch: &Patch) -> Self {
@@ -91,7 +94,12 @@ impl Element {
                 let numerator = |f: &Form| f.derivative(axis).times(&own).minus(&f.times(&own.derivative(axis)));
                 let square = own.times(&own);
                 let denominator = other.map_or(square.clone(), |o| square.times(&o));
-                put(&[numerator(&point[0]), numerator(&point[1]), numerator(&point[2]), denominator])
+                put(&[
+                    numerator(&point[0]),
+                    numerator(&point[1]),
+                    numerator(&point[2]),
+                    denominator,
+                ])
             })
             .collect();
         let mut largest = [0.0_f64; 2];
@@ -105,8 +113,18 @@ impl Element {
                 put(&forms)
             })
             .collect();
-        let layout = Layout { position, slopes, fields, len: whole.len() };
-        Self { whole, layout, largest_normal: largest[0], largest_moment: largest[1] }
+        let layout = Layout {
+            position,
+            slopes,
+            fields,
+            len: whole.len(),
+        };
+        Self {
+            whole,
+            layout,
+            largest_normal: largest[0],
+            largest_moment: largest[1],
+        }
     }
 
     /// Position, its derivatives, and per field `N`, `M` and their derivatives, at a point.
@@ -287,7 +305,11 @@ impl Cells {
                 })
             })
             .collect();
-        let mut cells = Self { nodes: Vec::new(), derivatives, points };
+        let mut cells = Self {
+            nodes: Vec::new(),
+            derivatives,
+            points,
+        };
         let root = cells.node(element, [0.0; 2], [1.0; 2], element.whole.clone());
         cells.nodes.push(root);
         cells
@@ -335,7 +357,13 @@ impl Cells {
                 }
             }
         }
-        Node { lower, upper, parts: [NONE; 2], c, points }
+        Node {
+            lower,
+            upper,
+            parts: [NONE; 2],
+            c,
+            points,
+        }
     }
 
     pub fn bounds(&self, cell: u32, axis: usize) -> (f64, f64) {
@@ -352,7 +380,9 @@ impl Cells {
         let node = &self.nodes[cell as usize];
         let (mut lower, mut upper) = (vec![0.0; node.c.len()], vec![0.0; node.c.len()]);
         let layout = &element.layout;
-        let rational = std::iter::once(&layout.position).chain(&layout.slopes).map(|slot| (slot, 4));
+        let rational = std::iter::once(&layout.position)
+            .chain(&layout.slopes)
+            .map(|slot| (slot, 4));
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
             for k in 0..count {
                 let range = slot.range();
@@ -391,13 +421,19 @@ impl Cells {
     pub fn field<'a>(&'a self, element: &Element, cell: u32, field: usize) -> [Triples<'a>; 2] {
         let slot = &element.layout.fields[field];
         let c = &self.nodes[cell as usize].c;
-        [Triples::new(c, slot.start, slot.len()), Triples::new(c, slot.start + 3 * slot.len(), slot.len())]
+        [
+            Triples::new(c, slot.start, slot.len()),
+            Triples::new(c, slot.start + 3 * slot.len(), slot.len()),
+        ]
     }
 
     /// Coefficients of the derivatives of `N` and `M` of a field.
     pub fn field_slope(&self, cell: u32, field: usize, axis: usize) -> [Triples<'_>; 2] {
         let (start, len) = self.derivatives[field][axis];
         let points = &self.nodes[cell as usize].points;
-        [Triples::new(points, start, len), Triples::new(points, start + 3 * len, len)]
+        [
+            Triples::new(points, start, len),
+            Triples::new(points, start + 3 * len, len),
+        ]
     }
 }

@@ -47,7 +47,10 @@ fn envelope(constant: &[f64; 3], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
 fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
-    (if lo < 0.0 { lo * b } else { lo * a }, if hi > 0.0 { hi * b } else { hi * a })
+    (
+        if lo < 0.0 { lo * b } else { lo * a },
+        if hi > 0.0 { hi * b } else { hi * a },
+    )
 }
 
 fn interval((lo, hi): (f64, f64)) -> Interval {
@@ -153,7 +156,11 @@ impl ChartMap<3> for Face<'_> {
 
     fn scales(&self) -> [f64; 3] {
         let [x, y] = self.size.spacing;
-        [x, y, 0.25 * envelope_size(self.element, self.times).max(f64::MIN_POSITIVE)]
+        [
+            x,
+            y,
+            0.25 * envelope_size(self.element, self.times).max(f64::MIN_POSITIVE),
+        ]
     }
 }
 
@@ -200,7 +207,10 @@ impl ChartMap<2> for Rim<'_> {
     type Cell = Brick;
 
     fn bounds(&self, cell: &Brick) -> [Interval; 2] {
-        [interval(self.cells.bounds(cell.0, 0)), interval(self.times.bounds(cell.1))]
+        [
+            interval(self.cells.bounds(cell.0, 0)),
+            interval(self.times.bounds(cell.1)),
+        ]
     }
 
     fn values(&mut self, cell: &Brick) -> Option<[Interval; 2]> {
@@ -287,7 +297,8 @@ impl Side {
             Self::Beyond(negative) => *negative,
             Self::Moving(twist) => {
                 let field = &point.fields[0];
-                Vector3::from(twist.spin).dot(&field.moment[0]) + Vector3::from(twist.travel).dot(&field.normal[0]) < 0.0
+                Vector3::from(twist.spin).dot(&field.moment[0]) + Vector3::from(twist.travel).dot(&field.normal[0])
+                    < 0.0
             }
         }
     }
@@ -343,7 +354,10 @@ impl ChartMap<2> for Joint<'_> {
         let point = self.element.evaluate(x);
         let place = self.turn * point.position + self.tip;
         let slopes = [self.turn * point.slopes[0], self.turn * point.slopes[1]];
-        ([place.x, place.y], [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]])
+        (
+            [place.x, place.y],
+            [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]],
+        )
     }
 
     fn scales(&self) -> [f64; 2] {

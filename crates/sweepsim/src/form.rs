@@ -13,7 +13,10 @@ impl Form {
     /// A form in two variables, or in one (then constant in the second).
     pub fn of(bernstein: &Bernstein) -> Self {
         let degree = |axis: usize| bernstein.degrees().get(axis).copied().unwrap_or(0);
-        Self { degrees: [degree(0), degree(1)], c: bernstein.coefficients().to_vec() }
+        Self {
+            degrees: [degree(0), degree(1)],
+            c: bernstein.coefficients().to_vec(),
+        }
     }
 
     fn from_fn(degrees: [usize; 2], mut f: impl FnMut(usize, usize) -> f64) -> Self {
@@ -39,8 +42,8 @@ impl Form {
         let [p, q] = self.degrees;
         let corner = self.at(0, 0);
         let slack = 8.0 * f64::EPSILON * self.largest() * self.largest();
-        let rank_one = (0..=q)
-            .all(|j| (0..=p).all(|i| (self.at(i, j) * corner - self.at(i, 0) * self.at(0, j)).abs() <= slack));
+        let rank_one =
+            (0..=q).all(|j| (0..=p).all(|i| (self.at(i, j) * corner - self.at(i, 0) * self.at(0, j)).abs() <= slack));
         if !rank_one || corner == 0.0 {
             return None;
         }
@@ -51,14 +54,24 @@ impl Form {
 
     /// Degree 0 where all coefficients are equal.
     pub fn lowered(self) -> Self {
-        if self.c.iter().all(|c| *c == self.c[0]) { Self { degrees: [0, 0], c: vec![self.c[0]] } } else { self }
+        if self.c.iter().all(|c| *c == self.c[0]) {
+            Self {
+                degrees: [0, 0],
+                c: vec![self.c[0]],
+            }
+        } else {
+            self
+        }
     }
 
     pub fn derivative(&self, axis: usize) -> Self {
         let [p, q] = self.degrees;
         let n = self.degrees[axis];
         if n == 0 {
-            return Self { degrees: self.degrees, c: vec![0.0; self.c.len()] };
+            return Self {
+                degrees: self.degrees,
+                c: vec![0.0; self.c.len()],
+            };
         }
         let factor = n as f64;
         if axis == 0 {
@@ -71,7 +84,10 @@ impl Form {
     pub fn times(&self, other: &Self) -> Self {
         let ([p, q], [r, s]) = (self.degrees, other.degrees);
         let degrees = [p + r, q + s];
-        let mut product = Self { degrees, c: vec![0.0; (p + r + 1) * (q + s + 1)] };
+        let mut product = Self {
+            degrees,
+            c: vec![0.0; (p + r + 1) * (q + s + 1)],
+        };
         for l in 0..=s {
             for k in 0..=r {
                 let scaled = other.at(k, l) * binomial(r, k) * binomial(s, l);
@@ -97,14 +113,20 @@ impl Form {
         if by == [0, 0] {
             return self.clone();
         }
-        self.times(&Self { degrees: by, c: vec![1.0; (by[0] + 1) * (by[1] + 1)] })
+        self.times(&Self {
+            degrees: by,
+            c: vec![1.0; (by[0] + 1) * (by[1] + 1)],
+        })
     }
 
     /// `self − other`, in the larger degrees of the two.
     pub fn minus(&self, other: &Self) -> Self {
         let degrees = [0, 1].map(|a| self.degrees[a].max(other.degrees[a]));
         let (a, b) = (self.raised(degrees), other.raised(degrees));
-        Self { degrees, c: a.c.iter().zip(&b.c).map(|(x, y)| x - y).collect() }
+        Self {
+            degrees,
+            c: a.c.iter().zip(&b.c).map(|(x, y)| x - y).collect(),
+        }
     }
 }
 
@@ -115,7 +137,11 @@ pub(crate) fn binomial(n: usize, k: usize) -> f64 {
 /// Cuts one coefficient tensor across an axis at the part `at`, into two of the same degrees.
 pub(crate) fn cut(source: &[f64], degrees: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
     let [p, q] = degrees;
-    let (n, stride, lines, step) = if axis == 0 { (p, 1, q + 1, p + 1) } else { (q, p + 1, p + 1, 1) };
+    let (n, stride, lines, step) = if axis == 0 {
+        (p, 1, q + 1, p + 1)
+    } else {
+        (q, p + 1, p + 1, 1)
+    };
     upper.copy_from_slice(source);
     for line in 0..lines {
         let base = line * step;
@@ -163,13 +189,21 @@ mod tests {
         let (mut a, mut b, mut s) = ([0.0; MOST], [0.0; MOST], [0.0; MOST]);
         basis(form.degrees[0], u, &mut a, &mut s);
         basis(form.degrees[1], v, &mut b, &mut s);
-        (0..=form.degrees[1]).map(|j| (0..=form.degrees[0]).map(|i| a[i] * b[j] * form.at(i, j)).sum::<f64>()).sum()
+        (0..=form.degrees[1])
+            .map(|j| (0..=form.degrees[0]).map(|i| a[i] * b[j] * form.at(i, j)).sum::<f64>())
+            .sum()
     }
 
     #[test]
     fn algebra_agrees_with_values() {
-        let f = Form { degrees: [2, 1], c: vec![1.0, -2.0, 0.5, 3.0, 1.5, -1.0] };
-        let g = Form { degrees: [1, 2], c: vec![0.5, 2.0, -1.0, 1.0, 4.0, 0.25] };
+        let f = Form {
+            degrees: [2, 1],
+            c: vec![1.0, -2.0, 0.5, 3.0, 1.5, -1.0],
+        };
+        let g = Form {
+            degrees: [1, 2],
+            c: vec![0.5, 2.0, -1.0, 1.0, 4.0, 0.25],
+        };
         for (u, v) in [(0.0, 0.0), (0.3, 0.8), (1.0, 0.5), (1.2, -0.1)] {
             let (a, b) = (value(&f, u, v), value(&g, u, v));
             assert!((value(&f.times(&g), u, v) - a * b).abs() < 1e-13 * (1.0 + a.abs() * b.abs()));
@@ -181,7 +215,10 @@ mod tests {
         let (mut lower, mut upper) = (vec![0.0; 6], vec![0.0; 6]);
         for axis in [0, 1] {
             cut(&f.c, f.degrees, axis, 0.3, &mut lower, &mut upper);
-            let part = |c: &[f64]| Form { degrees: f.degrees, c: c.to_vec() };
+            let part = |c: &[f64]| Form {
+                degrees: f.degrees,
+                c: c.to_vec(),
+            };
             let at = |x: f64| if axis == 0 { (x, 0.7) } else { (0.7, x) };
             let (l, u) = (at(0.3 * 0.4), at(0.3 + 0.7 * 0.4));
             assert!((value(&part(&lower), at(0.4).0, at(0.4).1) - value(&f, l.0, l.1)).abs() < 1e-14);

@@ -59,7 +59,11 @@ pub(crate) fn segments(poses: &[Pose], tolerance: f64) -> Vec<(u32, Segment)> {
         // A tool that stands still: sweep it along the displacement.
         let tip = displaced(0);
         let parts = Segment::between(pose, pose);
-        segments.extend(parts.into_iter().map(|part| (0, part.with_tips([tip, tip + direction() * (TIPS * tolerance)]))));
+        segments.extend(
+            parts
+                .into_iter()
+                .map(|part| (0, part.with_tips([tip, tip + direction() * (TIPS * tolerance)]))),
+        );
     }
     segments
 }

@@ -16,13 +16,23 @@ impl<'a> Lattice<'a> {
     /// All lines of the grid.
     pub fn all(grid: &'a Grid, shift: [f64; 2]) -> Self {
         let [m, n] = grid.cells();
-        Self { grid, shift, i: [0, m - 1], j: [0, n - 1] }
+        Self {
+            grid,
+            shift,
+            i: [0, m - 1],
+            j: [0, n - 1],
+        }
     }
 
     /// One line.
     pub fn one(grid: &'a Grid, index: usize, shift: [f64; 2]) -> Self {
         let (i, j) = grid.place(index);
-        Self { grid, shift, i: [i, i], j: [j, j] }
+        Self {
+            grid,
+            shift,
+            i: [i, i],
+            j: [j, j],
+        }
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.
@@ -33,7 +43,11 @@ impl<'a> Lattice<'a> {
         // NaN ranges hold everything.
         let number = |z: f64, otherwise: usize| {
             let n = (z - first) / spacing;
-            if n.is_nan() { otherwise as f64 } else { n.clamp(window[0] as f64, window[1] as f64) }
+            if n.is_nan() {
+                otherwise as f64
+            } else {
+                n.clamp(window[0] as f64, window[1] as f64)
+            }
         };
         let mut lo = (number(range.lo, window[0]) - 0.5).round().max(window[0] as f64) as usize;
         let mut hi = (number(range.hi, window[1]) + 0.5).round().min(window[1] as f64) as usize;
@@ -52,7 +66,12 @@ impl<'a> Lattice<'a> {
 
     /// Where a line stands.
     fn coordinate(&self, axis: usize, number: usize) -> f64 {
-        self.shift[axis] + if axis == 0 { self.grid.x(number) } else { self.grid.y(number) }
+        self.shift[axis]
+            + if axis == 0 {
+                self.grid.x(number)
+            } else {
+                self.grid.y(number)
+            }
     }
 
     fn range(&self, x: Interval, y: Interval) -> Option<[(usize, usize); 2]> {
@@ -60,7 +79,9 @@ impl<'a> Lattice<'a> {
     }
 
     fn each<const N: usize>(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool) {
-        let Some([is, js]) = self.range(range[0], range[1]) else { return };
+        let Some([is, js]) = self.range(range[0], range[1]) else {
+            return;
+        };
         let mut q = [0.0; N];
         for i in is.0..=is.1 {
             q[0] = self.coordinate(0, i);

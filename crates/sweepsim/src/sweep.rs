@@ -64,7 +64,11 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { tolerance: 1e-6, method: Method::Charts, path_number: 0 }
+        Self {
+            tolerance: 1e-6,
+            method: Method::Charts,
+            path_number: 0,
+        }
     }
 }
 
@@ -72,7 +76,10 @@ impl Options {
     /// The default with this tolerance.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, ..Self::default() }
+        Self {
+            tolerance,
+            ..Self::default()
+        }
     }
 
     /// Chooses the method.
@@ -204,7 +211,14 @@ pub fn sweep(
         return Err(SweepError::Tolerance(tolerance));
     }
     let cutter = Cutter::new(tool);
-    let size = path.poses().iter().flat_map(|pose| <[f64; 3]>::from(pose.tip())).chain(grid.min()).chain(grid.max()).map(f64::abs).fold(cutter.reach, f64::max);
+    let size = path
+        .poses()
+        .iter()
+        .flat_map(|pose| <[f64; 3]>::from(pose.tip()))
+        .chain(grid.min())
+        .chain(grid.max())
+        .map(f64::abs)
+        .fold(cutter.reach, f64::max);
     let least = 2e4 * f64::EPSILON * size;
     if tolerance < least {
         return Err(SweepError::TooFine { tolerance, size, least });
@@ -217,12 +231,18 @@ pub fn sweep(
         tolerance,
         method: options.method,
         path: options.path_number,
-        size: Size { spacing: grid.spacing(), slack: 64.0 * f64::EPSILON * size },
+        size: Size {
+            spacing: grid.spacing(),
+            slack: 64.0 * f64::EPSILON * size,
+        },
         spaces: Mutex::new(Vec::new()),
         monitor,
     };
     let mut volume = Dexels::empty(grid.clone());
-    let mut statistics = Statistics { moves: path.poses().len().saturating_sub(1), ..Statistics::default() };
+    let mut statistics = Statistics {
+        moves: path.poses().len().saturating_sub(1),
+        ..Statistics::default()
+    };
     let mut failed: Vec<Unresolved> = Vec::new();
     for (number, chunk) in segments.chunks(CHUNK).enumerate() {
         let mut harvest = job.harvest(chunk)?;
@@ -234,7 +254,14 @@ pub fn sweep(
             // Parts of a wide turn belong to one move.
             crossing.source.segment = numbers[first + crossing.source.segment as usize];
         }
-        job.count(chunk, &numbers[first..], harvest, &mut volume, &mut statistics, &mut failed)?;
+        job.count(
+            chunk,
+            &numbers[first..],
+            harvest,
+            &mut volume,
+            &mut statistics,
+            &mut failed,
+        )?;
         monitor.advance((first + chunk.len()).min(segments.len()), segments.len());
     }
     statistics.covered = volume.covered();
@@ -274,7 +301,13 @@ impl Job<'_> {
         match self.method {
             Method::Charts => {
                 let lattice = Lattice::all(self.grid, generic::shift(self.tolerance, 0));
-                let search = Search { cutter: self.cutter, lattice: &lattice, size: self.size, path: self.path, first: 0 };
+                let search = Search {
+                    cutter: self.cutter,
+                    lattice: &lattice,
+                    size: self.size,
+                    path: self.path,
+                    first: 0,
+                };
                 self.gather(chunk.len().div_ceil(BLOCK), |block, space, harvest| {
                     for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
                         if self.monitor.cancelled() {
@@ -295,7 +328,13 @@ impl Job<'_> {
     /// The crossings of one line, moved as in the given attempt.
     fn line(&self, chunk: &[Segment], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let lattice = Lattice::one(self.grid, line, generic::shift(self.tolerance, attempt));
-        let search = Search { cutter: self.cutter, lattice: &lattice, size: self.size, path: self.path, first: 0 };
+        let search = Search {
+            cutter: self.cutter,
+            lattice: &lattice,
+            size: self.size,
+            path: self.path,
+            first: 0,
+        };
         for at in 0..chunk.len() {
             search.segment(chunk, at, space, harvest);
         }
@@ -338,7 +377,11 @@ impl Job<'_> {
         statistics: &mut Statistics,
         failed: &mut Vec<Unresolved>,
     ) -> Result<(), SweepError> {
-        let Harvest { mut crossings, mut open, .. } = harvest;
+        let Harvest {
+            mut crossings,
+            mut open,
+            ..
+        } = harvest;
         crossings.par_sort_by_key(|(line, _)| *line);
         open.sort_by_key(|(line, _)| *line);
         let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
@@ -356,8 +399,10 @@ impl Job<'_> {
         wrong.extend(&bad);
         wrong.sort_unstable();
         wrong.dedup();
-        let repaired: Vec<Result<Vec<Interval>, String>> =
-            wrong.par_iter().map(|line| self.with_space(|space| self.repair(chunk, numbers, *line, space))).collect();
+        let repaired: Vec<Result<Vec<Interval>, String>> = wrong
+            .par_iter()
+            .map(|line| self.with_space(|space| self.repair(chunk, numbers, *line, space)))
+            .collect();
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
         }
@@ -377,7 +422,13 @@ impl Job<'_> {
     }
 
     /// Solves one line again, moved elsewhere within the tolerance, until its audit closes.
-    fn repair(&self, chunk: &[Segment], numbers: &[u32], line: u32, space: &mut Workspace) -> Result<Vec<Interval>, String> {
+    fn repair(
+        &self,
+        chunk: &[Segment],
+        numbers: &[u32],
+        line: u32,
+        space: &mut Workspace,
+    ) -> Result<Vec<Interval>, String> {
         let mut reason = String::new();
         for attempt in 1..=ATTEMPTS {
             if self.monitor.cancelled() {

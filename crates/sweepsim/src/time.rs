@@ -113,7 +113,10 @@ impl Times {
         }
         let (lower, upper) = (node.lower, node.upper);
         let at = lower + CUT * (upper - lower);
-        let parts = [self.node(lower, at, turns[0], weights[0]), self.node(at, upper, turns[1], weights[1])];
+        let parts = [
+            self.node(lower, at, turns[0], weights[0]),
+            self.node(at, upper, turns[1], weights[1]),
+        ];
         let first = self.nodes.len() as u32;
         self.nodes.extend(parts);
         self.nodes[piece as usize].parts = first;
@@ -155,7 +158,14 @@ impl Times {
         let tip = self.tips[0] + self.velocity * t;
         if self.count == 1 {
             let travel = Vector3::from(root.travel[0]);
-            return Moment { turn: root.turns[0], weight: 1.0, tip, travel, travel_slope: Vector3::zeros(), spin: Matrix3::zeros() };
+            return Moment {
+                turn: root.turns[0],
+                weight: 1.0,
+                tip,
+                travel,
+                travel_slope: Vector3::zeros(),
+                spin: Matrix3::zeros(),
+            };
         }
         let s = 1.0 - t;
         let (b, d) = ([s * s, 2.0 * s * t, t * t], [-2.0 * s, 2.0 * (s - t), 2.0 * t]);
@@ -169,7 +179,14 @@ impl Times {
             slope += Vector3::from(root.travel[i]) * d[i];
         }
         let turn = turn / weight;
-        Moment { turn, weight, tip, travel, travel_slope: slope, spin: self.spin_matrix * turn / weight }
+        Moment {
+            turn,
+            weight,
+            tip,
+            travel,
+            travel_slope: slope,
+            spin: self.spin_matrix * turn / weight,
+        }
     }
 }
 

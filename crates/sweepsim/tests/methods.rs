@@ -16,7 +16,11 @@ fn tools() -> Vec<Tool> {
         vec![
             line([2.0, 0.0]),
             line([2.0, 2.0]),
-            ProfileSegment::Arc { to: [8.0, 8.0], centre: [8.0, 2.0], turn: Turn::Cw },
+            ProfileSegment::Arc {
+                to: [8.0, 8.0],
+                centre: [8.0, 2.0],
+                turn: Turn::Cw,
+            },
             line([8.0, 30.0]),
             line([0.0, 30.0]),
         ],
@@ -71,7 +75,11 @@ proptest! {
 #[test]
 fn a_flat_end_moved_sideways_is_a_slot() {
     let tool = Tool::flat(5.0, 30.0).unwrap();
-    let path = Path::new(vec![pose([-20.0, 0.0, 3.0], [0.0, 0.0, 1.0]), pose([20.0, 0.0, 3.0], [0.0, 0.0, 1.0])]).unwrap();
+    let path = Path::new(vec![
+        pose([-20.0, 0.0, 3.0], [0.0, 0.0, 1.0]),
+        pose([20.0, 0.0, 3.0], [0.0, 0.0, 1.0]),
+    ])
+    .unwrap();
     // Lines at ±5 run along the walls.
     let grid = Grid::new([-30.5, -7.5], [30.5, 7.5], [61, 15]).unwrap();
     let result = sweep(&tool, &path, &grid, &Options::new(1e-6), &()).unwrap();
@@ -96,7 +104,10 @@ fn the_same_bytes_at_any_thread_count() {
     let poses = (0..40)
         .map(|k| {
             let a = f64::from(k) * 0.15;
-            pose([12.0 * a.cos(), 9.0 * a.sin(), a.sin()], [0.3 * a.sin(), 0.2 * a.cos(), 1.0])
+            pose(
+                [12.0 * a.cos(), 9.0 * a.sin(), a.sin()],
+                [0.3 * a.sin(), 0.2 * a.cos(), 1.0],
+            )
         })
         .collect();
     let path = Path::new(poses).unwrap();
@@ -124,12 +135,25 @@ fn a_sweep_can_be_cancelled_and_refuses_bad_tolerances() {
             true
         }
     }
-    let path = Path::new(vec![pose([0.0; 3], [0.0, 0.0, 1.0]), pose([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])]).unwrap();
+    let path = Path::new(vec![
+        pose([0.0; 3], [0.0, 0.0, 1.0]),
+        pose([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+    ])
+    .unwrap();
     let grid = Grid::new([-6.0, -6.0], [6.0, 6.0], [12, 12]).unwrap();
     let tool = &tools()[0];
-    assert_eq!(sweep(tool, &path, &grid, &Options::default(), &Stop).err(), Some(SweepError::Cancelled));
+    assert_eq!(
+        sweep(tool, &path, &grid, &Options::default(), &Stop).err(),
+        Some(SweepError::Cancelled)
+    );
     for bad in [0.0, -1.0, f64::INFINITY] {
-        assert_eq!(sweep(tool, &path, &grid, &Options::new(bad), &()).err(), Some(SweepError::Tolerance(bad)));
+        assert_eq!(
+            sweep(tool, &path, &grid, &Options::new(bad), &()).err(),
+            Some(SweepError::Tolerance(bad))
+        );
     }
-    assert!(matches!(sweep(tool, &path, &grid, &Options::new(1e-13), &()).err(), Some(SweepError::TooFine { .. })));
+    assert!(matches!(
+        sweep(tool, &path, &grid, &Options::new(1e-13), &()).err(),
+        Some(SweepError::TooFine { .. })
+    ));
 }
