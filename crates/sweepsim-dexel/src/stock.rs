@@ -230,10 +230,18 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
     found.sort_by_key(|(index, _)| *index);
     let mut dexels = Dexels::empty(*grid);
     let mut intervals = Vec::new();
+    // Triangles that meet on a line give the same height but for rounding.
+    let size = soup
+        .triangles
+        .iter()
+        .flatten()
+        .flatten()
+        .fold(0.0, |size: f64, c| size.max(c.abs()));
+    let same = 64.0 * f64::EPSILON * size;
     for group in found.chunk_by(|a, b| a.0 == b.0) {
         let mut crossings: Vec<Crossing> = group.iter().map(|(_, c)| *c).collect();
         let index = group[0].0 as usize;
-        if cover(&mut crossings, &mut intervals).is_err() {
+        if cover(&mut crossings, same, &mut intervals).is_err() {
             let (i, j) = grid.place(index);
             return Err(StockError::Tangled {
                 x: grid.x(i),

@@ -297,8 +297,9 @@ impl<C: Clone> ChartSolver<C> {
                         }
                     }
                 }
-                if depth % 3 != 2 {
-                    axis = largest(&linear.smear);
+                let smear = largest(&linear.smear);
+                if depth % 3 != 2 && !collapses(&bounds, &jacobian, smear) {
+                    axis = smear;
                 }
             }
             if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
@@ -476,6 +477,16 @@ fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
         absent
     });
     absent
+}
+
+/// Whether the direction `axis` may have no length anywhere in the box, and adds little to the range of the values.
+///
+/// So it is at a pole, where a patch's side has shrunk to a point: cutting across it leaves boxes that are as singular as
+/// before, and only cutting towards it gets away from it.
+fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
+    let reach = |j: usize| (0..N).map(|i| jacobian[i][j].magnitude()).fold(0.0, f64::max) * bounds[j].radius();
+    let most = (0..N).map(reach).fold(0.0, f64::max);
+    (0..N).all(|i| jacobian[i][axis].lo <= 0.0 && jacobian[i][axis].hi >= 0.0) && reach(axis) < 0.25 * most
 }
 
 fn largest<const N: usize>(weights: &[f64; N]) -> usize {

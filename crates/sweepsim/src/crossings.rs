@@ -2,6 +2,7 @@
 
 use crate::element::{Cells, Element};
 use crate::envelope::{Face, Joint, ROOT, Rim, Side, Size, Twist};
+use crate::generic::Part;
 use crate::lattice::Lattice;
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
@@ -70,7 +71,6 @@ pub(crate) struct Harvest {
 pub(crate) struct Collector<const N: usize> {
     pub found: Vec<Preimage<N>>,
     pub open: Vec<(u32, Reason)>,
-    pub boxes: Vec<Undecided<N>>,
 }
 
 impl<const N: usize> Collector<N> {
@@ -78,7 +78,6 @@ impl<const N: usize> Collector<N> {
         Self {
             found: Vec::new(),
             open: Vec::new(),
-            boxes: Vec::new(),
         }
     }
 }
@@ -89,7 +88,6 @@ impl<const N: usize> Sink<N> for Collector<N> {
     }
 
     fn undecided(&mut self, undecided: Undecided<N>) {
-        self.boxes.push(undecided);
         self.open.push((undecided.target as u32, undecided.reason));
     }
 }
@@ -124,22 +122,24 @@ pub(crate) struct Search<'a> {
     pub lattice: &'a Lattice<'a>,
     pub size: Size,
     pub path: u16,
-    /// Number of the first segment.
-    pub first: usize,
 }
 
 impl Search<'_> {
-    /// The crossings of `segments[at]`: its envelope and edges, the joint at its start, and the cap at the end of the last.
-    pub fn segment(&self, segments: &[Segment], at: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let segment = &segments[at];
+    /// The crossings of `parts[at]`: its envelope and edges, the joint at its start, and the cap at the end of the last.
+    pub fn part(&self, parts: &[Part], at: usize, space: &mut Workspace, harvest: &mut Harvest) {
+        let Part {
+            segment,
+            number,
+            start,
+            share,
+        } = &parts[at];
         if !self.reaches(segment) {
             return;
         }
-        let number = (self.first + at) as u32;
         let source = |t: f64| Source {
             path: self.path,
-            segment: number,
-            t: t as f32,
+            segment: *number,
+            t: start + share * t as f32,
         };
         let mut times = Times::new(segment);
         self.faces(&mut times, &source, space, harvest);
@@ -147,7 +147,7 @@ impl Search<'_> {
         let turn = segment.start();
         let before = at
             .checked_sub(1)
-            .map_or(Side::Beyond(false), |k| twist(&segments[k], &turn));
+            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, &turn));
         let placed = Placed {
             turn,
             tip: segment.tips()[0],
@@ -156,7 +156,7 @@ impl Search<'_> {
             source: source(0.0),
         };
         self.joint(&placed, space, harvest);
-        if at + 1 == segments.len() {
+        if at + 1 == parts.len() {
             let turn = segment.end();
             let placed = Placed {
                 turn,

@@ -14,6 +14,8 @@ use sweepsim_motion::{Pose, Segment};
 const TIPS: f64 = 1e-2;
 /// Lines move by this part of the tolerance.
 const LINES: f64 = 1e-3;
+/// Crossings of a line within this part of the tolerance are one height.
+const SAME: f64 = 1e-3;
 /// After so many poses the displacement starts again from zero.
 const PERIOD: usize = 61;
 
@@ -30,40 +32,57 @@ pub(crate) fn shift(tolerance: f64, attempt: usize) -> [f64; 2] {
     [reach * angle.cos(), reach * angle.sin()]
 }
 
-/// The motions from pose to pose, tips displaced, with the number of the move that each belongs to. Moves that do not move
-/// are left out.
-pub(crate) fn segments(poses: &[Pose], tolerance: f64) -> Vec<(u32, Segment)> {
+/// Heights that differ by no more are the same.
+pub(crate) fn same(tolerance: f64) -> f64 {
+    SAME * tolerance
+}
+
+/// A motion, and what it is of the path.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub segment: Segment,
+    /// Number of the move.
+    pub number: u32,
+    /// When in the move it begins, and how much of the move it is: moves that turn far have several parts.
+    pub start: f32,
+    pub share: f32,
+}
+
+/// The motions from pose to pose, tips displaced. Moves that do not move are left out.
+pub(crate) fn parts(poses: &[Pose], tolerance: f64) -> Vec<Part> {
     let displaced = |k: usize| {
         let part = (k % PERIOD) as f64 / PERIOD as f64;
         poses[k].tip() + direction() * (TIPS * tolerance * part)
     };
-    let mut segments = Vec::with_capacity(poses.len());
+    let mut parts = Vec::with_capacity(poses.len());
+    let mut put = |number: usize, from: &Pose, to: &Pose, ends: [Vector3<f64>; 2]| {
+        let segments = Segment::between(from, to);
+        let share = 1.0 / segments.len() as f64;
+        let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 * share);
+        let last = segments.len() - 1;
+        for (n, segment) in segments.into_iter().enumerate() {
+            let tips = [at(n), if n == last { ends[1] } else { at(n + 1) }];
+            parts.push(Part {
+                segment: segment.with_tips(tips),
+                number: number as u32,
+                start: (n as f64 * share) as f32,
+                share: share as f32,
+            });
+        }
+    };
     let mut from = 0;
     for to in 1..poses.len() {
-        if poses[from] == poses[to] {
-            continue;
+        if poses[from] != poses[to] {
+            put(to - 1, &poses[from], &poses[to], [displaced(from), displaced(to)]);
+            from = to;
         }
-        let ends = [displaced(from), displaced(to)];
-        let parts = Segment::between(&poses[from], &poses[to]);
-        let count = parts.len() as f64;
-        let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 / count);
-        for (n, part) in parts.into_iter().enumerate() {
-            let last = if n + 1 == count as usize { ends[1] } else { at(n + 1) };
-            segments.push(((to - 1) as u32, part.with_tips([at(n), last])));
-        }
-        from = to;
     }
-    if segments.is_empty()
+    if from == 0
         && let Some(pose) = poses.first()
     {
         // A tool that stands still: sweep it along the displacement.
         let tip = displaced(0);
-        let parts = Segment::between(pose, pose);
-        segments.extend(
-            parts
-                .into_iter()
-                .map(|part| (0, part.with_tips([tip, tip + direction() * (TIPS * tolerance)]))),
-        );
+        put(0, pose, pose, [tip, tip + direction() * (TIPS * tolerance)]);
     }
-    segments
+    parts
 }

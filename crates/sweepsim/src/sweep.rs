@@ -2,14 +2,14 @@
 
 use crate::crossings::{Cutter, Harvest, Numbered, Search, Workspace};
 use crate::envelope::Size;
-use crate::generic;
+use crate::generic::{self, Part};
 use crate::lattice::Lattice;
 use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Mutex;
 use sweepsim_dexel::{AuditFailure, Dexels, Grid, Interval, cover};
-use sweepsim_motion::{Path, Segment, Tool};
+use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Reason;
 use thiserror::Error;
 
@@ -223,8 +223,7 @@ pub fn sweep(
     if tolerance < least {
         return Err(SweepError::TooFine { tolerance, size, least });
     }
-    let numbered = generic::segments(path.poses(), tolerance);
-    let (numbers, segments): (Vec<u32>, Vec<Segment>) = numbered.into_iter().unzip();
+    let parts = generic::parts(path.poses(), tolerance);
     let job = Job {
         cutter: &cutter,
         grid,
@@ -238,31 +237,19 @@ pub fn sweep(
         spaces: Mutex::new(Vec::new()),
         monitor,
     };
-    let mut volume = Dexels::empty(grid.clone());
+    let mut volume = Dexels::empty(*grid);
     let mut statistics = Statistics {
         moves: path.poses().len().saturating_sub(1),
         ..Statistics::default()
     };
     let mut failed: Vec<Unresolved> = Vec::new();
-    for (number, chunk) in segments.chunks(CHUNK).enumerate() {
-        let mut harvest = job.harvest(chunk)?;
+    for (number, chunk) in parts.chunks(CHUNK).enumerate() {
+        let harvest = job.harvest(chunk)?;
         statistics.crossings += harvest.crossings.len() as u64;
         statistics.boxes += harvest.statistics.boxes;
         statistics.charts += harvest.statistics.charts;
-        let first = number * CHUNK;
-        for (_, crossing) in &mut harvest.crossings {
-            // Parts of a wide turn belong to one move.
-            crossing.source.segment = numbers[first + crossing.source.segment as usize];
-        }
-        job.count(
-            chunk,
-            &numbers[first..],
-            harvest,
-            &mut volume,
-            &mut statistics,
-            &mut failed,
-        )?;
-        monitor.advance((first + chunk.len()).min(segments.len()), segments.len());
+        job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;
+        monitor.advance((number * CHUNK + chunk.len()).min(parts.len()), parts.len());
     }
     statistics.covered = volume.covered();
     failed.sort_by_key(|u| (u.i, u.j));
@@ -297,7 +284,7 @@ impl Job<'_> {
     }
 
     /// All crossings of a chunk, in an order that does not depend on the threads.
-    fn harvest(&self, chunk: &[Segment]) -> Result<Harvest, SweepError> {
+    fn harvest(&self, chunk: &[Part]) -> Result<Harvest, SweepError> {
         match self.method {
             Method::Charts => {
                 let lattice = Lattice::all(self.grid, generic::shift(self.tolerance, 0));
@@ -306,14 +293,13 @@ impl Job<'_> {
                     lattice: &lattice,
                     size: self.size,
                     path: self.path,
-                    first: 0,
                 };
                 self.gather(chunk.len().div_ceil(BLOCK), |block, space, harvest| {
                     for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
                         if self.monitor.cancelled() {
                             break;
                         }
-                        search.segment(chunk, at, space, harvest);
+                        search.part(chunk, at, space, harvest);
                     }
                 })
             }
@@ -326,17 +312,16 @@ impl Job<'_> {
     }
 
     /// The crossings of one line, moved as in the given attempt.
-    fn line(&self, chunk: &[Segment], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
+    fn line(&self, chunk: &[Part], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let lattice = Lattice::one(self.grid, line, generic::shift(self.tolerance, attempt));
         let search = Search {
             cutter: self.cutter,
             lattice: &lattice,
             size: self.size,
             path: self.path,
-            first: 0,
         };
         for at in 0..chunk.len() {
-            search.segment(chunk, at, space, harvest);
+            search.part(chunk, at, space, harvest);
         }
     }
 
@@ -370,8 +355,7 @@ impl Job<'_> {
     /// Counts the crossings of a chunk to intervals, repairs what does not add up, and unites the intervals with the volume.
     fn count(
         &self,
-        chunk: &[Segment],
-        numbers: &[u32],
+        chunk: &[Part],
         harvest: Harvest,
         volume: &mut Dexels,
         statistics: &mut Statistics,
@@ -387,8 +371,10 @@ impl Job<'_> {
         let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
         bad.dedup();
         let groups: Vec<&[Numbered]> = crossings.chunk_by(|a, b| a.0 == b.0).collect();
-        let counted: Vec<(u32, Result<Vec<Interval>, AuditFailure>)> =
-            groups.par_iter().map(|group| (group[0].0, intervals(group))).collect();
+        let counted: Vec<(u32, Result<Vec<Interval>, AuditFailure>)> = groups
+            .par_iter()
+            .map(|group| (group[0].0, intervals(group, generic::same(self.tolerance))))
+            .collect();
         let mut wrong = Vec::new();
         for (line, result) in counted {
             match result {
@@ -401,7 +387,7 @@ impl Job<'_> {
         wrong.dedup();
         let repaired: Vec<Result<Vec<Interval>, String>> = wrong
             .par_iter()
-            .map(|line| self.with_space(|space| self.repair(chunk, numbers, *line, space)))
+            .map(|line| self.with_space(|space| self.repair(chunk, *line, space)))
             .collect();
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
@@ -422,13 +408,7 @@ impl Job<'_> {
     }
 
     /// Solves one line again, moved elsewhere within the tolerance, until its audit closes.
-    fn repair(
-        &self,
-        chunk: &[Segment],
-        numbers: &[u32],
-        line: u32,
-        space: &mut Workspace,
-    ) -> Result<Vec<Interval>, String> {
+    fn repair(&self, chunk: &[Part], line: u32, space: &mut Workspace) -> Result<Vec<Interval>, String> {
         let mut reason = String::new();
         for attempt in 1..=ATTEMPTS {
             if self.monitor.cancelled() {
@@ -443,10 +423,7 @@ impl Job<'_> {
                 };
                 continue;
             }
-            for (_, crossing) in &mut harvest.crossings {
-                crossing.source.segment = numbers[crossing.source.segment as usize];
-            }
-            match intervals(&harvest.crossings) {
+            match intervals(&harvest.crossings, generic::same(self.tolerance)) {
                 Ok(intervals) => return Ok(intervals),
                 Err(failure) => {
                     reason = format!(
@@ -460,10 +437,10 @@ impl Job<'_> {
     }
 }
 
-/// The intervals of one line.
-fn intervals(group: &[Numbered]) -> Result<Vec<Interval>, AuditFailure> {
+/// The intervals of one line; crossings within `same` are at one height.
+fn intervals(group: &[Numbered], same: f64) -> Result<Vec<Interval>, AuditFailure> {
     let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
     let mut intervals = Vec::new();
-    cover(&mut crossings, &mut intervals)?;
+    cover(&mut crossings, same, &mut intervals)?;
     Ok(intervals)
 }

@@ -160,7 +160,6 @@ impl Times {
             let travel = Vector3::from(root.travel[0]);
             return Moment {
                 turn: root.turns[0],
-                weight: 1.0,
                 tip,
                 travel,
                 travel_slope: Vector3::zeros(),
@@ -181,7 +180,6 @@ impl Times {
         let turn = turn / weight;
         Moment {
             turn,
-            weight,
             tip,
             travel,
             travel_slope: slope,
@@ -195,8 +193,6 @@ impl Times {
 pub(crate) struct Moment {
     /// `A`.
     pub turn: Matrix3<f64>,
-    /// `w`.
-    pub weight: f64,
     /// `b`.
     pub tip: Vector3<f64>,
     /// `w Aᵀ b′`.
