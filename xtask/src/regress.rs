@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use std::{fs, io};
-use sweepsim::{Options, sweep};
+use sweepsim::{Cut, Options, simulate};
 use sweepsim_formats::{Fixture, Job};
 
 /// How many differences of a job are printed.
@@ -91,7 +91,7 @@ fn orphans(jobs: &[PathBuf], totals: &mut BTreeMap<String, Totals>, mode: Mode) 
 fn check(path: &Path, totals: &mut BTreeMap<String, Totals>, mode: Mode) -> Result<bool, String> {
     let name = name_of(path);
     let start = Instant::now();
-    let outcome = simulate(path)?;
+    let outcome = run_job(path)?;
     let seconds = start.elapsed().as_secs_f64();
     let found = &outcome.found;
     println!("{name}: {}, {seconds:.1} s", found.totals);
@@ -134,28 +134,23 @@ struct Outcome {
 }
 
 /// Sweeps the paths of a job one after the other, and takes what they sweep out of the stock.
-fn simulate(path: &Path) -> Result<Outcome, String> {
+fn run_job(path: &Path) -> Result<Outcome, String> {
     let job = Job::read(path).map_err(|error| error.to_string())?;
-    let mut remaining = job.stock.dexels(&job.grid).map_err(|error| about(path, error))?;
-    let mut unresolved = Vec::new();
-    for (number, cut) in job.paths.iter().enumerate() {
-        let options = Options::new(job.tolerance).path_number(number as u16);
-        let swept = sweep(&job.tools[&cut.tool], &cut.path, &job.grid, &options, &());
-        let swept = swept.map_err(|error| about(path, error))?;
-        remaining
-            .subtract_all(&swept.volume)
-            .map_err(|error| about(path, error))?;
-        unresolved.extend(
-            swept
-                .statistics
-                .unresolved
-                .iter()
-                .map(|dexel| format!("dexel ({}, {}), path {number}: {}", dexel.i, dexel.j, dexel.reason)),
-        );
-    }
+    let stock = job.stock.dexels(&job.grid).map_err(|error| about(path, error))?;
+    let cuts: Vec<Cut> = job
+        .paths
+        .iter()
+        .map(|cut| Cut {
+            tool: &job.tools[&cut.tool],
+            path: &cut.path,
+        })
+        .collect();
+    let done = simulate(stock, &cuts, &Options::new(job.tolerance), &()).map_err(|error| about(path, error))?;
+    let open = done.statistics.unresolved.iter();
+    let unresolved = open.map(|dexel| format!("dexel ({}, {}): {}", dexel.i, dexel.j, dexel.reason));
     Ok(Outcome {
-        found: Stored::of(&remaining).map_err(|error| about(path, error))?,
+        found: Stored::of(&done.remaining).map_err(|error| about(path, error))?,
         tolerance: job.tolerance,
-        unresolved,
+        unresolved: unresolved.collect(),
     })
 }

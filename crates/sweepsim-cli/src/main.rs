@@ -1,2 +1,7 @@
 //! The `sweepsim` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    sweepsim_cli::main()
+}

@@ -23,6 +23,7 @@ mod grid;
 mod interval;
 mod mesh;
 mod stock;
+mod surface;
 
 pub use crossing::{AuditFailure, Crossing, cover};
 pub use dexels::{Dexels, GridMismatch};
@@ -30,3 +31,4 @@ pub use grid::{Grid, GridError};
 pub use interval::{End, Interval, Source};
 pub use mesh::{Mesh, MeshError, TriangleSoup};
 pub use stock::{Stock, StockError};
+pub use surface::surface;

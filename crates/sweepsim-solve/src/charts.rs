@@ -170,12 +170,12 @@ impl<const N: usize> Linear<N> {
         }
         let directions = Square::<N>::from_fn(|i, j| mid[(i, j)] / lengths[j]);
         let rows: [f64; N] = std::array::from_fn(|i| directions.row(i).iter().fold(0.0, |m: f64, x| m.max(x.abs())));
-        if rows.iter().any(|r| *r == 0.0) {
+        if rows.contains(&0.0) {
             return None;
         }
         let balanced = Square::<N>::from_fn(|i, j| directions[(i, j)] / rows[i]);
         let determinant = balanced.determinant();
-        if !(determinant.abs() > 1e-10) {
+        if determinant.abs() <= 1e-10 || determinant.is_nan() {
             return None;
         }
         let inverse = balanced.try_inverse()?;

@@ -3,8 +3,6 @@
 //! Exact up to row 56 (`C(56, 28) < 2⁵³`); beyond, each carries at most the row's number of roundings; beyond row 1029
 //! they overflow, and whatever is made of them becomes a form with an infinite error bound.
 
-use smallvec::SmallVec;
-
 const TABLED: usize = 33;
 
 static ROWS: [[f64; TABLED]; TABLED] = {
@@ -25,7 +23,7 @@ static ROWS: [[f64; TABLED]; TABLED] = {
 /// A row `C(n, 0), …, C(n, n)` of Pascal's triangle.
 pub(crate) enum Row {
     Tabled(&'static [f64]),
-    Computed(SmallVec<[f64; 64]>),
+    Computed(Vec<f64>),
 }
 
 impl std::ops::Deref for Row {
@@ -43,7 +41,7 @@ pub(crate) fn row(n: usize) -> Row {
     if n < TABLED {
         return Row::Tabled(&ROWS[n][..=n]);
     }
-    let mut row: SmallVec<[f64; 64]> = SmallVec::from_slice(&ROWS[TABLED - 1]);
+    let mut row = ROWS[TABLED - 1].to_vec();
     for m in TABLED..=n {
         row.push(1.0);
         for k in (1..m).rev() {

@@ -1,11 +1,42 @@
-//! Exact swept volumes of milling tools along 5-axis motions, as dexels
+//! Exact swept volumes of milling tools along 5-axis motions, as dexels.
+//!
+//! [`sweep`] finds where the boundary of what a tool sweeps crosses the lines of a grid, by solving the envelope condition
+//! `⟨N, V⟩ = 0` as the algebraic system it is, and counts the crossings to intervals; [`simulate`] takes what several tools
+//! sweep out of a stock. Nothing is sampled in time. Every line is audited: what could not be established is
+//! [named](Unresolved).
+//!
+//! ```
+//! use sweepsim::{Options, sweep};
+//! use sweepsim_dexel::Grid;
+//! use sweepsim_motion::{Path, Pose, Tool};
+//!
+//! let tool = Tool::ball(2.0, 30.0)?;
+//! let path = Path::new(vec![
+//!     Pose::new([-5.0, 0.0, 0.0], [0.0, 0.0, 1.0])?,
+//!     Pose::new([5.0, 0.0, 1.0], [0.3, 0.0, 1.0])?, // tip, axis: straight, and turning evenly on the way
+//! ])?;
+//! let grid = Grid::new([-8.0, -3.0], [8.0, 3.0], [160, 60])?;
+//! let swept = sweep(&tool, &path, &grid, &Options::new(1e-6), &())?;
+//! assert!(swept.statistics.unresolved.is_empty());
+//! let over_the_middle = swept.volume.intervals(80, 30);
+//! assert_eq!(over_the_middle.len(), 1);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Accuracy
+//!
+//! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
+//! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
+
 mod crossings;
 mod element;
 mod envelope;
 mod form;
 mod generic;
 mod lattice;
+mod simulate;
 mod sweep;
 mod time;
 
-pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, Unresolved, sweep};
+pub use simulate::{Cut, Simulation, simulate, sweep_all};
+pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, sweep};

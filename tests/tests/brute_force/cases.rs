@@ -14,7 +14,6 @@ pub struct Cutter {
     pub name: String,
     pub tool: Tool,
     pub radius: f64,
-    pub length: f64,
 }
 
 /// What is swept, and the lines along which it is looked at.
@@ -89,12 +88,7 @@ pub fn flat() -> BoxedStrategy<Cutter> {
             let length = radius * slender;
             let tool = Tool::flat(radius, length).expect("a flat end");
             let name = format!("Tool::flat({radius:?}, {length:?})");
-            Cutter {
-                name,
-                tool,
-                radius,
-                length,
-            }
+            Cutter { name, tool, radius }
         })
         .boxed()
 }
@@ -105,12 +99,7 @@ pub fn ball() -> BoxedStrategy<Cutter> {
             let length = radius * slender;
             let tool = Tool::ball(radius, length).expect("a ball end");
             let name = format!("Tool::ball({radius:?}, {length:?})");
-            Cutter {
-                name,
-                tool,
-                radius,
-                length,
-            }
+            Cutter { name, tool, radius }
         })
         .boxed()
 }
@@ -121,12 +110,7 @@ pub fn bull() -> BoxedStrategy<Cutter> {
             let (length, corner) = (radius * slender, radius * part);
             let tool = Tool::bull(radius, corner, length).expect("a bull nose");
             let name = format!("Tool::bull({radius:?}, {corner:?}, {length:?})");
-            Cutter {
-                name,
-                tool,
-                radius,
-                length,
-            }
+            Cutter { name, tool, radius }
         })
         .boxed()
 }
@@ -154,7 +138,6 @@ pub fn drill() -> BoxedStrategy<Cutter> {
                 name,
                 tool: tools::drill(radius, point, length),
                 radius,
-                length,
             }
         })
         .boxed()
@@ -169,7 +152,6 @@ pub fn lollipop() -> BoxedStrategy<Cutter> {
                 name,
                 tool: tools::lollipop(radius, neck, length),
                 radius,
-                length,
             }
         })
         .boxed()

@@ -6,7 +6,7 @@ mod evaluate;
 mod subdivide;
 mod variables;
 
-use crate::rounding::{magnitude, up};
+use crate::rounding::magnitude;
 use smallvec::SmallVec;
 
 /// The degrees of a form, one a variable.
@@ -301,11 +301,6 @@ impl Bernstein {
     /// With `error() == 0` this says that it *is* identically 0.
     pub fn may_vanish(&self) -> bool {
         self.magnitude() <= self.error
-    }
-
-    /// The error of `count` more roundings of size `magnitude`, upon this form's own scaled by `growth`.
-    pub(crate) fn grown_error(&self, growth: f64, roundings: f64) -> f64 {
-        up(self.error * growth + roundings)
     }
 }
 

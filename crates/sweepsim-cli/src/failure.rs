@@ -1,0 +1,45 @@
+//! Why the command ends without a result.
+
+use std::fmt;
+use std::process::ExitCode;
+use sweepsim_formats::FormatError;
+
+/// What is printed, and how the process ends.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// Bad input or usage.
+    Bad(String),
+    /// The user has ended the run.
+    Interrupted,
+}
+
+impl Failure {
+    /// Bad input or usage, in one sentence.
+    pub fn message(text: impl fmt::Display) -> Self {
+        let (bold, reset) = (anstyle::AnsiColor::Red.on_default().bold(), anstyle::Reset);
+        Self::Bad(format!("{bold}error{reset}: {text}"))
+    }
+
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Bad(_) => 2,
+            // As a shell reports a process that SIGINT ended.
+            Self::Interrupted => 130,
+        })
+    }
+}
+
+impl From<FormatError> for Failure {
+    fn from(error: FormatError) -> Self {
+        Self::Bad(error.render(true))
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bad(text) => f.write_str(text),
+            Self::Interrupted => f.write_str("interrupted: nothing is written"),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! `inspect`: what is in a file.
+
+use crate::failure::Failure;
+use crate::words::{count, counted, measure, point};
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use sweepsim_dexel::{Stock, TriangleSoup};
+use sweepsim_formats::{Job, Note, PathOptions, Program, read_dexels_csv, read_path_file, read_ply, read_stl};
+use sweepsim_motion::{Pose, ProfileSegment, Tool, Turn};
+
+/// Prints what is in a file.
+pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
+    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let unreadable = |error: std::io::Error| Failure::message(format!("cannot read {}: {error}", file.display()));
+    let mut text = Text::default();
+    match extension.as_deref() {
+        Some("ron") => job(&mut text, &Job::read(file)?),
+        Some("stl") => triangles(&mut text, &read_stl(file)?),
+        Some("ply") => {
+            let mesh = read_ply(&std::fs::read(file).map_err(unreadable)?)
+                .map_err(|error| Failure::message(format!("{}: {error}", file.display())))?;
+            text.line("vertices", &count(mesh.vertices.len() as u64));
+            text.line("triangles", &count(mesh.triangles.len() as u64));
+            text.bounds(mesh.vertices.iter().copied());
+        }
+        Some("csv") if is_dexels(file).map_err(unreadable)? => {
+            let reader = BufReader::new(File::open(file).map_err(unreadable)?);
+            let rows =
+                read_dexels_csv(reader).map_err(|error| Failure::message(format!("{}:{error}", file.display())))?;
+            dexels(&mut text, &rows);
+        }
+        _ => program(&mut text, &read_path_file(file, &PathOptions::default())?),
+    }
+    crate::print(&text.0)
+}
+
+/// Whether a table is one of dexels: its header says.
+fn is_dexels(file: &Path) -> std::io::Result<bool> {
+    let mut header = Vec::new();
+    BufReader::new(File::open(file)?).read_until(b'\n', &mut header)?;
+    Ok(header.trim_ascii() == b"i,j,z0,z1")
+}
+
+#[derive(Default)]
+struct Text(String);
+
+impl Text {
+    fn line(&mut self, label: &str, value: &str) {
+        // A String takes all that is written to it.
+        let _ = writeln!(self.0, "{label:>10}  {value}");
+    }
+
+    fn bounds(&mut self, points: impl Iterator<Item = [f64; 3]>) {
+        let mut range = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+        for place in points {
+            for k in 0..3 {
+                range[0][k] = range[0][k].min(place[k]);
+                range[1][k] = range[1][k].max(place[k]);
+            }
+        }
+        if range[0][0] <= range[1][0] {
+            self.line("bounds", &format!("{} … {} mm", point(range[0]), point(range[1])));
+        }
+    }
+
+    fn notes<'a>(&mut self, notes: impl Iterator<Item = &'a Note>) {
+        for note in notes {
+            self.line("note", &note.to_string());
+        }
+    }
+}
+
+/// A tool in a few words.
+pub(crate) fn tool(tool: &Tool) -> String {
+    let profile = tool.profile();
+    let mut points = vec![profile.start()];
+    let mut arcs = 0;
+    for segment in profile.segments() {
+        match *segment {
+            ProfileSegment::Line { to } => points.push(to),
+            ProfileSegment::Arc { to, centre, turn } => {
+                arcs += 1;
+                // An arc may reach farther out than its ends.
+                let from = points[points.len() - 1];
+                let radius = (from[0] - centre[0]).hypot(from[1] - centre[1]);
+                let outwards = match turn {
+                    Turn::Ccw => from[1] <= centre[1] && to[1] >= centre[1],
+                    Turn::Cw => from[1] >= centre[1] && to[1] <= centre[1],
+                };
+                if outwards {
+                    points.push([centre[0] + radius, centre[1]]);
+                }
+                points.push(to);
+            }
+        }
+    }
+    let radius = points.iter().map(|p| p[0]).fold(0.0, f64::max);
+    let length = points.iter().map(|p| p[1]).fold(0.0, f64::max);
+    let lines = profile.segments().len() - arcs;
+    format!(
+        "radius {}, length {} mm ({}, {})",
+        measure(radius),
+        measure(length),
+        counted(lines as u64, "line"),
+        counted(arcs as u64, "arc")
+    )
+}
+
+fn job(text: &mut Text, job: &Job) {
+    text.line("job", &job.name);
+    text.line("tolerance", &format!("{} mm", job.tolerance));
+    let ([nx, ny], [dx, dy]) = (job.grid.cells(), job.grid.spacing());
+    let (min, max) = (job.grid.min(), job.grid.max());
+    text.line(
+        "grid",
+        &format!(
+            "{} × {} dexels, {} × {} mm apart, x {} … {}, y {} … {} mm",
+            count(nx as u64),
+            count(ny as u64),
+            measure(dx),
+            measure(dy),
+            measure(min[0]),
+            measure(max[0]),
+            measure(min[1]),
+            measure(max[1])
+        ),
+    );
+    let stock = match &job.stock {
+        Stock::Block { min, max } => format!("block {} … {} mm", point(*min), point(*max)),
+        Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height,
+        } => format!(
+            "cylinder at {} along {}, radius {}, height {} mm",
+            point(*base),
+            point(*axis),
+            measure(*radius),
+            measure(*height)
+        ),
+        Stock::Mesh(soup) => counted(soup.triangles.len() as u64, "triangle"),
+    };
+    text.line("stock", &stock);
+    for (number, cutter) in &job.tools {
+        text.line("tool", &format!("{number}: {}", tool(cutter)));
+    }
+    for path in &job.paths {
+        let moves = counted(path.path.moves() as u64, "move");
+        text.line("path", &format!("{moves} of tool {}, from {}", path.tool, path.source));
+        text.bounds(path.path.poses().iter().map(tip));
+        text.notes(path.notes.iter());
+    }
+    if let Some(target) = &job.target {
+        let triangles = counted(target.mesh.triangles.len() as u64, "triangle");
+        text.line("target", &format!("{}: {triangles}", target.file.display()));
+    }
+}
+
+fn tip(pose: &Pose) -> [f64; 3] {
+    pose.tip().into()
+}
+
+fn program(text: &mut Text, program: &Program) {
+    let sections = program.sections().count();
+    let moves: usize = program.sections().map(|section| section.len() - 1).sum();
+    let rapid = program.poses.iter().filter(|pose| pose.joined && pose.rapid).count();
+    text.line(
+        "path",
+        &format!(
+            "{} in {}, {} rapid",
+            counted(moves as u64, "move"),
+            counted(sections as u64, "piece"),
+            count(rapid as u64)
+        ),
+    );
+    text.bounds(program.poses.iter().map(|pose| tip(&pose.pose)));
+    let tilt = program
+        .poses
+        .iter()
+        .map(|pose| pose.pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees())
+        .fold(0.0, f64::max);
+    text.line("axis", &format!("up to {} degrees from z", measure(tilt)));
+    let mut tools: Vec<u32> = program.poses.iter().filter_map(|pose| pose.tool).collect();
+    tools.sort_unstable();
+    tools.dedup();
+    if !tools.is_empty() {
+        let tools: Vec<String> = tools.iter().map(u32::to_string).collect();
+        text.line("tools", &tools.join(", "));
+    }
+    text.notes(program.notes.iter());
+}
+
+fn triangles(text: &mut Text, soup: &TriangleSoup) {
+    text.line("triangles", &count(soup.triangles.len() as u64));
+    text.bounds(soup.triangles.iter().flatten().copied());
+    match soup.check_closed() {
+        Ok(()) => text.line("closed", "yes"),
+        Err(error) => text.line("closed", &format!("no: {error}")),
+    }
+}
+
+fn dexels(text: &mut Text, rows: &[sweepsim_formats::DexelRow]) {
+    text.line("intervals", &count(rows.len() as u64));
+    let lines = rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)).count();
+    text.line("dexels", &format!("{} with material", count(lines as u64)));
+    let (i, j) = rows.iter().fold((0, 0), |(i, j), row| (row.i.max(i), row.j.max(j)));
+    text.line("numbers", &format!("i up to {i}, j up to {j}"));
+    let lowest = rows.iter().map(|row| row.z0).fold(f64::INFINITY, f64::min);
+    let highest = rows.iter().map(|row| row.z1).fold(f64::NEG_INFINITY, f64::max);
+    if !rows.is_empty() {
+        text.line("z", &format!("{} … {} mm", measure(lowest), measure(highest)));
+    }
+}

@@ -1,0 +1,336 @@
+//! `simulate` and `sweep`: from a job to its files.
+
+use crate::arguments::{Output, RunOptions};
+use crate::failure::Failure;
+use crate::outputs::Outputs;
+use crate::page::{self, Page};
+use crate::picture;
+use crate::progress::Progress;
+use crate::words;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+use sweepsim::{Cut, Monitor, Options, Statistics, SweepError, simulate, sweep_all};
+use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
+use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_csv, write_ply};
+
+/// Width and height of `part.png`.
+const PICTURE: [usize; 2] = [1600, 1200];
+/// How many unresolved dexels the summary names.
+const NAMED: usize = 10;
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// What the tools leave of the stock.
+    Simulate,
+    /// What they sweep.
+    Sweep,
+}
+
+/// What a job gives.
+struct Outcome {
+    dexels: Dexels,
+    statistics: Statistics,
+    volume_removed: Option<f64>,
+}
+
+/// Runs a job and writes what it gives.
+pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure> {
+    let start = Instant::now();
+    let mut report = Report::default();
+    let mut job = phase(&mut report, "read", || Job::read(&options.job))?;
+    if let Some(cells) = options.cells {
+        job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
+            .map_err(|error| Failure::message(format!("--cells: {error}")))?;
+    }
+    job.tolerance = options.tolerance.unwrap_or(job.tolerance);
+    let folder = options
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("out").join(folder_name(&job.name)));
+    let mut outputs = Outputs::new(folder, &options.only)?;
+    let progress = Progress::new(job.moves(), options.quiet);
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = options.threads {
+        builder = builder.num_threads(usize::from(threads));
+    }
+    let pool = builder
+        .build()
+        .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
+    let threads = pool.current_num_threads();
+    let outcome = pool.install(|| -> Result<Outcome, Failure> {
+        let outcome = compute(task, &job, options, &progress, &mut report)?;
+        progress.check()?;
+        describe(&mut report, &job, options, &outcome);
+        write(&job, &outcome, &mut outputs, &progress, &mut report)?;
+        Ok(outcome)
+    });
+    progress.finish();
+    let outcome = outcome?;
+    if outputs.wants(Output::Report) {
+        let page = Page {
+            task,
+            job: &job,
+            report: &report,
+            threads,
+            total: start.elapsed().as_secs_f64(),
+            picture: outputs.wants(Output::Picture),
+        };
+        outputs.write("report.html", |file| file.write_all(page::html(&page).as_bytes()))?;
+        let text = json(&report)?;
+        outputs.write("report.json", |file| file.write_all(text.as_bytes()))?;
+    }
+    if options.json {
+        crate::print(&json(&report)?)?;
+    } else if !options.quiet {
+        let total = start.elapsed().as_secs_f64();
+        crate::print(&summary(task, &job, &report, &outputs, threads, total))?;
+    }
+    let certain = outcome.statistics.unresolved.is_empty();
+    Ok(if certain { ExitCode::SUCCESS } else { ExitCode::from(3) })
+}
+
+fn json(report: &Report) -> Result<String, Failure> {
+    report
+        .to_json()
+        .map_err(|error| Failure::message(format!("cannot make the report: {error}")))
+}
+
+/// Does some work and notes how long it took.
+fn phase<T>(report: &mut Report, name: &str, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *report.seconds.entry(name.to_owned()).or_default() += start.elapsed().as_secs_f64();
+    result
+}
+
+/// A job's name as that of a folder: no name leads out of `out/`.
+fn folder_name(name: &str) -> PathBuf {
+    let safe: String = name
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_. ".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let safe = safe.trim_matches(['.', ' ']);
+    PathBuf::from(if safe.is_empty() { "job" } else { safe })
+}
+
+fn compute(
+    task: Task,
+    job: &Job,
+    options: &RunOptions,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Outcome, Failure> {
+    let file = options.job.display();
+    let cuts: Vec<Cut> = job
+        .paths
+        .iter()
+        .map(|path| Cut {
+            tool: &job.tools[&path.tool],
+            path: &path.path,
+        })
+        .collect();
+    let sweeping = Options::new(job.tolerance).method(options.method);
+    let failed = |error: SweepError| match error {
+        SweepError::Cancelled => {
+            progress.finish();
+            Failure::Interrupted
+        }
+        error => Failure::message(format!("{file}: {error}")),
+    };
+    match task {
+        Task::Simulate => {
+            progress.phase("stock");
+            let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
+            let stock = stock.map_err(|error| Failure::message(format!("{file}: stock: {error}")))?;
+            let before = stock.volume();
+            progress.phase("cut");
+            let done = phase(report, "sweep", || {
+                simulate(stock, &cuts, &sweeping, progress as &dyn Monitor)
+            });
+            let done = done.map_err(failed)?;
+            Ok(Outcome {
+                volume_removed: Some(before - done.remaining.volume()),
+                dexels: done.remaining,
+                statistics: done.statistics,
+            })
+        }
+        Task::Sweep => {
+            progress.phase("sweep");
+            let done = phase(report, "sweep", || {
+                sweep_all(&cuts, &job.grid, &sweeping, progress as &dyn Monitor)
+            });
+            let done = done.map_err(failed)?;
+            Ok(Outcome {
+                dexels: done.volume,
+                statistics: done.statistics,
+                volume_removed: None,
+            })
+        }
+    }
+}
+
+/// Fills in what the report says of the result.
+fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outcome) {
+    report.job.clone_from(&job.name);
+    report.method = options.method.to_string();
+    report.cells = job.grid.cells();
+    report.moves = job.moves();
+    report.crossings = outcome.statistics.crossings;
+    let unresolved = outcome.statistics.unresolved.iter().map(|dexel| UnresolvedDexel {
+        i: dexel.i,
+        j: dexel.j,
+        reason: dexel.reason.clone(),
+    });
+    report.dexels = DexelCounts {
+        covered: outcome.dexels.covered(),
+        repaired: outcome.statistics.repaired,
+        unresolved: unresolved.collect(),
+    };
+    report.volume_removed = outcome.volume_removed;
+    report.volume = Some(outcome.dexels.volume());
+    report.notes = job
+        .paths
+        .iter()
+        .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
+        .collect();
+}
+
+/// Writes dexels, mesh and picture.
+fn write(
+    job: &Job,
+    outcome: &Outcome,
+    outputs: &mut Outputs,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<(), Failure> {
+    if outputs.wants(Output::Dexels) {
+        progress.phase("dexels");
+        phase(report, "dexels", || {
+            outputs.write("dexels.csv", |file| write_dexels_csv(&outcome.dexels, file))
+        })?;
+    }
+    if !outputs.wants(Output::Mesh) && !outputs.wants(Output::Picture) {
+        return Ok(());
+    }
+    progress.phase("mesh");
+    let mesh: Mesh = phase(report, "mesh", || surface(&outcome.dexels));
+    if outputs.wants(Output::Mesh) {
+        phase(report, "mesh", || {
+            outputs.write("part.ply", |file| write_ply(&mesh, file))
+        })?;
+    }
+    progress.check()?;
+    if outputs.wants(Output::Picture) {
+        progress.phase("picture");
+        phase(report, "picture", || {
+            let image = picture::render(&mesh, PICTURE);
+            let png = picture::png(&image)
+                .map_err(|error| Failure::message(format!("{}: cannot make the picture: {error}", job.name)))?;
+            outputs.write("part.png", |file| file.write_all(&png))
+        })?;
+    }
+    Ok(())
+}
+
+/// What a person wants to know at the end.
+fn summary(task: Task, job: &Job, report: &Report, outputs: &Outputs, threads: usize, total: f64) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, value: &str| {
+        // A String takes all that is written to it.
+        let _ = writeln!(text, "{label:>10}  {value}");
+    };
+    let [nx, ny] = report.cells;
+    let moves = words::counted(report.moves as u64, "move");
+    let tools = words::counted(job.tools.len() as u64, "tool");
+    line(
+        "job",
+        &format!(
+            "{}: {moves} of {tools} on {} × {} dexels",
+            report.job,
+            words::count(nx as u64),
+            words::count(ny as u64)
+        ),
+    );
+    let volume = report.volume.unwrap_or_default();
+    match report.volume_removed {
+        Some(removed) => {
+            let part = 100.0 * removed / (removed + volume).max(f64::MIN_POSITIVE);
+            line(
+                "removed",
+                &format!("{} mm³, {part:.1} % of the stock", words::measure(removed)),
+            );
+            line("left", &format!("{} mm³", words::measure(volume)));
+        }
+        None => line("swept", &format!("{} mm³", words::measure(volume))),
+    }
+    let counts = &report.dexels;
+    let covered = words::count(counts.covered as u64);
+    let state = match (counts.unresolved.len() as u64, counts.repaired as u64) {
+        (0, 0) => "every count closes".to_owned(),
+        (0, repaired) => format!("every count closes, {} after a repair", words::count(repaired)),
+        (open, _) => format!("{} UNRESOLVED", words::count(open)),
+    };
+    let what = if task == Task::Simulate {
+        "with material left"
+    } else {
+        "touched"
+    };
+    line("dexels", &format!("{covered} {what}; {state}"));
+    let crossings = words::counted(report.crossings, "crossing");
+    let sweep = report.seconds.get("sweep").copied().unwrap_or_default();
+    line(
+        "time",
+        &format!(
+            "{} on {}: {} for {crossings}",
+            words::seconds(total),
+            words::counted(threads as u64, "thread"),
+            words::seconds(sweep),
+        ),
+    );
+    for note in &report.notes {
+        line("note", note);
+    }
+    for open in counts.unresolved.iter().take(NAMED) {
+        line(
+            "unresolved",
+            &format!("dexel ({}, {}): {}", open.i, open.j, open.reason),
+        );
+    }
+    if counts.unresolved.len() > NAMED {
+        line(
+            "",
+            &format!("… and {} more, all in the report", counts.unresolved.len() - NAMED),
+        );
+    }
+    let files: Vec<String> = outputs
+        .written
+        .iter()
+        .map(|(name, size)| format!("{name} ({})", words::bytes(*size)))
+        .collect();
+    line("out", &format!("{}: {}", outputs.folder().display(), files.join(", ")));
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_leads_out_of_the_folder() {
+        assert_eq!(folder_name("a part-1.2"), Path::new("a part-1.2"));
+        assert_eq!(folder_name("../../etc"), Path::new("_.._etc"));
+        assert_eq!(folder_name(".."), Path::new("job"));
+        assert_eq!(folder_name("a/b\\c"), Path::new("a_b_c"));
+        assert_eq!(folder_name("größe"), Path::new("größe"));
+    }
+}

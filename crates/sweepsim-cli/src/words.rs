@@ -1,0 +1,86 @@
+//! Numbers as people read them.
+
+/// `1234567` as `1,234,567`.
+pub(crate) fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// `count` of something, in the plural where it is right.
+pub(crate) fn counted(number: u64, one: &str) -> String {
+    format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" })
+}
+
+/// A measure with about five digits that mean something, and thousands apart.
+pub(crate) fn measure(value: f64) -> String {
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    let whole = value.abs().log10().floor();
+    let decimals = if value == 0.0 {
+        0
+    } else {
+        (4.0 - whole).clamp(0.0, 12.0) as usize
+    };
+    let text = format!("{:.decimals$}", value.abs());
+    let (front, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
+    let sign = if value < 0.0 { "−" } else { "" };
+    match front.parse() {
+        Ok(front) => format!("{sign}{}{rest}", count(front)),
+        Err(_) => format!("{sign}{text}"),
+    }
+}
+
+/// A time.
+pub(crate) fn seconds(value: f64) -> String {
+    if value >= 100.0 {
+        format!("{value:.0} s")
+    } else if value >= 1.0 {
+        format!("{value:.1} s")
+    } else {
+        format!("{:.0} ms", value * 1e3)
+    }
+}
+
+/// A size of a file.
+pub(crate) fn bytes(value: u64) -> String {
+    match value {
+        0..1_000 => format!("{value} B"),
+        1_000..1_000_000 => format!("{:.1} kB", value as f64 / 1e3),
+        _ => format!("{:.1} MB", value as f64 / 1e6),
+    }
+}
+
+/// A point.
+pub(crate) fn point(place: [f64; 3]) -> String {
+    let [x, y, z] = place.map(measure);
+    format!("({x}, {y}, {z})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_easy_to_read() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_234_567), "1,234,567");
+        assert_eq!(counted(1, "move"), "1 move");
+        assert_eq!(counted(1000, "move"), "1,000 moves");
+        assert_eq!(measure(60847.04), "60,847");
+        assert_eq!(measure(-0.012_345_67), "−0.012346");
+        assert_eq!(measure(12.0), "12.000");
+        assert_eq!(measure(0.0), "0");
+        assert_eq!(measure(f64::NAN), "NaN");
+        assert_eq!(seconds(0.0123), "12 ms");
+        assert_eq!(bytes(1_500_000), "1.5 MB");
+    }
+}
