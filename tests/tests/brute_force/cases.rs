@@ -123,7 +123,6 @@ pub fn concave() -> BoxedStrategy<Cutter> {
                 name,
                 tool: tools::scaled_concave(k),
                 radius: 8.0 * k,
-                length: 30.0 * k,
             }
         })
         .boxed()
