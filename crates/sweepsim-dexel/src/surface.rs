@@ -75,7 +75,11 @@ pub fn surface(dexels: &Dexels) -> Mesh {
 /// End `k` of a line, counted from below.
 fn end(dexels: &Dexels, index: usize, k: usize) -> End {
     let interval = dexels.at(index)[k / 2];
-    if k.is_multiple_of(2) { interval.lower } else { interval.upper }
+    if k.is_multiple_of(2) {
+        interval.lower
+    } else {
+        interval.upper
+    }
 }
 
 fn position(dexels: &Dexels, index: usize, end: &End) -> [f64; 3] {
@@ -213,7 +217,11 @@ impl Squares<'_> {
 
     fn z(&self, index: usize, k: usize) -> f64 {
         let interval = &self.dexels.at(index)[k / 2];
-        if k.is_multiple_of(2) { interval.lower.z } else { interval.upper.z }
+        if k.is_multiple_of(2) {
+            interval.lower.z
+        } else {
+            interval.upper.z
+        }
     }
 
     /// The prisms over a triangle.
