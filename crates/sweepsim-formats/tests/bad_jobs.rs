@@ -102,12 +102,12 @@ fn one_message_with_its_place() {
         (
             grid,
             grid.replace("(4, 5)", "(1000000, 1000000)"),
-            "job.ron:4:51: 1000000",
+            "job.ron:4:51: the grid has 1000000 x 1000000 cells",
         ),
         (
             grid,
             grid.replace("(4, 5)", "(1000000000000, 5)"),
-            "job.ron:4:51: 1000000000000",
+            "job.ron:4:51: the grid has 1000000000000 x 5 cells",
         ),
         (
             grid,
@@ -122,7 +122,7 @@ fn one_message_with_its_place() {
         (
             grid,
             grid.replace("max: (10, 10)", "max: (10, -10)"),
-            "job.ron:4:21: the grid is empty in y",
+            "job.ron:4:21: the grid's area from (0, 0) to (10, -10) is empty",
         ),
         (
             stock,
