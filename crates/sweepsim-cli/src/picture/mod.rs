@@ -1,7 +1,7 @@
 //! Pictures of parts, drawn without a graphics card: exact normals, a key light with soft shadows, ambient occlusion.
 //!
-//! The mesh is rasterised four times with its pixels shifted ([`raster`]), each time shaded ([`shade`]) with shadows from a
-//! depth map of the light and with how open each place is to the sky ([`occlusion`]); the mean of the four is the picture.
+//! The mesh is rasterised four times with its pixels shifted (`raster`), each time shaded (`shade`) with shadows from a
+//! depth map of the light and with how open each place is to the sky (`occlusion`); the mean of the four is the picture.
 //! The same bytes come out at any number of threads.
 
 mod camera;
