@@ -48,6 +48,7 @@ pub fn surface(dexels: &Dexels) -> Mesh {
         dexels,
         first,
         diagonals: Vec::new(),
+        stock: mesh.cut.contains(&false),
     };
     lattice.diagonals = (0..(columns - 1) * (rows - 1))
         .into_par_iter()
@@ -147,6 +148,8 @@ struct Squares<'a> {
     first: Vec<u32>,
     /// Of each square, whether the diagonal from its first corner is the cut; otherwise the other one is.
     diagonals: Vec<bool>,
+    /// Whether any of the material's boundary is that of a stock.
+    stock: bool,
 }
 
 fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -371,10 +374,10 @@ impl Squares<'_> {
     fn wall(&self, p: usize, q: usize, (solid, ends): &Side, outside: bool) -> Wall {
         let at = |index: usize, k: usize| {
             let end = end(self.dexels, index, k);
-            (position(self.dexels, index, &end), is_cut(&end))
+            position(self.dexels, index, &end)
         };
-        let [(lower_p, a), (upper_p, b)] = ends[0].map(|k| at(p, k));
-        let [(lower_q, c), (upper_q, d)] = ends[1].map(|k| at(q, k));
+        let [lower_p, upper_p] = ends[0].map(|k| at(p, k));
+        let [lower_q, upper_q] = ends[1].map(|k| at(q, k));
         let along = subtract(lower_q, lower_p);
         let length = along[0].hypot(along[1]);
         let sign = if *solid { 1.0 / length } else { -1.0 / length };
@@ -532,7 +535,7 @@ mod tests {
             });
             let mesh = surface(&dexels);
             prop_assert!(is_closed(&mesh));
-            let squares = Squares { dexels: &dexels, first: vec![], diagonals: vec![true; 12] };
+            let squares = Squares { dexels: &dexels, first: vec![], diagonals: vec![true; 12], stock: false };
             let diagonals: Vec<bool> = (0..12).map(|square| squares.diagonal(square / 3, square % 3)).collect();
             let squares = Squares { diagonals, ..squares };
             let mut expected = 0.0;
