@@ -386,7 +386,7 @@ impl Squares<'_> {
             .into_iter()
             .flat_map(|(index, [lo, hi])| (lo..=hi).map(move |k| is_cut(&end(self.dexels, index, k))));
         let cut = if outside && *solid {
-            (a && b) || (c && d)
+            !self.stock
         } else {
             between.any(|cut| cut)
         };
