@@ -22,6 +22,9 @@ pub trait ChartMap<const N: usize> {
     /// A box, with whatever the map keeps of it.
     type Cell: Clone;
 
+    /// What else is known at a point where the map was evaluated.
+    type Seen: Clone;
+
     /// The box, an interval per variable.
     fn bounds(&self, cell: &Self::Cell) -> [Interval; N];
 
@@ -35,10 +38,21 @@ pub trait ChartMap<const N: usize> {
     fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2];
 
     /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
-    fn evaluate(&self, x: &[f64; N]) -> ([f64; N], [[f64; N]; N]);
+    fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;
 
     /// What counts as a large difference of each value: for the choice of the direction to split.
     fn scales(&self) -> [f64; N];
+}
+
+/// A map at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<const N: usize, S> {
+    /// `Φ`.
+    pub value: [f64; N],
+    /// `∂Φᵢ/∂xⱼ` as `[i][j]`.
+    pub jacobian: [[f64; N]; N],
+    /// What else the map knows there.
+    pub seen: S,
 }
 
 /// A set of right-hand sides with a range query.
@@ -52,11 +66,15 @@ pub trait Targets<const N: usize> {
 
 /// A solution `Φ(x) = q` of one target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Preimage<const N: usize> {
+pub struct Preimage<const N: usize, S = ()> {
     /// The target's number.
     pub target: usize,
     /// The solution.
     pub x: [f64; N],
+    /// Where Newton's method came from in its last step, at most [`ChartOptions::accept`] away.
+    pub from: [f64; N],
+    /// What the map saw there.
+    pub seen: S,
     /// The sign of `det ∂Φ` there: 1 or −1.
     pub orientation: i8,
 }
@@ -83,9 +101,9 @@ pub struct Undecided<const N: usize> {
 }
 
 /// Receives what the search finds.
-pub trait Sink<const N: usize> {
+pub trait Sink<const N: usize, S = ()> {
     /// A solution.
-    fn found(&mut self, preimage: Preimage<N>);
+    fn found(&mut self, preimage: Preimage<N, S>);
     /// A box and a target that remain open.
     fn undecided(&mut self, undecided: Undecided<N>);
 }
@@ -97,6 +115,9 @@ pub struct ChartOptions {
     pub boxes: u64,
     /// A box whose sides are all at most this part of the domain is not split further.
     pub smallest: f64,
+    /// Newton's method ends with a step of at most this part of the half sides of a chart. The solution is then exact to about
+    /// the square of it.
+    pub accept: f64,
 }
 
 impl Default for ChartOptions {
@@ -104,6 +125,7 @@ impl Default for ChartOptions {
         Self {
             boxes: 400_000,
             smallest: 1e-14,
+            accept: 1e-8,
         }
     }
 }
@@ -129,10 +151,10 @@ pub struct ChartSolver<C> {
     stack: Vec<(C, u32)>,
 }
 
-/// Steps of Newton's method before the box is split instead.
-const NEWTON_STEPS: usize = 12;
-/// A Newton step below this part of the box's half width (plus rounding of the coordinate) has converged.
-const CONVERGED: f64 = 1e-13;
+/// Steps in a chart before the box is split instead.
+const STEPS: usize = 32;
+/// When a target can only be so near a face of the box, in half sides, Newton's answer says on which side it is.
+const ON_FACE: f64 = 1e-11;
 /// Boxes with at most this many targets have each of them tested before a split.
 const FEW: usize = 4;
 
@@ -221,10 +243,58 @@ impl<const N: usize> Linear<N> {
 }
 
 /// What became of a target in a chart.
-enum Outcome<const N: usize> {
-    Found([f64; N]),
+enum Outcome<const N: usize, S> {
+    Found {
+        s: SVector<f64, N>,
+        from: [f64; N],
+        seen: S,
+    },
     Absent,
     Unclear,
+}
+
+/// The last targets found in a chart, the latest first: neighbours have neighbouring preimages.
+struct Trail<const N: usize> {
+    found: [([f64; N], SVector<f64, N>); 3],
+    count: usize,
+}
+
+impl<const N: usize> Trail<N> {
+    fn new() -> Self {
+        Self {
+            found: [([0.0; N], SVector::zeros()); 3],
+            count: 0,
+        }
+    }
+
+    fn push(&mut self, q: [f64; N], s: SVector<f64, N>) {
+        self.found.rotate_right(1);
+        self.found[0] = (q, s);
+        self.count = (self.count + 1).min(3);
+    }
+
+    /// Where the preimage of `q` should be, as far as those found are evenly spaced on a line with it.
+    fn guess(&self, q: &[f64; N]) -> Option<SVector<f64, N>> {
+        let even = |next: &[f64; N], at: usize| {
+            let (middle, last) = (&self.found[at].0, &self.found[at + 1].0);
+            let steps = (0..N).map(|i| (next[i] - middle[i], middle[i] - last[i]));
+            let (mut off, mut size) = (0.0_f64, 0.0_f64);
+            for (a, b) in steps {
+                off = off.max((a - b).abs());
+                size = size.max(b.abs());
+            }
+            off <= 1e-6 * size
+        };
+        let [a, b, c] = [0, 1, 2].map(|k| self.found[k].1);
+        if self.count < 2 || !even(q, 0) {
+            return None;
+        }
+        if self.count == 3 && even(&self.found[0].0, 1) {
+            Some((a - b) * 3.0 + c)
+        } else {
+            Some(a * 2.0 - b)
+        }
+    }
 }
 
 impl<C: Clone> ChartSolver<C> {
@@ -245,7 +315,7 @@ impl<C: Clone> ChartSolver<C> {
     where
         M: ChartMap<N, Cell = C>,
         T: Targets<N> + ?Sized,
-        S: Sink<N>,
+        S: Sink<N, M::Seen>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         let domain = map.bounds(&root);
@@ -279,7 +349,7 @@ impl<C: Clone> ChartSolver<C> {
             let linear = Linear::new(&bounds, &jacobian);
             let mut axis = widest(&bounds, &domain, &jacobian, &map.scales());
             if let Some(linear) = linear {
-                let (value, _) = map.evaluate(&linear.centre);
+                let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
                 let chart = linear.norm() < 1.0;
                 let first_found =
@@ -332,104 +402,130 @@ impl<C: Clone> ChartSolver<C> {
     where
         M: ChartMap<N, Cell = C>,
         T: Targets<N> + ?Sized,
-        S: Sink<N>,
+        S: Sink<N, M::Seen>,
     {
         let origin = SVector::<f64, N>::zeros();
         let rows: [f64; N] = std::array::from_fn(|i| linear.rest.row(i).iter().sum());
-        let mut found: smallvec::SmallVec<[(usize, [f64; N]); 16]> = smallvec::SmallVec::new();
+        let mut found: smallvec::SmallVec<[Preimage<N, M::Seen>; 16]> = smallvec::SmallVec::new();
+        let mut trail = Trail::new();
         let mut clear = true;
-        let evaluations = &mut self.statistics.evaluations;
+        let Self {
+            options, statistics, ..
+        } = self;
+        let chart = Chart {
+            linear,
+            bounds,
+            domain,
+            accept: options.accept,
+        };
         targets.visit(values, &mut |target, q| {
             let start = linear.predict(&origin, value, q);
-            if (0..N).any(|i| start[i].abs() > 1.0 + rows[i]) {
+            // By the mean value theorem about the centre the preimage is within `rows` of the prediction.
+            let lo = SVector::from_fn(|i, _| f64::max(start[i] - rows[i], -1.0));
+            let hi = SVector::from_fn(|i, _| f64::min(start[i] + rows[i], 1.0));
+            if (0..N).any(|i| lo[i] > hi[i]) {
                 return true;
             }
-            match solve_in_chart(map, linear, bounds, domain, &start, q, evaluations) {
-                Outcome::Found(x) => found.push((target, x)),
+            let guess = trail.guess(q).unwrap_or(start);
+            match chart.solve(map, guess, [lo, hi], q, &mut statistics.evaluations) {
+                Outcome::Found { s, from, seen } => {
+                    trail.push(*q, s);
+                    found.push(Preimage {
+                        target,
+                        x: linear.point(&s),
+                        from,
+                        seen,
+                        orientation: linear.orientation,
+                    });
+                }
                 Outcome::Absent => {}
                 Outcome::Unclear => clear = false,
             }
             clear
         });
         if clear {
-            for (target, x) in found {
-                sink.found(Preimage {
-                    target,
-                    x,
-                    orientation: linear.orientation,
-                });
-            }
+            found.into_iter().for_each(|preimage| sink.found(preimage));
         }
         clear
     }
 }
 
-/// Newton's method from the prediction; then, if it ends outside the box, a proof that the box holds no preimage.
-fn solve_in_chart<const N: usize, M: ChartMap<N>>(
-    map: &M,
-    linear: &Linear<N>,
-    bounds: &[Interval; N],
-    domain: &[Interval; N],
-    start: &SVector<f64, N>,
-    q: &[f64; N],
-    evaluations: &mut u64,
-) -> Outcome<N> {
-    let mut x = linear.point(&start.map(|s| s.clamp(-1.0, 1.0)));
-    let mut converged = false;
-    for _ in 0..NEWTON_STEPS {
-        let (value, jacobian) = map.evaluate(&x);
-        *evaluations += 1;
-        let scaled = Square::<N>::from_fn(|i, j| jacobian[i][j] * linear.half[j]);
-        let rest = SVector::<f64, N>::from_fn(|i, _| value[i] - q[i]);
-        let Some(step) = solve_linear(&scaled, &rest) else {
-            break;
-        };
-        let mut small = true;
-        for i in 0..N {
-            let change = step[i] * linear.half[i];
-            x[i] -= change;
-            small &= change.abs() <= CONVERGED * linear.half[i] + 2.0 * f64::EPSILON * x[i].abs();
-        }
-        if !x.iter().all(|c| c.is_finite()) || (0..N).any(|i| (x[i] - linear.centre[i]).abs() > 4.0 * linear.half[i]) {
-            break;
-        }
-        if small || step.amax() < 1e-9 {
-            // Quadratic convergence: a step of 1e-9 leaves an error of its square.
-            converged = true;
-            break;
-        }
-    }
-    if converged
-        && (0..N).all(|i| {
-            x[i] >= bounds[i].lo && (x[i] < bounds[i].hi || (x[i] <= bounds[i].hi && bounds[i].hi == domain[i].hi))
-        })
-    {
-        return Outcome::Found(x);
-    }
-    // Absence: shrink the box around where a preimage would have to be, until nothing is left.
-    let mut box_lo = SVector::<f64, N>::repeat(-1.0);
-    let mut box_hi = SVector::<f64, N>::repeat(1.0);
-    for _ in 0..40 {
-        let centre = (box_lo + box_hi) * 0.5;
-        let half = (box_hi - box_lo) * 0.5;
-        let (value, _) = map.evaluate(&linear.point(&centre));
-        *evaluations += 1;
-        let predicted = linear.predict(&centre, &value, q);
-        let reach = linear.rest * half;
-        for i in 0..N {
-            box_lo[i] = box_lo[i].max(predicted[i] - reach[i]);
-            box_hi[i] = box_hi[i].min(predicted[i] + reach[i]);
-            if box_lo[i] > box_hi[i] {
+/// A box on which the map is injective.
+struct Chart<'a, const N: usize> {
+    linear: &'a Linear<N>,
+    bounds: &'a [Interval; N],
+    domain: &'a [Interval; N],
+    accept: f64,
+}
+
+impl<const N: usize> Chart<'_, N> {
+    /// Newton's method from `guess`. Each point that it evaluates in the box also bounds, by the mean value theorem about it,
+    /// where in the box a preimage can be; when nothing is left, there is none.
+    fn solve<M: ChartMap<N>>(
+        &self,
+        map: &M,
+        guess: SVector<f64, N>,
+        [mut lo, mut hi]: [SVector<f64, N>; 2],
+        q: &[f64; N],
+        evaluations: &mut u64,
+    ) -> Outcome<N, M::Seen> {
+        let linear = self.linear;
+        let mut s = guess;
+        for _ in 0..STEPS {
+            // A guess that is not a number goes to the middle.
+            s = SVector::from_fn(|i, _| {
+                if s[i].is_nan() {
+                    0.5 * (lo[i] + hi[i])
+                } else {
+                    s[i].clamp(lo[i], hi[i])
+                }
+            });
+            let from = linear.point(&s);
+            let sample = map.evaluate(&from);
+            *evaluations += 1;
+            let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
+            let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
+            let next = solve_linear(&scaled, &rest).map(|step| s - step);
+            if let Some(next) = next
+                && (next - s).amax() <= self.accept
+                && self.owns(&next)
+            {
+                return Outcome::Found {
+                    s: next,
+                    from,
+                    seen: sample.seen,
+                };
+            }
+            let predicted = s - linear.inverse * rest;
+            let far = SVector::from_fn(|i, _| f64::max(hi[i] - s[i], s[i] - lo[i]));
+            let reach = linear.rest * far;
+            for i in 0..N {
+                lo[i] = lo[i].max(predicted[i] - reach[i]);
+                hi[i] = hi[i].min(predicted[i] + reach[i]);
+            }
+            if (0..N).any(|i| lo[i] > hi[i]) {
                 return Outcome::Absent;
             }
+            if (hi - lo).amax() < ON_FACE {
+                return if next.is_some() {
+                    Outcome::Absent
+                } else {
+                    Outcome::Unclear
+                };
+            }
+            s = next.unwrap_or(predicted);
         }
-        let width = (box_hi - box_lo).amax();
-        if width < 1e-11 {
-            // On a face to within rounding: Newton's answer says on which side.
-            return if converged { Outcome::Absent } else { Outcome::Unclear };
-        }
+        Outcome::Unclear
     }
-    Outcome::Unclear
+
+    /// Whether a point is in the box; of its faces only the lower ones, and upper ones of the domain, belong to it.
+    fn owns(&self, s: &SVector<f64, N>) -> bool {
+        let x = self.linear.point(s);
+        (0..N).all(|i| {
+            let (side, end) = (&self.bounds[i], self.domain[i].hi);
+            x[i] >= side.lo && (x[i] < side.hi || (x[i] <= side.hi && side.hi == end))
+        })
+    }
 }
 
 /// `A⁻¹ b` for a small matrix.

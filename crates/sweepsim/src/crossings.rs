@@ -1,7 +1,7 @@
 //! All crossings of dexel lines with the boundary of a stretch of path: envelope, edges, kinks and the two caps.
 
 use crate::element::{Cells, Element};
-use crate::envelope::{Face, Joint, ROOT, Rim, Side, Size, Twist};
+use crate::envelope::{Face, Joint, Near, ROOT, Rim, Side, Size, Twist};
 use crate::generic::Part;
 use crate::lattice::Lattice;
 use crate::time::Times;
@@ -44,8 +44,12 @@ pub(crate) struct Workspace {
 }
 
 impl Workspace {
-    pub fn new(cutter: &Cutter) -> Self {
-        let options = ChartOptions::default();
+    /// `accept`: see [`ChartOptions`].
+    pub fn new(cutter: &Cutter, accept: f64) -> Self {
+        let options = ChartOptions {
+            accept,
+            ..ChartOptions::default()
+        };
         Self {
             faces: cutter.faces.iter().map(Cells::new).collect(),
             rims: cutter.rims.iter().map(Cells::new).collect(),
@@ -68,12 +72,12 @@ pub(crate) struct Harvest {
 }
 
 /// Preimages of one map.
-pub(crate) struct Collector<const N: usize> {
-    pub found: Vec<Preimage<N>>,
+pub(crate) struct Collector<const N: usize, S> {
+    pub found: Vec<Preimage<N, S>>,
     pub open: Vec<(u32, Reason)>,
 }
 
-impl<const N: usize> Collector<N> {
+impl<const N: usize, S> Collector<N, S> {
     pub fn new() -> Self {
         Self {
             found: Vec::new(),
@@ -82,8 +86,8 @@ impl<const N: usize> Collector<N> {
     }
 }
 
-impl<const N: usize> Sink<N> for Collector<N> {
-    fn found(&mut self, preimage: Preimage<N>) {
+impl<const N: usize, S> Sink<N, S> for Collector<N, S> {
+    fn found(&mut self, preimage: Preimage<N, S>) {
         self.found.push(preimage);
     }
 
@@ -193,19 +197,16 @@ impl Search<'_> {
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::<3>::new();
+            let mut sink = Collector::new();
             space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
-            for Preimage { target, x, orientation } in sink.found {
-                let (point, moment) = (element.evaluate(&x[..2]), times.at(x[2]));
-                harvest.crossings.push((
-                    target as u32,
-                    Crossing {
-                        z: (moment.turn * point.position).z + moment.tip.z,
-                        jump: orientation,
-                        normal: unit(moment.turn * point.fields[0].normal[0]),
-                        source: source(x[2]),
-                    },
-                ));
+            for found in sink.found {
+                let crossing = Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: found.orientation,
+                    normal: unit(found.seen.normal),
+                    source: source(found.x[2]),
+                };
+                harvest.crossings.push((found.target as u32, crossing));
             }
             harvest.open.extend(sink.open);
         }
@@ -220,34 +221,23 @@ impl Search<'_> {
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::<2>::new();
+            let mut sink = Collector::new();
             space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
-            for Preimage { target, x, orientation } in sink.found {
-                let point = element.evaluate(&x[..1]);
-                let [a, b] = map.sides(&point, x[1]);
+            for found in sink.found {
+                let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
                 if (a < 0.0) == (b < 0.0) {
                     continue;
                 }
-                let moment = map.times.at(x[1]);
                 // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = [0, 1].map(|side| point.fields[side].normal[0].normalize());
-                let (a, b) = (
-                    a.abs() / point.fields[0].normal[0].norm(),
-                    b.abs() / point.fields[1].normal[0].norm(),
-                );
-                harvest.crossings.push((
-                    target as u32,
-                    Crossing {
-                        z: (moment.turn * point.position).z + moment.tip.z,
-                        jump: if a_below(map.sides(&point, x[1])) {
-                            -orientation
-                        } else {
-                            orientation
-                        },
-                        normal: unit(moment.turn * (n * b + m * a)),
-                        source: source(x[1]),
-                    },
-                ));
+                let [n, m] = found.seen.normals;
+                let (n, m) = (n / n.norm() * (b.abs() / m.norm()), m / m.norm() * (a.abs() / n.norm()));
+                let crossing = Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: if a < 0.0 { -found.orientation } else { found.orientation },
+                    normal: unit(n + m),
+                    source: source(found.x[1]),
+                };
+                harvest.crossings.push((found.target as u32, crossing));
             }
             harvest.open.extend(sink.open);
         }
@@ -256,49 +246,35 @@ impl Search<'_> {
 
     fn joint(&self, placed: &Placed, space: &mut Workspace, harvest: &mut Harvest) {
         for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
-            let Placed {
-                turn,
-                tip,
-                before,
-                after,
-                source,
-            } = *placed;
             let mut map = Joint {
                 element,
                 cells,
-                turn,
-                tip,
-                before,
-                after,
+                turn: placed.turn,
+                tip: placed.tip,
+                before: placed.before,
+                after: placed.after,
                 size: self.size,
             };
-            let mut sink = Collector::<2>::new();
+            let mut sink = Collector::new();
             space.placed.solve(&mut map, 0, self.lattice, &mut sink);
-            for Preimage { target, x, orientation } in sink.found {
-                let point = element.evaluate(&x);
-                let change = i8::from(after.negative_at(&point)) - i8::from(before.negative_at(&point));
+            for found in sink.found {
+                let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
+                let change = negative(found.seen.after) - negative(found.seen.before);
                 if change == 0 {
                     continue;
                 }
-                harvest.crossings.push((
-                    target as u32,
-                    Crossing {
-                        z: (turn * point.position).z + tip.z,
-                        jump: -orientation * change,
-                        normal: unit(turn * point.fields[0].normal[0]),
-                        source,
-                    },
-                ));
+                let crossing = Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: -found.orientation * change,
+                    normal: unit(found.seen.normal),
+                    source: placed.source,
+                };
+                harvest.crossings.push((found.target as u32, crossing));
             }
             harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.placed.statistics);
     }
-}
-
-/// Whether `g_B − g_A` is positive, given that just one of the two is negative.
-fn a_below([a, _]: [f64; 2]) -> bool {
-    a < 0.0
 }
 
 impl Harvest {

@@ -13,7 +13,7 @@
 use crate::element::{Cells, Element, Point, Triples};
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
-use sweepsim_solve::{ChartMap, Interval};
+use sweepsim_solve::{ChartMap, Interval, Sample};
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -66,6 +66,44 @@ pub(crate) struct Size {
     pub slack: f64,
 }
 
+/// A function near a point: its value and its derivatives there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<const N: usize> {
+    value: f64,
+    slope: [f64; N],
+}
+
+impl<const N: usize> Near<N> {
+    /// The value at `x`, to first order from the point `from`.
+    pub fn at(&self, x: &[f64; N], from: &[f64; N]) -> f64 {
+        (0..N).fold(self.value, |sum, k| sum + self.slope[k] * (x[k] - from[k]))
+    }
+}
+
+/// What is seen on a patch: height, and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnFace {
+    pub height: Near<3>,
+    pub normal: Vector3<f64>,
+}
+
+/// What is seen on an edge: height, and of both faces `g` and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnRim {
+    pub height: Near<2>,
+    pub sides: [Near<2>; 2],
+    pub normals: [Vector3<f64>; 2],
+}
+
+/// What is seen on a placed patch: height, `g` before and after, and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnJoint {
+    pub height: Near<2>,
+    pub before: Near<2>,
+    pub after: Near<2>,
+    pub normal: Vector3<f64>,
+}
+
 /// A patch under a motion.
 pub(crate) struct Face<'a> {
     pub element: &'a Element,
@@ -87,6 +125,7 @@ fn envelope_size(element: &Element, times: &Times) -> f64 {
 
 impl ChartMap<3> for Face<'_> {
     type Cell = Brick;
+    type Seen = OnFace;
 
     fn bounds(&self, cell: &Brick) -> [Interval; 3] {
         let of = |axis| interval(self.cells.bounds(cell.0, axis));
@@ -134,24 +173,31 @@ impl ChartMap<3> for Face<'_> {
         }
     }
 
-    fn evaluate(&self, x: &[f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+    fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnFace> {
         let point = self.element.evaluate(&x[..2]);
         let moment = self.times.at(x[2]);
         let spin = Vector3::from(self.times.spin);
         let place = moment.turn * point.position + moment.tip;
         let slopes = [moment.turn * point.slopes[0], moment.turn * point.slopes[1]];
-        let moving = moment.spin * point.position + self.times.velocity;
+        let moving = moment.moving(&point.position) + self.times.velocity;
         let field = &point.fields[0];
         let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
         let g_t = moment.travel_slope.dot(&field.normal[0]);
-        (
-            [place.x, place.y, g(0)],
-            [
+        Sample {
+            value: [place.x, place.y, g(0)],
+            jacobian: [
                 [slopes[0].x, slopes[1].x, moving.x],
                 [slopes[0].y, slopes[1].y, moving.y],
                 [g(1), g(2), g_t],
             ],
-        )
+            seen: OnFace {
+                height: Near {
+                    value: place.z,
+                    slope: [slopes[0].z, slopes[1].z, moving.z],
+                },
+                normal: moment.turn * field.normal[0],
+            },
+        }
     }
 
     fn scales(&self) -> [f64; 3] {
@@ -205,6 +251,7 @@ fn negative((lo, hi): (f64, f64), error: f64) -> Option<bool> {
 
 impl ChartMap<2> for Rim<'_> {
     type Cell = Brick;
+    type Seen = OnRim;
 
     fn bounds(&self, cell: &Brick) -> [Interval; 2] {
         [
@@ -239,29 +286,37 @@ impl ChartMap<2> for Rim<'_> {
         }
     }
 
-    fn evaluate(&self, x: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+    fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnRim> {
         let point = self.element.evaluate(&x[..1]);
         let moment = self.times.at(x[1]);
+        let spin = Vector3::from(self.times.spin);
         let place = moment.turn * point.position + moment.tip;
         let slope = moment.turn * point.slopes[0];
-        let moving = moment.spin * point.position + self.times.velocity;
-        ([place.x, place.y], [[slope.x, moving.x], [slope.y, moving.y]])
+        let moving = moment.moving(&point.position) + self.times.velocity;
+        let side = |k: usize| {
+            let field = &point.fields[k];
+            let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
+            Near {
+                value: g(0),
+                slope: [g(1), moment.travel_slope.dot(&field.normal[0])],
+            }
+        };
+        Sample {
+            value: [place.x, place.y],
+            jacobian: [[slope.x, moving.x], [slope.y, moving.y]],
+            seen: OnRim {
+                height: Near {
+                    value: place.z,
+                    slope: [slope.z, moving.z],
+                },
+                sides: [side(0), side(1)],
+                normals: [0, 1].map(|k| moment.turn * point.fields[k].normal[0]),
+            },
+        }
     }
 
     fn scales(&self) -> [f64; 2] {
         self.size.spacing
-    }
-}
-
-impl Rim<'_> {
-    /// `g_A` and `g_B` at a point.
-    pub fn sides(&self, point: &Point, t: f64) -> [f64; 2] {
-        let travel = self.times.at(t).travel;
-        let spin = Vector3::from(self.times.spin);
-        [0, 1].map(|side| {
-            let field = &point.fields[side];
-            spin.dot(&field.moment[0]) + travel.dot(&field.normal[0])
-        })
     }
 }
 
@@ -292,13 +347,21 @@ impl Side {
         }
     }
 
-    pub fn negative_at(&self, point: &Point) -> bool {
+    /// `g` at a point; its sign alone where there is no motion.
+    fn near(&self, point: &Point) -> Near<2> {
         match self {
-            Self::Beyond(negative) => *negative,
+            Self::Beyond(negative) => Near {
+                value: if *negative { -1.0 } else { 1.0 },
+                slope: [0.0; 2],
+            },
             Self::Moving(twist) => {
                 let field = &point.fields[0];
-                Vector3::from(twist.spin).dot(&field.moment[0]) + Vector3::from(twist.travel).dot(&field.normal[0])
-                    < 0.0
+                let (spin, travel) = (Vector3::from(twist.spin), Vector3::from(twist.travel));
+                let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
+                Near {
+                    value: g(0),
+                    slope: [g(1), g(2)],
+                }
             }
         }
     }
@@ -323,6 +386,7 @@ impl Joint<'_> {
 
 impl ChartMap<2> for Joint<'_> {
     type Cell = u32;
+    type Seen = OnJoint;
 
     fn bounds(&self, cell: &u32) -> [Interval; 2] {
         [0, 1].map(|axis| interval(self.cells.bounds(*cell, axis)))
@@ -350,14 +414,23 @@ impl ChartMap<2> for Joint<'_> {
         self.cells.split(self.element, *cell, axis)
     }
 
-    fn evaluate(&self, x: &[f64; 2]) -> ([f64; 2], [[f64; 2]; 2]) {
+    fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnJoint> {
         let point = self.element.evaluate(x);
         let place = self.turn * point.position + self.tip;
         let slopes = [self.turn * point.slopes[0], self.turn * point.slopes[1]];
-        (
-            [place.x, place.y],
-            [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]],
-        )
+        Sample {
+            value: [place.x, place.y],
+            jacobian: [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]],
+            seen: OnJoint {
+                height: Near {
+                    value: place.z,
+                    slope: [slopes[0].z, slopes[1].z],
+                },
+                before: self.before.near(&point),
+                after: self.after.near(&point),
+                normal: self.turn * point.fields[0].normal[0],
+            },
+        }
     }
 
     fn scales(&self) -> [f64; 2] {

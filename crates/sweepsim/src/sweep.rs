@@ -234,6 +234,8 @@ pub fn sweep(
             spacing: grid.spacing(),
             slack: 64.0 * f64::EPSILON * size,
         },
+        // The square of the last step, times lengths of the tool's size, is a small part of the tolerance.
+        accept: (1e-3 * tolerance / size).sqrt().clamp(1e-9, 1e-5),
         spaces: Mutex::new(Vec::new()),
         monitor,
     };
@@ -266,6 +268,7 @@ struct Job<'a> {
     method: Method,
     path: u16,
     size: Size,
+    accept: f64,
     /// Workspaces that no worker uses just now.
     spaces: Mutex<Vec<Workspace>>,
     monitor: &'a dyn Monitor,
@@ -275,7 +278,7 @@ impl Job<'_> {
     /// Runs `work` with a workspace.
     fn with_space<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.spaces.lock().map(|mut spaces| spaces.pop()).unwrap_or_default();
-        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter));
+        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter, self.accept));
         let result = work(&mut space);
         if let Ok(mut spaces) = self.spaces.lock() {
             spaces.push(space);

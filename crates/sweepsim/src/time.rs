@@ -35,7 +35,8 @@ pub(crate) struct Times {
     pub spin: [f64; 3],
     pub tips: [Vector3<f64>; 2],
     pub velocity: Vector3<f64>,
-    spin_matrix: Matrix3<f64>,
+    /// `κ k`.
+    pace: Vector3<f64>,
 }
 
 impl Times {
@@ -51,7 +52,7 @@ impl Times {
             spin: (segment.start().transpose() * segment.spin()).into(),
             tips: *segment.tips(),
             velocity: segment.travel(),
-            spin_matrix: segment.spin().cross_matrix(),
+            pace: segment.spin(),
         };
         let root = times.node(0.0, 1.0, turns, weights);
         times.nodes.push(root);
@@ -74,7 +75,7 @@ impl Times {
         };
         for i in 0..self.count {
             let turn = turns[i] / weights[i];
-            let spin = self.spin_matrix * turn;
+            let spin = self.pace.cross_matrix() * turn;
             for r in 0..2 {
                 node.rows[r][i] = row(&turn, r);
                 node.spin_rows[r][i] = row(&spin, r);
@@ -163,7 +164,7 @@ impl Times {
                 tip,
                 travel,
                 travel_slope: Vector3::zeros(),
-                spin: Matrix3::zeros(),
+                spin: Vector3::zeros(),
             };
         }
         let s = 1.0 - t;
@@ -183,7 +184,7 @@ impl Times {
             tip,
             travel,
             travel_slope: slope,
-            spin: self.spin_matrix * turn / weight,
+            spin: self.pace / weight,
         }
     }
 }
@@ -199,6 +200,13 @@ pub(crate) struct Moment {
     pub travel: Vector3<f64>,
     /// Its derivative.
     pub travel_slope: Vector3<f64>,
-    /// `A′`.
-    pub spin: Matrix3<f64>,
+    /// The angular velocity, in space.
+    spin: Vector3<f64>,
+}
+
+impl Moment {
+    /// `A′ F`: how a point of the tool moves by the turn alone.
+    pub fn moving(&self, position: &Vector3<f64>) -> Vector3<f64> {
+        self.spin.cross(&(self.turn * position))
+    }
 }
