@@ -32,6 +32,22 @@ pub struct Patch {
     pub weight: Bernstein,
     /// Its normals.
     pub field: NormalField,
+    /// The same as products of functions of `u` and of `v`, where it is a piece of a surface of revolution.
+    pub revolved: Option<Revolved>,
+}
+
+/// A piece of a surface of revolution about the third axis of a frame of its own, as products of quadratic Bernstein forms.
+///
+/// In that frame, with circle `c, s, w` in `u` and meridian `ρ, ζ, ω, n_ρ, n_ζ, m` in `v`:
+/// `F = (c ρ, s ρ, w ζ) / (w ω)`, `N = (c n_ρ, s n_ρ, w n_ζ)`, `F × N = (−s m, c m, 0)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Revolved {
+    /// Coefficients in `u`: cosine, sine and weight.
+    pub circle: [[f64; 3]; 3],
+    /// Coefficients in `v`: radius, height and weight, then of the normal its radius and height, then the moment.
+    pub meridian: [[f64; 3]; 6],
+    /// How the frame is turned and where its origin is in the tool; `None` when it is the tool's.
+    pub frame: Option<(Matrix3<f64>, Vector3<f64>)>,
 }
 
 /// A sharp edge `C(r) = position / weight` on `[0, 1]` between the faces A and B; `C_r ×` (direction from A to B) points out.
@@ -160,7 +176,29 @@ impl Meridian {
                     zero(),
                 ],
             },
+            revolved: Some(Revolved {
+                circle: [quarter.cosine, quarter.sine, QUARTER_WEIGHT],
+                meridian: [
+                    &self.rho,
+                    &self.zeta,
+                    &self.weight,
+                    &self.normal_rho,
+                    &self.normal_zeta,
+                    &self.moment,
+                ]
+                .map(|list| quadratic(list)),
+                frame: None,
+            }),
         }
+    }
+}
+
+/// A list of two or three Bernstein coefficients as one of three.
+fn quadratic(list: &[f64]) -> [f64; 3] {
+    match *list {
+        [a, b, c] => [a, b, c],
+        [a, b] => [a, 0.5 * a + 0.5 * b, b],
+        _ => [list[0]; 3],
     }
 }
 
@@ -194,6 +232,7 @@ fn disk(radius: f64, zeta: f64, up: bool) -> Patch {
             normal: [zero(), zero(), take(&|i| facing * w[i])],
             moment: [take(&|i| facing * py(i)), take(&|i| -facing * px(i)), zero()],
         },
+        revolved: None,
     }
 }
 
@@ -229,7 +268,7 @@ fn half_ball(radius: f64, zeta: f64, above: bool) -> Vec<Patch> {
     patches
 }
 
-/// A patch turned by `turn`, then moved by `shift`.
+/// A patch of the tool's own frame turned by `turn`, then moved by `shift`.
 fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Patch {
     let combine = |forms: &[Bernstein; 3], row: usize, extra: &[(f64, &Bernstein)]| {
         let mut coefficients = vec![0.0; forms[0].coefficients().len()];
@@ -252,6 +291,10 @@ fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Patch {
         position: [0, 1, 2].map(|row| combine(&patch.position, row, &[(shift[row], &patch.weight)])),
         weight: patch.weight.clone(),
         field: NormalField { normal, moment },
+        revolved: patch.revolved.clone().map(|revolved| Revolved {
+            frame: Some((*turn, *shift)),
+            ..revolved
+        }),
     }
 }
 

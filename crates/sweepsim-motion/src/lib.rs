@@ -6,7 +6,7 @@ mod profile;
 mod segment;
 mod tool;
 
-pub use boundary::{Edge, NormalField, Patch};
+pub use boundary::{Edge, NormalField, Patch, Revolved};
 pub use path::{Path, PathError};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, Turn};

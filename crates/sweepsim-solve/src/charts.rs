@@ -15,7 +15,7 @@
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 use crate::Interval;
-use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
+use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum, Vector3};
 
 /// A map `R^N → R^N` with enclosures over boxes.
 pub trait ChartMap<const N: usize> {
@@ -486,15 +486,16 @@ impl<const N: usize> Chart<'_, N> {
             let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
             let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
             let next = solve_linear(&scaled, &rest).map(|step| s - step);
+            let found = |s| Outcome::Found {
+                s,
+                from,
+                seen: sample.seen.clone(),
+            };
             if let Some(next) = next
                 && (next - s).amax() <= self.accept
                 && self.owns(&next)
             {
-                return Outcome::Found {
-                    s: next,
-                    from,
-                    seen: sample.seen,
-                };
+                return found(next);
             }
             let predicted = s - linear.inverse * rest;
             let far = SVector::from_fn(|i, _| f64::max(hi[i] - s[i], s[i] - lo[i]));
@@ -507,10 +508,10 @@ impl<const N: usize> Chart<'_, N> {
                 return Outcome::Absent;
             }
             if (hi - lo).amax() < ON_FACE {
-                return if next.is_some() {
-                    Outcome::Absent
-                } else {
-                    Outcome::Unclear
+                return match next {
+                    Some(next) if self.owns(&next) => found(next),
+                    Some(next) if (next - s).amax() <= self.accept => Outcome::Absent,
+                    _ => Outcome::Unclear,
                 };
             }
             s = next.unwrap_or(predicted);
@@ -530,6 +531,17 @@ impl<const N: usize> Chart<'_, N> {
 
 /// `A⁻¹ b` for a small matrix.
 fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Option<SVector<f64, N>> {
+    if N == 3 {
+        // Cramer's rule: Newton's method corrects what it loses.
+        let column = |j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
+        let (x, y, z, b) = (column(0), column(1), column(2), Vector3::new(b[0], b[1], b[2]));
+        let (yz, xb) = (y.cross(&z), x.cross(&b));
+        let determinant = x.dot(&yz);
+        let inverse = 1.0 / determinant;
+        let solution = [b.dot(&yz) * inverse, z.dot(&xb) * inverse, -y.dot(&xb) * inverse];
+        return (inverse.is_finite() && solution.iter().all(|x| x.is_finite()))
+            .then(|| SVector::from_fn(|i, _| solution[i]));
+    }
     let mut a = *matrix;
     let mut x = *b;
     for k in 0..N {

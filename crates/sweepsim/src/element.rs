@@ -5,8 +5,9 @@
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
 use crate::form::{Form, MOST, basis, cut};
-use nalgebra::Vector3;
-use sweepsim_motion::{Edge, NormalField, Patch, Tool};
+use crate::point::{FacePoint, FieldPoint, RimPoint, revolved};
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
 
 /// Cuts are off the middle, so that what is symmetric does not lie on them.
 pub(crate) const CUT: f64 = 0.492;
@@ -37,6 +38,8 @@ pub(crate) struct Element {
     /// Largest coefficients of `N` and `M`.
     pub largest_normal: f64,
     pub largest_moment: f64,
+    /// A shorter way to its points, where there is one.
+    revolved: Option<Revolved>,
 }
 
 /// The tensors of a cell: position x, y, z, weight; then per variable the same of the derivative; then per field N, M.
@@ -57,7 +60,11 @@ impl Element {
     }
 
     fn patch(patch: &Patch) -> Self {
-        Self::new(&patch.position, &patch.weight, &[&patch.field], 2)
+        let element = Self::new(&patch.position, &patch.weight, &[&patch.field], 2);
+        Self {
+            revolved: patch.revolved.clone(),
+            ..element
+        }
     }
 
     fn edge(edge: &Edge) -> Self {
@@ -124,54 +131,78 @@ impl Element {
             layout,
             largest_normal: largest[0],
             largest_moment: largest[1],
+            revolved: None,
         }
     }
 
-    /// Position, its derivatives, and per field `N`, `M` and their derivatives, at a point.
-    pub fn evaluate(&self, x: &[f64]) -> Point {
-        let mut point = Point::default();
-        let at = [x[0], x.get(1).copied().unwrap_or(0.0)];
-        let variables = self.layout.slopes.len();
-        let mut sums = [[0.0; 3]; 6];
-        self.sums::<4>(&self.layout.position, at, &mut sums);
-        let weight = sums[3];
-        for k in 0..3 {
-            point.position[k] = sums[k][0] / weight[0];
-            for axis in 0..variables {
-                point.slopes[axis][k] = (sums[k][axis + 1] - point.position[k] * weight[axis + 1]) / weight[0];
-            }
+    /// A point of a patch, in the frame of [`Element::frame`].
+    pub fn face(&self, [u, v]: [f64; 2]) -> FacePoint {
+        match &self.revolved {
+            Some(revolution) => revolved(revolution, u, v),
+            None => self.face_in_general([u, v]),
         }
-        for (index, slot) in self.layout.fields.iter().enumerate() {
-            self.sums::<6>(slot, at, &mut sums);
-            let field = &mut point.fields[index];
-            for k in 0..3 {
-                for d in 0..=variables {
-                    field.normal[d][k] = sums[k][d];
-                    field.moment[d][k] = sums[k + 3][d];
-                }
-            }
+    }
+
+    /// The frame of the points of [`Element::face`] in the tool; `None` when it is the tool's.
+    pub fn frame(&self) -> Option<&(Matrix3<f64>, Vector3<f64>)> {
+        self.revolved.as_ref().and_then(|revolution| revolution.frame.as_ref())
+    }
+
+    /// The point of a patch, from its tensors.
+    fn face_in_general(&self, at: [f64; 2]) -> FacePoint {
+        let (position, slopes) = self.position_at(at);
+        FacePoint {
+            position,
+            slopes,
+            field: self.field_at(0, at),
         }
-        point
+    }
+
+    /// The point of an edge.
+    pub fn rim(&self, r: f64) -> RimPoint {
+        let at = [r, 0.0];
+        let (position, slopes) = self.position_at(at);
+        RimPoint {
+            position,
+            slope: slopes[0],
+            fields: [self.field_at(0, at), self.field_at(1, at)],
+        }
+    }
+
+    fn position_at(&self, at: [f64; 2]) -> (Vector3<f64>, [Vector3<f64>; 2]) {
+        let sums = self.sums::<4>(&self.layout.position, at);
+        let value = Vector3::new(sums[0][0], sums[1][0], sums[2][0]) / sums[3][0];
+        let slope = |d: usize| (Vector3::new(sums[0][d], sums[1][d], sums[2][d]) - value * sums[3][d]) / sums[3][0];
+        (value, [slope(1), slope(2)])
+    }
+
+    fn field_at(&self, field: usize, at: [f64; 2]) -> FieldPoint {
+        let sums = self.sums::<6>(&self.layout.fields[field], at);
+        let vector = |first: usize, d: usize| Vector3::new(sums[first][d], sums[first + 1][d], sums[first + 2][d]);
+        FieldPoint {
+            normal: [0, 1, 2].map(|d| vector(0, d)),
+            moment: [0, 1, 2].map(|d| vector(3, d)),
+        }
     }
 
     /// Value and both derivatives of `COUNT` tensors in a row.
-    fn sums<const COUNT: usize>(&self, slot: &Slot, at: [f64; 2], sums: &mut [[f64; 3]; 6]) {
+    fn sums<const COUNT: usize>(&self, slot: &Slot, at: [f64; 2]) -> [[f64; 3]; COUNT] {
         let [p, q] = slot.degrees;
         let c = &self.whole[slot.start..][..COUNT * slot.len()];
         match (p, q) {
-            (2, 0) => sums_of::<COUNT, 3, 1>(c, at, sums),
-            (2, 1) => sums_of::<COUNT, 3, 2>(c, at, sums),
-            (2, 2) => sums_of::<COUNT, 3, 3>(c, at, sums),
-            _ => sums_in_general::<COUNT>(c, slot.degrees, at, sums),
+            (2, 0) => sums_of::<COUNT, 3, 1>(c, at),
+            (2, 1) => sums_of::<COUNT, 3, 2>(c, at),
+            (2, 2) => sums_of::<COUNT, 3, 3>(c, at),
+            _ => sums_in_general::<COUNT>(c, slot.degrees, at),
         }
     }
 }
 
 /// As [`sums_in_general`], for degrees `P − 1` and `Q − 1` known to the compiler.
-fn sums_of<const COUNT: usize, const P: usize, const Q: usize>(c: &[f64], at: [f64; 2], sums: &mut [[f64; 3]; 6]) {
+fn sums_of<const COUNT: usize, const P: usize, const Q: usize>(c: &[f64], at: [f64; 2]) -> [[f64; 3]; COUNT] {
+    let mut sums = [[0.0; 3]; COUNT];
     let ([a, da], [b, db]) = (small_basis::<P>(at[0]), small_basis::<Q>(at[1]));
     for (sum, c) in sums.iter_mut().zip(c.chunks_exact(P * Q)) {
-        *sum = [0.0; 3];
         for j in 0..Q {
             let (mut value, mut slope) = (0.0, 0.0);
             for i in 0..P {
@@ -183,6 +214,7 @@ fn sums_of<const COUNT: usize, const P: usize, const Q: usize>(c: &[f64], at: [f
             sum[2] += db[j] * value;
         }
     }
+    sums
 }
 
 /// Bernstein polynomials of degree `N − 1 ≤ 2` and their derivatives.
@@ -200,13 +232,13 @@ fn small_basis<const N: usize>(x: f64) -> [[f64; N]; 2] {
 }
 
 /// Value and both derivatives of `COUNT` tensors of any degrees.
-fn sums_in_general<const COUNT: usize>(c: &[f64], [p, q]: [usize; 2], at: [f64; 2], sums: &mut [[f64; 3]; 6]) {
+fn sums_in_general<const COUNT: usize>(c: &[f64], [p, q]: [usize; 2], at: [f64; 2]) -> [[f64; 3]; COUNT] {
+    let mut sums = [[0.0; 3]; COUNT];
     let mut bases = [[0.0; MOST]; 4];
     let [a, da, b, db] = &mut bases;
     basis(p, at[0], a, da);
     basis(q, at[1], b, db);
     for (sum, c) in sums.iter_mut().zip(c.chunks_exact((p + 1) * (q + 1))) {
-        *sum = [0.0; 3];
         for (j, row) in c.chunks_exact(p + 1).enumerate() {
             let (mut value, mut slope) = (0.0, 0.0);
             for i in 0..=p {
@@ -218,20 +250,7 @@ fn sums_in_general<const COUNT: usize>(c: &[f64], [p, q]: [usize; 2], at: [f64; 
             sum[2] += db[j] * value;
         }
     }
-}
-
-/// An element at one parameter point: index 0 the value, 1 and 2 the derivatives.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Point {
-    pub position: Vector3<f64>,
-    pub slopes: [Vector3<f64>; 2],
-    pub fields: [FieldPoint; 2],
-}
-
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FieldPoint {
-    pub normal: [Vector3<f64>; 3],
-    pub moment: [Vector3<f64>; 3],
+    sums
 }
 
 /// A vector-valued list of coefficients: x, y and z apart.
@@ -435,5 +454,36 @@ impl Cells {
             Triples::new(points, start, len),
             Triples::new(points, start + 3 * len, len),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The short way to the points of surfaces of revolution is the general one, turned into their frame.
+        #[test]
+        fn products_agree_with_tensors(u in 0.0..1.0, v in 0.0..1.0, radius in 0.5..20.0) {
+            let tools = [Tool::ball(radius, 3.0 * radius), Tool::bull(radius, 0.3 * radius, 2.0 * radius)];
+            for element in tools.into_iter().flat_map(|tool| Element::all(&tool.unwrap()).0) {
+                let (short, long) = (element.face([u, v]), element.face_in_general([u, v]));
+                let (turn, shift) = element.frame().copied().unwrap_or((Matrix3::identity(), Vector3::zeros()));
+                // A few dozen roundings of numbers of the size of the tool, its normals (of size 1) and their slopes.
+                let near = |a: Vector3<f64>, b: Vector3<f64>, size: f64| (a - b).amax() <= 1e-14 * size;
+                let size = 10.0 * radius;
+                prop_assert!(near(turn * short.position + shift, long.position, size));
+                for axis in 0..2 {
+                    prop_assert!(near(turn * short.slopes[axis], long.slopes[axis], 10.0 * size));
+                }
+                for d in 0..3 {
+                    let normal = turn * short.field.normal[d];
+                    let moment = turn * short.field.moment[d] + shift.cross(&normal);
+                    prop_assert!(near(normal, long.field.normal[d], 100.0));
+                    prop_assert!(near(moment, long.field.moment[d], 10.0 * size));
+                }
+            }
+        }
     }
 }

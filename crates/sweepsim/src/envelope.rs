@@ -10,7 +10,8 @@
 //! control values (coefficient over weight); likewise its derivatives. `g = ⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩` is polynomial of
 //! degree 2 in `t`, and of the degree of `N` in `(u, v)`. `g = 0` counts as `g ≥ 0` everywhere.
 
-use crate::element::{Cells, Element, Point, Triples};
+use crate::element::{Cells, Element, Triples};
+use crate::point::FacePoint;
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Interval, Sample};
@@ -174,15 +175,26 @@ impl ChartMap<3> for Face<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnFace> {
-        let point = self.element.evaluate(&x[..2]);
+        let point = self.element.face([x[0], x[1]]);
         let moment = self.times.at(x[2]);
         let spin = Vector3::from(self.times.spin);
-        let place = moment.turn * point.position + moment.tip;
-        let slopes = [moment.turn * point.slopes[0], moment.turn * point.slopes[1]];
-        let moving = moment.moving(&point.position) + self.times.velocity;
-        let field = &point.fields[0];
-        let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
-        let g_t = moment.travel_slope.dot(&field.normal[0]);
+        // The motion as the patch's own frame sees it.
+        let (turn, tip, spin, travel, travel_slope) = match self.element.frame() {
+            None => (moment.turn, moment.tip, spin, moment.travel, moment.travel_slope),
+            Some((own, shift)) => (
+                moment.turn * own,
+                moment.tip + moment.turn * shift,
+                own.tr_mul(&spin),
+                own.tr_mul(&(moment.travel + spin.cross(shift))),
+                own.tr_mul(&moment.travel_slope),
+            ),
+        };
+        let place = turn * point.position + tip;
+        let slopes = [turn * point.slopes[0], turn * point.slopes[1]];
+        let moving = moment.spin.cross(&(place - moment.tip)) + self.times.velocity;
+        let field = &point.field;
+        let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
+        let g_t = travel_slope.dot(&field.normal[0]);
         Sample {
             value: [place.x, place.y, g(0)],
             jacobian: [
@@ -195,7 +207,7 @@ impl ChartMap<3> for Face<'_> {
                     value: place.z,
                     slope: [slopes[0].z, slopes[1].z, moving.z],
                 },
-                normal: moment.turn * field.normal[0],
+                normal: turn * field.normal[0],
             },
         }
     }
@@ -287,12 +299,12 @@ impl ChartMap<2> for Rim<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnRim> {
-        let point = self.element.evaluate(&x[..1]);
+        let point = self.element.rim(x[0]);
         let moment = self.times.at(x[1]);
         let spin = Vector3::from(self.times.spin);
         let place = moment.turn * point.position + moment.tip;
-        let slope = moment.turn * point.slopes[0];
-        let moving = moment.moving(&point.position) + self.times.velocity;
+        let slope = moment.turn * point.slope;
+        let moving = moment.spin.cross(&(place - moment.tip)) + self.times.velocity;
         let side = |k: usize| {
             let field = &point.fields[k];
             let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
@@ -348,15 +360,19 @@ impl Side {
     }
 
     /// `g` at a point; its sign alone where there is no motion.
-    fn near(&self, point: &Point) -> Near<2> {
+    fn near(&self, point: &FacePoint, frame: Option<&(Matrix3<f64>, Vector3<f64>)>) -> Near<2> {
         match self {
             Self::Beyond(negative) => Near {
                 value: if *negative { -1.0 } else { 1.0 },
                 slope: [0.0; 2],
             },
             Self::Moving(twist) => {
-                let field = &point.fields[0];
+                let field = &point.field;
                 let (spin, travel) = (Vector3::from(twist.spin), Vector3::from(twist.travel));
+                let (spin, travel) = match frame {
+                    None => (spin, travel),
+                    Some((own, shift)) => (own.tr_mul(&spin), own.tr_mul(&(travel + spin.cross(shift)))),
+                };
                 let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
                 Near {
                     value: g(0),
@@ -415,9 +431,14 @@ impl ChartMap<2> for Joint<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnJoint> {
-        let point = self.element.evaluate(x);
-        let place = self.turn * point.position + self.tip;
-        let slopes = [self.turn * point.slopes[0], self.turn * point.slopes[1]];
+        let point = self.element.face(*x);
+        let frame = self.element.frame();
+        let (turn, tip) = match frame {
+            None => (self.turn, self.tip),
+            Some((own, shift)) => (self.turn * own, self.tip + self.turn * shift),
+        };
+        let place = turn * point.position + tip;
+        let slopes = [turn * point.slopes[0], turn * point.slopes[1]];
         Sample {
             value: [place.x, place.y],
             jacobian: [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]],
@@ -426,9 +447,9 @@ impl ChartMap<2> for Joint<'_> {
                     value: place.z,
                     slope: [slopes[0].z, slopes[1].z],
                 },
-                before: self.before.near(&point),
-                after: self.after.near(&point),
-                normal: self.turn * point.fields[0].normal[0],
+                before: self.before.near(&point, frame),
+                after: self.after.near(&point, frame),
+                normal: turn * point.field.normal[0],
             },
         }
     }

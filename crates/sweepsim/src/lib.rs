@@ -34,6 +34,7 @@ mod envelope;
 mod form;
 mod generic;
 mod lattice;
+mod point;
 mod simulate;
 mod sweep;
 mod time;

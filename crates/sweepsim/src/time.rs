@@ -201,12 +201,5 @@ pub(crate) struct Moment {
     /// Its derivative.
     pub travel_slope: Vector3<f64>,
     /// The angular velocity, in space.
-    spin: Vector3<f64>,
-}
-
-impl Moment {
-    /// `A′ F`: how a point of the tool moves by the turn alone.
-    pub fn moving(&self, position: &Vector3<f64>) -> Vector3<f64> {
-        self.spin.cross(&(self.turn * position))
-    }
+    pub spin: Vector3<f64>,
 }
