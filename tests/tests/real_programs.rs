@@ -155,7 +155,7 @@ fn assert_brute_force(lines: usize, stride: usize) {
     let Some(poses) = impeller() else { return };
     let grid = grid(lines);
     let sweep = swept(&poses, &grid);
-    let outline = Outline::new(tool().profile());
+    let outline = Outline::new(tool().profile().expect("a solid of revolution"));
     let motion = Motion::new(&poses);
     let depth = Depth::new(&outline, &motion);
     let verdicts: Vec<(Verdict, usize)> = (0..grid.len())

@@ -74,7 +74,13 @@ impl Text {
 
 /// A tool in a few words.
 pub(crate) fn tool(tool: &Tool) -> String {
-    let profile = tool.profile();
+    let Some(profile) = tool.profile() else {
+        return format!(
+            "{}, {}",
+            counted(tool.patches().len() as u64, "patch").replace("patchs", "patches"),
+            counted(tool.edges().len() as u64, "sharp edge")
+        );
+    };
     let mut points = vec![profile.start()];
     let mut arcs = 0;
     for segment in profile.segments() {

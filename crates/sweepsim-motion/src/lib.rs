@@ -1,5 +1,7 @@
 //! Milling tools as exact B-spline boundaries, and their rational rigid motions.
+
 mod boundary;
+mod freeform;
 mod path;
 mod pose;
 mod profile;
@@ -7,6 +9,7 @@ mod segment;
 mod tool;
 
 pub use boundary::{Edge, NormalField, Patch, Revolved};
+pub use freeform::{PatchError, Side, ToolError};
 pub use path::{Path, PathError};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, Turn};

@@ -1,13 +1,15 @@
 //! Where a tool is: its tip and the direction of its axis.
 
-use nalgebra::{Unit, Vector3};
+use nalgebra::{Matrix3, Unit, Vector3};
 use thiserror::Error;
 
-/// A placement of an axis-symmetric tool: the tip (CL point) and the unit vector from the tip towards the holder.
+/// A placement of a tool: the tip (CL point), the unit vector from the tip towards the holder, and, for tools that are not
+/// symmetric about their axis, where their `x` direction points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     tip: Vector3<f64>,
     axis: Unit<Vector3<f64>>,
+    side: Option<Unit<Vector3<f64>>>,
 }
 
 /// Why two numbers triples are no pose.
@@ -20,6 +22,9 @@ pub enum PoseError {
     /// The axis is zero, too small or too large to have a direction, or not finite.
     #[error("the axis ({}, {}, {}) has no direction", .0[0], .0[1], .0[2])]
     AxisWithoutDirection([f64; 3]),
+    /// The direction of the tool's `x` is not finite, zero, or along the axis.
+    #[error("({}, {}, {}) does not say where the side of the tool points: it needs a part across the axis", .0[0], .0[1], .0[2])]
+    SideWithoutDirection([f64; 3]),
 }
 
 impl Pose {
@@ -45,12 +50,35 @@ impl Pose {
         Ok(Self {
             tip: tip.into(),
             axis: Unit::new_normalize(scaled),
+            side: None,
         })
+    }
+
+    /// A pose that also says how the tool is turned about its axis: its `x` points along `side`, as far as that is across the axis.
+    ///
+    /// # Errors
+    /// [`PoseError`] when a number is not finite, the axis has no direction, or `side` has none across it.
+    pub fn with_side(tip: [f64; 3], axis: [f64; 3], side: [f64; 3]) -> Result<Self, PoseError> {
+        let pose = Self::new(tip, axis)?;
+        let bad = PoseError::SideWithoutDirection(side);
+        // The same checks as for the axis.
+        let direction = Self::new(tip, side).map_err(|_| bad)?.axis.into_inner();
+        let across = direction - pose.axis.into_inner() * pose.axis.dot(&direction);
+        match Unit::try_new(across, 1e-9) {
+            // Once more, so that rounding leaves no part along the axis.
+            Some(side) => Ok(Self {
+                side: Some(Unit::new_normalize(
+                    side.into_inner() - pose.axis.into_inner() * pose.axis.dot(&side),
+                )),
+                ..pose
+            }),
+            None => Err(bad),
+        }
     }
 
     /// A pose whose parts are known to be good.
     pub(crate) fn at(tip: Vector3<f64>, axis: Unit<Vector3<f64>>) -> Self {
-        Self { tip, axis }
+        Self { tip, axis, side: None }
     }
 
     /// The tip.
@@ -63,5 +91,20 @@ impl Pose {
     #[must_use]
     pub fn axis(&self) -> Unit<Vector3<f64>> {
         self.axis
+    }
+
+    /// Where the tool's `x` points, if the pose says so.
+    #[must_use]
+    pub fn side(&self) -> Option<Unit<Vector3<f64>>> {
+        self.side
+    }
+
+    /// The rotation from the tool's directions to those of space, if the pose says how the tool is turned about its axis.
+    #[must_use]
+    pub fn orientation(&self) -> Option<Matrix3<f64>> {
+        self.side.map(|side| {
+            let (x, z) = (side.into_inner(), self.axis.into_inner());
+            Matrix3::from_columns(&[x, z.cross(&x), z])
+        })
     }
 }

@@ -5,7 +5,7 @@
 //! `κ = 2 sin(θ/2)`, the angular velocity is `(κ/w) k`.
 
 use crate::pose::Pose;
-use nalgebra::{Matrix3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
 /// A rigid motion for `t` in `[0, 1]`: the tip on a straight line, the axis on a great circle as one rational arc of at most 90°.
@@ -37,12 +37,39 @@ fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
     Matrix3::from_columns(&[first, second, z])
 }
 
+/// The axis and the angle (0 to π) of the turn between two poses that say all of their orientation.
+pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>, f64)> {
+    let quaternion = |pose: &Pose| {
+        Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
+            pose.orientation()?,
+        )))
+    };
+    let turn = quaternion(to)? * quaternion(from)?.inverse();
+    // The vector part has the length sin(θ/2): its sign is free, and θ is at most half a turn.
+    let vector = turn.imag() * if turn.w < 0.0 { -1.0 } else { 1.0 };
+    let angle = 2.0 * vector.norm().atan2(turn.w.abs());
+    Some((Unit::try_new(vector, 1e-300).unwrap_or(Vector3::z_axis()), angle))
+}
+
 impl Segment {
-    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis turns by more than 90°.
+    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis (or the orientation) turns by more than 90°.
     ///
     /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
     #[must_use]
     pub fn between(from: &Pose, to: &Pose) -> Vec<Self> {
+        if let (Some((k, angle)), Some(start)) = (turn_between(from, to), from.orientation()) {
+            let mut count = 1;
+            while angle > count as f64 * FRAC_PI_2 * (1.0 + 1e-12) {
+                count *= 2;
+            }
+            let step = angle / count as f64;
+            let tip = |n: usize| from.tip() + (to.tip() - from.tip()) * (n as f64 / count as f64);
+            let part = |n: usize| {
+                let turned = Rotation3::from_axis_angle(&k, step * n as f64) * start;
+                Self::turning([tip(n), tip(n + 1)], turned, k.into_inner(), step)
+            };
+            return (0..count).map(part).collect();
+        }
         let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
         let cross = o0.cross(&o1);
         let angle = cross.norm().atan2(o0.dot(&o1));
@@ -66,6 +93,14 @@ impl Segment {
         let sine = cross.norm();
         let angle = sine.atan2(o0.dot(&o1));
         if sine < 1e-15 {
+            return Self::turning(tips, start, Vector3::z(), 0.0);
+        }
+        Self::turning(tips, start, cross / sine, angle)
+    }
+
+    /// A turn by `angle`, at most 90°, about the unit vector `k`.
+    fn turning(tips: [Vector3<f64>; 2], start: Matrix3<f64>, k: Vector3<f64>, angle: f64) -> Self {
+        if angle < 1e-15 {
             return Self {
                 tips,
                 turns: vec![start],
@@ -73,7 +108,6 @@ impl Segment {
                 spin: Vector3::zeros(),
             };
         }
-        let k = cross / sine;
         let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
         let (w, c, s) = (
             [1.0, half_cosine, 1.0],
@@ -91,6 +125,20 @@ impl Segment {
             weights: w.to_vec(),
             spin: k * (2.0 * half_sine),
         }
+    }
+
+    /// The same motion of a tool that is first turned about its own axis, such that it begins as `before` ends.
+    ///
+    /// So a tool that is not symmetric goes through poses that only say where its axis points: it does not turn about the axis.
+    #[must_use]
+    pub fn after(mut self, before: &Self) -> Self {
+        let between = self.start().transpose() * before.end();
+        let angle = (between[(1, 0)] - between[(0, 1)]).atan2(between[(0, 0)] + between[(1, 1)]);
+        let own = Rotation3::from_axis_angle(&Vector3::z_axis(), angle).into_inner();
+        for turn in &mut self.turns {
+            *turn *= own;
+        }
+        self
     }
 
     /// The tip at the start and at the end.

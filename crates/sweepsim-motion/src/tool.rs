@@ -1,12 +1,13 @@
-//! Tools of revolution and their boundary.
+//! Tools and their boundary.
 
 use crate::boundary::{self, Edge, Patch};
+use crate::freeform::{self, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 
 /// A milling tool: a solid with an exact B-spline boundary. Its origin is the tip, its `+z` runs along the axis to the holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
-    profile: Profile,
+    profile: Option<Profile>,
     patches: Vec<Patch>,
     edges: Vec<Edge>,
 }
@@ -88,14 +89,46 @@ impl Tool {
         Self {
             patches: boundary::patches(&profile),
             edges: boundary::edges(&profile),
-            profile,
+            profile: Some(profile),
         }
     }
 
-    /// The outline.
+    /// A tool of any shape: the solid that `patches` enclose, in any order.
+    ///
+    /// Each side of a patch must join one side of another patch (or of the same one, at a seam), at the same pace and within
+    /// `tolerance`; sides that are points are poles. Where the normals differ along a joint there is a sharp edge.
+    ///
+    /// # Errors
+    /// [`ToolError`]: open, patches that face different ways, more than two sides at one place, inside out.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Patch, Tool};
+    /// use sweepsim_spline::Bernstein;
+    ///
+    /// // A cutter with a square section, 2 by 2 and 10 long: the six faces of a box. Corners in the order (u, v) = 00, 10, 01, 11.
+    /// let corner = |k: usize| [if k & 1 == 0 { -1.0 } else { 1.0 }, if k & 2 == 0 { -1.0 } else { 1.0 }, if k & 4 == 0 { 0.0 } else { 10.0 }];
+    /// let face = |corners: [usize; 4]| {
+    ///     let form = |axis: usize| Bernstein::new(&[1, 1], corners.map(|k| corner(k)[axis]).to_vec());
+    ///     Patch::new([form(0)?, form(1)?, form(2)?], Bernstein::new(&[1, 1], vec![1.0; 4])?).map_err(Box::<dyn std::error::Error>::from)
+    /// };
+    /// let faces = [[0, 2, 1, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 6, 3, 7], [0, 4, 2, 6], [1, 3, 5, 7]];
+    /// let patches: Result<Vec<Patch>, _> = faces.into_iter().map(face).collect();
+    /// let tool = Tool::from_patches(patches?, 1e-9)?;
+    /// assert_eq!(tool.edges().len(), 12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_patches(patches: Vec<Patch>, tolerance: f64) -> Result<Self, ToolError> {
+        Ok(Self {
+            edges: freeform::edges(&patches, tolerance)?,
+            patches,
+            profile: None,
+        })
+    }
+
+    /// The outline of a solid of revolution; none for tools of other shapes.
     #[must_use]
-    pub fn profile(&self) -> &Profile {
-        &self.profile
+    pub fn profile(&self) -> Option<&Profile> {
+        self.profile.as_ref()
     }
 
     /// The smooth patches of the boundary.

@@ -49,12 +49,15 @@ pub(crate) struct Part {
 }
 
 /// The motions from pose to pose, tips displaced. Moves that do not move are left out.
-pub(crate) fn parts(poses: &[Pose], tolerance: f64) -> Vec<Part> {
+///
+/// A tool that is not `symmetric` about its axis is carried along without turning about it, where the poses do not say how it turns.
+pub(crate) fn parts(poses: &[Pose], symmetric: bool, tolerance: f64) -> Vec<Part> {
+    let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| {
         let part = (k % PERIOD) as f64 / PERIOD as f64;
         poses[k].tip() + direction() * (TIPS * tolerance * part)
     };
-    let mut parts = Vec::with_capacity(poses.len());
+    let mut parts: Vec<Part> = Vec::with_capacity(poses.len());
     let mut put = |number: usize, from: &Pose, to: &Pose, ends: [Vector3<f64>; 2]| {
         let segments = Segment::between(from, to);
         let share = 1.0 / segments.len() as f64;
@@ -62,6 +65,10 @@ pub(crate) fn parts(poses: &[Pose], tolerance: f64) -> Vec<Part> {
         let last = segments.len() - 1;
         for (n, segment) in segments.into_iter().enumerate() {
             let tips = [at(n), if n == last { ends[1] } else { at(n + 1) }];
+            let segment = match parts.last() {
+                Some(Part { segment: before, .. }) if carried => segment.after(before),
+                _ => segment,
+            };
             parts.push(Part {
                 segment: segment.with_tips(tips),
                 number: number as u32,

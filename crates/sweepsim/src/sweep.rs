@@ -223,7 +223,7 @@ pub fn sweep(
     if tolerance < least {
         return Err(SweepError::TooFine { tolerance, size, least });
     }
-    let parts = generic::parts(path.poses(), tolerance);
+    let parts = generic::parts(path.poses(), tool.profile().is_some(), tolerance);
     let job = Job {
         cutter: &cutter,
         grid,

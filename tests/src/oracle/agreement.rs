@@ -88,7 +88,7 @@ mod tests {
     /// A judge who never says no is none: every kind of wrong answer must be caught.
     #[test]
     fn wrong_answers_are_caught_and_films_are_not() {
-        let outline = Outline::new(Tool::flat(2.0, 10.0).unwrap().profile());
+        let outline = Outline::new(Tool::flat(2.0, 10.0).unwrap().profile().expect("a solid of revolution"));
         let up = [0.0, 0.0, 1.0];
         let poses = [
             Pose::new([-5.0, 0.0, 0.0], up).unwrap(),

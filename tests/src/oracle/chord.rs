@@ -182,7 +182,7 @@ mod tests {
 
     #[test]
     fn a_tilted_cylinder_by_hand() {
-        let outline = Outline::new(Tool::flat(2.0, 40.0).unwrap().profile());
+        let outline = Outline::new(Tool::flat(2.0, 40.0).unwrap().profile().expect("a solid of revolution"));
         let (s, c) = 30.0_f64.to_radians().sin_cos();
         let placement = placed([0.0, 0.0, 0.0], [s, 0.0, c]);
         // Through (10, 1): |y cos..| the wall is (x c − z s)² + y² = 4, far from both ends.
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn a_concave_tool_on_its_side_is_met_twice() {
-        let outline = Outline::new(tools::concave().profile());
+        let outline = Outline::new(tools::concave().profile().expect("a solid of revolution"));
         let placement = placed([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
         // At ζ = x = 1 the cylinder of radius 2, at x = 5 the arc: ρ = 8 − √(36 − 9).
         for (x, radius) in [(1.0, 2.0), (5.0, 8.0 - 27.0_f64.sqrt()), (20.0, 8.0)] {
@@ -221,7 +221,7 @@ mod tests {
     fn chords_agree_with_dense_points() {
         let mut seen = [0; 3];
         for tool in tools::zoo() {
-            let outline = Outline::new(tool.profile());
+            let outline = Outline::new(tool.profile().expect("a solid of revolution"));
             for k in 0..120 {
                 let a = f64::from(k);
                 let axis = [(1.3 * a).sin(), (2.1 * a).cos(), 1.2 * (0.7 * a).sin()];

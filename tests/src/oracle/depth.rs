@@ -189,7 +189,12 @@ mod tests {
 
     #[test]
     fn the_distance_from_a_capsule() {
-        let outline = Outline::new(Tool::ball(3.0, 500.0).unwrap().profile());
+        let outline = Outline::new(
+            Tool::ball(3.0, 500.0)
+                .unwrap()
+                .profile()
+                .expect("a solid of revolution"),
+        );
         let (from, to) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(20.0, 4.0, -10.0));
         let motion = motion(&[(from.into(), UP), (to.into(), UP)]);
         let depth = Depth::new(&outline, &motion);
@@ -225,7 +230,7 @@ mod tests {
         ]);
         let mut ends = 0;
         for tool in tools::zoo() {
-            let outline = Outline::new(tool.profile());
+            let outline = Outline::new(tool.profile().expect("a solid of revolution"));
             let depth = Depth::new(&outline, &motion);
             for k in 0..25 {
                 let (x, y) = (-8.0 + 5.17 * f64::from(k % 5), -8.0 + 4.03 * f64::from(k / 5));
@@ -250,7 +255,7 @@ mod tests {
 
     #[test]
     fn the_gradient_is_the_normal_of_a_wall() {
-        let outline = Outline::new(Tool::ball(3.0, 50.0).unwrap().profile());
+        let outline = Outline::new(Tool::ball(3.0, 50.0).unwrap().profile().expect("a solid of revolution"));
         let motion = motion(&[([0.0; 3], UP), ([20.0, 0.0, 0.0], UP)]);
         let depth = Depth::new(&outline, &motion);
         let (s, c) = 25.0_f64.to_radians().sin_cos();

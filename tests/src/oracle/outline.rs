@@ -209,7 +209,12 @@ mod tests {
 
     #[test]
     fn a_bull_nose_has_the_distances_of_its_parts() {
-        let outline = Outline::new(Tool::bull(5.0, 2.0, 20.0).unwrap().profile());
+        let outline = Outline::new(
+            Tool::bull(5.0, 2.0, 20.0)
+                .unwrap()
+                .profile()
+                .expect("a solid of revolution"),
+        );
         assert_eq!((outline.radius(), outline.heights()), (5.0, [0.0, 20.0]));
         let diagonal = 0.5_f64.sqrt();
         for (rho, zeta, expected) in [
@@ -231,7 +236,10 @@ mod tests {
 
     #[test]
     fn a_concave_arc_hollows_the_tool() {
-        let outline = crate::tools::concave().profile().clone();
+        let outline = crate::tools::concave()
+            .profile()
+            .expect("a solid of revolution")
+            .clone();
         let outline = Outline::new(&outline);
         // The circle about (8, 2) with radius 6 is air; what lies above it is tool.
         assert!((outline.signed_distance(8.0 - 5.0, 2.0) - 1.0).abs() < 1e-14);
@@ -242,7 +250,11 @@ mod tests {
 
     #[test]
     fn an_arc_of_more_than_half_a_turn_is_cut_at_top_and_bottom() {
-        let outline = Outline::new(crate::tools::lollipop(3.0, 1.0, 20.0).profile());
+        let outline = Outline::new(
+            crate::tools::lollipop(3.0, 1.0, 20.0)
+                .profile()
+                .expect("a solid of revolution"),
+        );
         assert_eq!(outline.radius(), 3.0);
         assert!(outline.contains(2.99, 3.0) && !outline.contains(3.01, 3.0) && outline.contains(0.5, 6.5));
         assert!((outline.signed_distance(4.0, 3.0) - 1.0).abs() < 1e-14);
@@ -252,7 +264,7 @@ mod tests {
     #[test]
     fn a_level_through_a_joint_counts_it_once() {
         for tool in [Tool::ball(2.0, 9.0), Tool::flat(2.0, 9.0), Tool::bull(3.0, 1.0, 9.0)] {
-            let outline = Outline::new(tool.unwrap().profile());
+            let outline = Outline::new(tool.unwrap().profile().expect("a solid of revolution"));
             for piece in outline.pieces() {
                 for [rho, zeta] in piece.ends() {
                     assert!(

@@ -267,7 +267,7 @@ mod tests {
     fn line(tool: &Tool, poses: &[([f64; 3], [f64; 3])], x: f64, y: f64) -> SweptLine {
         let poses: Vec<Pose> = poses.iter().map(|p| Pose::new(p.0, p.1).unwrap()).collect();
         swept_line(
-            &Outline::new(tool.profile()),
+            &Outline::new(tool.profile().expect("a solid of revolution")),
             &Motion::new(&poses),
             x,
             y,
@@ -391,7 +391,7 @@ mod tests {
         let motion = Motion::new(&poses);
         let mut clear = 0;
         for tool in tools::zoo() {
-            let outline = Outline::new(tool.profile());
+            let outline = Outline::new(tool.profile().expect("a solid of revolution"));
             for k in 0..49 {
                 let (x, y) = (-8.0 + 5.17 * f64::from(k % 7), -11.0 + 4.03 * f64::from(k / 7));
                 let coarse = swept_line(&outline, &motion, x, y, Sampling::number(97));

@@ -93,7 +93,7 @@ pub fn swept(case: &Case, poses: &[Pose], grid: &Grid, method: Method) -> Result
 pub fn judge(case: &Case, method: Method) -> Result<Tally, String> {
     let grid = case.grid();
     let sweep = swept(case, &case.poses, &grid, method)?;
-    let outline = Outline::new(case.cutter.tool.profile());
+    let outline = Outline::new(case.cutter.tool.profile().expect("a solid of revolution"));
     let motion = Motion::new(&case.poses);
     let depth = Depth::new(&outline, &motion);
     let judged: Result<Vec<Tally>, String> = (0..grid.len())
@@ -237,7 +237,7 @@ fn judge_source(end: &End, depth: &Depth<'_>, motion: &Motion, [x, y]: [f64; 2])
 
 /// Two sweeps of what is the same volume must agree within both their tolerances; `case` says which volume.
 pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Result<Tally, String> {
-    let outline = Outline::new(case.cutter.tool.profile());
+    let outline = Outline::new(case.cutter.tool.profile().expect("a solid of revolution"));
     let motion = Motion::new(&case.poses);
     let depth = Depth::new(&outline, &motion);
     let mut tally = Tally::default();

@@ -1,0 +1,398 @@
+//! Tools of any shape: patches of one's own, and how they join.
+
+use crate::boundary::{Edge, NormalField, Patch};
+use nalgebra::Vector3;
+use sweepsim_spline::Bernstein;
+use thiserror::Error;
+
+/// Why a surface is no patch of a tool.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PatchError {
+    /// A form does not depend on two variables.
+    #[error("a patch needs forms in two variables, but {what} has {found}")]
+    Variables {
+        /// Which form.
+        what: &'static str,
+        /// How many variables it has.
+        found: usize,
+    },
+    /// A degree is too high.
+    #[error("degree {degree} is too high: at most {most} can be used")]
+    Degree {
+        /// The degree.
+        degree: usize,
+        /// What is possible.
+        most: usize,
+    },
+    /// A coefficient is not finite.
+    #[error("a coefficient of {what} is not finite")]
+    NotFinite {
+        /// Of which form.
+        what: &'static str,
+    },
+    /// A weight is not positive.
+    #[error("weight {index} is {value}, but must be positive")]
+    Weight {
+        /// Which coefficient.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The normal vanishes inside, or everywhere.
+    #[error("the surface has no normal near (u, v) = ({u}, {v}): it is folded or degenerate there")]
+    NoNormal {
+        /// Where.
+        u: f64,
+        /// Where.
+        v: f64,
+    },
+}
+
+/// Why patches enclose no tool.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ToolError {
+    /// There is none.
+    #[error("a tool needs at least one patch")]
+    Empty,
+    /// A side lies at no other one.
+    #[error("side {side} of patch {patch} joins no other side: near ({}, {}, {}) the boundary is open, or the other side runs at another pace", .place[0], .place[1], .place[2])]
+    Open {
+        /// The patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+        /// The middle of the side.
+        place: [f64; 3],
+    },
+    /// Two patches that join face opposite ways.
+    #[error(
+        "patches {patch} and {other} join at side {side} of the first, but one faces out of the tool and the other into it"
+    )]
+    Flipped {
+        /// A patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+        /// The other patch.
+        other: usize,
+    },
+    /// More than two sides lie at one place.
+    #[error("three or more sides join at side {side} of patch {patch}")]
+    Branching {
+        /// A patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+    },
+    /// All patches face inwards.
+    #[error("the patches face into the tool: swap u and v of each")]
+    InsideOut,
+}
+
+/// A side of a patch, counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// `v = 0`, `u` increasing.
+    Bottom,
+    /// `u = 1`, `v` increasing.
+    Right,
+    /// `v = 1`, `u` decreasing.
+    Top,
+    /// `u = 0`, `v` decreasing.
+    Left,
+}
+
+impl std::fmt::Display for Side {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Bottom => "v = 0",
+            Self::Right => "u = 1",
+            Self::Top => "v = 1",
+            Self::Left => "u = 0",
+        })
+    }
+}
+
+/// Highest degree of a patch: that of the moments, four times as high, must still be evaluated well.
+const MOST: usize = 7;
+/// Places along a side at which two sides are compared.
+const PLACES: usize = 17;
+/// Sides whose normals enclose no larger angle (its sine) join smoothly.
+const SMOOTH: f64 = 1e-9;
+
+fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
+    [0, 1, 2].map(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i].mul(&b[j]).sub(&a[j].mul(&b[i]))
+    })
+}
+
+fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
+    [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
+}
+
+impl Patch {
+    /// The patch `position / weight`, whose normal `F_u × F_v` points out of the tool.
+    ///
+    /// Its normals and moments are made as Bernstein forms: with `P` the position and `w` the weight,
+    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule).
+    ///
+    /// # Errors
+    /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the inside (along the sides it
+    /// may vanish: poles).
+    pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
+        for (form, what) in position.iter().zip(["x", "y", "z"]).chain([(&weight, "the weight")]) {
+            if form.variables() != 2 {
+                return Err(PatchError::Variables {
+                    what,
+                    found: form.variables(),
+                });
+            }
+            if let Some(&degree) = form.degrees().iter().find(|degree| **degree > MOST) {
+                return Err(PatchError::Degree { degree, most: MOST });
+            }
+            if !form.coefficients().iter().all(|c| c.is_finite()) {
+                return Err(PatchError::NotFinite { what });
+            }
+        }
+        if let Some((index, &value)) = weight.coefficients().iter().enumerate().find(|(_, w)| **w <= 0.0) {
+            return Err(PatchError::Weight { index, value });
+        }
+        let first = weight.coefficients()[0];
+        let polynomial = weight.coefficients().iter().all(|w| *w == first);
+        let (pu, pv) = (
+            [0, 1, 2].map(|k| position[k].derivative(0)),
+            [0, 1, 2].map(|k| position[k].derivative(1)),
+        );
+        let both = cross(&pu, &pv);
+        let (normal, moment) = if polynomial {
+            // F = P / w with a constant weight: the moment of F is that of P over it.
+            let moment = cross(&position, &both).map(|form| form.scale(1.0 / first));
+            (both, moment)
+        } else {
+            let (wu, wv) = (weight.derivative(0), weight.derivative(1));
+            let (with_u, with_v) = (cross(&position, &pu), cross(&position, &pv));
+            let hat = [0, 1, 2].map(|k| {
+                let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
+                sum.sub(&wu.mul(&with_v[k]))
+            });
+            let moment = cross(&position, &hat);
+            (hat.map(|form| weight.mul(&form)), moment)
+        };
+        let largest = normal.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
+        if largest == 0.0 || !largest.is_finite() {
+            return Err(PatchError::NoNormal { u: 0.5, v: 0.5 });
+        }
+        let field = NormalField {
+            normal: scaled(&normal, 1.0 / largest),
+            moment: scaled(&moment, 1.0 / largest),
+        };
+        check_normals(&field.normal)?;
+        Ok(Self {
+            position: scaled(&position, 1.0),
+            weight: weight.assumed_exact(),
+            field,
+            revolved: None,
+        })
+    }
+
+    /// The place at `(u, v)`.
+    #[must_use]
+    pub fn place(&self, u: f64, v: f64) -> Vector3<f64> {
+        let weight = self.weight.evaluate(&[u, v]);
+        Vector3::from([0, 1, 2].map(|k| self.position[k].evaluate(&[u, v]) / weight))
+    }
+}
+
+/// Boxes of the inside are cut until the normals of each lie in a half space; boxes at the sides may stay undecided.
+fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
+    const DEPTH: usize = 14;
+    let mut stack = vec![(normal.clone(), [[0.0, 1.0]; 2], 0)];
+    while let Some((forms, sides, depth)) = stack.pop() {
+        let count = forms[0].coefficients().len();
+        let vector = |i: usize| Vector3::from([0, 1, 2].map(|k| forms[k].coefficients()[i]));
+        let mean: Vector3<f64> = (0..count).map(vector).sum();
+        if (0..count).all(|i| vector(i).dot(&mean) > 0.0) {
+            continue;
+        }
+        if depth == DEPTH {
+            let at_a_side = sides.iter().any(|side| side[0] == 0.0 || side[1] == 1.0);
+            if at_a_side {
+                continue;
+            }
+            let [u, v] = sides.map(|side| 0.5 * (side[0] + side[1]));
+            return Err(PatchError::NoNormal { u, v });
+        }
+        let axis = depth % 2;
+        let halves = [0, 1, 2].map(|k| forms[k].split(axis, 0.5));
+        let [a, b, c] = halves;
+        let middle = 0.5 * (sides[axis][0] + sides[axis][1]);
+        let (mut low, mut high) = (sides, sides);
+        low[axis][1] = middle;
+        high[axis][0] = middle;
+        stack.push(([a.0, b.0, c.0], low, depth + 1));
+        stack.push(([a.1, b.1, c.1], high, depth + 1));
+    }
+    Ok(())
+}
+
+/// A side as a curve in `r` from 0 to 1, with the normals of its patch.
+struct Curve {
+    patch: usize,
+    side: Side,
+    position: [Bernstein; 3],
+    weight: Bernstein,
+    field: NormalField,
+    places: Vec<Vector3<f64>>,
+}
+
+impl Curve {
+    fn new(patches: &[Patch], patch: usize, side: Side) -> Self {
+        let (axis, at, backwards) = match side {
+            Side::Bottom => (1, 0.0, false),
+            Side::Right => (0, 1.0, false),
+            Side::Top => (1, 1.0, true),
+            Side::Left => (0, 0.0, true),
+        };
+        let cut = |form: &Bernstein| {
+            let form = form.slice(axis, at);
+            let form = if backwards { form.reverse(0) } else { form };
+            form.assumed_exact()
+        };
+        let three = |forms: &[Bernstein; 3]| [0, 1, 2].map(|k| cut(&forms[k]));
+        let of = &patches[patch];
+        let (position, weight) = (three(&of.position), cut(&of.weight));
+        let place = |n: usize| {
+            let r = [n as f64 / (PLACES - 1) as f64];
+            let w = weight.evaluate(&r);
+            Vector3::from([0, 1, 2].map(|k| position[k].evaluate(&r) / w))
+        };
+        Self {
+            patch,
+            side,
+            places: (0..PLACES).map(place).collect(),
+            field: NormalField {
+                normal: three(&of.field.normal),
+                moment: three(&of.field.moment),
+            },
+            position,
+            weight,
+        }
+    }
+
+    /// Whether it is a point.
+    fn is_pole(&self, tolerance: f64) -> bool {
+        self.places
+            .iter()
+            .all(|place| (place - self.places[0]).norm() <= tolerance)
+    }
+
+    fn lies_at(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
+        (0..PLACES).all(|n| {
+            let m = if backwards { PLACES - 1 - n } else { n };
+            (self.places[n] - other.places[m]).norm() <= tolerance
+        })
+    }
+
+    fn normal(&self, n: usize) -> Option<Vector3<f64>> {
+        let r = [n as f64 / (PLACES - 1) as f64];
+        let normal = Vector3::from([0, 1, 2].map(|k| self.field.normal[k].evaluate(&r)));
+        normal.try_normalize(1e-12)
+    }
+
+    /// The same curve the other way.
+    fn reversed(&self) -> ([Bernstein; 3], Bernstein, NormalField) {
+        let back = |form: &Bernstein| form.reverse(0);
+        let three = |forms: &[Bernstein; 3]| [0, 1, 2].map(|k| back(&forms[k]));
+        let field = NormalField {
+            normal: three(&self.field.normal),
+            moment: three(&self.field.moment),
+        };
+        (three(&self.position), back(&self.weight), field)
+    }
+}
+
+/// Whether two joined sides have the same normals all along.
+fn is_smooth(a: &Curve, b: &Curve) -> bool {
+    (0..PLACES).all(|n| match (a.normal(n), b.normal(PLACES - 1 - n)) {
+        (Some(a), Some(b)) => a.cross(&b).norm() <= SMOOTH && a.dot(&b) > 0.0,
+        // At a pole a normal may vanish.
+        _ => true,
+    })
+}
+
+/// The sharp edges of a closed boundary.
+///
+/// # Errors
+/// [`ToolError`]: it is none.
+pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, ToolError> {
+    if patches.is_empty() {
+        return Err(ToolError::Empty);
+    }
+    let mut curves: Vec<Curve> = (0..patches.len())
+        .flat_map(|patch| {
+            [Side::Bottom, Side::Right, Side::Top, Side::Left].map(|side| Curve::new(patches, patch, side))
+        })
+        .collect();
+    curves.retain(|curve| !curve.is_pole(tolerance));
+    let mut edges = Vec::new();
+    for (number, curve) in curves.iter().enumerate() {
+        let others = || curves.iter().enumerate().filter(|(other, _)| *other != number);
+        let mut joined = others().filter(|(_, other)| curve.lies_at(other, true, tolerance));
+        let (patch, side) = (curve.patch, curve.side);
+        let Some((partner, other)) = joined.next() else {
+            return Err(
+                match others().find(|(_, other)| curve.lies_at(other, false, tolerance)) {
+                    Some((_, other)) => ToolError::Flipped {
+                        patch,
+                        side,
+                        other: other.patch,
+                    },
+                    None => ToolError::Open {
+                        patch,
+                        side,
+                        place: curve.places[PLACES / 2].into(),
+                    },
+                },
+            );
+        };
+        if joined.next().is_some() {
+            return Err(ToolError::Branching { patch, side });
+        }
+        if number < partner && !is_smooth(curve, other) {
+            // Along this side its own patch is to the left; the edge's direction has face B there.
+            let (_, _, before) = other.reversed();
+            edges.push(Edge {
+                position: curve.position.clone(),
+                weight: curve.weight.clone(),
+                before,
+                after: curve.field.clone(),
+            });
+        }
+    }
+    if volume(patches) <= 0.0 {
+        return Err(ToolError::InsideOut);
+    }
+    Ok(edges)
+}
+
+/// A multiple of the enclosed volume, by sums over each patch: for its sign alone.
+fn volume(patches: &[Patch]) -> f64 {
+    const STEPS: usize = 24;
+    let middle = |n: usize| (n as f64 + 0.5) / STEPS as f64;
+    let mut sum = 0.0;
+    for patch in patches {
+        for i in 0..STEPS {
+            for j in 0..STEPS {
+                let h = 0.5 / STEPS as f64;
+                let (u, v) = (middle(i), middle(j));
+                let along_u = patch.place(u + h, v) - patch.place(u - h, v);
+                let along_v = patch.place(u, v + h) - patch.place(u, v - h);
+                sum += patch.place(u, v).dot(&along_u.cross(&along_v));
+            }
+        }
+    }
+    sum
+}
