@@ -1,558 +1,349 @@
-//! Triangles over dexels: the paper's §6, with walls where neighbours differ.
+//! A closed surface of triangles around dexels.
 //!
-//! Each square of four neighbouring lines is cut into two triangles of three lines. Over such a triangle, intervals that
-//! overlap belong together, and what belongs together on all three lines is a *prism*: its upper and lower faces join the
-//! intervals' ends, with the exact normals that the ends know. Gaps between the intervals of a prism are prisms of air in it,
-//! by the same rule. The sides of a prism that its neighbour does not share become vertical walls; so every prism is closed,
-//! and the volume that the triangles enclose is the sum of the prisms.
+//! The paper (section 6) spans two triangles over the upper and two over the lower ends of every square of four
+//! neighbouring dexels, with the envelope's normals at the corners. That is what happens here wherever the surface is
+//! smooth. Elsewhere a dexel stands for the cell around it:
+//!
+//! 1. **Along every grid edge** the ends of its two dexels are [joined](edge): two ends go together when the line between
+//!    them is one that their normals allow for, so sheets find their continuation by tangents and not by overlap. A join
+//!    is smooth or a *crease*, where the tangents meet at an angle. An end left over is a *step*.
+//! 2. **Creases and steps draw an outline** on the grid: a polyline with one vertex in every square that it passes and one
+//!    on every grid edge that it crosses. A crease says where it crosses: there the tangents meet. A step may be anywhere
+//!    between its dexels, so its [outline] is relaxed to a smooth line, and corners are kept.
+//! 3. **In every square** faces reach from the dexels to the outline by their tangents. Above the outline stand vertical
+//!    walls: wherever there is material on one side only.
+//!
+//! Around the grid stand dexels without material. So the surface of any dexels is closed: every edge is used as often in
+//! one direction as in the other. The mesh of a block on whole cells is that block.
+
+mod edge;
+mod outline;
+mod part;
+mod square;
+mod wall;
 
 use crate::dexels::Dexels;
-use crate::interval::{End, Source};
+use crate::interval::{End, Interval, Source};
 use crate::mesh::Mesh;
+use edge::{Class, Edge};
+use outline::Outline;
+use part::Part;
 use rayon::prelude::*;
-use smallvec::SmallVec;
+use square::Square;
+use std::collections::HashMap;
 
-/// Where the exact normal of an end and that of a triangle enclose more than this (as cosine), the triangle is a wall or
-/// bridges an edge of the part: its corner is shaded flat.
-const CREASE: f64 = 0.6;
+/// Cosine of 40°: a vertex whose normal is further from a triangle's is not shared with it.
+const CRISP: f64 = 0.766;
 
-/// The surface of the material as triangles, counter-clockwise seen from outside.
+/// The surface of dexels, closed, as triangles with normals.
 ///
-/// The first vertices are the ends of all intervals, in the order of the lines and from below; others follow where shading has a
-/// crease. Between the lines the triangles know nothing: an edge of the part is as sharp as the grid is fine.
+/// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
+/// side has a vertex of its own. At the ends the normals are those of the dexels. A vertex counts as cut when a tool made
+/// the end. A wall counts as cut when a tool made the end that the space in front of it goes to; beside a dexel without
+/// material, when it is inside of a hole or both ends of the interval behind were cut.
+///
+/// The mesh is the same for any number of threads. It can have 2³² vertices at most: dexels with more ends than that
+/// (34 GB of them) give wrong triangles.
 ///
 /// ```
-/// use sweepsim_dexel::{Grid, Stock, surface};
-/// let grid = Grid::new([0.0, 0.0], [3.0, 3.0], [3, 3])?;
-/// let block = Stock::Block { min: [0.0; 3], max: [3.0, 3.0, 1.0] }.dexels(&grid)?;
-/// let mesh = surface(&block);
-/// // Four squares above and below, two triangles each; eight walls round about.
-/// assert_eq!(mesh.triangles.len(), 2 * 4 * 2 + 8 * 2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// use sweepsim_dexel::{Dexels, Grid, Interval, surface};
+/// let grid = Grid::new([0.0, 0.0], [2.0, 2.0], [2, 2])?;
+/// let mut dexels = Dexels::empty(grid);
+/// for index in 0..grid.len() {
+///     dexels.set(index, &[Interval::between(0.0, 5.0)]);
+/// }
+/// let mesh = surface(&dexels);
+/// let highest = mesh.vertices.iter().map(|v| v[2]).fold(f64::MIN, f64::max);
+/// assert_eq!(highest, 5.0);
+/// # Ok::<(), sweepsim_dexel::GridError>(())
 /// ```
 #[must_use]
 pub fn surface(dexels: &Dexels) -> Mesh {
-    let [columns, rows] = dexels.grid().cells();
-    let mut mesh = Mesh::default();
-    let mut first = Vec::with_capacity(dexels.grid().len());
-    for index in 0..dexels.grid().len() {
-        first.push(mesh.vertices.len() as u32);
-        for k in 0..2 * dexels.at(index).len() {
-            let end = end(dexels, index, k);
-            mesh.vertices.push(position(dexels, index, &end));
-            mesh.normals.push(end.normal);
-            mesh.cut.push(is_cut(&end));
-        }
-    }
-    let mut lattice = Squares {
-        dexels,
-        first,
-        diagonals: Vec::new(),
-        stock: mesh.cut.contains(&false),
-    };
-    lattice.diagonals = (0..(columns - 1) * (rows - 1))
+    let field = Field::new(dexels);
+    let outline = Outline::new(&field);
+    let parts: Vec<Part> = (0..=field.cells[0])
         .into_par_iter()
-        .map(|square| lattice.diagonal(square / (rows - 1), square % (rows - 1)))
+        .map(|si| {
+            let mut part = Part::new(field.ends());
+            for sj in 0..=field.cells[1] {
+                Square::emit(&field, &outline, [si, sj], &mut part);
+            }
+            part
+        })
         .collect();
-    let strips: Vec<Strip> = (0..columns).into_par_iter().map(|i| lattice.strip(i)).collect();
-    let mut walls = Vec::new();
-    for strip in strips {
-        walls.extend(strip.walls);
-        let offset = mesh.vertices.len() as u32;
-        mesh.vertices.extend(strip.vertices);
-        mesh.normals.extend(strip.normals);
-        mesh.cut.extend(strip.cut);
-        mesh.triangles.extend(strip.triangles.into_iter().map(|corners| {
-            corners.map(|corner| match corner {
-                Corner::End(vertex) => vertex,
-                Corner::Own(vertex) => offset + vertex,
-            })
-        }));
-    }
-    add_walls(&mut mesh, &walls);
-    mesh
+    assemble(&field, parts)
 }
 
-/// End `k` of a line, counted from below.
-fn end(dexels: &Dexels, index: usize, k: usize) -> End {
-    let interval = dexels.at(index)[k / 2];
-    if k.is_multiple_of(2) {
-        interval.lower
+/// Dexels with a rim of empty ones around them, and how their neighbours go together.
+///
+/// Square `[si, sj]` has the dexels of columns `si − 1, si` and rows `sj − 1, sj`.
+struct Field<'a> {
+    dexels: &'a Dexels,
+    cells: [usize; 2],
+    spacing: [f64; 2],
+    /// The number of the first end of each dexel.
+    first: Vec<u32>,
+    /// Of each square: class of the edge along `x` on its lower side, and of that along `y` on its left.
+    classes: Vec<[Class; 2]>,
+    /// Dexels without material, joined to the border by such.
+    outside: Vec<bool>,
+}
+
+/// A dexel of a [`Field`].
+#[derive(Clone, Copy)]
+struct Dexel<'a> {
+    line: &'a [Interval],
+    at: [f64; 2],
+    first: u32,
+    outside: bool,
+}
+
+/// End number `e` of a line, going up.
+fn end(line: &[Interval], e: usize) -> &End {
+    let interval = &line[e / 2];
+    if e.is_multiple_of(2) {
+        &interval.lower
     } else {
-        interval.upper
+        &interval.upper
     }
-}
-
-fn position(dexels: &Dexels, index: usize, end: &End) -> [f64; 3] {
-    let (i, j) = dexels.grid().place(index);
-    [dexels.grid().x(i), dexels.grid().y(j), end.z]
 }
 
 fn is_cut(end: &End) -> bool {
     end.source.path != Source::STOCK.path
 }
 
-/// A vertex: the end of an interval, or one of the strip's own.
-#[derive(Clone, Copy)]
-enum Corner {
-    End(u32),
-    Own(u32),
-}
+impl<'a> Field<'a> {
+    fn new(dexels: &'a Dexels) -> Self {
+        let grid = dexels.grid();
+        let mut first = Vec::with_capacity(grid.len() + 1);
+        let mut count = 0_usize;
+        for index in 0..grid.len() {
+            first.push(count as u32);
+            count += 2 * dexels.at(index).len();
+        }
+        first.push(count as u32);
+        let mut field = Self {
+            dexels,
+            cells: grid.cells(),
+            spacing: grid.spacing(),
+            first,
+            classes: Vec::new(),
+            outside: outside(dexels),
+        };
+        let [columns, rows] = field.cells;
+        field.classes = (0..columns + 2)
+            .into_par_iter()
+            .flat_map_iter(|si| (0..rows + 2).map(move |sj| [si, sj]))
+            .map(|s| [0, 1].map(|axis| field.classify(s, axis)))
+            .collect();
+        field
+    }
 
-/// What one row of squares gives.
-#[derive(Default)]
-struct Strip {
-    vertices: Vec<[f64; 3]>,
-    normals: Vec<[f32; 3]>,
-    cut: Vec<bool>,
-    triangles: Vec<[Corner; 3]>,
-    walls: Vec<Wall>,
-}
+    /// How many ends there are.
+    fn ends(&self) -> u32 {
+        self.first.last().copied().unwrap_or(0)
+    }
 
-/// A vertical wall over the line from one dexel to another.
-struct Wall {
-    lines: [usize; 2],
-    /// Lower and upper end on each line.
-    places: [[[f64; 3]; 2]; 2],
-    normal: [f64; 3],
-    length: f64,
-    cut: bool,
-    /// Whether the material is to the left.
-    solid: bool,
-}
+    fn dexel(&self, si: usize, sj: usize) -> Dexel<'a> {
+        let grid = self.dexels.grid();
+        let place = |k: usize, s: usize| grid.min()[k] + (s as f64 - 0.5) * self.spacing[k];
+        if si == 0 || sj == 0 || si > self.cells[0] || sj > self.cells[1] {
+            return Dexel {
+                line: &[],
+                at: [place(0, si), place(1, sj)],
+                first: 0,
+                outside: true,
+            };
+        }
+        let index = grid.index(si - 1, sj - 1);
+        Dexel {
+            line: self.dexels.at(index),
+            at: [grid.x(si - 1), grid.y(sj - 1)],
+            first: self.first[index],
+            outside: self.outside[index],
+        }
+    }
 
-impl Strip {
-    fn vertex(&mut self, place: [f64; 3], normal: [f64; 3], cut: bool) -> Corner {
-        self.vertices.push(place);
-        self.normals.push(normal.map(|c| c as f32));
-        self.cut.push(cut);
-        Corner::Own(self.vertices.len() as u32 - 1)
+    /// Dexel `q` of a square, counter-clockwise from its lower left.
+    fn corner(&self, [si, sj]: [usize; 2], q: usize) -> Dexel<'a> {
+        self.dexel(si + usize::from(q == 1 || q == 2), sj + usize::from(q >= 2))
+    }
+
+    /// The square which has edge `k` of a square as its lower or left edge, and the edge's direction.
+    fn edge_home([si, sj]: [usize; 2], k: usize) -> ([usize; 2], usize) {
+        match k {
+            0 => ([si, sj], 0),
+            1 => ([si + 1, sj], 1),
+            2 => ([si, sj + 1], 0),
+            _ => ([si, sj], 1),
+        }
+    }
+
+    fn slot(&self, [si, sj]: [usize; 2]) -> usize {
+        si * (self.cells[1] + 2) + sj
+    }
+
+    /// Class of edge `k` of a square: from its corner `k` to the next.
+    fn class(&self, s: [usize; 2], k: usize) -> Class {
+        let (home, axis) = Self::edge_home(s, k);
+        self.classes[self.slot(home)][axis]
+    }
+
+    /// The two dexels of an edge, in the direction of growing `x` or `y`.
+    fn edge_dexels(&self, [si, sj]: [usize; 2], axis: usize) -> [Dexel<'a>; 2] {
+        [self.dexel(si, sj), self.dexel(si + 1 - axis, sj + axis)]
+    }
+
+    fn classify(&self, [si, sj]: [usize; 2], axis: usize) -> Class {
+        if [si, sj][axis] > self.cells[axis] {
+            return Class::Smooth;
+        }
+        let [a, b] = self.edge_dexels([si, sj], axis);
+        Edge::class(a.line, b.line, axis, self.spacing[axis])
     }
 }
 
-/// Intervals (or gaps) of three lines that belong together: on each line from one end to another, counted from below.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Prism {
-    solid: bool,
-    ends: [[usize; 2]; 3],
+/// Marks dexels without material that are joined to the border of the grid by such.
+fn outside(dexels: &Dexels) -> Vec<bool> {
+    let grid = dexels.grid();
+    let [columns, rows] = grid.cells();
+    let mut outside = vec![false; grid.len()];
+    let mut open = Vec::new();
+    let mut reach = |i: usize, j: usize, open: &mut Vec<(usize, usize)>| {
+        let index = grid.index(i, j);
+        if !outside[index] && dexels.at(index).is_empty() {
+            outside[index] = true;
+            open.push((i, j));
+        }
+    };
+    for i in 0..columns {
+        reach(i, 0, &mut open);
+        reach(i, rows - 1, &mut open);
+    }
+    for j in 0..rows {
+        reach(0, j, &mut open);
+        reach(columns - 1, j, &mut open);
+    }
+    while let Some((i, j)) = open.pop() {
+        if i > 0 {
+            reach(i - 1, j, &mut open);
+        }
+        if i + 1 < columns {
+            reach(i + 1, j, &mut open);
+        }
+        if j > 0 {
+            reach(i, j - 1, &mut open);
+        }
+        if j + 1 < rows {
+            reach(i, j + 1, &mut open);
+        }
+    }
+    outside
 }
 
-type Prisms = SmallVec<[Prism; 2]>;
-
-/// What is seen of a prism on the side over two lines.
-type Side = (bool, [[usize; 2]; 2]);
-
-struct Squares<'a> {
-    dexels: &'a Dexels,
-    /// Number of the vertex of each line's lowest end.
-    first: Vec<u32>,
-    /// Of each square, whether the diagonal from its first corner is the cut; otherwise the other one is.
-    diagonals: Vec<bool>,
-    /// Whether any of the material's boundary is that of a stock.
-    stock: bool,
+/// Puts the columns' parts together behind the vertices of the ends.
+fn assemble(field: &Field<'_>, parts: Vec<Part>) -> Mesh {
+    let ends = field.ends() as usize;
+    let vertices = ends + parts.iter().map(|p| p.vertices.len()).sum::<usize>();
+    let mut mesh = Mesh {
+        vertices: Vec::with_capacity(vertices),
+        normals: Vec::with_capacity(vertices),
+        cut: Vec::with_capacity(vertices),
+        triangles: Vec::with_capacity(parts.iter().map(|p| p.triangles.len()).sum()),
+    };
+    let grid = field.dexels.grid();
+    for (index, line) in field.dexels.iter() {
+        let (i, j) = grid.place(index);
+        for e in 0..2 * line.len() {
+            let end = end(line, e);
+            mesh.vertices.push([grid.x(i), grid.y(j), end.z]);
+            mesh.normals.push(end.normal);
+            mesh.cut.push(is_cut(end));
+        }
+    }
+    let mut creased = Vec::new();
+    for part in parts {
+        let shift = mesh.vertices.len() - ends;
+        let before = mesh.triangles.len();
+        creased.extend(
+            part.creased
+                .iter()
+                .map(|(t, c)| (before + *t as usize, usize::from(*c))),
+        );
+        let moved = |v: u32| {
+            if (v as usize) < ends {
+                v
+            } else {
+                v.wrapping_add(shift as u32)
+            }
+        };
+        mesh.triangles.extend(part.triangles.iter().map(|t| t.map(moved)));
+        mesh.vertices.extend(part.vertices);
+        mesh.normals.extend(part.normals);
+        mesh.cut.extend(part.cut);
+    }
+    split(&mut mesh, &creased);
+    mesh
 }
 
-fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[k] - b[k])
+/// Gives corners of triangles that the normal of their end does not suit a vertex with one that does: the mean of all such
+/// triangles around the end, or the triangle's own.
+fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
+    let across = |mesh: &Mesh, t: usize| normal_of(mesh.triangles[t].map(|v| mesh.vertices[v as usize]));
+    // Only looked up, so its order does not matter.
+    let mut sums: HashMap<u32, ([f64; 3], Option<u32>)> = HashMap::new();
+    for (t, c) in creased {
+        let sum = &mut sums.entry(mesh.triangles[*t][*c]).or_insert(([0.0; 3], None)).0;
+        let n = across(mesh, *t);
+        *sum = [0, 1, 2].map(|k| sum[k] + n[k]);
+    }
+    for (t, c) in creased {
+        let old = mesh.triangles[*t][*c];
+        let Some((sum, shared)) = sums.get_mut(&old) else {
+            continue;
+        };
+        let (own, mean) = (unit(across(mesh, *t)), unit(*sum));
+        let fits = dot(own, mean) > CRISP;
+        let vertex = match *shared {
+            Some(vertex) if fits => vertex,
+            _ => {
+                let vertex = mesh.vertices.len() as u32;
+                mesh.vertices.push(mesh.vertices[old as usize]);
+                mesh.normals.push(if fits { mean } else { own }.map(|c| c as f32));
+                mesh.cut.push(mesh.cut[old as usize]);
+                if fits {
+                    *shared = Some(vertex);
+                }
+                vertex
+            }
+        };
+        mesh.triangles[*t][*c] = vertex;
+    }
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-fn unit_normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let (u, v) = (subtract(b, a), subtract(c, a));
-    let n = [
+/// Normal of a triangle, as long as twice its area.
+fn normal_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+    [
         u[1] * v[2] - u[2] * v[1],
         u[2] * v[0] - u[0] * v[2],
         u[0] * v[1] - u[1] * v[0],
-    ];
-    let length = dot(n, n).sqrt();
-    if length > 0.0 { n.map(|c| c / length) } else { n }
+    ]
 }
 
-impl Squares<'_> {
-    /// The corners of a square, counter-clockwise from above.
-    fn corners(&self, i: usize, j: usize) -> [usize; 4] {
-        let index = |i, j| self.dexels.grid().index(i, j);
-        [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)]
-    }
-
-    /// Whether the first diagonal joins what is more alike.
-    fn diagonal(&self, i: usize, j: usize) -> bool {
-        let [a, b, c, d] = self.corners(i, j);
-        let difference = |p, q| {
-            let (p, q) = (self.dexels.at(p), self.dexels.at(q));
-            match (p, q) {
-                ([], []) => 0.0,
-                ([], _) | (_, []) => f64::INFINITY,
-                ([p0, ..], [q0, ..]) => {
-                    let (p1, q1) = (&p[p.len() - 1], &q[q.len() - 1]);
-                    (p0.lower.z - q0.lower.z).abs() + (p1.upper.z - q1.upper.z).abs()
-                }
-            }
-        };
-        difference(a, c) <= difference(b, d)
-    }
-
-    /// The triangles of a square: counter-clockwise from above.
-    fn triangles(&self, i: usize, j: usize) -> [[usize; 3]; 2] {
-        let [a, b, c, d] = self.corners(i, j);
-        let [_, rows] = self.dexels.grid().cells();
-        if self.diagonals[i * (rows - 1) + j] {
-            [[a, b, c], [a, c, d]]
-        } else {
-            [[a, b, d], [b, c, d]]
-        }
-    }
-
-    /// The triangle of a square, if there is such a square, that has the side from `p` to `q`.
-    fn beside(&self, i: Option<usize>, j: Option<usize>, p: usize, q: usize) -> Option<[usize; 3]> {
-        let [columns, rows] = self.dexels.grid().cells();
-        let (i, j) = (i?, j?);
-        if i + 1 >= columns || j + 1 >= rows {
-            return None;
-        }
-        self.triangles(i, j)
-            .into_iter()
-            .find(|triangle| triangle.contains(&p) && triangle.contains(&q))
-    }
-
-    fn z(&self, index: usize, k: usize) -> f64 {
-        let interval = &self.dexels.at(index)[k / 2];
-        if k.is_multiple_of(2) {
-            interval.lower.z
-        } else {
-            interval.upper.z
-        }
-    }
-
-    /// The prisms over a triangle.
-    fn prisms(&self, triangle: [usize; 3]) -> Prisms {
-        let mut prisms = Prisms::new();
-        let counts = triangle.map(|index| self.dexels.at(index).len());
-        if counts.iter().all(|count| *count > 0) {
-            self.group(triangle, counts.map(|count| [0, 2 * count]), true, &mut prisms);
-        }
-        prisms
-    }
-
-    /// The prisms of slabs: pairs of successive ends in the given ranges of ends.
-    fn group(&self, triangle: [usize; 3], ranges: [[usize; 2]; 3], solid: bool, prisms: &mut Prisms) {
-        if ranges.iter().any(|range| range[0] >= range[1]) {
-            return;
-        }
-        // Line, first end, group.
-        let mut slabs: SmallVec<[(usize, usize, usize); 6]> = SmallVec::new();
-        for (line, range) in ranges.iter().enumerate() {
-            for first in (range[0]..range[1]).step_by(2) {
-                slabs.push((line, first, slabs.len()));
-            }
-        }
-        for p in 0..slabs.len() {
-            for q in p + 1..slabs.len() {
-                let ((line, first, a), (other, second, b)) = (slabs[p], slabs[q]);
-                let z = |line: usize, k: usize| self.z(triangle[line], k);
-                let overlap = z(line, first) < z(other, second + 1) && z(other, second) < z(line, first + 1);
-                if line != other && a != b && overlap {
-                    slabs.iter_mut().filter(|slab| slab.2 == b).for_each(|slab| slab.2 = a);
-                }
-            }
-        }
-        for group in 0..slabs.len() {
-            let mut ends = [[usize::MAX, 0]; 3];
-            for (line, first, _) in slabs.iter().filter(|slab| slab.2 == group) {
-                ends[*line][0] = ends[*line][0].min(*first);
-                ends[*line][1] = ends[*line][1].max(first + 1);
-            }
-            if ends.iter().all(|range| range[0] < range[1]) {
-                prisms.push(Prism { solid, ends });
-                self.group(triangle, ends.map(|[lo, hi]| [lo + 1, hi]), !solid, prisms);
-            }
-        }
-    }
-
-    /// The sides that the prisms over a triangle show over its side from `p` to `q`.
-    fn sides(&self, triangle: Option<[usize; 3]>, p: usize, q: usize) -> SmallVec<[Side; 2]> {
-        let Some(triangle) = triangle else {
-            return SmallVec::new();
-        };
-        let place = |index| triangle.iter().position(|corner| *corner == index).unwrap_or(0);
-        let (p, q) = (place(p), place(q));
-        let side = |prism: Prism| (prism.solid, [prism.ends[p], prism.ends[q]]);
-        self.prisms(triangle).into_iter().map(side).collect()
-    }
-
-    /// What lies between the columns `i` and `i + 1`, and the walls along column `i`.
-    fn strip(&self, i: usize) -> Strip {
-        let [columns, rows] = self.dexels.grid().cells();
-        let index = |i, j| self.dexels.grid().index(i, j);
-        let mut strip = Strip::default();
-        for j in 0..rows {
-            if j + 1 < rows {
-                let (p, q) = (index(i, j), index(i, j + 1));
-                let left = self.beside(i.checked_sub(1), Some(j), p, q);
-                self.walls(p, q, left, self.beside(Some(i), Some(j), p, q), &mut strip);
-            }
-            if i + 1 == columns {
-                continue;
-            }
-            let (p, q) = (index(i, j), index(i + 1, j));
-            // From p to q, the square of greater j is on the left.
-            let right = self.beside(Some(i), j.checked_sub(1), p, q);
-            self.walls(p, q, self.beside(Some(i), Some(j), p, q), right, &mut strip);
-            if j + 1 == rows {
-                continue;
-            }
-            let triangles = self.triangles(i, j);
-            for triangle in triangles {
-                for prism in self.prisms(triangle) {
-                    self.faces(triangle, &prism, &mut strip);
-                }
-            }
-            let [a, b, c, d] = self.corners(i, j);
-            let first = self.diagonals[i * (rows - 1) + j];
-            let (p, q) = if first { (a, c) } else { (b, d) };
-            // The left of a → c has d, the left of b → d has a.
-            let [one, other] = triangles;
-            let (left, right) = if first { (other, one) } else { (one, other) };
-            self.walls(p, q, Some(left), Some(right), &mut strip);
-        }
-        strip
-    }
-
-    /// The upper and the lower face of a prism.
-    fn faces(&self, triangle: [usize; 3], prism: &Prism, strip: &mut Strip) {
-        for (level, up) in [(1, prism.solid), (0, !prism.solid)] {
-            let order = if up { [0, 1, 2] } else { [0, 2, 1] };
-            let ends = order.map(|k| (triangle[k], prism.ends[k][level]));
-            let places = ends.map(|(index, k)| position(self.dexels, index, &end(self.dexels, index, k)));
-            let flat = unit_normal(places);
-            // What joins a cut and an uncut place is a wall that the cut left.
-            let cut = ends.iter().any(|(index, k)| is_cut(&end(self.dexels, *index, *k)));
-            let corners = [0, 1, 2].map(|k| {
-                let (index, number) = ends[k];
-                let end = end(self.dexels, index, number);
-                if dot(end.normal.map(f64::from), flat) < CREASE {
-                    strip.vertex(places[k], flat, cut)
-                } else {
-                    Corner::End(self.first[index] + number as u32)
-                }
-            });
-            strip.triangles.push(corners);
-        }
-    }
-
-    /// Closes the sides over the line from `p` to `q` that only one of the triangles to its left and right has.
-    fn walls(&self, p: usize, q: usize, left: Option<[usize; 3]>, right: Option<[usize; 3]>, strip: &mut Strip) {
-        let single = |triangle: [usize; 3]| {
-            let [a, b, c] = triangle.map(|index| self.dexels.at(index));
-            let over = |a: &[_], b: &[_]| a.len() == 1 && b.len() == 1;
-            over(a, b) && over(b, c)
-        };
-        // The usual case: nothing to compare.
-        if let (Some(left), Some(right)) = (left, right)
-            && single(left)
-            && single(right)
-            && self.prisms(left).len() == 1
-            && self.prisms(right).len() == 1
-        {
-            return;
-        }
-        let (on_left, on_right) = (self.sides(left, p, q), self.sides(right, p, q));
-        for side in on_left.iter().filter(|side| !on_right.contains(side)) {
-            strip.walls.push(self.wall(p, q, side, on_right.is_empty()));
-        }
-        for (solid, [a, b]) in on_right.iter().filter(|side| !on_left.contains(side)) {
-            strip
-                .walls
-                .push(self.wall(q, p, &(*solid, [*b, *a]), on_left.is_empty()));
-        }
-    }
-
-    /// The side over the line from `p` to `q` of a prism on its left; `outside` when there is no prism on its right.
-    fn wall(&self, p: usize, q: usize, (solid, ends): &Side, outside: bool) -> Wall {
-        let at = |index: usize, k: usize| {
-            let end = end(self.dexels, index, k);
-            position(self.dexels, index, &end)
-        };
-        let [lower_p, upper_p] = ends[0].map(|k| at(p, k));
-        let [lower_q, upper_q] = ends[1].map(|k| at(q, k));
-        let along = subtract(lower_q, lower_p);
-        let length = along[0].hypot(along[1]);
-        let sign = if *solid { 1.0 / length } else { -1.0 / length };
-        // A tool made the sides of what it hollowed out; the outside of stock is its own.
-        let mut between = [(p, ends[0]), (q, ends[1])]
-            .into_iter()
-            .flat_map(|(index, [lo, hi])| (lo..=hi).map(move |k| is_cut(&end(self.dexels, index, k))));
-        let cut = if outside && *solid {
-            !self.stock
-        } else {
-            between.any(|cut| cut)
-        };
-        Wall {
-            lines: [p, q],
-            places: [[lower_p, upper_p], [lower_q, upper_q]],
-            normal: [along[1] * sign, -along[0] * sign, 0.0],
-            length,
-            cut,
-            solid: *solid,
-        }
-    }
-}
-
-/// Adds the walls. Those that meet at a small angle are stairs of a round or slanted wall, and are shaded as one.
-fn add_walls(mesh: &mut Mesh, walls: &[Wall]) {
-    let mut at: Vec<(usize, usize)> = walls
-        .iter()
-        .enumerate()
-        .flat_map(|(number, wall)| wall.lines.map(|line| (line, number)))
-        .collect();
-    at.sort_unstable();
-    let starts: Vec<&[(usize, usize)]> = at.chunk_by(|a, b| a.0 == b.0).collect();
-    let range = |wall: &Wall, line: usize| {
-        let [lower, upper] = wall.places[usize::from(wall.lines[1] == line)];
-        (lower[2], upper[2])
-    };
-    for wall in walls {
-        let normals = wall.lines.map(|line| {
-            let group = starts.binary_search_by_key(&line, |group| group[0].0).unwrap_or(0);
-            let (lower, upper) = range(wall, line);
-            let mut sum = [0.0; 3];
-            for other in starts[group].iter().map(|(_, number)| &walls[*number]) {
-                let (low, high) = range(other, line);
-                if dot(other.normal, wall.normal) > CREASE && low < upper && lower < high {
-                    sum = [0, 1, 2].map(|k| sum[k] + other.normal[k] * other.length);
-                }
-            }
-            let length = dot(sum, sum).sqrt();
-            sum.map(|c| (c / length) as f32)
-        });
-        let first = mesh.vertices.len() as u32;
-        for (places, normal) in wall.places.iter().zip(normals) {
-            for place in places {
-                mesh.vertices.push(*place);
-                mesh.normals.push(normal);
-                mesh.cut.push(wall.cut);
-            }
-        }
-        // Lower and upper at p, lower and upper at q.
-        let quad = if wall.solid {
-            [[0, 2, 3], [0, 3, 1]]
-        } else {
-            [[0, 3, 2], [0, 1, 3]]
-        };
-        mesh.triangles.extend(quad.map(|t| t.map(|k| first + k)));
+/// The vector of length 1; up, if there is none.
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = dot(v, v).sqrt();
+    if length > 0.0 {
+        v.map(|c| c / length)
+    } else {
+        [0.0, 0.0, 1.0]
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Grid, Interval};
-    use proptest::prelude::*;
-
-    fn grid(cells: [usize; 2]) -> Grid {
-        Grid::new([0.0, 0.0], cells.map(|n| n as f64), cells).unwrap()
-    }
-
-    /// Six times the volume that the triangles enclose.
-    fn volume(mesh: &Mesh) -> f64 {
-        let six: f64 = mesh
-            .triangles
-            .iter()
-            .map(|t| {
-                let [a, b, c] = t.map(|k| mesh.vertices[k as usize]);
-                a[0] * (b[1] * c[2] - b[2] * c[1])
-                    + a[1] * (b[2] * c[0] - b[0] * c[2])
-                    + a[2] * (b[0] * c[1] - b[1] * c[0])
-            })
-            .sum();
-        six / 6.0
-    }
-
-    /// Whether every edge is used as often one way as the other, by places.
-    fn is_closed(mesh: &Mesh) -> bool {
-        let triangles = mesh.triangles.iter();
-        let soup = crate::TriangleSoup {
-            triangles: triangles.map(|t| t.map(|k| mesh.vertices[k as usize])).collect(),
-        };
-        soup.triangles.is_empty() || soup.check_closed().is_ok()
-    }
-
-    fn filled(cells: [usize; 2], intervals: impl Fn(usize, usize) -> Vec<(f64, f64)>) -> Dexels {
-        let mut dexels = Dexels::empty(grid(cells));
-        for i in 0..cells[0] {
-            for j in 0..cells[1] {
-                let line: Vec<Interval> = intervals(i, j).iter().map(|(a, b)| Interval::between(*a, *b)).collect();
-                dexels.set(dexels.grid().index(i, j), &line);
-            }
-        }
-        dexels
-    }
-
-    #[test]
-    fn nothing_gives_nothing() {
-        assert_eq!(surface(&Dexels::empty(grid([4, 5]))), Mesh::default());
-        // One line alone spans no triangle.
-        assert!(surface(&filled([1, 1], |_, _| vec![(0.0, 1.0)])).triangles.is_empty());
-    }
-
-    #[test]
-    fn a_step_a_hole_and_a_cavity_are_closed() {
-        let step = surface(&filled([4, 3], |i, _| vec![(0.0, if i < 2 { 1.0 } else { 3.0 })]));
-        assert!(is_closed(&step));
-        // Lines at i = 0, 1 of height 1, then 3 at 2, 3: 1·1 + 2·1 + 3·1, times 2 along y.
-        assert!((volume(&step) - 12.0).abs() < 1e-12);
-        let hole = surface(&filled([5, 5], |i, j| {
-            if (i, j) == (2, 2) { vec![] } else { vec![(0.0, 1.0)] }
-        }));
-        assert!(is_closed(&hole));
-        assert!((volume(&hole) - (16.0 - 2.0)).abs() < 1e-12, "{}", volume(&hole));
-        let inside = |i: usize| (1..4).contains(&i);
-        let cavity = surface(&filled([5, 5], |i, j| {
-            if inside(i) && inside(j) {
-                vec![(0.0, 1.0), (2.0, 3.0)]
-            } else {
-                vec![(0.0, 3.0)]
-            }
-        }));
-        assert!(is_closed(&cavity));
-        assert!(
-            (volume(&cavity) - (16.0 * 3.0 - 4.0)).abs() < 1e-12,
-            "{}",
-            volume(&cavity)
-        );
-    }
-
-    proptest! {
-        /// Whatever the dexels: closed, of the prisms' volume, and facing out of the material.
-        #[test]
-        fn random_dexels(lines in proptest::collection::vec(proptest::collection::btree_set(0..12_u32, 0..7), 20)) {
-            let dexels = filled([5, 4], |i, j| {
-                let heights: Vec<f64> = lines[i * 4 + j].iter().map(|z| f64::from(*z)).collect();
-                heights.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
-            });
-            let mesh = surface(&dexels);
-            prop_assert!(is_closed(&mesh));
-            let squares = Squares { dexels: &dexels, first: vec![], diagonals: vec![true; 12], stock: false };
-            let diagonals: Vec<bool> = (0..12).map(|square| squares.diagonal(square / 3, square % 3)).collect();
-            let squares = Squares { diagonals, ..squares };
-            let mut expected = 0.0;
-            for triangle in (0..12).flat_map(|square| squares.triangles(square / 3, square % 3)) {
-                for prism in squares.prisms(triangle) {
-                    let heights = [0, 1, 2].map(|k| squares.z(triangle[k], prism.ends[k][1]) - squares.z(triangle[k], prism.ends[k][0]));
-                    let part = heights.iter().sum::<f64>() / 6.0;
-                    expected += if prism.solid { part } else { -part };
-                }
-            }
-            prop_assert!((volume(&mesh) - expected).abs() < 1e-9, "{} {}", volume(&mesh), expected);
-            for triangle in &mesh.triangles {
-                let flat = unit_normal(triangle.map(|k| mesh.vertices[k as usize]));
-                for k in triangle {
-                    prop_assert!(dot(flat, mesh.normals[*k as usize].map(f64::from)) >= CREASE - 1e-6 || flat == [0.0; 3]);
-                }
-            }
-        }
-    }
-}
+mod tests;
