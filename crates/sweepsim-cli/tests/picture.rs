@@ -1,6 +1,6 @@
 //! Pictures: the same at any number of threads, plausible, and whole.
 
-use sweepsim_cli::picture::{Image, png, render};
+use sweepsim_cli::picture::{Image, View, png, render};
 use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock, surface};
 
 const SIZE: [usize; 2] = [160, 120];
@@ -114,4 +114,41 @@ fn a_png_has_the_pixels() {
         rgb: image.rgb,
     };
     assert!(png(&wrong).is_err());
+}
+
+#[test]
+fn nothing_gives_a_background() {
+    let image = render(&Mesh::default(), SIZE);
+    assert_eq!(image.rgb.len(), SIZE[0] * SIZE[1] * 3);
+    for pixel in image.rgb.chunks_exact(3) {
+        assert!(pixel.iter().all(|c| *c > 150), "{pixel:?}");
+        assert!(
+            pixel.iter().max().unwrap() - pixel.iter().min().unwrap() < 30,
+            "{pixel:?}"
+        );
+    }
+    // Brighter at the top.
+    let middle = SIZE[0] / 2;
+    assert!(pixel(&image, middle, 0)[1] > pixel(&image, middle, SIZE[1] - 1)[1]);
+}
+
+#[test]
+fn odd_views_do_no_harm() {
+    let mut mesh = block(true);
+    mesh.normals[20] = [f32::NAN; 3];
+    let view = View {
+        azimuth: f64::INFINITY,
+        elevation: f64::NAN,
+        opening: 1e9,
+        margin: -1.0,
+        size: [1, 300],
+    };
+    assert_eq!(view.render(&mesh).rgb.len(), 900);
+    // From the other side the part is still seen.
+    let view = View {
+        size: SIZE,
+        azimuth: 120.0,
+        ..View::default()
+    };
+    assert!(view.render(&block(true)) != render(&Mesh::default(), SIZE));
 }

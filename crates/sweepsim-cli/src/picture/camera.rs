@@ -1,160 +1,80 @@
-//! Where the picture is taken from, and where the light is.
+//! Where one looks from.
 
-use super::raster::Projected;
-use super::shade::Surface;
-use super::vector::{V, add, cross, dot, scale, sub, unit};
+use super::View;
+use super::scene::Scene;
+use super::vector::{Vector, add, along, cross, dot, scale, sub, unit};
 
-/// Height of the eye over the horizon, degrees.
-const ELEVATION: f32 = 42.0;
-/// How far the view is turned away from the part's long side, degrees.
-const TURN: f32 = 32.0;
-/// Half the opening angle over the height of the picture, degrees.
-const OPENING: f32 = 13.0;
-/// How much of the picture the part fills.
-const FILL: f32 = 0.9;
-
-/// A pinhole camera. The surface's places are in units of its size about its middle.
+/// A camera with the scene in its view.
 pub(super) struct Camera {
-    eye: V,
-    right: V,
-    up: V,
-    forward: V,
-    /// Pixels per unit at distance 1.
-    focal: f32,
-    middle: [f32; 2],
+    pub eye: Vector,
+    pub right: Vector,
+    pub up: Vector,
+    pub forward: Vector,
+    /// Half the picture's width and height at distance 1.
+    pub half: [f32; 2],
 }
 
 impl Camera {
-    pub fn new(mesh: &Surface, size: [usize; 2]) -> Self {
-        let [width, height] = size.map(|pixels| pixels as f32);
-        // The longer side lies across the picture.
-        let wide = mesh.half[0] >= mesh.half[1];
-        let azimuth = if wide { -90.0 + TURN } else { TURN };
-        let (sin, cos) = azimuth.to_radians().sin_cos();
-        let (rise, out) = ELEVATION.to_radians().sin_cos();
-        let back = [cos * out, sin * out, rise];
-        let forward = scale(back, -1.0);
+    pub fn new(view: &View, scene: &Scene) -> Self {
+        let kept = |value: f64, from: f64, to: f64| if value.is_finite() { value.clamp(from, to) } else { from };
+        let azimuth = kept(view.azimuth, -1e6, 1e6).to_radians();
+        let elevation = kept(view.elevation, 5.0, 85.0).to_radians();
+        let longer = (0.5 * kept(view.opening, 5.0, 90.0).to_radians()).tan();
+        let largest = view.size[0].max(view.size[1]) as f64;
+        let half = view.size.map(|n| (longer * n as f64 / largest) as f32);
+        let towards = [
+            elevation.cos() * azimuth.cos(),
+            elevation.cos() * azimuth.sin(),
+            elevation.sin(),
+        ]
+        .map(|c| c as f32);
+        let forward = scale(unit(towards), -1.0);
         let right = unit(cross(forward, [0.0, 0.0, 1.0]));
         let up = cross(right, forward);
-        let slope = OPENING.to_radians().tan();
-        let focal = 0.5 * height / slope;
-        let reach = [FILL * 0.5 * width / focal, FILL * 0.5 * height / focal];
-        let mut target = [0.0; 3];
-        let mut distance = 1.0_f32;
-        for _ in 0..6 {
-            let mut range = [[f32::INFINITY; 2], [f32::NEG_INFINITY; 2]];
-            distance = 0.0;
-            for place in mesh.seen() {
-                let from = sub(place, target);
-                let aside = [dot(from, right), dot(from, up)];
-                for k in 0..2 {
-                    distance = distance.max(aside[k].abs() / reach[k] - dot(from, forward));
-                }
-            }
-            distance = distance.max(1e-3);
-            for place in mesh.seen() {
-                let from = sub(place, target);
-                let depth = distance + dot(from, forward);
-                for (k, axis) in [right, up].into_iter().enumerate() {
-                    let at = dot(from, axis) / depth;
-                    range[0][k] = range[0][k].min(at);
-                    range[1][k] = range[1][k].max(at);
-                }
-            }
-            for (k, axis) in [right, up].into_iter().enumerate() {
-                target = add(target, scale(axis, 0.5 * (range[0][k] + range[1][k]) * distance));
+        // In the camera's directions, every point must be in the four half-spaces x − px ≤ h (z − pz), and so on:
+        // the nearest place where all hold.
+        let free = (1.0 - 2.0 * kept(view.margin, 0.0, 0.4)) as f32;
+        let mut most = [[f32::NEG_INFINITY; 2]; 2];
+        let mut nearest = f32::INFINITY;
+        for p in &scene.positions {
+            let z = dot(*p, forward);
+            nearest = nearest.min(z);
+            for (k, axis) in [right, up].iter().enumerate() {
+                let x = dot(*p, *axis);
+                most[k][0] = most[k][0].max(x - free * half[k] * z);
+                most[k][1] = most[k][1].max(-x - free * half[k] * z);
             }
         }
+        if scene.positions.is_empty() {
+            (most, nearest) = ([[1.0; 2]; 2], -1.0);
+        }
+        let back = |k: usize| -(most[k][0] + most[k][1]) / (2.0 * free * half[k]);
+        let depth = back(0).min(back(1)).min(nearest - 0.1);
+        let aside = [0, 1].map(|k: usize| 0.5 * (most[k][0] - most[k][1]));
+        let eye = add(scale(forward, depth), add(scale(right, aside[0]), scale(up, aside[1])));
         Self {
-            eye: sub(target, scale(forward, distance)),
+            eye,
             right,
             up,
             forward,
-            focal,
-            middle: [0.5 * width, 0.5 * height],
+            half,
         }
     }
 
-    pub fn project(&self, place: V) -> Projected {
-        let from = sub(place, self.eye);
-        let depth = dot(from, self.forward);
-        let inverse = 1.0 / depth;
-        Projected {
-            x: self.middle[0] + self.focal * dot(from, self.right) * inverse,
-            y: self.middle[1] - self.focal * dot(from, self.up) * inverse,
-            near: inverse,
-        }
+    /// Place in the picture, from −1 to 1 to the right and up, and distance along the axis.
+    pub fn project(&self, p: Vector) -> [f32; 3] {
+        let d = sub(p, self.eye);
+        let z = dot(d, self.forward);
+        [
+            dot(d, self.right) / (z * self.half[0]),
+            dot(d, self.up) / (z * self.half[1]),
+            z,
+        ]
     }
 
-    /// The unit direction from a place to the eye.
-    pub fn towards(&self, place: V) -> V {
-        unit(sub(self.eye, place))
-    }
-
-    /// Pixels that a unit covers there.
-    pub fn pixels(&self, near: f32) -> f32 {
-        self.focal * near
-    }
-
-    /// Where the ray through a point of the picture meets the floor at the given height.
-    pub fn floor(&self, x: f32, y: f32, height: f32) -> Option<V> {
-        let aside = scale(self.right, (x - self.middle[0]) / self.focal);
-        let above = scale(self.up, (self.middle[1] - y) / self.focal);
-        let ray = add(self.forward, add(aside, above));
-        let t = (height - self.eye[2]) / ray[2];
-        (ray[2] < 0.0 && t > 0.0).then(|| add(self.eye, scale(ray, t)))
-    }
-
-    /// The directions right, up and back of the picture.
-    pub fn axes(&self) -> [V; 3] {
-        [self.right, self.up, scale(self.forward, -1.0)]
-    }
-}
-
-/// Parallel light, and its view of the part.
-pub(super) struct Light {
-    /// Unit direction towards it.
-    pub direction: V,
-    right: V,
-    up: V,
-    /// Pixels per unit.
-    scale: f32,
-    middle: f32,
-}
-
-impl Light {
-    /// Over the viewer's left shoulder.
-    pub fn key(mesh: &Surface, camera: &Camera, size: usize) -> Self {
-        let [right, _, back] = camera.axes();
-        let level = unit([back[0], back[1], 0.0]);
-        let direction = unit(add(add(scale(right, -0.62), scale(level, 0.22)), [0.0, 0.0, 1.0]));
-        let reach = dot(mesh.half, mesh.half).sqrt().max(1e-3);
-        Self::new(direction, size, 0.49 * size as f32 / reach)
-    }
-
-    /// From straight above, with as much again round about the part.
-    pub fn overhead(mesh: &Surface, size: usize) -> Self {
-        let reach = mesh.half[0].max(mesh.half[1]).max(1e-3);
-        Self::new([0.0, 0.0, 1.0], size, 0.25 * size as f32 / reach)
-    }
-
-    fn new(direction: V, size: usize, scale: f32) -> Self {
-        let across = unit(cross([0.0, 1.0, 0.0], direction));
-        Self {
-            direction,
-            right: across,
-            up: cross(direction, across),
-            scale,
-            middle: 0.5 * size as f32,
-        }
-    }
-
-    pub fn project(&self, place: V) -> Projected {
-        Projected {
-            x: self.middle + self.scale * dot(place, self.right),
-            y: self.middle + self.scale * dot(place, self.up),
-            // Kept positive: nothing is farther than 2 from the middle.
-            near: 4.0 + dot(place, self.direction),
-        }
+    /// Direction of a place in the picture, of length 1 along the axis.
+    pub fn ray(&self, x: f32, y: f32) -> Vector {
+        let ray = along(self.forward, x * self.half[0], self.right);
+        along(ray, y * self.half[1], self.up)
     }
 }

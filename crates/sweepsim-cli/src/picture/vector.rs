@@ -1,33 +1,37 @@
-//! Three numbers at a time.
+//! Three numbers.
 
-pub(super) type V = [f32; 3];
+pub(super) type Vector = [f32; 3];
 
-pub(super) fn add(a: V, b: V) -> V {
+pub(super) fn add(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-pub(super) fn sub(a: V, b: V) -> V {
+pub(super) fn sub(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-pub(super) fn scale(a: V, s: f32) -> V {
+pub(super) fn scale(a: Vector, s: f32) -> Vector {
     [a[0] * s, a[1] * s, a[2] * s]
 }
 
-/// Channel by channel.
-pub(super) fn times(a: V, b: V) -> V {
+/// `a + s b`.
+pub(super) fn along(a: Vector, s: f32, b: Vector) -> Vector {
+    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
+}
+
+pub(super) fn times(a: Vector, b: Vector) -> Vector {
     [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
-pub(super) fn mix(a: V, b: V, t: f32) -> V {
-    add(scale(a, 1.0 - t), scale(b, t))
+pub(super) fn mix(a: Vector, b: Vector, t: f32) -> Vector {
+    [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]))
 }
 
-pub(super) fn dot(a: V, b: V) -> f32 {
+pub(super) fn dot(a: Vector, b: Vector) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn cross(a: V, b: V) -> V {
+pub(super) fn cross(a: Vector, b: Vector) -> Vector {
     [
         a[1] * b[2] - a[2] * b[1],
         a[2] * b[0] - a[0] * b[2],
@@ -35,14 +39,18 @@ pub(super) fn cross(a: V, b: V) -> V {
     ]
 }
 
-/// A unit vector, or zero.
-pub(super) fn unit(a: V) -> V {
+/// Of length 1; up, if there is no direction.
+pub(super) fn unit(a: Vector) -> Vector {
     let length = dot(a, a).sqrt();
-    if length > 0.0 { scale(a, 1.0 / length) } else { a }
+    if length > 0.0 && length.is_finite() {
+        scale(a, 1.0 / length)
+    } else {
+        [0.0, 0.0, 1.0]
+    }
 }
 
-/// 0 below `a`, 1 above `b`, smooth between.
-pub(super) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
-    let t = ((x - a) / (b - a)).clamp(0.0, 1.0);
+/// Grows smoothly from 0 at `from` to 1 at `to`.
+pub(super) fn smooth_step(from: f32, to: f32, x: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }

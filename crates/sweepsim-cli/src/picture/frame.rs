@@ -1,0 +1,313 @@
+//! From triangles to pixels.
+
+use super::Image;
+use super::camera::Camera;
+use super::light::{Around, Lights};
+use super::scene::Scene;
+use super::shade::{self, Spot};
+use super::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
+use rayon::prelude::*;
+
+/// Samples across a pixel.
+const SAMPLES: usize = 3;
+/// Rows of pixels of a band.
+const BAND: usize = 16;
+/// Pixels beside a band whose samples are known as well.
+const RIM: usize = 1;
+/// Steps of the corners' places within a sample's distance.
+const STEP: f32 = 256.0;
+const EMPTY: u32 = u32::MAX;
+
+/// A vertex in the picture: in steps from the top left sample, and 1 / distance.
+#[derive(Clone, Copy)]
+struct Point {
+    x: i64,
+    y: i64,
+    near: f32,
+}
+
+/// Twice the area of a triangle, positive when counter-clockwise with `y` up, that is seen from its front.
+fn area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1])
+}
+
+/// Draws a picture.
+pub(super) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usize; 2]) -> Image {
+    let samples = size.map(|n| (n * SAMPLES) as f32);
+    let points: Vec<Point> = scene
+        .positions
+        .par_iter()
+        .map(|p| {
+            let [x, y, z] = camera.project(*p);
+            let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
+            Point {
+                x: place(x, samples[0]),
+                y: place(-y, samples[1]),
+                near: 1.0 / z,
+            }
+        })
+        .collect();
+    let bands = size[1].div_ceil(BAND);
+    let lists = sort_into_bands(scene, &points, bands);
+    let mut rgb = vec![0; size[0] * size[1] * 3];
+    rgb.par_chunks_mut(size[0] * 3 * BAND)
+        .zip(&lists)
+        .enumerate()
+        .for_each(|(band, (rows, list))| {
+            let band = Band::new(scene, lights, &points, size, band * BAND, list);
+            band.paint(scene, camera, lights, rows);
+        });
+    Image { size, rgb }
+}
+
+/// The triangles that each band sees the front of, in their order.
+fn sort_into_bands(scene: &Scene, points: &[Point], bands: usize) -> Vec<Vec<u32>> {
+    let step = STEP as i64;
+    let mut lists = vec![Vec::new(); bands];
+    for (number, t) in scene.triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        if area([a.x, a.y], [b.x, b.y], [c.x, c.y]) <= 0 {
+            continue;
+        }
+        let row = |y: i64| y.div_euclid(step * SAMPLES as i64);
+        let rim = RIM as i64 + 1;
+        let first = (row(a.y.min(b.y).min(c.y)) - rim).div_euclid(BAND as i64).max(0);
+        let last = (row(a.y.max(b.y).max(c.y)) + rim)
+            .div_euclid(BAND as i64)
+            .min(bands as i64 - 1);
+        for band in first..=last {
+            lists[band as usize].push(number as u32);
+        }
+    }
+    lists
+}
+
+/// The samples of a band of rows.
+struct Band {
+    size: [usize; 2],
+    /// The first row of pixels.
+    top: usize,
+    /// Samples across, with those of the rim.
+    width: usize,
+    triangles: Vec<u32>,
+    near: Vec<f32>,
+    normals: Vec<Vector>,
+    around: Vec<Around>,
+    cut: Vec<f32>,
+}
+
+impl Band {
+    fn new(scene: &Scene, lights: &Lights, points: &[Point], size: [usize; 2], top: usize, list: &[u32]) -> Self {
+        let width = (size[0] + 2 * RIM) * SAMPLES;
+        let height = (BAND + 2 * RIM) * SAMPLES;
+        let count = width * height;
+        let mut band = Self {
+            size,
+            top,
+            width,
+            triangles: vec![EMPTY; count],
+            near: vec![0.0; count],
+            normals: Vec::new(),
+            around: Vec::new(),
+            cut: Vec::new(),
+        };
+        if list.is_empty() {
+            return band;
+        }
+        for number in list {
+            band.draw(*number, scene.triangles[*number as usize].map(|v| points[v as usize]));
+        }
+        band.normals = vec![[0.0; 3]; count];
+        band.around = vec![Around::default(); count];
+        band.cut = vec![0.0; count];
+        for index in 0..count {
+            band.look_up(scene, lights, points, index);
+        }
+        band
+    }
+
+    /// Steps from the picture's first sample to the band's.
+    fn origin(&self) -> [i64; 2] {
+        let rim = (RIM * SAMPLES) as i64;
+        [-rim, (self.top * SAMPLES) as i64 - rim].map(|n| n * STEP as i64)
+    }
+
+    fn draw(&mut self, number: u32, points: [Point; 3]) {
+        let (step, origin) = (STEP as i64, self.origin());
+        let [a, b, c] = points.map(|p| [p.x - origin[0], p.y - origin[1]]);
+        let height = self.near.len() / self.width;
+        let range = |k: usize, count: usize| {
+            let low = a[k].min(b[k]).min(c[k]);
+            let high = a[k].max(b[k]).max(c[k]);
+            let from = (low + step - 1).div_euclid(step).max(0);
+            (from, high.div_euclid(step).min(count as i64 - 1))
+        };
+        let ((left, right), (top, bottom)) = (range(0, self.width), range(1, height));
+        let whole = area(a, b, c);
+        if left > right || top > bottom || whole <= 0 {
+            return;
+        }
+        let scale = 1.0 / whole as f32;
+        for row in top..=bottom {
+            let first = [left * step, row * step];
+            // Going right by one sample, `area(p, q, at)` grows by (q.y − p.y) steps.
+            let mut weights = [area(b, c, first), area(c, a, first), area(a, b, first)];
+            let grow = [c[1] - b[1], a[1] - c[1], b[1] - a[1]].map(|d| d * step);
+            let start = row as usize * self.width;
+            for column in left..=right {
+                if weights.iter().all(|w| *w >= 0) {
+                    let near = scale * (0..3).map(|k| weights[k] as f32 * points[k].near).sum::<f32>();
+                    let index = start + column as usize;
+                    if near > self.near[index] {
+                        self.near[index] = near;
+                        self.triangles[index] = number;
+                    }
+                }
+                for k in 0..3 {
+                    weights[k] += grow[k];
+                }
+            }
+        }
+    }
+
+    /// Between the corners of the triangle at a sample, as seen in perspective.
+    fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[Point], index: usize) {
+        if self.triangles[index] == EMPTY {
+            return;
+        }
+        let corners = scene.triangles[self.triangles[index] as usize].map(|v| v as usize);
+        let p = corners.map(|v| points[v]);
+        let origin = self.origin();
+        let step = STEP as i64;
+        let at = [
+            origin[0] + (index % self.width) as i64 * step,
+            origin[1] + (index / self.width) as i64 * step,
+        ];
+        let [a, b, c] = p.map(|p| [p.x, p.y]);
+        let weights = [area(b, c, at), area(c, a, at), area(a, b, at)];
+        let weights = [0, 1, 2].map(|k| weights[k] as f32 * p[k].near);
+        let sum: f32 = weights.iter().sum();
+        let mut normal = [0.0; 3];
+        let mut around = Around::default();
+        let mut cut = 0.0;
+        for k in 0..3 {
+            let w = weights[k] / sum;
+            normal = along(normal, w, scene.normals[corners[k]]);
+            around.sky += w * lights.around[corners[k]].sky;
+            around.ground += w * lights.around[corners[k]].ground;
+            cut += w * scene.cut[corners[k]];
+        }
+        self.normals[index] = unit(normal);
+        self.around[index] = around;
+        self.cut[index] = cut;
+    }
+
+    /// The pixels of the band's rows.
+    fn paint(&self, scene: &Scene, camera: &Camera, lights: &Lights, rows: &mut [u8]) {
+        let place = |pixel: f32, k: usize| 2.0 * pixel / self.size[k] as f32 - 1.0;
+        for (row, pixels) in rows.chunks_mut(3 * self.size[0]).enumerate() {
+            for (column, pixel) in pixels.chunks_mut(3).enumerate() {
+                let (x, y) = (column as f32 + 0.5, (self.top + row) as f32 + 0.5);
+                let behind = || shade::background(camera, lights, scene.ground, place(x, 0), -place(y, 1));
+                let colour = if self.normals.is_empty() {
+                    behind()
+                } else {
+                    self.pixel(camera, lights, [column, row], behind)
+                };
+                for k in 0..3 {
+                    // Between two bytes, which one is decided by a fixed pattern: so the background has no visible steps.
+                    pixel[k] = shade::srgb(colour[k], pattern(column, self.top + row));
+                }
+            }
+        }
+    }
+
+    /// The mean of a pixel's samples.
+    fn pixel(&self, camera: &Camera, lights: &Lights, at: [usize; 2], behind: impl Fn() -> Vector) -> Vector {
+        let mut spots: Vec<(Spot, f32, f32, usize)> = Vec::new();
+        let mut free = 0_usize;
+        for sample in 0..SAMPLES * SAMPLES {
+            let column = (at[0] + RIM) * SAMPLES + sample % SAMPLES;
+            let row = (at[1] + RIM) * SAMPLES + sample / SAMPLES;
+            let index = row * self.width + column;
+            if self.triangles[index] == EMPTY {
+                free += 1;
+                continue;
+            }
+            let near = self.near[index];
+            let (normal, around, cut) = (self.normals[index], self.around[index], self.cut[index]);
+            let line = self.line(index);
+            let across = [column - RIM * SAMPLES, self.top * SAMPLES + row - RIM * SAMPLES];
+            let [x, y] = [0, 1].map(|k| (across[k] as f32 + 0.5) / (self.size[k] * SAMPLES) as f32 * 2.0 - 1.0);
+            let place = along(camera.eye, 1.0 / near, camera.ray(x, -y));
+            let alike = spots.iter_mut().find(|(spot, first, _, count)| {
+                (near - first).abs() < 0.01 * near && dot(spot.normal, normal) > 0.9 * *count as f32
+            });
+            if let Some((spot, _, lines, count)) = alike {
+                spot.at = add(spot.at, place);
+                spot.normal = add(spot.normal, normal);
+                spot.around.sky += around.sky;
+                spot.around.ground += around.ground;
+                spot.cut += cut;
+                *lines += line;
+                *count += 1;
+            } else {
+                let spot = Spot {
+                    at: place,
+                    normal,
+                    around,
+                    cut,
+                };
+                spots.push((spot, near, line, 1));
+            }
+        }
+        let part = 1.0 / (SAMPLES * SAMPLES) as f32;
+        let mut colour = if free > 0 {
+            scale(behind(), free as f32 * part)
+        } else {
+            [0.0; 3]
+        };
+        for (mut spot, _, lines, count) in spots {
+            let mean = 1.0 / count as f32;
+            spot.at = scale(spot.at, mean);
+            spot.around.sky *= mean;
+            spot.around.ground *= mean;
+            spot.cut *= mean;
+            let lit = shade::shade(camera, lights, &spot);
+            let lined = mix(lit, scale(lit, 0.45), lines * mean);
+            colour = along(colour, count as f32 * part, lined);
+        }
+        colour
+    }
+
+    /// How much of an edge there is at a sample: where the depth jumps, or the normal does.
+    fn line(&self, index: usize) -> f32 {
+        let centre = self.near[index];
+        let mut line = 0.0_f32;
+        for step in [2, 2 * self.width] {
+            let (Some(before), after) = (index.checked_sub(step), index + step) else {
+                continue;
+            };
+            if after >= self.near.len() {
+                continue;
+            }
+            if self.triangles[before] == EMPTY || self.triangles[after] == EMPTY {
+                line = line.max(0.7);
+                continue;
+            }
+            // 1 / distance is linear on planes.
+            let bend = (self.near[before] + self.near[after] - 2.0 * centre).abs() / (centre * centre);
+            line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
+            let turn = 1.0 - dot(self.normals[before], self.normals[after]);
+            line = line.max(0.30 * smooth_step(0.12, 0.6, turn));
+        }
+        line
+    }
+}
+
+/// From −0.5 to 0.5, different for neighbouring pixels.
+fn pattern(column: usize, row: usize) -> f32 {
+    // Jimenez's interleaved gradient noise.
+    let inner = 0.067_110_56 * (column % 4096) as f32 + 0.005_837_15 * (row % 4096) as f32;
+    (52.982_918 * inner.fract()).fract() - 0.5
+}
