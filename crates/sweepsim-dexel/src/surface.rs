@@ -87,6 +87,8 @@ struct Field<'a> {
     classes: Vec<[Class; 2]>,
     /// Dexels without material, joined to the border by such.
     outside: Vec<bool>,
+    /// Whether any of the material's boundary is that of a stock: then its outer walls are, too.
+    stock: bool,
 }
 
 /// A dexel of a [`Field`].
@@ -95,6 +97,7 @@ struct Dexel<'a> {
     line: &'a [Interval],
     at: [f64; 2],
     first: u32,
+    /// Beside the stock: walls that face it are the stock's own.
     outside: bool,
 }
 
@@ -129,6 +132,9 @@ impl<'a> Field<'a> {
             first,
             classes: Vec::new(),
             outside: outside(dexels),
+            stock: dexels
+                .iter()
+                .any(|(_, line)| (0..2 * line.len()).any(|e| !is_cut(end(line, e)))),
         };
         let [columns, rows] = field.cells;
         field.classes = (0..columns + 2)
@@ -152,7 +158,7 @@ impl<'a> Field<'a> {
                 line: &[],
                 at: [place(0, si), place(1, sj)],
                 first: 0,
-                outside: true,
+                outside: self.stock,
             };
         }
         let index = grid.index(si - 1, sj - 1);
@@ -160,7 +166,7 @@ impl<'a> Field<'a> {
             line: self.dexels.at(index),
             at: [grid.x(si - 1), grid.y(sj - 1)],
             first: self.first[index],
-            outside: self.outside[index],
+            outside: self.stock && self.outside[index],
         }
     }
 

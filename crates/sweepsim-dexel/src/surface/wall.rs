@@ -182,7 +182,7 @@ impl Square<'_> {
 
     /// Whether a tool made the space in front of a wall of edge `k` at a height.
     fn wall_is_cut(&self, k: usize, from_first: bool, z: f64) -> bool {
-        let (solid, space) = if from_first { (0, 1) } else { (1, 0) };
+        let space = usize::from(from_first);
         let around = |which: usize| {
             let line = self.corners[(k + which) % 4].line;
             let above = self.sides[k].heights[which].partition_point(|h| *h <= z);
@@ -190,8 +190,7 @@ impl Square<'_> {
         };
         let dexel = &self.corners[(k + space) % 4];
         if dexel.line.is_empty() {
-            let solid = around(solid);
-            return !dexel.outside || (solid.contains(&Some(true)) && !solid.contains(&Some(false)));
+            return !dexel.outside;
         }
         around(space).contains(&Some(true))
     }
