@@ -42,6 +42,9 @@ pub trait ChartMap<const N: usize> {
 
     /// What counts as a large difference of each value: for the choice of the direction to split.
     fn scales(&self) -> [f64; N];
+
+    /// How far each value of [`ChartMap::evaluate`] may be off by rounding.
+    fn rounding(&self) -> [f64; N];
 }
 
 /// A map at a point.
@@ -153,7 +156,7 @@ pub struct ChartSolver<C> {
 
 /// Steps in a chart before the box is split instead.
 const STEPS: usize = 32;
-/// When a target can only be so near a face of the box, in half sides, Newton's answer says on which side it is.
+/// When a preimage can only be in so small a part of the box, in half sides (besides rounding), Newton's answer says whether it is.
 const ON_FACE: f64 = 1e-11;
 /// Boxes with at most this many targets have each of them tested before a split.
 const FEW: usize = 4;
@@ -170,6 +173,8 @@ struct Linear<const N: usize> {
     rest: Square<N>,
     /// Radius part of it alone, for the choice of the split.
     smear: [f64; N],
+    /// Rounding of a prediction.
+    slack: SVector<f64, N>,
     orientation: i8,
 }
 
@@ -179,7 +184,7 @@ impl<const N: usize> Linear<N> {
         (0..N).map(|i| self.rest.row(i).iter().sum::<f64>()).fold(0.0, f64::max)
     }
 
-    fn new(bounds: &[Interval; N], jacobian: &[[Interval; N]; N]) -> Option<Self>
+    fn new(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], rounding: &[f64; N]) -> Option<Self>
     where
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
@@ -221,6 +226,13 @@ impl<const N: usize> Linear<N> {
         if !rest.iter().all(|r| r.is_finite()) {
             return None;
         }
+        let slack = SVector::<f64, N>::from_fn(|i, _| {
+            let value: f64 = (0..N).map(|k| inverse[(i, k)].abs() * rounding[k]).sum();
+            value + 16.0 * f64::EPSILON
+        });
+        if !slack.iter().all(|s| s.is_finite()) {
+            return None;
+        }
         let orientation = if determinant > 0.0 { 1 } else { -1 };
         Some(Self {
             centre: bounds.map(Interval::mid),
@@ -228,8 +240,14 @@ impl<const N: usize> Linear<N> {
             inverse,
             rest,
             smear,
+            slack,
             orientation,
         })
+    }
+
+    /// How far a preimage in the box may be from what the centre predicts, in direction `i`.
+    fn reach(&self, i: usize) -> f64 {
+        self.rest.row(i).iter().sum::<f64>() + self.slack[i]
     }
 
     /// `s − K(Φ(x(s)) − q)`: where a preimage of `q` should be, seen from `s`.
@@ -346,7 +364,7 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             budget -= 1;
-            let linear = Linear::new(&bounds, &jacobian);
+            let linear = Linear::new(&bounds, &jacobian, &map.rounding());
             let mut axis = widest(&bounds, &domain, &jacobian, &map.scales());
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
@@ -405,7 +423,7 @@ impl<C: Clone> ChartSolver<C> {
         S: Sink<N, M::Seen>,
     {
         let origin = SVector::<f64, N>::zeros();
-        let rows: [f64; N] = std::array::from_fn(|i| linear.rest.row(i).iter().sum());
+        let rows: [f64; N] = std::array::from_fn(|i| linear.reach(i));
         let mut found: smallvec::SmallVec<[Preimage<N, M::Seen>; 16]> = smallvec::SmallVec::new();
         let mut trail = Trail::new();
         let mut clear = true;
@@ -499,7 +517,7 @@ impl<const N: usize> Chart<'_, N> {
             }
             let predicted = s - linear.inverse * rest;
             let far = SVector::from_fn(|i, _| f64::max(hi[i] - s[i], s[i] - lo[i]));
-            let reach = linear.rest * far;
+            let reach = linear.rest * far + linear.slack;
             for i in 0..N {
                 lo[i] = lo[i].max(predicted[i] - reach[i]);
                 hi[i] = hi[i].min(predicted[i] + reach[i]);
@@ -507,7 +525,7 @@ impl<const N: usize> Chart<'_, N> {
             if (0..N).any(|i| lo[i] > hi[i]) {
                 return Outcome::Absent;
             }
-            if (hi - lo).amax() < ON_FACE {
+            if (0..N).all(|i| hi[i] - lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
                 return match next {
                     Some(next) if self.owns(&next) => found(next),
                     Some(next) if (next - s).amax() <= self.accept => Outcome::Absent,
@@ -581,7 +599,7 @@ fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
     targets.visit(values, &mut |_, q| {
         count += 1;
         let start = linear.predict(&origin, value, q);
-        absent = count <= FEW && (0..N).any(|i| start[i].abs() > 1.0 + linear.rest.row(i).iter().sum::<f64>());
+        absent = count <= FEW && (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
         absent
     });
     absent

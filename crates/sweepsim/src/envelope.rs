@@ -220,6 +220,11 @@ impl ChartMap<3> for Face<'_> {
             0.25 * envelope_size(self.element, self.times).max(f64::MIN_POSITIVE),
         ]
     }
+
+    fn rounding(&self) -> [f64; 3] {
+        let slack = self.size.slack;
+        [slack, slack, ROUNDING * envelope_size(self.element, self.times)]
+    }
 }
 
 /// Ranges of X and Y.
@@ -329,6 +334,10 @@ impl ChartMap<2> for Rim<'_> {
 
     fn scales(&self) -> [f64; 2] {
         self.size.spacing
+    }
+
+    fn rounding(&self) -> [f64; 2] {
+        [self.size.slack; 2]
     }
 }
 
@@ -456,5 +465,9 @@ impl ChartMap<2> for Joint<'_> {
 
     fn scales(&self) -> [f64; 2] {
         self.size.spacing
+    }
+
+    fn rounding(&self) -> [f64; 2] {
+        [self.size.slack; 2]
     }
 }

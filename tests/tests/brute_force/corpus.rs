@@ -1,0 +1,222 @@
+//! Named sweeps: every tool with every kind of motion, generic, degenerate, almost degenerate and self-intersecting. Both methods are
+//! judged by brute force on all of them, and must agree with each other.
+
+use crate::cases::{Case, Cutter, Window};
+use crate::judge::{Tally, judge, same_volume, swept};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+use sweepsim::Method;
+use sweepsim_motion::{Pose, Profile, ProfileSegment, Tool, Turn};
+use sweepsim_tests::tools::{drill, lollipop, scaled_concave};
+
+/// Where a tool's tip is and where its axis points.
+type Placement = ([f64; 3], [f64; 3]);
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+/// Differences that are almost none.
+const SMALL: [f64; 6] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15];
+
+fn profile(segments: Vec<ProfileSegment>) -> Tool {
+    Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"))
+}
+
+/// One tool of each kind, of radius about 2.
+fn tools() -> Vec<(&'static str, Tool)> {
+    let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
+    let dovetail = profile(vec![line(2.0, 0.0), line(1.0, 3.0), line(1.0, 9.0), line(0.0, 9.0)]);
+    let taper = profile(vec![
+        // A ball of radius 1 whose cone begins where it is 10° steep.
+        ProfileSegment::Arc {
+            to: [10_f64.to_radians().cos(), 1.0 - 10_f64.to_radians().sin()],
+            centre: [0.0, 1.0],
+            turn: Turn::Ccw,
+        },
+        line(2.0, 7.0),
+        line(0.0, 7.0),
+    ]);
+    let barrel = profile(vec![
+        line(1.2, 0.0),
+        ProfileSegment::Arc {
+            to: [1.2, 6.0],
+            centre: [-4.0, 3.0],
+            turn: Turn::Ccw,
+        },
+        line(0.0, 6.0),
+    ]);
+    vec![
+        ("ball", Tool::ball(2.0, 8.0).expect("a ball end")),
+        ("flat", Tool::flat(2.0, 6.0).expect("a flat end")),
+        ("bull", Tool::bull(2.0, 0.6, 7.0).expect("a bull nose")),
+        ("concave", scaled_concave(0.25)),
+        ("drill", drill(2.0, 0.7, 7.0)),
+        ("lollipop", lollipop(2.0, 0.7, 9.0)),
+        ("dovetail", dovetail),
+        ("taper", taper),
+        ("barrel", barrel),
+    ]
+}
+
+fn lean(degrees: f64, towards: f64) -> [f64; 3] {
+    let ((sin, cos), (s, c)) = (degrees.to_radians().sin_cos(), towards.to_radians().sin_cos());
+    [sin * c, sin * s, cos]
+}
+
+fn motions() -> Vec<(String, Vec<Placement>)> {
+    let o = [0.0; 3];
+    let mut all: Vec<(String, Vec<Placement>)> = Vec::new();
+    let mut put = |name: &str, placements: Vec<Placement>| all.push((name.to_owned(), placements));
+    put(
+        "oblique translation",
+        vec![([-3.0, -1.0, 0.0], lean(15.0, 0.0)), ([3.0, 1.5, 1.0], lean(15.0, 0.0))],
+    );
+    put(
+        "50 degrees on the way",
+        vec![
+            ([-3.0, -1.0, 0.0], lean(25.0, 90.0)),
+            ([3.0, 1.5, 1.0], lean(25.0, -90.0)),
+        ],
+    );
+    put(
+        "170 degrees",
+        vec![
+            ([-1.0, 0.0, 0.0], lean(80.0, 10.0)),
+            ([1.0, 0.5, 0.3], lean(90.0, 190.0)),
+        ],
+    );
+    put("turn about the tip", vec![(o, UP), (o, lean(70.0, 20.0))]);
+    put(
+        "horizontal, upright",
+        vec![([-2.5, 0.3, 0.0], UP), ([2.5, 0.3, 0.0], UP)],
+    );
+    put(
+        "along a grid diagonal",
+        vec![([-2.0, -2.0, 0.0], UP), ([2.0, 2.0, 0.0], UP)],
+    );
+    put("plunge", vec![([0.0, 0.0, 3.0], UP), ([0.0, 0.0, -2.0], UP)]);
+    put(
+        "retract along a leaning axis",
+        vec![
+            (o, lean(40.0, 30.0)),
+            (lean(40.0, 30.0).map(|c| 4.0 * c), lean(40.0, 30.0)),
+        ],
+    );
+    put("rest", vec![(o, lean(20.0, 45.0))]);
+    put(
+        "lying on its side",
+        vec![([-2.0, 0.0, 0.0], lean(90.0, 0.0)), ([-2.0, 3.0, 0.5], lean(90.0, 0.0))],
+    );
+    put(
+        "upside down",
+        vec![
+            ([0.0, 0.0, 5.0], lean(180.0, 0.0)),
+            ([2.0, 1.0, 5.5], lean(170.0, 50.0)),
+        ],
+    );
+    put("to and fro", vec![(o, UP), ([3.0, 0.2, 0.5], lean(20.0, 0.0)), (o, UP)]);
+    put("corner", vec![([-3.0, 0.0, 0.0], UP), (o, UP), ([0.0, 3.0, 0.0], UP)]);
+    let ring = |radius: f64, tilt: f64, count: usize| -> Vec<Placement> {
+        (0..=count)
+            .map(|k| {
+                let angle = k as f64 * TAU / count as f64;
+                (
+                    [radius * angle.cos(), radius * angle.sin(), 0.0],
+                    lean(tilt, angle.to_degrees()),
+                )
+            })
+            .collect()
+    };
+    put("circle smaller than the tool", ring(0.5, 0.0, 8));
+    put("circle, leaning outwards", ring(1.5, 20.0, 8));
+    put("cone about the tip", ring(0.0, 35.0, 6));
+    put(
+        "swallowtail",
+        vec![
+            ([-1.0, 0.0, 0.0], lean(40.0, 180.0)),
+            ([1.0, 0.0, 0.0], lean(40.0, 0.0)),
+        ],
+    );
+    put(
+        "swing about a high point",
+        vec![
+            ([-4.0, 0.0, 1.0], lean(35.0, 0.0)),
+            ([4.0, 0.0, 1.0], lean(35.0, 180.0)),
+        ],
+    );
+    for small in SMALL {
+        all.push((
+            format!("axis change {small:e}"),
+            vec![(o, UP), ([2.0, 0.7, 0.4], [small, 0.0, 1.0])],
+        ));
+        all.push((
+            format!("tilt {small:e} of a level move"),
+            vec![(o, [small, 0.0, 1.0]), ([2.0, 0.7, 0.0], [small, 0.0, 1.0])],
+        ));
+        all.push((
+            format!("height difference {small:e}"),
+            vec![(o, UP), ([2.0, 0.7, small], UP)],
+        ));
+        all.push((
+            format!("move of {small:e}"),
+            vec![(o, lean(10.0, 0.0)), ([small, 0.5 * small, 0.0], lean(10.0, 0.0))],
+        ));
+    }
+    all
+}
+
+fn cases() -> Vec<(String, Case)> {
+    let mut cases = Vec::new();
+    for (tool_name, tool) in tools() {
+        for (number, (motion, placements)) in motions().into_iter().enumerate() {
+            let poses = placements
+                .iter()
+                .map(|(tip, axis)| Pose::new(*tip, *axis).expect("a pose"));
+            let cutter = Cutter {
+                name: tool_name.to_owned(),
+                tool: tool.clone(),
+                radius: 2.0,
+            };
+            // Every third grid has lines in walls and through axes.
+            let window = if number % 3 == 0 {
+                Window::Aligned { parts: 2, reach: 4 }
+            } else {
+                Window::Free {
+                    shift: [0.11, -0.07],
+                    half: 2.3,
+                    lines: 9,
+                }
+            };
+            let poses = poses.collect();
+            cases.push((format!("{tool_name}: {motion}"), Case { cutter, poses, window }));
+        }
+    }
+    cases
+}
+
+#[test]
+fn all_methods_on_all_named_sweeps() {
+    let cases = cases();
+    assert!(cases.len() >= 200, "{}", cases.len());
+    let check = |(name, case): &(String, Case)| -> Result<Tally, String> {
+        let grid = case.grid();
+        let tally = judge(case, Method::Charts).map_err(|error| format!("{name}: {error}"))?;
+        let [charts, lines] = [Method::Charts, Method::Lines].map(|method| swept(case, &case.poses, &grid, method));
+        same_volume(case, &grid, &charts?, &lines?).map_err(|error| format!("{name}: charts and lines: {error}"))?;
+        Ok(tally)
+    };
+    let results: Vec<Result<Tally, String>> = cases.par_iter().map(check).collect();
+    let errors: Vec<String> = results
+        .iter()
+        .filter_map(|result| result.as_ref().err().cloned())
+        .collect();
+    let covered: usize = results.iter().flatten().map(|tally| tally.covered).sum();
+    println!("{} sweeps, {covered} covered lines", cases.len());
+    assert!(
+        errors.is_empty(),
+        "{} of {}:\n{}",
+        errors.len(),
+        cases.len(),
+        errors.join("\n")
+    );
+    assert!(covered > 10 * cases.len(), "the grids must meet the tools: {covered}");
+}
