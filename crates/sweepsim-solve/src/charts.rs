@@ -605,14 +605,17 @@ fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
     absent
 }
 
-/// Whether the direction `axis` may have no length anywhere in the box, and adds little to the range of the values.
+/// Whether the direction `axis` may have almost no length in the box, and adds little to the range of each value.
 ///
-/// So it is at a pole, where a patch's side has shrunk to a point: cutting across it leaves boxes that are as singular as
-/// before, and only cutting towards it gets away from it.
+/// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
+/// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
 fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
-    let reach = |j: usize| (0..N).map(|i| jacobian[i][j].magnitude()).fold(0.0, f64::max) * bounds[j].radius();
-    let most = (0..N).map(reach).fold(0.0, f64::max);
-    (0..N).all(|i| jacobian[i][axis].lo <= 0.0 && jacobian[i][axis].hi >= 0.0) && reach(axis) < 0.25 * most
+    let half = bounds.map(Interval::radius);
+    jacobian.iter().all(|row| {
+        let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
+        let least = row[axis].lo.max(-row[axis].hi).max(0.0);
+        row[axis].magnitude() * half[axis] < 0.25 * most && least * half[axis] < 1e-3 * most
+    })
 }
 
 fn largest<const N: usize>(weights: &[f64; N]) -> usize {
