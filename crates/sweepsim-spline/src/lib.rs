@@ -6,5 +6,5 @@ mod rational;
 mod rounding;
 mod tensor;
 
-pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_VARIABLES};
+pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
 pub use rational::{RationalBernstein, RationalError};

@@ -43,7 +43,11 @@ impl Bernstein {
     /// # Ok(()) }
     /// ```
     pub fn evaluate_with_error(&self, point: &[f64]) -> (f64, f64) {
-        let value = self.evaluate(point);
+        (self.evaluate(point), self.evaluation_error(point))
+    }
+
+    /// A bound on the error of [`evaluate`](Self::evaluate), and of one value of a batch, at `point`.
+    pub fn evaluation_error(&self, point: &[f64]) -> f64 {
         let mut growth = 1.0;
         let mut roundings = 0;
         for (axis, &degree) in self.degrees.iter().enumerate() {
@@ -53,6 +57,7 @@ impl Bernstein {
                 growth *= up((1.0 - x).abs() + x.abs())
                     .powi(degree.min(i32::MAX as usize) as i32)
                     .max(1.0);
+                growth += x * 0.0; // NaN where the coordinate is not finite
                 roundings += 4 * degree + 2;
             }
         }
@@ -62,7 +67,28 @@ impl Bernstein {
         } else {
             gamma(roundings) * size + (roundings as f64) * UNDERFLOW * (1.0 + size)
         };
-        (value, up(growth * (self.error + rounding)))
+        if (growth * size).is_finite() {
+            up(growth * (self.error + rounding))
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Bounds on the errors of a gradient at `point`, one a variable as far as `errors` has room.
+    ///
+    /// The slope by a variable of degree `d` is a sum over differences of basis functions, whose absolute values sum to
+    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few roundings more. Where
+    /// the coefficients are large and their differences small, [`derivative`](Self::derivative) first is more exact.
+    pub fn gradient_errors(&self, point: &[f64], errors: &mut [f64]) {
+        let error = self.evaluation_error(point);
+        for (bound, &degree) in errors.iter_mut().zip(&self.degrees) {
+            // `evaluation_error` counts at least 6 roundings where a degree is not 0; twice that is room for three more.
+            *bound = if degree == 0 {
+                0.0
+            } else {
+                up(4.0 * degree as f64 * error)
+            };
+        }
     }
 
     /// Value and gradient at `point`; `gradient` gets one entry a variable, as far as it has room.

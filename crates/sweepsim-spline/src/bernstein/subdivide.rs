@@ -38,6 +38,16 @@ impl Bernstein {
     /// Splits in place: the form becomes its part on `x_axis ≥ at`, and `left` its part on `x_axis ≤ at`.
     ///
     /// As [`split`](Self::split), but without an allocation where `left` has held as many coefficients before.
+    ///
+    /// ```
+    /// use sweepsim_spline::Bernstein;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let mut right = Bernstein::new(&[1], vec![0.0, 2.0])?;
+    /// let mut left = Bernstein::constant(0, 0.0); // any form: only its memory is used
+    /// right.split_into(0, 0.25, &mut left);
+    /// assert_eq!((left.coefficients(), right.coefficients()), (&[0.0, 0.5][..], &[0.5, 2.0][..]));
+    /// # Ok(()) }
+    /// ```
     pub fn split_into(&mut self, axis: usize, at: f64, left: &mut Self) {
         left.degrees.clone_from(&self.degrees);
         left.error = self.error;
@@ -166,6 +176,10 @@ impl Bernstein {
         let nu = degree as f64 * (roundings * (1.0 + UNIT)) * UNIT;
         let relative = if nu < 0.5 { nu / (1.0 - nu) } else { f64::INFINITY };
         let size = self.magnitude();
+        let in_reach = (growth * size).is_finite() && (s + t).is_finite();
+        if !in_reach {
+            return f64::INFINITY;
+        }
         let rounding = if size == 0.0 {
             0.0
         } else {
