@@ -2,9 +2,19 @@
 
 mod bernstein;
 mod binomial;
+mod determinant;
+mod jets;
+mod knots;
+mod map;
 mod rational;
 mod rounding;
+mod rows;
+mod spline;
 mod tensor;
 
 pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
+pub use jets::Derivatives;
+pub use knots::{KnotError, KnotKind, KnotVector};
+pub use map::BernsteinMap;
 pub use rational::{RationalBernstein, RationalError};
+pub use spline::{BSpline, Piece, SplineError};

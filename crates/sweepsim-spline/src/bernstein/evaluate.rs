@@ -5,11 +5,9 @@
 //! sums run over contiguous rows.
 
 use super::Bernstein;
+use crate::jets::{self, Buffer, Derivatives, contract};
 use crate::rounding::{UNDERFLOW, gamma, up};
-use crate::tensor::accumulate;
 use smallvec::SmallVec;
-
-type Buffer = SmallVec<[f64; 128]>;
 
 impl Bernstein {
     /// The value at `point`, one coordinate a variable; further coordinates are not looked at.
@@ -114,16 +112,51 @@ impl Bernstein {
         }
         values[0]
     }
+
+    /// All partial derivatives at `point` up to the total `order`; a coordinate that is missing counts as NaN.
+    pub fn derivatives(&self, point: &[f64], order: usize) -> Derivatives {
+        let tables: Vec<Vec<Buffer>> = self
+            .degrees
+            .iter()
+            .enumerate()
+            .map(|(axis, &degree)| {
+                let x = point.get(axis).copied().unwrap_or(f64::NAN);
+                (0..=order.min(degree))
+                    .map(|r| basis_derivative(degree, x, r))
+                    .collect()
+            })
+            .collect();
+        jets::derivatives(Buffer::from_slice(&self.coefficients), 1, &tables, order)
+    }
+
+    /// The matrix of second derivatives at `point`, one row and one column a variable.
+    pub fn hessian(&self, point: &[f64]) -> nalgebra::DMatrix<f64> {
+        let n = self.variables();
+        let all = self.derivatives(point, 2);
+        nalgebra::DMatrix::from_fn(n, n, |i, j| {
+            let mut index: SmallVec<[usize; 4]> = SmallVec::from_elem(0, n);
+            index[i] += 1;
+            index[j] += 1;
+            all.get(&index).map_or(0.0, |v| v[0])
+        })
+    }
 }
 
-/// `values[k] = Σ_i basis[i] · values[i · inner + k]`, and shortened to `inner`.
-fn contract(values: &mut Buffer, inner: usize, basis: &[f64]) {
-    let (sum, rest) = values.split_at_mut(inner);
-    sum.iter_mut().for_each(|v| *v *= basis[0]);
-    for (row, &weight) in rest.chunks_exact(inner).zip(&basis[1..]) {
-        accumulate(sum, row, weight);
+/// The `order`-th derivative of the basis of `degree ≥ order` at `x`.
+fn basis_derivative(degree: usize, x: f64, order: usize) -> Buffer {
+    let mut values = Buffer::from_slice(&basis(degree - order, x));
+    for d in degree - order + 1..=degree {
+        // D B(d,i) = d (B(d−1,i−1) − B(d−1,i))
+        let factor = d as f64;
+        let mut before = 0.0;
+        for value in &mut values {
+            let here = factor * *value;
+            *value = before - here;
+            before = here;
+        }
+        values.push(before);
     }
-    values.truncate(inner);
+    values
 }
 
 /// The Bernstein basis of `degree` at `x`.

@@ -9,6 +9,8 @@ mod reduce;
 mod subdivide;
 mod variables;
 
+pub(crate) use algebra::{multiply_blocks, product_error};
+
 use crate::rounding::magnitude;
 use smallvec::SmallVec;
 
@@ -273,6 +275,12 @@ impl Bernstein {
         if self.error.is_finite() {
             self.error = 0.0;
         }
+        self
+    }
+
+    /// The same form with a larger error bound.
+    pub(crate) fn with_more_error(mut self, error: f64) -> Self {
+        self.error = crate::rounding::up(self.error + error);
         self
     }
 
