@@ -69,6 +69,64 @@ impl Derivatives {
             .zip(self.values.chunks(self.dimension.max(1)))
     }
 
+    /// The derivatives of the first components divided by the last, by Leibniz' rule:
+    /// `F^α = (x^α − Σ_{0<β≤α} C(α,β) w^β F^{α−β}) / w`.
+    pub(crate) fn quotient(&self) -> Self {
+        let m = self.dimension.saturating_sub(1);
+        let mut indices: Vec<SmallVec<[usize; 4]>> = vec![SmallVec::new()];
+        for _ in 0..self.variables {
+            let longer = |index: &SmallVec<[usize; 4]>| {
+                let used: usize = index.iter().sum();
+                let index = index.clone();
+                (0..=self.order - used).map(move |r| {
+                    let mut index = index.clone();
+                    index.push(r);
+                    index
+                })
+            };
+            indices = indices.iter().flat_map(longer).collect();
+        }
+        sort(&mut indices);
+        let mut result = Self {
+            order: self.order,
+            dimension: m,
+            variables: self.variables,
+            indices: Vec::with_capacity(indices.len()),
+            values: Vec::new(),
+            zeros: SmallVec::from_elem(0.0, m),
+        };
+        let Some(weight) = self
+            .get(&SmallVec::<[usize; 4]>::from_elem(0, self.variables))
+            .map(|v| v[m])
+        else {
+            return result;
+        };
+        for index in indices {
+            let mut own: SmallVec<[f64; 4]> = self.get(&index).unwrap_or(&self.zeros)[..m].into();
+            for (at, lower) in result.indices.iter().enumerate() {
+                // `lower` is α − β: of smaller order, so it is there already.
+                if lower.iter().zip(&index).any(|(l, i)| l > i) {
+                    continue;
+                }
+                let beta: SmallVec<[usize; 4]> = index.iter().zip(lower).map(|(i, l)| i - l).collect();
+                let Some(w) = self.get(&beta).map(|v| v[m]) else {
+                    continue;
+                };
+                let choose: f64 = index
+                    .iter()
+                    .zip(&beta)
+                    .map(|(&i, &b)| crate::binomial::row(i)[b])
+                    .product();
+                for k in 0..m {
+                    own[k] -= choose * w * result.values[at * m + k];
+                }
+            }
+            result.values.extend(own.iter().map(|x| x / weight));
+            result.indices.push(index);
+        }
+        result
+    }
+
     /// Puts maps to R together: the derivatives of each as one component.
     pub(crate) fn stack(parts: &[Self]) -> Self {
         let Some(first) = parts.first() else {

@@ -169,6 +169,9 @@ pub enum SplineError {
     /// A Bernstein form.
     #[error(transparent)]
     Form(#[from] BernsteinError),
+    /// A rational Bernstein form.
+    #[error(transparent)]
+    Rational(#[from] crate::rational::RationalError),
 }
 
 impl BSpline {
