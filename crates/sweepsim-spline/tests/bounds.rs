@@ -44,7 +44,10 @@ proptest! {
         // Made to vanish at a known place.
         let p = random.point(f.variables());
         let at = Exact::from(&f).value(&p).to_f64().value();
-        let g = f.sub(&Bernstein::constant(f.variables(), at)).with_slack();
+        let g = f.sub(&Bernstein::constant(f.variables(), at));
+        // The constant was rounded.
+        let more = g.error() + f64::EPSILON * at.abs() + f64::MIN_POSITIVE;
+        let g = Bernstein::with_error(g.degrees(), g.coefficients().to_vec(), more).expect("finite");
         for (axis, &x) in p.iter().enumerate() {
             let (lo, hi) = g.zero_interval(axis).expect("it has a zero");
             prop_assert!(lo <= x && x <= hi, "{} not in [{}, {}]", x, lo, hi);
@@ -122,18 +125,6 @@ proptest! {
         for axis in 0..2 {
             prop_assert!(normal.dot(&surface.derivative(axis)).expect("in space").may_vanish());
         }
-    }
-}
-
-/// One more unit of error, for a constant that was rounded.
-trait Slack {
-    fn with_slack(&self) -> Self;
-}
-
-impl Slack for Bernstein {
-    fn with_slack(&self) -> Self {
-        let more = self.error() + 4.0 * f64::EPSILON * (self.magnitude() + 1.0) + 1e3 * f64::EPSILON * self.magnitude();
-        Self::with_error(self.degrees(), self.coefficients().to_vec(), more).expect("finite")
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::pieces::largest_difference;
 use super::{BSpline, SplineError};
+use crate::bernstein::MAX_DEGREE;
 use crate::knots::{KnotError, KnotVector};
 use crate::rounding::up;
 use crate::rows::{self, Row};
@@ -119,8 +120,11 @@ impl BSpline {
         if by == 0 {
             return Ok(self.clone());
         }
+        if by > MAX_DEGREE {
+            return Err(SplineError::Size);
+        }
         let vector = &self.knots[axis];
-        let degree = vector.degree().saturating_add(by);
+        let degree = vector.degree() + by;
         let target = changed(vector, degree, |m| m + by).ok_or(SplineError::Size)?;
         let mut knots = self.knots.clone();
         knots[axis] = target.clone();
