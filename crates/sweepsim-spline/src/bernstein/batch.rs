@@ -7,7 +7,9 @@ use super::Bernstein;
 use smallvec::SmallVec;
 
 /// How many points go abreast.
-const LANES: usize = 4;
+///
+/// Eight: with two numbers a register that is what it takes to hide the latency of an addition.
+const LANES: usize = 8;
 
 type Lane = [f64; LANES];
 type Lanes = SmallVec<[Lane; 64]>;
@@ -94,21 +96,26 @@ impl Bernstein {
                 if SLOPES {
                     fit(&mut tail[0], rows);
                 }
+                let (basis, slopes) = (&work.basis[..length], &work.slope[..]);
                 for (k, row) in self.coefficients.chunks_exact(length).enumerate() {
-                    let (mut value, mut slope) = (ZERO, ZERO);
-                    for i in 0..length {
-                        let c = row[i];
-                        for lane in 0..LANES {
-                            value[lane] += c * work.basis[i][lane];
-                            if SLOPES {
-                                slope[lane] += c * work.slope[i][lane];
+                    let mut value = ZERO;
+                    if SLOPES {
+                        let mut slope = ZERO;
+                        for ((&c, b), d) in row.iter().zip(basis).zip(slopes) {
+                            for lane in 0..LANES {
+                                value[lane] += c * b[lane];
+                                slope[lane] += c * d[lane];
+                            }
+                        }
+                        tail[0][k] = slope;
+                    } else {
+                        for (&c, b) in row.iter().zip(basis) {
+                            for lane in 0..LANES {
+                                value[lane] += c * b[lane];
                             }
                         }
                     }
                     head[0][k] = value;
-                    if SLOPES {
-                        tail[0][k] = slope;
-                    }
                 }
                 continue;
             }

@@ -215,14 +215,65 @@ pub(crate) fn split_rows(right: &mut [f64], left: &mut [f64], view: Along, s: f6
 
 /// [`split_rows`] along the contiguous axis.
 fn split_lines(right: &mut [f64], left: &mut [f64], len: usize, s: f64, t: f64) {
-    for (right, left) in right.chunks_exact_mut(len).zip(left.chunks_exact_mut(len)) {
-        left[0] = right[0];
-        for step in 1..len {
-            for i in 0..len - step {
-                right[i] = s * right[i] + t * right[i + 1];
+    match len {
+        2 => split_short_lines::<2>(right, left, s, t),
+        3 => split_short_lines::<3>(right, left, s, t),
+        4 => split_short_lines::<4>(right, left, s, t),
+        5 => split_short_lines::<5>(right, left, s, t),
+        6 => split_short_lines::<6>(right, left, s, t),
+        _ => {
+            for (right, left) in right.chunks_exact_mut(len).zip(left.chunks_exact_mut(len)) {
+                left[0] = right[0];
+                for step in 1..len {
+                    for i in 0..len - step {
+                        right[i] = s * right[i] + t * right[i + 1];
+                    }
+                    left[step] = right[0];
+                }
             }
-            left[step] = right[0];
         }
+    }
+}
+
+/// [`split_lines`] of a length known to the compiler: four lines abreast, in registers.
+fn split_short_lines<const N: usize>(right: &mut [f64], left: &mut [f64], s: f64, t: f64) {
+    const ABREAST: usize = 4;
+    let mut rights = right.chunks_exact_mut(N * ABREAST);
+    let mut lefts = left.chunks_exact_mut(N * ABREAST);
+    for (right, left) in (&mut rights).zip(&mut lefts) {
+        let mut b = [[0.0; ABREAST]; N];
+        for i in 0..N {
+            for line in 0..ABREAST {
+                b[i][line] = right[line * N + i];
+            }
+        }
+        for step in 0..N {
+            for line in 0..ABREAST {
+                left[line * N + step] = b[0][line];
+            }
+            for i in 0..N - 1 - step {
+                for line in 0..ABREAST {
+                    b[i][line] = s * b[i][line] + t * b[i + 1][line];
+                }
+            }
+        }
+        for i in 0..N {
+            for line in 0..ABREAST {
+                right[line * N + i] = b[i][line];
+            }
+        }
+    }
+    let rest = rights.into_remainder().chunks_exact_mut(N);
+    for (right, left) in rest.zip(lefts.into_remainder().chunks_exact_mut(N)) {
+        let mut b = [0.0; N];
+        b.copy_from_slice(right);
+        for step in 0..N {
+            left[step] = b[0];
+            for i in 0..N - 1 - step {
+                b[i] = s * b[i] + t * b[i + 1];
+            }
+        }
+        right.copy_from_slice(&b);
     }
 }
 

@@ -102,26 +102,50 @@ impl BSpline {
     /// of moderate size.
     pub fn evaluate_jacobian_into(&self, point: &[f64], value: &mut [f64], slopes: &mut [f64]) {
         let spans = self.spans(point);
-        let mut values = Buffer::new();
-        self.gather(&spans, &mut values);
-        // `parts[k]` is the derivative by the k-th variable from the last, the variables above `axis` contracted.
-        let mut parts: SmallVec<[Buffer; 4]> = SmallVec::new();
-        for (axis, vector) in self.knots.iter().enumerate().rev() {
-            let x = coordinate(point, axis);
-            let (basis, slope): (Basis, Basis) = vector.basis_and_slope(spans[axis], x);
-            let inner = values.len() / basis.len();
-            for part in &mut parts {
-                contract(part, inner, &basis);
+        let m = self.dimension;
+        // `values` is the spline with the variables below `axis` contracted, `parts[k]` its derivative by the k-th.
+        let (mut values, mut parts) = (Buffer::new(), SmallVec::<[Buffer; 4]>::new());
+        let Some(first) = self.knots.first() else {
+            value
+                .iter_mut()
+                .zip(&self.coefficients)
+                .for_each(|(to, from)| *to = *from);
+            return;
+        };
+        // The first variable straight from the control points: no copy of them is made.
+        let (basis, slope) = first.basis_and_slope(spans[0], coordinate(point, 0));
+        let row = basis.len() * m;
+        let starts = self.row_starts(&spans);
+        let mut own = Buffer::from_elem(0.0, starts.len() * m);
+        values.resize(starts.len() * m, 0.0);
+        for ((start, sum), tilt) in starts
+            .iter()
+            .zip(values.chunks_exact_mut(m))
+            .zip(own.chunks_exact_mut(m))
+        {
+            let points = self.coefficients[*start..start + row].chunks_exact(m);
+            for ((p, &b), &d) in points.zip(&basis).zip(&slope) {
+                for k in 0..m {
+                    sum[k] += b * p[k];
+                    tilt[k] += d * p[k];
+                }
             }
-            let mut own = values.clone();
-            contract(&mut own, inner, &slope);
+        }
+        parts.push(own);
+        for (axis, vector) in self.knots.iter().enumerate().skip(1) {
+            let (basis, slope): (Basis, Basis) = vector.basis_and_slope(spans[axis], coordinate(point, axis));
+            let count = values.len() / basis.len();
+            let mut own = Buffer::from_elem(0.0, count);
+            contract_first(&values, &mut own, m, &slope);
+            for part in parts.iter_mut().chain([&mut values]) {
+                contract_first_in_place(part, m, &basis);
+            }
             parts.push(own);
-            contract(&mut values, inner, &basis);
         }
         for (to, from) in value.iter_mut().zip(&values) {
             *to = *from;
         }
-        for (to, from) in slopes.iter_mut().zip(parts.iter().rev().flatten()) {
+        for (to, from) in slopes.iter_mut().zip(parts.iter().flatten()) {
             *to = *from;
         }
     }
@@ -174,9 +198,8 @@ impl BSpline {
         spans.map(|(axis, v)| v.span(coordinate(point, axis))).collect()
     }
 
-    /// The control points of one span: `(p₀+1) × (p₁+1) × …`, components fastest.
-    fn gather(&self, spans: &[usize], local: &mut Buffer) {
-        let row = (self.degree(0) + 1) * self.dimension;
+    /// Where the rows of control points of one span begin: `(p₁+1) × (p₂+1) × …` rows of `p₀+1` points.
+    fn row_starts(&self, spans: &[usize]) -> SmallVec<[usize; 64]> {
         let mut starts: SmallVec<[usize; 64]> = SmallVec::from_slice(&[0]);
         let mut stride = self.dimension;
         for (axis, vector) in self.knots.iter().enumerate() {
@@ -193,10 +216,43 @@ impl BSpline {
             }
             stride *= vector.count();
         }
-        for start in starts {
+        starts
+    }
+
+    /// The control points of one span: `(p₀+1) × (p₁+1) × …`, components fastest.
+    fn gather(&self, spans: &[usize], local: &mut Buffer) {
+        let row = (self.degree(0) + 1) * self.dimension;
+        for start in self.row_starts(spans) {
             local.extend_from_slice(&self.coefficients[start..start + row]);
         }
     }
+}
+
+/// Contracts the first axis of a tensor with entries of `m` numbers: `to` holds zeros.
+fn contract_first(from: &[f64], to: &mut [f64], m: usize, weights: &[f64]) {
+    for (sum, line) in to.chunks_exact_mut(m).zip(from.chunks_exact(m * weights.len())) {
+        for (entry, &weight) in line.chunks_exact(m).zip(weights) {
+            for k in 0..m {
+                sum[k] += weight * entry[k];
+            }
+        }
+    }
+}
+
+/// As [`contract_first`], in place.
+fn contract_first_in_place(values: &mut Buffer, m: usize, weights: &[f64]) {
+    let count = values.len() / weights.len();
+    let width = m * weights.len();
+    for j in 0..count / m {
+        for k in 0..m {
+            let line = &values[j * width..(j + 1) * width];
+            let terms = weights.iter().enumerate();
+            // The sum goes to a place at or before the line's own component k, which no later sum reads.
+            let sum = terms.fold(0.0, |sum, (i, &weight)| sum + weight * line[i * m + k]);
+            values[j * m + k] = sum;
+        }
+    }
+    values.truncate(count);
 }
 
 pub(crate) fn coordinate(point: &[f64], axis: usize) -> f64 {
