@@ -16,10 +16,10 @@
 //! let silhouette = normal.transform(&[(view.to_vec(), 0.0)])?; // ⟨N, d⟩: zero on the silhouette
 //! let contour = &silhouette.components()[0]; // 0.8 − 1.2 u
 //! let (value, error) = contour.evaluate_with_error(&[0.5, 0.3]);
-//! assert!((value - 0.2).abs() <= error && error < 1e-14);
+//! assert!((value - 0.2).abs() <= error && error < 1e-13);
 //! assert!(!contour.excludes_zero()); // it may have one …
 //! let (lo, hi) = contour.zero_interval(0).ok_or("no zero")?; // … here:
-//! assert!(lo <= 2.0 / 3.0 && 2.0 / 3.0 <= hi && hi - lo < 1e-14);
+//! assert!(lo <= 2.0 / 3.0 && 2.0 / 3.0 <= hi && hi - lo < 1e-13);
 //! # Ok(()) }
 //! ```
 //!
