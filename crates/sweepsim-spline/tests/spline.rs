@@ -402,3 +402,33 @@ proptest! {
         }
     }
 }
+
+/// High degree in one variable, many variables of low degree.
+#[test]
+fn degree_eight_and_four_variables() {
+    let mut random = Random(11);
+    for _ in 0..6 {
+        let of = |random: &mut Random| {
+            let vector = knots(random, 8, 1);
+            let count = vector.count();
+            BSpline::new(vec![vector], 1, random.coefficients(count)).expect("a spline")
+        };
+        let (f, g) = (of(&mut random), of(&mut random));
+        assert_is(&f.mul(&g).expect("alike"), &mut random, "f g", |p, k| {
+            value(&f, k, p) * value(&g, k, p)
+        });
+        assert_is(&f.add(&g).expect("alike"), &mut random, "f + g", |p, k| {
+            value(&f, k, p) + value(&g, k, p)
+        });
+        assert_is(&f.elevate(0, 2).expect("small"), &mut random, "elevated", |p, k| {
+            value(&f, k, p)
+        });
+    }
+    let (f, g) = (spline(&mut random, 4, 1, 1), spline(&mut random, 4, 1, 1));
+    assert_is(&f.mul(&g).expect("alike"), &mut random, "f g", |p, k| {
+        value(&f, k, p) * value(&g, k, p)
+    });
+    assert_is(&f.sub(&g).expect("alike"), &mut random, "f − g", |p, k| {
+        value(&f, k, p) - value(&g, k, p)
+    });
+}

@@ -5,7 +5,6 @@
 
 use super::BSpline;
 use crate::jets::{self, Buffer, Derivatives, contract};
-use crate::knots::Basis;
 use crate::rounding::{UNDERFLOW, gamma, up};
 use smallvec::SmallVec;
 
@@ -98,13 +97,15 @@ impl BSpline {
     }
 
     /// Value and first derivatives at `point`: `value` gets the components, `slopes` the derivative by the first variable
-    /// (all its components), then by the second, and so on; each as far as it has room. Allocates nothing for splines
-    /// of moderate size.
+    /// (all its components), then by the second, and so on; each as far as it has room.
+    ///
+    /// For many points see [`evaluate_jacobian_batch`](Self::evaluate_jacobian_batch), which keeps its memory.
     pub fn evaluate_jacobian_into(&self, point: &[f64], value: &mut [f64], slopes: &mut [f64]) {
-        let spans = self.spans(point);
-        let m = self.dimension;
-        // `values` is the spline with the variables below `axis` contracted, `parts[k]` its derivative by the k-th.
-        let (mut values, mut parts) = (Buffer::new(), SmallVec::<[Buffer; 4]>::new());
+        self.jacobian_with(point, value, slopes, &mut Work::default());
+    }
+
+    fn jacobian_with(&self, point: &[f64], value: &mut [f64], slopes: &mut [f64], work: &mut Work) {
+        let (n, m) = (self.variables(), self.dimension);
         let Some(first) = self.knots.first() else {
             value
                 .iter_mut()
@@ -112,40 +113,54 @@ impl BSpline {
                 .for_each(|(to, from)| *to = *from);
             return;
         };
+        let Work { starts, stages } = work;
+        stages.resize_with(n + 1, Vec::new);
+        let spans = self.spans(point);
+        self.row_starts(&spans, starts);
+        // `stages[0]` is the spline with the variables so far contracted, `stages[1 + k]` its derivative by the k-th.
         // The first variable straight from the control points: no copy of them is made.
         let (basis, slope) = first.basis_and_slope(spans[0], coordinate(point, 0));
         let row = basis.len() * m;
-        let starts = self.row_starts(&spans);
-        let mut own = Buffer::from_elem(0.0, starts.len() * m);
-        values.resize(starts.len() * m, 0.0);
-        for ((start, sum), tilt) in starts
-            .iter()
-            .zip(values.chunks_exact_mut(m))
-            .zip(own.chunks_exact_mut(m))
-        {
-            let points = self.coefficients[*start..start + row].chunks_exact(m);
-            for ((p, &b), &d) in points.zip(&basis).zip(&slope) {
+        let [values, tilts, ..] = stages.as_mut_slice() else {
+            return;
+        };
+        values.clear();
+        tilts.clear();
+        for &start in starts.iter() {
+            let points = &self.coefficients[start..start + row];
+            if m == 1 {
+                let (mut sum, mut tilt) = (0.0, 0.0);
+                for ((p, b), d) in points.iter().zip(&basis).zip(&slope) {
+                    sum += b * p;
+                    tilt += d * p;
+                }
+                values.push(sum);
+                tilts.push(tilt);
+                continue;
+            }
+            let at = values.len();
+            values.resize(at + m, 0.0);
+            tilts.resize(at + m, 0.0);
+            let (sum, tilt) = (&mut values[at..], &mut tilts[at..]);
+            for ((p, &b), &d) in points.chunks_exact(m).zip(&basis).zip(&slope) {
                 for k in 0..m {
                     sum[k] += b * p[k];
                     tilt[k] += d * p[k];
                 }
             }
         }
-        parts.push(own);
         for (axis, vector) in self.knots.iter().enumerate().skip(1) {
-            let (basis, slope): (Basis, Basis) = vector.basis_and_slope(spans[axis], coordinate(point, axis));
-            let count = values.len() / basis.len();
-            let mut own = Buffer::from_elem(0.0, count);
-            contract_first(&values, &mut own, m, &slope);
-            for part in parts.iter_mut().chain([&mut values]) {
-                contract_first_in_place(part, m, &basis);
+            let (basis, slope) = vector.basis_and_slope(spans[axis], coordinate(point, axis));
+            let (done, rest) = stages.split_at_mut(axis + 1);
+            contract_first(&done[0], &mut rest[0], m, &slope);
+            for stage in done {
+                contract_first_in_place(stage, m, &basis);
             }
-            parts.push(own);
         }
-        for (to, from) in value.iter_mut().zip(&values) {
+        for (to, from) in value.iter_mut().zip(&stages[0]) {
             *to = *from;
         }
-        for (to, from) in slopes.iter_mut().zip(parts.iter().flatten()) {
+        for (to, from) in slopes.iter_mut().zip(stages[1..].iter().flatten()) {
             *to = *from;
         }
     }
@@ -179,11 +194,13 @@ impl BSpline {
         if n > 0 {
             count = count.min(slopes.len() / (n * m));
         }
+        let mut work = Work::default();
         for k in 0..count {
-            self.evaluate_jacobian_into(
+            self.jacobian_with(
                 &points[k * n..(k + 1) * n],
                 &mut values[k * m..(k + 1) * m],
                 &mut slopes[k * n * m..(k + 1) * n * m],
+                &mut work,
             );
         }
         count
@@ -199,8 +216,9 @@ impl BSpline {
     }
 
     /// Where the rows of control points of one span begin: `(p₁+1) × (p₂+1) × …` rows of `p₀+1` points.
-    fn row_starts(&self, spans: &[usize]) -> SmallVec<[usize; 64]> {
-        let mut starts: SmallVec<[usize; 64]> = SmallVec::from_slice(&[0]);
+    fn row_starts(&self, spans: &[usize], starts: &mut SmallVec<[usize; 64]>) {
+        starts.clear();
+        starts.push(0);
         let mut stride = self.dimension;
         for (axis, vector) in self.knots.iter().enumerate() {
             let first = spans[axis] - vector.degree();
@@ -216,43 +234,54 @@ impl BSpline {
             }
             stride *= vector.count();
         }
-        starts
     }
 
     /// The control points of one span: `(p₀+1) × (p₁+1) × …`, components fastest.
     fn gather(&self, spans: &[usize], local: &mut Buffer) {
         let row = (self.degree(0) + 1) * self.dimension;
-        for start in self.row_starts(spans) {
+        let mut starts = SmallVec::new();
+        self.row_starts(spans, &mut starts);
+        for start in starts {
             local.extend_from_slice(&self.coefficients[start..start + row]);
         }
     }
 }
 
-/// Contracts the first axis of a tensor with entries of `m` numbers: `to` holds zeros.
-fn contract_first(from: &[f64], to: &mut [f64], m: usize, weights: &[f64]) {
-    for (sum, line) in to.chunks_exact_mut(m).zip(from.chunks_exact(m * weights.len())) {
-        for (entry, &weight) in line.chunks_exact(m).zip(weights) {
-            for k in 0..m {
-                sum[k] += weight * entry[k];
-            }
+/// What one evaluation leaves to the next.
+#[derive(Default)]
+struct Work {
+    starts: SmallVec<[usize; 64]>,
+    stages: Vec<Vec<f64>>,
+}
+
+/// Contracts the first axis of a tensor with entries of `m` numbers.
+fn contract_first(from: &[f64], to: &mut Vec<f64>, m: usize, weights: &[f64]) {
+    to.clear();
+    for line in from.chunks_exact(m * weights.len()) {
+        for k in 0..m {
+            let terms = line.iter().skip(k).step_by(m).zip(weights);
+            to.push(terms.fold(0.0, |sum, (x, w)| sum + x * w));
         }
     }
 }
 
 /// As [`contract_first`], in place.
-fn contract_first_in_place(values: &mut Buffer, m: usize, weights: &[f64]) {
-    let count = values.len() / weights.len();
+fn contract_first_in_place(values: &mut Vec<f64>, m: usize, weights: &[f64]) {
     let width = m * weights.len();
-    for j in 0..count / m {
+    let lines = values.len() / width;
+    for j in 0..lines {
         for k in 0..m {
-            let line = &values[j * width..(j + 1) * width];
-            let terms = weights.iter().enumerate();
             // The sum goes to a place at or before the line's own component k, which no later sum reads.
-            let sum = terms.fold(0.0, |sum, (i, &weight)| sum + weight * line[i * m + k]);
+            let terms = values[j * width..(j + 1) * width]
+                .iter()
+                .skip(k)
+                .step_by(m)
+                .zip(weights);
+            let sum = terms.fold(0.0, |sum, (x, w)| sum + x * w);
             values[j * m + k] = sum;
         }
     }
-    values.truncate(count);
+    values.truncate(lines * m);
 }
 
 pub(crate) fn coordinate(point: &[f64], axis: usize) -> f64 {
