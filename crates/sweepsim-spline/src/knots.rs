@@ -260,7 +260,7 @@ impl KnotVector {
 
     /// How often `value` occurs among the knots.
     pub fn multiplicity(&self, value: f64) -> usize {
-        self.knots.iter().filter(|&&t| t == value).count()
+        self.knots.partition_point(|&t| t <= value) - self.knots.partition_point(|&t| t < value)
     }
 
     /// The different knots of the domain, its ends included: between neighbours splines are polynomials.

@@ -150,23 +150,41 @@ pub(crate) fn refinement(vector: &KnotVector, values: &[f64]) -> (Vec<f64>, Vec<
 
 /// The rows of the Bernstein coefficients, `degree + 1` for each span between neighbouring `breakpoints`.
 ///
-/// `breakpoints` are sorted, without repetition, and contain those of `vector`.
+/// `breakpoints` are sorted, without repetition, and contain those of `vector`. Coefficient `j` on `[a, b]` is the blossom
+/// at `a` (`p − j` times) and `b` (`j` times), by de Boor's algorithm: as `[a, b]` is within one span of the knots, every step is
+/// a convex combination.
 pub(crate) fn extraction(vector: &KnotVector, breakpoints: &[f64]) -> Vec<Row> {
     let p = vector.degree();
-    let mut knots = vector.knots().to_vec();
-    let mut rows: Vec<Row> = (0..vector.count()).map(Row::unit).collect();
-    for &x in breakpoints {
-        let multiplicity = vector.multiplicity(x);
-        for _ in multiplicity..p {
-            insert(&mut knots, p, &mut rows, x);
-        }
-    }
     let mut pieces = Vec::with_capacity((breakpoints.len() - 1) * (p + 1));
-    for &start in &breakpoints[..breakpoints.len() - 1] {
-        let k = knots.partition_point(|&t| t <= start) - 1;
-        pieces.extend_from_slice(&rows[k - p..=k]);
+    for ends in breakpoints.windows(2) {
+        let (a, b) = (ends[0], ends[1]);
+        let span = vector.span(a);
+        // `from_a` after `p − j` steps at `a`; from there `j` steps at `b`. So j falls from p to 0.
+        let mut from_a: SmallVec<[Row; 8]> = (span - p..=span).map(Row::unit).collect();
+        let first = pieces.len();
+        for done in 0..=p {
+            let mut local = from_a.clone();
+            for step in done..p {
+                blossom_step(vector.knots(), span, p, step, &mut local, b);
+            }
+            pieces.push(local.swap_remove(0));
+            if done < p {
+                blossom_step(vector.knots(), span, p, done, &mut from_a, a);
+            }
+        }
+        pieces[first..].reverse();
     }
     pieces
+}
+
+/// Step `step` (from 0) of de Boor's algorithm at `u`: `p + 1 − step` rows become one fewer.
+fn blossom_step(knots: &[f64], span: usize, p: usize, step: usize, rows: &mut SmallVec<[Row; 8]>, u: f64) {
+    for j in 0..p - step {
+        let i = span + j + 1 + step - p;
+        let (t, v) = (knots[i], knots[i + p - step]);
+        rows[j] = Row::blend(&rows[j], (v - u) / (v - t), &rows[j + 1], (u - t) / (v - t));
+    }
+    rows.truncate(p - step);
 }
 
 /// Elevates the rows of Bernstein pieces of `degree` by `by`.

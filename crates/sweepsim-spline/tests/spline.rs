@@ -432,3 +432,27 @@ fn degree_eight_and_four_variables() {
         value(&f, k, p) - value(&g, k, p)
     });
 }
+
+/// Values and derivatives of a periodic spline are the same at both ends, up to the last that is continuous.
+#[test]
+fn periodic_splines_close() {
+    let mut random = Random(3);
+    for degree in 1..6 {
+        let vector = KnotVector::periodic(degree, &[0.0, 0.5, 1.25, 2.0, 4.0]).expect("knots");
+        let closed = BSpline::periodic(vec![vector], 2, &random.coefficients(8)).expect("a spline");
+        let scale = 1e-12 * (1.0 + closed.magnitude());
+        let (start, end) = (
+            closed.derivatives(&[0.0], degree - 1),
+            closed.derivatives(&[4.0], degree - 1),
+        );
+        for r in 0..degree {
+            let (a, b) = (start.get(&[r]).expect("low"), end.get(&[r]).expect("low"));
+            assert!(
+                a.iter()
+                    .zip(b)
+                    .all(|(x, y)| (x - y).abs() <= scale * 1e3f64.powi(r as i32)),
+                "{a:?} {b:?}"
+            );
+        }
+    }
+}
