@@ -1,10 +1,77 @@
 //! Multivariate tensor-product B-splines and Bernstein forms, rational or not, and their algebra.
+//!
+//! A geometric question becomes an equation between splines. This crate makes the equation: sums, products,
+//! derivatives, compositions of splines are splines again, as exact as `f64` allows, and know how exact that is. What
+//! solves it then needs only bounds, and these hold as computed.
+//!
+//! # In ten lines
+//!
+//! ```
+//! use sweepsim_spline::{Bernstein, BernsteinMap};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (u, v) = (Bernstein::variable(2, 0), Bernstein::variable(2, 1)); // on [0,1]²
+//! let surface = BernsteinMap::new(vec![u.clone(), v.clone(), &u * &u - &v * &v]);
+//! let normal = surface.derivative(0).cross(&surface.derivative(1))?; // F_u × F_v
+//! let view = [0.6, 0.0, 0.8]; // a direction of sight
+//! let silhouette = normal.transform(&[(view.to_vec(), 0.0)])?; // ⟨N, d⟩: zero on the silhouette
+//! let contour = &silhouette.components()[0]; // 0.8 − 1.2 u
+//! let (value, error) = contour.evaluate_with_error(&[0.5, 0.3]);
+//! assert!((value - 0.2).abs() <= error && error < 1e-13);
+//! assert!(!contour.excludes_zero()); // it may have one …
+//! let (lo, hi) = contour.zero_interval(0).ok_or("no zero")?; // … here:
+//! assert!(lo <= 2.0 / 3.0 && 2.0 / 3.0 <= hi && hi - lo < 1e-13);
+//! # Ok(()) }
+//! ```
+//!
+//! # The types
+//!
+//! | | polynomial | rational |
+//! | --- | --- | --- |
+//! | one piece, on `[0,1]ⁿ` | [`Bernstein`] (to R), [`BernsteinMap`] (to Rᵐ) | [`RationalBernstein`] |
+//! | many pieces, on any box | [`BSpline`] over [`KnotVector`]s | [`RationalSpline`] |
+//!
+//! Curves, surfaces, volumes are the same type with one, two, three variables. In every grid of coefficients the first
+//! variable runs fastest (and, in [`BSpline`], the components of a control point before it).
+//!
+//! # What is promised
+//!
+//! - **Bounds.** Each form carries [`error`](Bernstein::error), a bound on the distance of its coefficients from those that exact
+//!   arithmetic would have given. Enclosures, cones, linear bounds include it. The scheme and its proof are in
+//!   `docs/error-bounds.md` of this crate; the tests hold every operation against exact rational arithmetic.
+//! - **No panic**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to store, is a form
+//!   with an infinite error. The others return errors that say which knot, weight, axis or size was wrong.
+//! - **No hidden tolerance.** Where one is needed it is an argument; where the question is *exact or not*, the error bounds decide.
+//!
+//! # More
+//!
+//! `examples/operations.rs` shows every operation. Feature `serde`: all types are stored and, when read, checked.
 
 mod bernstein;
 mod binomial;
+mod bounds;
+mod construct;
+mod determinant;
+mod jets;
+mod knots;
+mod map;
 mod rational;
+mod rational_spline;
 mod rounding;
+mod rows;
+mod spline;
 mod tensor;
 
-pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_VARIABLES};
+pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
+pub use bounds::{Cone, LinearBound};
+pub use construct::Fit;
+pub use jets::Derivatives;
+pub use knots::{KnotError, KnotKind, KnotVector};
+pub use map::BernsteinMap;
 pub use rational::{RationalBernstein, RationalError};
+pub use rational_spline::{RationalPiece, RationalSpline};
+pub use spline::{BSpline, Piece, SplineError};
+
+/// The README's example compiles and holds.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

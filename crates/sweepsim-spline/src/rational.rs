@@ -1,12 +1,17 @@
 //! Rational Bernstein maps, and circular arcs as the first of them.
 
 use crate::bernstein::{Bernstein, BernsteinError};
+use crate::jets::Derivatives;
+use crate::map::BernsteinMap;
+use crate::rational_spline::quotient_range;
 
 /// A rational map `[0,1]ⁿ → Rᵐ`: numerators `x₀, …, xₘ₋₁` over one positive weight.
 ///
 /// The numerators are homogeneous: `x_i / w` is the coordinate. Positive *coefficients* of the weight make the weight
 /// positive, so the quotient lies in the convex hull of the control points.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored", into = "Stored"))]
 pub struct RationalBernstein {
     numerators: Vec<Bernstein>,
     weight: Bernstein,
@@ -112,6 +117,144 @@ impl RationalBernstein {
             .fold(self.weight.variables(), usize::max)
     }
 
+    /// The map with these homogeneous components, the last the weight.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`FormCount`](BernsteinError::FormCount) for no components at all.
+    pub fn from_homogeneous(map: BernsteinMap) -> Result<Self, RationalError> {
+        let mut components = map.into_components();
+        let Some(weight) = components.pop() else {
+            return Err(BernsteinError::FormCount { expected: 1, found: 0 }.into());
+        };
+        Self::new(components, weight)
+    }
+
+    /// Numerators and weight as one map, the weight last.
+    pub fn to_homogeneous(&self) -> BernsteinMap {
+        let components = self.numerators.iter().chain([&self.weight]);
+        BernsteinMap::new(components.cloned().collect())
+    }
+
+    /// The sum: `(a w_b + b w_a)/(w_a w_b)`, or over the common weight where it is the same.
+    ///
+    /// # Errors
+    ///
+    /// [`FormCount`](BernsteinError::FormCount) unless both have as many coordinates; [`RationalError::Weight`] if
+    /// rounding makes a weight uncertain.
+    pub fn add(&self, other: &Self) -> Result<Self, RationalError> {
+        let (a, b, weight) = self.on_common_weight(other);
+        Self::new(a.add(&b)?.into_components(), weight)
+    }
+
+    /// The difference; see [`add`](Self::add).
+    ///
+    /// # Errors
+    ///
+    /// As [`add`](Self::add).
+    pub fn sub(&self, other: &Self) -> Result<Self, RationalError> {
+        let (a, b, weight) = self.on_common_weight(other);
+        Self::new(a.sub(&b)?.into_components(), weight)
+    }
+
+    fn on_common_weight(&self, other: &Self) -> (BernsteinMap, BernsteinMap, Bernstein) {
+        let map = |r: &Self| BernsteinMap::new(r.numerators.clone());
+        if self.weight == other.weight {
+            return (map(self), map(other), self.weight.clone());
+        }
+        let weight = self.weight.mul(&other.weight);
+        (
+            map(self).multiply(&other.weight),
+            map(other).multiply(&self.weight),
+            weight,
+        )
+    }
+
+    /// The inner product, a map to R.
+    ///
+    /// # Errors
+    ///
+    /// As [`add`](Self::add).
+    pub fn dot(&self, other: &Self) -> Result<Self, RationalError> {
+        let (a, b) = (self.numerator_map(), other.numerator_map());
+        Self::new(vec![a.dot(&b)?], self.weight.mul(&other.weight))
+    }
+
+    /// The cross product of maps to R³.
+    ///
+    /// # Errors
+    ///
+    /// As [`add`](Self::add), and unless both have three coordinates.
+    pub fn cross(&self, other: &Self) -> Result<Self, RationalError> {
+        let (a, b) = (self.numerator_map(), other.numerator_map());
+        Self::new(a.cross(&b)?.into_components(), self.weight.mul(&other.weight))
+    }
+
+    fn numerator_map(&self) -> BernsteinMap {
+        BernsteinMap::new(self.numerators.clone())
+    }
+
+    /// The partial derivative by variable `axis`: `(x′ w − x w′)/w²`.
+    ///
+    /// # Errors
+    ///
+    /// [`RationalError::Weight`] if rounding makes the weight uncertain.
+    pub fn derivative(&self, axis: usize) -> Result<Self, RationalError> {
+        let slope = self.weight.derivative(axis);
+        let one = |x: &Bernstein| x.derivative(axis).mul(&self.weight).sub(&x.mul(&slope));
+        Self::new(self.numerators.iter().map(one).collect(), self.weight.square())
+    }
+
+    /// All partial derivatives at `parameters` up to the total `order`, by Leibniz' rule.
+    pub fn derivatives(&self, parameters: &[f64], order: usize) -> Derivatives {
+        self.to_homogeneous().derivatives(parameters, order).quotient()
+    }
+
+    /// The map on `x_axis ≤ at` and on `x_axis ≥ at`, each again on `[0,1]ⁿ`.
+    ///
+    /// # Errors
+    ///
+    /// [`RationalError::Weight`] if `at` is not in `[0,1]` and the weight not positive there.
+    pub fn split(&self, axis: usize, at: f64) -> Result<(Self, Self), RationalError> {
+        let (left, right) = self.to_homogeneous().split(axis, at);
+        Ok((Self::from_homogeneous(left)?, Self::from_homogeneous(right)?))
+    }
+
+    /// The map on a box, again on `[0,1]ⁿ`.
+    ///
+    /// # Errors
+    ///
+    /// As [`split`](Self::split).
+    pub fn restrict_box(&self, ranges: &[(f64, f64)]) -> Result<Self, RationalError> {
+        Self::from_homogeneous(self.to_homogeneous().restrict_box(ranges))
+    }
+
+    /// The map with `x_axis` fixed: one variable fewer.
+    ///
+    /// # Errors
+    ///
+    /// As [`split`](Self::split).
+    pub fn slice(&self, axis: usize, at: f64) -> Result<Self, RationalError> {
+        Self::from_homogeneous(self.to_homogeneous().slice(axis, at))
+    }
+
+    /// A box around the image: for each coordinate the range of the control points, rounding included.
+    pub fn enclosure(&self) -> Vec<(f64, f64)> {
+        let forms = self.to_homogeneous().common_degrees();
+        let Some((weight, numerators)) = forms.split_last() else {
+            return Vec::new();
+        };
+        let range = |x: &Bernstein| {
+            let error = x.error().max(weight.error());
+            let pairs = x.coefficients().iter().zip(weight.coefficients());
+            pairs.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), (&x, &w)| {
+                let (a, b) = quotient_range(x, w, error);
+                (lo.min(a), hi.max(b))
+            })
+        };
+        numerators.iter().map(range).collect()
+    }
+
     /// The point at `parameters`, one coordinate a numerator.
     pub fn evaluate(&self, parameters: &[f64]) -> Vec<f64> {
         let weight = self.weight.evaluate(parameters);
@@ -119,5 +262,42 @@ impl RationalBernstein {
             .iter()
             .map(|x| x.evaluate(parameters) / weight)
             .collect()
+    }
+}
+
+/// The coordinates' numerators, then the weight.
+impl std::fmt::Display for RationalBernstein {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "rational map to R^{}", self.dimension())?;
+        for (i, numerator) in self.numerators.iter().enumerate() {
+            write!(f, "\n{i}: {numerator}")?;
+        }
+        write!(f, "\nweight: {}", self.weight)
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "RationalBernstein")]
+struct Stored {
+    numerators: Vec<Bernstein>,
+    weight: Bernstein,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for RationalBernstein {
+    type Error = RationalError;
+    fn try_from(stored: Stored) -> Result<Self, RationalError> {
+        Self::new(stored.numerators, stored.weight)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<RationalBernstein> for Stored {
+    fn from(map: RationalBernstein) -> Self {
+        Self {
+            numerators: map.numerators,
+            weight: map.weight,
+        }
     }
 }

@@ -8,6 +8,7 @@ use super::{Bernstein, Degrees, coefficient_count};
 use crate::binomial;
 use crate::rounding::{UNDERFLOW, UNIT, gamma, magnitude, up};
 use crate::tensor::{accumulate, along};
+use smallvec::SmallVec;
 use std::ops::{Add, Mul, Neg, Sub};
 
 impl Bernstein {
@@ -37,6 +38,9 @@ impl Bernstein {
             return Self::computed(self.degrees.clone(), coefficients, error);
         }
         let degrees: Degrees = common(self, other, usize::max);
+        if coefficient_count(&degrees).is_none() {
+            return Self::unknown(degrees.len());
+        }
         self.elevated_to(&degrees)
             .combine(&other.elevated_to(&degrees), operation)
     }
@@ -62,25 +66,57 @@ impl Bernstein {
             product.error = up(product.error + constant.error * (form.magnitude() + form.error));
             return product;
         }
-        let (a, b) = (self.scaled_by_binomials(), other.scaled_by_binomials());
         let mut coefficients = vec![0.0; count];
-        convolve(self, &a, other, &b, &degrees, &mut coefficients);
-        for axis in 0..degrees.len() {
-            divide_by_binomials(&mut coefficients, &degrees, axis);
+        multiply_blocks(
+            (&self.degrees, &self.coefficients),
+            (&other.degrees, &other.coefficients),
+            &degrees,
+            &mut coefficients,
+        );
+        let error = product_error(
+            (&self.degrees, self.magnitude(), self.error),
+            (&other.degrees, other.magnitude(), other.error),
+        );
+        Self::computed(degrees, coefficients, error)
+    }
+
+    /// The square: the form times itself.
+    #[must_use]
+    pub fn square(&self) -> Self {
+        self.mul(self)
+    }
+
+    /// The product of functions of *separate* variables: `(f ⊗ g)(x, y) = f(x) g(y)`, this form's variables first.
+    ///
+    /// Cost: one multiplication a coefficient. Error: one rounding. No detour over more variables and a product.
+    ///
+    /// ```
+    /// use sweepsim_spline::Bernstein;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let f = Bernstein::new(&[1], vec![1.0, 2.0])?;
+    /// let g = Bernstein::new(&[2], vec![0.0, 1.0, 3.0])?;
+    /// let product = f.tensor_product(&g);
+    /// assert_eq!(product.degrees(), [1, 2]);
+    /// assert_eq!(product.coefficients(), [0.0, 0.0, 1.0, 2.0, 3.0, 6.0]);
+    /// # Ok(()) }
+    /// ```
+    #[must_use]
+    pub fn tensor_product(&self, other: &Self) -> Self {
+        let degrees: Degrees = self.degrees.iter().chain(&other.degrees).copied().collect();
+        let Some(count) = coefficient_count(&degrees) else {
+            return Self::unknown(degrees.len().min(super::MAX_VARIABLES));
+        };
+        let mut coefficients = Vec::with_capacity(count);
+        for &factor in &other.coefficients {
+            coefficients.extend(self.coefficients.iter().map(|c| c * factor));
         }
-        let (mut terms, mut roundings) = (1, 0);
-        for (axis, &degree) in degrees.iter().enumerate() {
-            let (d, e) = (self.degree(axis), other.degree(axis));
-            terms *= d.min(e) + 1;
-            roundings += 4 + binomial::roundings(d) + binomial::roundings(e) + binomial::roundings(degree);
-        }
-        let (size_a, size_b) = (self.magnitude(), other.magnitude());
-        let rounding = if size_a == 0.0 || size_b == 0.0 {
+        let (a, b) = (self.magnitude(), other.magnitude());
+        let rounding = if a == 0.0 || b == 0.0 {
             0.0
         } else {
-            gamma(terms + roundings + 1) * size_a * size_b + terms as f64 * UNDERFLOW
+            UNIT * a * b + UNDERFLOW
         };
-        let error = up(size_a * other.error + size_b * self.error + self.error * other.error + rounding);
+        let error = up(a * other.error + b * self.error + self.error * other.error + rounding);
         Self::computed(degrees, coefficients, error)
     }
 
@@ -142,6 +178,12 @@ impl Bernstein {
             .zip(self.coefficients.chunks_exact(old))
         {
             block[..old].copy_from_slice(source);
+            if start == 0 {
+                for row in block[old..].chunks_exact_mut(view.inner) {
+                    row.copy_from_slice(source);
+                }
+                continue;
+            }
             for degree in start..start + by {
                 elevate_rows(block, view.inner, degree);
             }
@@ -169,25 +211,6 @@ impl Bernstein {
         }
         form
     }
-
-    /// The coefficients times the binomials of every variable.
-    fn scaled_by_binomials(&self) -> Vec<f64> {
-        let mut scaled = self.coefficients.clone();
-        for axis in 0..self.variables() {
-            let degree = self.degrees[axis];
-            if degree < 2 {
-                continue;
-            }
-            let row = binomial::row(degree);
-            let view = along(self.degrees.iter().map(|d| d + 1), axis, 1);
-            for block in scaled.chunks_exact_mut(view.inner * view.len) {
-                for (slice, &factor) in block.chunks_exact_mut(view.inner).zip(row.iter()) {
-                    slice.iter_mut().for_each(|c| *c *= factor);
-                }
-            }
-        }
-        scaled
-    }
 }
 
 /// The degrees of a combination of two forms.
@@ -210,35 +233,83 @@ fn elevate_rows(block: &mut [f64], inner: usize, degree: usize) {
     }
 }
 
-/// Divides by the binomials of one variable.
-fn divide_by_binomials(coefficients: &mut [f64], degrees: &[usize], axis: usize) {
-    if degrees[axis] < 2 {
-        return;
+/// A bound on the error of a product's coefficients, from degrees, magnitude and error of the factors.
+pub(crate) fn product_error(a: (&[usize], f64, f64), b: (&[usize], f64, f64)) -> f64 {
+    let (mut terms, mut roundings) = (1usize, 0);
+    for axis in 0..a.0.len().max(b.0.len()) {
+        let (d, e) = (degree_of(a.0, axis), degree_of(b.0, axis));
+        terms = terms.saturating_mul(d.min(e) + 1);
+        roundings += 4 + binomial::roundings(d) + binomial::roundings(e) + binomial::roundings(d + e);
     }
-    let row = binomial::row(degrees[axis]);
-    let view = along(degrees.iter().map(|d| d + 1), axis, 1);
-    for block in coefficients.chunks_exact_mut(view.inner * view.len) {
-        for (slice, &divisor) in block.chunks_exact_mut(view.inner).zip(row.iter()) {
-            let factor = 1.0 / divisor;
-            slice.iter_mut().for_each(|c| *c *= factor);
+    let rounding = if a.1 == 0.0 || b.1 == 0.0 {
+        0.0
+    } else {
+        gamma(terms.saturating_add(roundings + 1)) * a.1 * b.1 + terms as f64 * UNDERFLOW
+    };
+    up(a.1 * b.2 + b.1 * a.2 + a.2 * b.2 + rounding)
+}
+
+fn degree_of(degrees: &[usize], axis: usize) -> usize {
+    degrees.get(axis).copied().unwrap_or(0)
+}
+
+type Scratch = SmallVec<[f64; 256]>;
+
+/// The coefficients times (`INVERSE`: divided by) the binomials of every variable, in place.
+fn scale_by_binomials<const INVERSE: bool>(coefficients: &mut [f64], degrees: &[usize]) {
+    let mut inner = 1;
+    for &degree in degrees {
+        if degree >= 2 {
+            let row = binomial::row(degree);
+            let factors: SmallVec<[f64; 32]> = row.iter().map(|&c| if INVERSE { 1.0 / c } else { c }).collect();
+            for block in coefficients.chunks_exact_mut(inner * (degree + 1)) {
+                if inner == 1 {
+                    block.iter_mut().zip(&factors).for_each(|(c, &factor)| *c *= factor);
+                    continue;
+                }
+                for (slice, &factor) in block.chunks_exact_mut(inner).zip(&factors) {
+                    slice.iter_mut().for_each(|c| *c *= factor);
+                }
+            }
         }
+        inner *= degree + 1;
     }
 }
 
+/// The product of two blocks of Bernstein coefficients, into `product`, which holds zeros and has the degrees' sums.
+pub(crate) fn multiply_blocks(
+    (degrees_a, a): (&[usize], &[f64]),
+    (degrees_b, b): (&[usize], &[f64]),
+    degrees: &[usize],
+    product: &mut [f64],
+) {
+    let mut scaled_a = Scratch::from_slice(a);
+    let mut scaled_b = Scratch::from_slice(b);
+    scale_by_binomials::<false>(&mut scaled_a, degrees_a);
+    scale_by_binomials::<false>(&mut scaled_b, degrees_b);
+    convolve((degrees_a, &scaled_a), (degrees_b, &scaled_b), degrees, product);
+    scale_by_binomials::<true>(product, degrees);
+}
+
 /// Adds the convolution of two scaled tensors to `product`.
-fn convolve(fa: &Bernstein, a: &[f64], fb: &Bernstein, b: &[f64], degrees: &[usize], product: &mut [f64]) {
-    // Lay the rows of the shorter-rowed second operand out with the product's first stride: planes become long rows.
-    let (row_a, row_b) = (fa.degree(0) + 1, fb.degree(0) + 1);
-    let (rows_b, stride) = (fb.degree(1) + 1, degrees.first().map_or(1, |d| d + 1));
+fn convolve(
+    (degrees_a, a): (&[usize], &[f64]),
+    (degrees_b, b): (&[usize], &[f64]),
+    degrees: &[usize],
+    product: &mut [f64],
+) {
+    // Lay the second operand's rows out with the product's first stride: planes become long rows.
+    let (row_a, row_b) = (degree_of(degrees_a, 0) + 1, degree_of(degrees_b, 0) + 1);
+    let (rows_b, stride) = (degree_of(degrees_b, 1) + 1, degree_of(degrees, 0) + 1);
     let plane = stride * (rows_b - 1) + row_b;
-    let mut padded = vec![0.0; plane * (b.len() / (row_b * rows_b))];
+    let mut padded = Scratch::from_elem(0.0, plane * (b.len() / (row_b * rows_b)));
     for (to, from) in padded.chunks_exact_mut(plane).zip(b.chunks_exact(row_b * rows_b)) {
         for (j, row) in from.chunks_exact(row_b).enumerate() {
             to[j * stride..j * stride + row_b].copy_from_slice(row);
         }
     }
-    let offsets_b = offsets(fb, degrees, 2);
-    let offsets_a = offsets(fa, degrees, 1);
+    let offsets_b = offsets(degrees_b, degrees, 2);
+    let offsets_a = offsets(degrees_a, degrees, 1);
     for (row, &base) in a.chunks_exact(row_a).zip(&offsets_a) {
         for (from, &offset) in padded.chunks_exact(plane).zip(&offsets_b) {
             let start = base + offset;
@@ -249,16 +320,17 @@ fn convolve(fa: &Bernstein, a: &[f64], fb: &Bernstein, b: &[f64], degrees: &[usi
     }
 }
 
-/// Where in a tensor of `degrees` each entry of `form` goes that has index 0 in the first `skip` variables.
-fn offsets(form: &Bernstein, degrees: &[usize], skip: usize) -> Vec<usize> {
-    let mut offsets = vec![0];
+/// Where in a tensor of `degrees` each entry of a form of degrees `own` goes that has index 0 in the first `skip` variables.
+fn offsets(own: &[usize], degrees: &[usize], skip: usize) -> SmallVec<[usize; 64]> {
+    let mut offsets = SmallVec::from_slice(&[0]);
     let mut stride = 1;
     for (axis, &degree) in degrees.iter().enumerate() {
         if axis >= skip {
             let count = offsets.len();
-            for i in 1..=form.degree(axis) {
+            for i in 1..=degree_of(own, axis) {
                 for k in 0..count {
-                    offsets.push(offsets[k] + i * stride);
+                    let offset = offsets[k] + i * stride;
+                    offsets.push(offset);
                 }
             }
         }

@@ -5,11 +5,9 @@
 //! sums run over contiguous rows.
 
 use super::Bernstein;
+use crate::jets::{self, Buffer, Derivatives, contract};
 use crate::rounding::{UNDERFLOW, gamma, up};
-use crate::tensor::accumulate;
 use smallvec::SmallVec;
-
-type Buffer = SmallVec<[f64; 128]>;
 
 impl Bernstein {
     /// The value at `point`, one coordinate a variable; further coordinates are not looked at.
@@ -43,7 +41,11 @@ impl Bernstein {
     /// # Ok(()) }
     /// ```
     pub fn evaluate_with_error(&self, point: &[f64]) -> (f64, f64) {
-        let value = self.evaluate(point);
+        (self.evaluate(point), self.evaluation_error(point))
+    }
+
+    /// A bound on the error of [`evaluate`](Self::evaluate), and of one value of a batch, at `point`.
+    pub fn evaluation_error(&self, point: &[f64]) -> f64 {
         let mut growth = 1.0;
         let mut roundings = 0;
         for (axis, &degree) in self.degrees.iter().enumerate() {
@@ -53,6 +55,7 @@ impl Bernstein {
                 growth *= up((1.0 - x).abs() + x.abs())
                     .powi(degree.min(i32::MAX as usize) as i32)
                     .max(1.0);
+                growth += x * 0.0; // NaN where the coordinate is not finite
                 roundings += 4 * degree + 2;
             }
         }
@@ -62,7 +65,28 @@ impl Bernstein {
         } else {
             gamma(roundings) * size + (roundings as f64) * UNDERFLOW * (1.0 + size)
         };
-        (value, up(growth * (self.error + rounding)))
+        if (growth * size).is_finite() {
+            up(growth * (self.error + rounding))
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Bounds on the errors of a gradient at `point`, one a variable as far as `errors` has room.
+    ///
+    /// The slope by a variable of degree `d` is a sum over differences of basis functions, whose absolute values sum to
+    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few roundings more. Where
+    /// the coefficients are large and their differences small, [`derivative`](Self::derivative) first is more exact.
+    pub fn gradient_errors(&self, point: &[f64], errors: &mut [f64]) {
+        let error = self.evaluation_error(point);
+        for (bound, &degree) in errors.iter_mut().zip(&self.degrees) {
+            // `evaluation_error` counts at least 6 roundings where a degree is not 0; twice that is room for three more.
+            *bound = if degree == 0 {
+                0.0
+            } else {
+                up(4.0 * degree as f64 * error)
+            };
+        }
     }
 
     /// Value and gradient at `point`; `gradient` gets one entry a variable, as far as it has room.
@@ -88,16 +112,51 @@ impl Bernstein {
         }
         values[0]
     }
+
+    /// All partial derivatives at `point` up to the total `order`; a coordinate that is missing counts as NaN.
+    pub fn derivatives(&self, point: &[f64], order: usize) -> Derivatives {
+        let tables: Vec<Vec<Buffer>> = self
+            .degrees
+            .iter()
+            .enumerate()
+            .map(|(axis, &degree)| {
+                let x = point.get(axis).copied().unwrap_or(f64::NAN);
+                (0..=order.min(degree))
+                    .map(|r| basis_derivative(degree, x, r))
+                    .collect()
+            })
+            .collect();
+        jets::derivatives(Buffer::from_slice(&self.coefficients), 1, &tables, order)
+    }
+
+    /// The matrix of second derivatives at `point`, one row and one column a variable.
+    pub fn hessian(&self, point: &[f64]) -> nalgebra::DMatrix<f64> {
+        let n = self.variables();
+        let all = self.derivatives(point, 2);
+        nalgebra::DMatrix::from_fn(n, n, |i, j| {
+            let mut index: SmallVec<[usize; 4]> = SmallVec::from_elem(0, n);
+            index[i] += 1;
+            index[j] += 1;
+            all.get(&index).map_or(0.0, |v| v[0])
+        })
+    }
 }
 
-/// `values[k] = Σ_i basis[i] · values[i · inner + k]`, and shortened to `inner`.
-fn contract(values: &mut Buffer, inner: usize, basis: &[f64]) {
-    let (sum, rest) = values.split_at_mut(inner);
-    sum.iter_mut().for_each(|v| *v *= basis[0]);
-    for (row, &weight) in rest.chunks_exact(inner).zip(&basis[1..]) {
-        accumulate(sum, row, weight);
+/// The `order`-th derivative of the basis of `degree ≥ order` at `x`.
+fn basis_derivative(degree: usize, x: f64, order: usize) -> Buffer {
+    let mut values = Buffer::from_slice(&basis(degree - order, x));
+    for d in degree - order + 1..=degree {
+        // D B(d,i) = d (B(d−1,i−1) − B(d−1,i))
+        let factor = d as f64;
+        let mut before = 0.0;
+        for value in &mut values {
+            let here = factor * *value;
+            *value = before - here;
+            before = here;
+        }
+        values.push(before);
     }
-    values.truncate(inner);
+    values
 }
 
 /// The Bernstein basis of `degree` at `x`.

@@ -1,10 +1,15 @@
 //! The scalar Bernstein form and what it is made of.
 
 mod algebra;
+mod batch;
 mod calculus;
+mod compose;
 mod evaluate;
+mod reduce;
 mod subdivide;
 mod variables;
+
+pub(crate) use algebra::{multiply_blocks, product_error};
 
 use crate::rounding::magnitude;
 use smallvec::SmallVec;
@@ -17,6 +22,9 @@ pub const MAX_COEFFICIENTS: usize = 1 << 28;
 
 /// The most variables a form may have.
 pub const MAX_VARIABLES: usize = 32;
+
+/// The highest degree in one variable: up to here every binomial coefficient and its inverse is a normal `f64`.
+pub const MAX_DEGREE: usize = 1000;
 
 /// A scalar polynomial in `n` variables on `[0,1]ⁿ`, by its coefficients in the tensor-product Bernstein basis.
 ///
@@ -84,8 +92,8 @@ pub enum BernsteinError {
         /// Its place in the list.
         index: usize,
     },
-    /// More than [`MAX_COEFFICIENTS`] coefficients or [`MAX_VARIABLES`] variables.
-    #[error("more than {MAX_COEFFICIENTS} coefficients or {MAX_VARIABLES} variables")]
+    /// More than [`MAX_COEFFICIENTS`] coefficients or [`MAX_VARIABLES`] variables, or a degree above [`MAX_DEGREE`].
+    #[error("more than {MAX_COEFFICIENTS} coefficients, {MAX_VARIABLES} variables, or degree {MAX_DEGREE}")]
     TooLarge,
     /// An error bound is negative or not a number.
     #[error("the error bound is negative or not a number")]
@@ -98,6 +106,20 @@ pub enum BernsteinError {
         /// The number of variables.
         variables: usize,
     },
+    /// An operation takes one form for each variable or component, and got another number of them.
+    #[error("{found} forms given where {expected} are needed")]
+    FormCount {
+        /// How many are needed.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
+    /// A hyperplane does not cut the direction of the variable to be eliminated.
+    #[error("the hyperplane's normal has no finite, non-zero entry for variable {axis}")]
+    Hyperplane {
+        /// The variable.
+        axis: usize,
+    },
 }
 
 /// The number of coefficients of a form with `degrees`, if it is allowed.
@@ -105,9 +127,12 @@ pub(crate) fn coefficient_count(degrees: &[usize]) -> Option<usize> {
     if degrees.len() > MAX_VARIABLES {
         return None;
     }
+    if degrees.iter().any(|&d| d > MAX_DEGREE) {
+        return None;
+    }
     degrees
         .iter()
-        .try_fold(1usize, |count, &d| count.checked_mul(d.checked_add(1)?))
+        .try_fold(1usize, |count, &d| count.checked_mul(d + 1))
         .filter(|&count| count <= MAX_COEFFICIENTS)
 }
 
@@ -250,6 +275,12 @@ impl Bernstein {
         if self.error.is_finite() {
             self.error = 0.0;
         }
+        self
+    }
+
+    /// The same form with a larger error bound.
+    pub(crate) fn with_more_error(mut self, error: f64) -> Self {
+        self.error = crate::rounding::up(self.error + error);
         self
     }
 

@@ -38,6 +38,16 @@ impl Bernstein {
     /// Splits in place: the form becomes its part on `x_axis ≥ at`, and `left` its part on `x_axis ≤ at`.
     ///
     /// As [`split`](Self::split), but without an allocation where `left` has held as many coefficients before.
+    ///
+    /// ```
+    /// use sweepsim_spline::Bernstein;
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let mut right = Bernstein::new(&[1], vec![0.0, 2.0])?;
+    /// let mut left = Bernstein::constant(0, 0.0); // any form: only its memory is used
+    /// right.split_into(0, 0.25, &mut left);
+    /// assert_eq!((left.coefficients(), right.coefficients()), (&[0.0, 0.5][..], &[0.5, 2.0][..]));
+    /// # Ok(()) }
+    /// ```
     pub fn split_into(&mut self, axis: usize, at: f64, left: &mut Self) {
         left.degrees.clone_from(&self.degrees);
         left.error = self.error;
@@ -166,6 +176,10 @@ impl Bernstein {
         let nu = degree as f64 * (roundings * (1.0 + UNIT)) * UNIT;
         let relative = if nu < 0.5 { nu / (1.0 - nu) } else { f64::INFINITY };
         let size = self.magnitude();
+        let in_reach = (growth * size).is_finite() && (s + t).is_finite();
+        if !in_reach {
+            return f64::INFINITY;
+        }
         let rounding = if size == 0.0 {
             0.0
         } else {
@@ -201,14 +215,65 @@ pub(crate) fn split_rows(right: &mut [f64], left: &mut [f64], view: Along, s: f6
 
 /// [`split_rows`] along the contiguous axis.
 fn split_lines(right: &mut [f64], left: &mut [f64], len: usize, s: f64, t: f64) {
-    for (right, left) in right.chunks_exact_mut(len).zip(left.chunks_exact_mut(len)) {
-        left[0] = right[0];
-        for step in 1..len {
-            for i in 0..len - step {
-                right[i] = s * right[i] + t * right[i + 1];
+    match len {
+        2 => split_short_lines::<2>(right, left, s, t),
+        3 => split_short_lines::<3>(right, left, s, t),
+        4 => split_short_lines::<4>(right, left, s, t),
+        5 => split_short_lines::<5>(right, left, s, t),
+        6 => split_short_lines::<6>(right, left, s, t),
+        _ => {
+            for (right, left) in right.chunks_exact_mut(len).zip(left.chunks_exact_mut(len)) {
+                left[0] = right[0];
+                for step in 1..len {
+                    for i in 0..len - step {
+                        right[i] = s * right[i] + t * right[i + 1];
+                    }
+                    left[step] = right[0];
+                }
             }
-            left[step] = right[0];
         }
+    }
+}
+
+/// [`split_lines`] of a length known to the compiler: four lines abreast, in registers.
+fn split_short_lines<const N: usize>(right: &mut [f64], left: &mut [f64], s: f64, t: f64) {
+    const ABREAST: usize = 4;
+    let mut rights = right.chunks_exact_mut(N * ABREAST);
+    let mut lefts = left.chunks_exact_mut(N * ABREAST);
+    for (right, left) in (&mut rights).zip(&mut lefts) {
+        let mut b = [[0.0; ABREAST]; N];
+        for i in 0..N {
+            for line in 0..ABREAST {
+                b[i][line] = right[line * N + i];
+            }
+        }
+        for step in 0..N {
+            for line in 0..ABREAST {
+                left[line * N + step] = b[0][line];
+            }
+            for i in 0..N - 1 - step {
+                for line in 0..ABREAST {
+                    b[i][line] = s * b[i][line] + t * b[i + 1][line];
+                }
+            }
+        }
+        for i in 0..N {
+            for line in 0..ABREAST {
+                right[line * N + i] = b[i][line];
+            }
+        }
+    }
+    let rest = rights.into_remainder().chunks_exact_mut(N);
+    for (right, left) in rest.zip(lefts.into_remainder().chunks_exact_mut(N)) {
+        let mut b = [0.0; N];
+        b.copy_from_slice(right);
+        for step in 0..N {
+            left[step] = b[0];
+            for i in 0..N - 1 - step {
+                b[i] = s * b[i] + t * b[i + 1];
+            }
+        }
+        right.copy_from_slice(&b);
     }
 }
 

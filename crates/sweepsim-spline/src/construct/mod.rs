@@ -1,0 +1,6 @@
+//! Splines from geometry, and from points and functions.
+
+mod fit;
+mod shapes;
+
+pub use fit::Fit;

@@ -1,0 +1,587 @@
+//! Knot vectors: the univariate B-spline bases.
+//!
+//! Notation: degree `p`, order `p + 1`, knots `t₀ ≤ … ≤ t_{n+p}`, `n` basis functions `N_i` with support `[t_i, t_{i+p+1}]`,
+//! domain `[t_p, t_n]`.
+
+use crate::bernstein::{MAX_COEFFICIENTS, MAX_DEGREE};
+use smallvec::SmallVec;
+
+/// Values of the basis functions that may differ from 0.
+pub(crate) type Basis = SmallVec<[f64; 8]>;
+
+/// A checked knot vector with its degree: sorted, finite, no knot more often than degree + 1, a domain that is not empty.
+///
+/// ```
+/// use sweepsim_spline::{KnotKind, KnotVector};
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let knots = KnotVector::new(2, vec![0.0, 0.0, 0.0, 1.0, 3.0, 3.0, 3.0])?;
+/// assert_eq!(knots.count(), 4);
+/// assert_eq!(knots.domain(), (0.0, 3.0));
+/// assert_eq!(knots.kind(), KnotKind::Open);
+/// assert_eq!(knots.multiplicity(1.0), 1);
+/// let (first, values) = knots.basis(1.0);
+/// assert_eq!(first, 1); // N₁, N₂, N₃ at the knot 1
+/// assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+/// # Ok(()) }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored", into = "Stored"))]
+pub struct KnotVector {
+    degree: usize,
+    knots: Vec<f64>,
+}
+
+/// How a knot vector ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum KnotKind {
+    /// Both ends have the full multiplicity, degree + 1: the spline begins and ends in its first and last coefficient.
+    Open,
+    /// Knots reach beyond the domain, spaced as on its other side: splines whose coefficients wrap are periodic.
+    Periodic,
+    /// Any other.
+    Floating,
+}
+
+/// Why numbers are not a knot vector.
+///
+/// ```
+/// use sweepsim_spline::{KnotError, KnotVector};
+/// assert_eq!(KnotVector::new(1, vec![0.0, 1.0, 1.0]), Err(KnotError::TooFew { needed: 4, found: 3 }));
+/// assert_eq!(KnotVector::new(1, vec![0.0, 0.0, f64::NAN, 1.0]), Err(KnotError::NotFinite { index: 2 }));
+/// assert_eq!(KnotVector::new(1, vec![0.0, 1.0, 0.5, 1.0]), Err(KnotError::Descending { index: 2 }));
+/// assert_eq!(KnotVector::new(1, vec![0.0, 0.0, 0.0, 1.0]), Err(KnotError::Multiplicity { index: 2, most: 2 }));
+/// assert_eq!(KnotVector::new(1, vec![0.0, 1.0, 1.0, 2.0]), Err(KnotError::EmptyDomain));
+/// assert_eq!(KnotVector::new(0, vec![-1e308, 1e308]), Err(KnotError::TooWide));
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum KnotError {
+    /// Fewer than twice the order.
+    #[error("{found} knots where the degree needs at least {needed}")]
+    TooFew {
+        /// Twice the order.
+        needed: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A knot is infinite or not a number.
+    #[error("knot {index} is not finite")]
+    NotFinite {
+        /// Its place.
+        index: usize,
+    },
+    /// A knot is below the one before.
+    #[error("knot {index} is below the one before it")]
+    Descending {
+        /// Its place.
+        index: usize,
+    },
+    /// A knot occurs more often than the order.
+    #[error("knot {index} occurs more than {most} times")]
+    Multiplicity {
+        /// The place of the first occurrence too many.
+        index: usize,
+        /// The order.
+        most: usize,
+    },
+    /// The domain `[t_p, t_n]` has no length.
+    #[error("the domain has no length")]
+    EmptyDomain,
+    /// The distance from the first knot to the last overflows.
+    #[error("the distance between the first and the last knot overflows")]
+    TooWide,
+    /// More than [`MAX_COEFFICIENTS`] knots, or a degree above [`MAX_DEGREE`].
+    #[error("more than {MAX_COEFFICIENTS} knots, or a degree above {MAX_DEGREE}")]
+    TooLarge,
+    /// A parameter is not inside the domain.
+    #[error("the parameter is not in the domain")]
+    Outside,
+}
+
+impl KnotVector {
+    /// The knot vector of `degree` with these knots.
+    ///
+    /// # Errors
+    ///
+    /// See [`KnotError`]: each variant but `Outside`.
+    pub fn new(degree: usize, knots: Vec<f64>) -> Result<Self, KnotError> {
+        if degree > MAX_DEGREE || knots.len() > MAX_COEFFICIENTS {
+            return Err(KnotError::TooLarge);
+        }
+        let order = degree + 1;
+        if knots.len() < 2 * order {
+            return Err(KnotError::TooFew {
+                needed: 2 * order,
+                found: knots.len(),
+            });
+        }
+        if let Some(index) = knots.iter().position(|t| !t.is_finite()) {
+            return Err(KnotError::NotFinite { index });
+        }
+        if let Some(index) = (1..knots.len()).find(|&i| knots[i] < knots[i - 1]) {
+            return Err(KnotError::Descending { index });
+        }
+        if let Some(index) = (order..knots.len()).find(|&i| knots[i] == knots[i - order]) {
+            return Err(KnotError::Multiplicity { index, most: order });
+        }
+        if !(knots[knots.len() - 1] - knots[0]).is_finite() {
+            return Err(KnotError::TooWide);
+        }
+        let checked = Self { degree, knots };
+        let (start, end) = checked.domain();
+        if start >= end {
+            return Err(KnotError::EmptyDomain);
+        }
+        Ok(checked)
+    }
+
+    /// The knot vector without inner knots: the Bernstein basis on `[lo, hi]`.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new).
+    pub fn bernstein(degree: usize, lo: f64, hi: f64) -> Result<Self, KnotError> {
+        Self::open(degree, &[lo, hi])
+    }
+
+    /// The open knot vector with these breakpoints: the first and last repeated to the full multiplicity, the others
+    /// taken as often as they are listed.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`TooFew`](KnotError::TooFew) for fewer than two breakpoints.
+    pub fn open(degree: usize, breakpoints: &[f64]) -> Result<Self, KnotError> {
+        if degree > MAX_DEGREE {
+            return Err(KnotError::TooLarge);
+        }
+        let [first, inner @ .., last] = breakpoints else {
+            return Err(KnotError::TooFew {
+                needed: 2,
+                found: breakpoints.len(),
+            });
+        };
+        let mut knots = vec![*first; degree + 1];
+        knots.extend_from_slice(inner);
+        knots.extend(std::iter::repeat_n(*last, degree + 1));
+        Self::new(degree, knots)
+    }
+
+    /// The open knot vector with `spans` spans of equal length on `[lo, hi]`.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`EmptyDomain`](KnotError::EmptyDomain) for no spans.
+    pub fn uniform(degree: usize, spans: usize, lo: f64, hi: f64) -> Result<Self, KnotError> {
+        if spans == 0 {
+            return Err(KnotError::EmptyDomain);
+        }
+        if spans > MAX_COEFFICIENTS {
+            return Err(KnotError::TooLarge);
+        }
+        let step = (hi - lo) / spans as f64;
+        let breakpoints: Vec<f64> = (0..=spans)
+            .map(|i| if i == spans { hi } else { lo + i as f64 * step })
+            .collect();
+        Self::open(degree, &breakpoints)
+    }
+
+    /// The periodic knot vector over one period, `breakpoints[0]` to the last breakpoint, repeated `degree` knots to
+    /// either side. Splines on it have as many different coefficients as there are breakpoints less one.
+    ///
+    /// # Errors
+    ///
+    /// As [`new`](Self::new); [`TooFew`](KnotError::TooFew) for fewer than two breakpoints.
+    pub fn periodic(degree: usize, breakpoints: &[f64]) -> Result<Self, KnotError> {
+        if degree > MAX_DEGREE || breakpoints.len() > MAX_COEFFICIENTS / 2 {
+            return Err(KnotError::TooLarge);
+        }
+        if breakpoints.len() < 2 {
+            return Err(KnotError::TooFew {
+                needed: 2,
+                found: breakpoints.len(),
+            });
+        }
+        let spans = breakpoints.len() - 1;
+        let period = breakpoints[spans] - breakpoints[0];
+        let turns = degree.div_ceil(spans);
+        let at = |i: usize| {
+            // Index `i` counts from `turns` periods before the first breakpoint.
+            let turn = (i / spans) as f64 - turns as f64;
+            if i == (turns + 1) * spans {
+                breakpoints[spans]
+            } else {
+                breakpoints[i % spans] + turn * period
+            }
+        };
+        let first = turns * spans - degree;
+        Self::new(degree, (first..=first + spans + 2 * degree).map(at).collect())
+    }
+
+    /// The degree.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// All knots.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The number of basis functions.
+    pub fn count(&self) -> usize {
+        self.knots.len() - self.degree - 1
+    }
+
+    /// The interval on which the basis functions sum to 1.
+    pub fn domain(&self) -> (f64, f64) {
+        (self.knots[self.degree], self.knots[self.count()])
+    }
+
+    /// How the ends are.
+    pub fn kind(&self) -> KnotKind {
+        let (start, end) = self.domain();
+        if self.knots[0] == start && self.knots[self.knots.len() - 1] == end {
+            return KnotKind::Open;
+        }
+        let (period, spans) = (end - start, self.count() - self.degree);
+        // Knots a period on were rounded once or twice when made.
+        let slack = 4.0
+            * f64::EPSILON
+            * self.knots[0]
+                .abs()
+                .max(self.knots[self.knots.len() - 1].abs())
+                .max(period);
+        let wraps =
+            (0..self.knots.len() - spans).all(|i| (self.knots[i + spans] - self.knots[i] - period).abs() <= slack);
+        if wraps { KnotKind::Periodic } else { KnotKind::Floating }
+    }
+
+    /// How often `value` occurs among the knots.
+    pub fn multiplicity(&self, value: f64) -> usize {
+        self.knots.partition_point(|&t| t <= value) - self.knots.partition_point(|&t| t < value)
+    }
+
+    /// The different knots of the domain, its ends included: between neighbours splines are polynomials.
+    pub fn breakpoints(&self) -> Vec<f64> {
+        let mut breakpoints = self.knots[self.degree..=self.count()].to_vec();
+        breakpoints.dedup();
+        breakpoints
+    }
+
+    /// The Greville abscissae, one a basis function: the means of `p` knots (for degree 0 the middles of the spans).
+    ///
+    /// The spline with these coefficients is the identity.
+    pub fn greville(&self) -> Vec<f64> {
+        (0..self.count())
+            .map(|i| {
+                if self.degree == 0 {
+                    self.knots[i] / 2.0 + self.knots[i + 1] / 2.0
+                } else {
+                    let d = self.degree as f64;
+                    let base = self.knots[i + 1];
+                    let own = &self.knots[i + 1..=i + self.degree];
+                    let mean = base + own.iter().map(|t| (t - base) / d).sum::<f64>();
+                    mean.min(self.knots[i + self.degree])
+                }
+            })
+            .collect()
+    }
+
+    /// The span `k` with `t_k ≤ x < t_{k+1}`; before the domain its first span, from its end on its last.
+    ///
+    /// Never an empty span; for NaN the first.
+    pub fn span(&self, x: f64) -> usize {
+        let (start, end) = self.domain();
+        let inside = &self.knots[self.degree..=self.count()];
+        let knots_up_to = if x >= end {
+            inside.partition_point(|&t| t < end)
+        } else {
+            let x = if x > start { x } else { start };
+            inside.partition_point(|&t| t <= x)
+        };
+        self.degree + knots_up_to - 1
+    }
+
+    /// `x` moved by whole periods (lengths of the domain) into the domain.
+    ///
+    /// The end of the domain becomes its start. NaN stays.
+    pub fn wrap(&self, x: f64) -> f64 {
+        let (start, end) = self.domain();
+        if x >= start && x < end {
+            return x;
+        }
+        let wrapped = start + (x - start).rem_euclid(end - start);
+        if wrapped >= end { start } else { wrapped }
+    }
+
+    /// The basis functions that may differ from 0 at `x`: the index of the first, and `degree + 1` values.
+    ///
+    /// Outside the domain the polynomials of the first or last span go on. Inside, each value has a relative error of at
+    /// most `6p` roundings: only positive numbers are added.
+    pub fn basis(&self, x: f64) -> (usize, Vec<f64>) {
+        let span = self.span(x);
+        (span - self.degree, self.basis_in(span, x, self.degree).to_vec())
+    }
+
+    /// The basis functions at `x` and their derivatives: the index of the first, and for each order `0..=order` the
+    /// `degree + 1` values.
+    pub fn basis_derivatives(&self, x: f64, order: usize) -> (usize, Vec<Vec<f64>>) {
+        let span = self.span(x);
+        let rows = (0..=order).map(|r| self.derivative_in(span, x, r).to_vec());
+        (span - self.degree, rows.collect())
+    }
+
+    /// The functions `N_{span−q}, …, N_span` of degree `q ≤ p` at `x`, by the triangular recurrence of de Boor and Cox.
+    pub(crate) fn basis_in(&self, span: usize, x: f64, q: usize) -> Basis {
+        let mut values: Basis = SmallVec::from_elem(0.0, q + 1);
+        values[0] = 1.0;
+        for j in 1..=q {
+            let mut saved = 0.0;
+            for r in 0..j {
+                let (below, above) = (self.knots[span + 1 + r - j], self.knots[span + 1 + r]);
+                let share = values[r] / (above - below);
+                values[r] = saved + (above - x) * share;
+                saved = (x - below) * share;
+            }
+            values[j] = saved;
+        }
+        values
+    }
+
+    /// A bound on `Σ |N_i(x)|` and on what the terms of the recurrence sum to in absolute value: 1 inside the span.
+    pub(crate) fn growth_in(&self, span: usize, x: f64) -> f64 {
+        if x >= self.knots[span] && x <= self.knots[span + 1] {
+            return 1.0;
+        }
+        let mut values: Basis = SmallVec::from_elem(0.0, self.degree + 1);
+        values[0] = 1.0;
+        for j in 1..=self.degree {
+            let mut saved = 0.0;
+            for r in 0..j {
+                let (below, above) = (self.knots[span + 1 + r - j], self.knots[span + 1 + r]);
+                let share = values[r] / (above - below);
+                values[r] = saved + (above - x).abs() * share;
+                saved = (x - below).abs() * share;
+            }
+            values[j] = saved;
+        }
+        let sum: f64 = values.iter().sum();
+        // 6p roundings a value, p more for the sum: covered generously.
+        let sum = sum * (1.0 + 16.0 * (self.degree + 1) as f64 * f64::EPSILON);
+        if sum.is_nan() { f64::INFINITY } else { sum.max(1.0) }
+    }
+
+    /// The `order`-th derivatives of `N_{span−p}, …, N_span` at `x`: from the functions of degree `p − order` upwards by
+    /// `N′_{i,q+1} = (q+1) (N_{i,q}/(t_{i+q+1}−t_i) − N_{i+1,q}/(t_{i+q+2}−t_{i+1}))`.
+    pub(crate) fn derivative_in(&self, span: usize, x: f64, order: usize) -> Basis {
+        if order > self.degree {
+            let poison = x * 0.0;
+            return SmallVec::from_elem(if poison == 0.0 { 0.0 } else { f64::NAN }, self.degree + 1);
+        }
+        let mut values = self.basis_in(span, x, self.degree - order);
+        for q in self.degree - order..self.degree {
+            let factor = (q + 1) as f64;
+            let first = span - q; // index of the first function of degree q
+            let mut above = 0.0;
+            for j in 0..=q {
+                let i = first + j;
+                let share = factor * (values[j] / (self.knots[i + q + 1] - self.knots[i]));
+                // N_{i,q} enters N′_{i−1,q+1} with a minus and N′_{i,q+1} with a plus.
+                values[j] = above - share;
+                above = share;
+            }
+            values.push(above);
+        }
+        values
+    }
+
+    /// [`basis_in`](Self::basis_in) of the full degree and its first derivative, from one run of the recurrence.
+    pub(crate) fn basis_and_slope(&self, span: usize, x: f64) -> (Basis, Basis) {
+        let p = self.degree;
+        if p == 0 {
+            return (self.basis_in(span, x, 0), SmallVec::from_elem(x * 0.0, 1));
+        }
+        let mut values = self.basis_in(span, x, p - 1);
+        let mut slopes: Basis = SmallVec::with_capacity(p + 1);
+        let (mut saved, mut above_share) = (0.0, 0.0);
+        for r in 0..p {
+            let (below, above) = (self.knots[span + 1 + r - p], self.knots[span + 1 + r]);
+            let share = values[r] / (above - below);
+            slopes.push(p as f64 * (above_share - share));
+            above_share = share;
+            values[r] = saved + (above - x) * share;
+            saved = (x - below) * share;
+        }
+        values.push(saved);
+        slopes.push(p as f64 * above_share);
+        (values, slopes)
+    }
+
+    /// Knots that are known to be fine.
+    pub(crate) fn from_parts(degree: usize, knots: Vec<f64>) -> Self {
+        Self { degree, knots }
+    }
+
+    /// The knots on `[lo, hi]` instead of the domain: each moved by the affine map, rounded.
+    ///
+    /// # Errors
+    ///
+    /// [`KnotError`] if the image is not a knot vector: `lo ≥ hi`, or so close that knots coincide.
+    pub fn mapped(&self, lo: f64, hi: f64) -> Result<Self, KnotError> {
+        let (start, end) = self.domain();
+        if lo.is_nan() || hi.is_nan() || lo >= hi {
+            return Err(KnotError::EmptyDomain);
+        }
+        if (start, end) == (lo, hi) {
+            return Ok(self.clone());
+        }
+        let scale = (hi - lo) / (end - start);
+        let map = |t: f64| {
+            if t == start {
+                lo
+            } else if t == end {
+                hi
+            } else {
+                lo + (t - start) * scale
+            }
+        };
+        let mut knots: Vec<f64> = self.knots.iter().map(|&t| map(t)).collect();
+        // Rounding may carry a knot past its neighbour by an ulp.
+        for i in 1..knots.len() {
+            knots[i] = knots[i].max(knots[i - 1]);
+        }
+        Self::new(self.degree, knots)
+    }
+
+    /// The knots in reverse on the same domain: `t ↦ start + end − t`, rounded.
+    ///
+    /// # Errors
+    ///
+    /// [`KnotError`] if rounding makes knots coincide too often.
+    pub fn reversed(&self) -> Result<Self, KnotError> {
+        let (start, end) = self.domain();
+        let map = |t: f64| {
+            if t == start {
+                end
+            } else if t == end {
+                start
+            } else {
+                start + (end - t)
+            }
+        };
+        let mut knots: Vec<f64> = self.knots.iter().rev().map(|&t| map(t)).collect();
+        for i in 1..knots.len() {
+            knots[i] = knots[i].max(knots[i - 1]);
+        }
+        Self::new(self.degree, knots)
+    }
+}
+
+/// The degree, the kind, and the knots, a repeated one as `value×times`.
+impl std::fmt::Display for KnotVector {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let kind = match self.kind() {
+            KnotKind::Open => "open",
+            KnotKind::Periodic => "periodic",
+            KnotKind::Floating => "floating",
+        };
+        write!(f, "degree {}, {kind}:", self.degree)?;
+        let mut i = 0;
+        while i < self.knots.len() {
+            let times = self.knots[i..].iter().take_while(|&&t| t == self.knots[i]).count();
+            write!(f, " {}", self.knots[i])?;
+            if times > 1 {
+                write!(f, "×{times}")?;
+            }
+            i += times;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(rename = "KnotVector")]
+struct Stored {
+    degree: usize,
+    knots: Vec<f64>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for KnotVector {
+    type Error = KnotError;
+    fn try_from(stored: Stored) -> Result<Self, KnotError> {
+        Self::new(stored.degree, stored.knots)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<KnotVector> for Stored {
+    fn from(vector: KnotVector) -> Self {
+        Self {
+            degree: vector.degree,
+            knots: vector.knots,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_are_never_empty() {
+        let knots = KnotVector::new(2, vec![-1.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.5]).expect("knots");
+        assert_eq!(knots.domain(), (0.0, 2.0));
+        for (x, span) in [
+            (-5.0, 2),
+            (0.0, 2),
+            (0.5, 2),
+            (1.0, 4),
+            (1.9, 4),
+            (2.0, 4),
+            (9.0, 4),
+            (f64::NAN, 2),
+        ] {
+            assert_eq!(knots.span(x), span, "{x}");
+        }
+        assert_eq!(knots.kind(), KnotKind::Floating);
+    }
+
+    #[test]
+    fn periodic_knots_wrap() {
+        for degree in 0..6 {
+            let knots = KnotVector::periodic(degree, &[0.0, 0.1, 0.5, 1.0]).expect("knots");
+            assert_eq!(knots.domain(), (0.0, 1.0));
+            assert_eq!(knots.count(), 3 + degree);
+            assert_eq!(
+                knots.kind(),
+                if degree == 0 {
+                    KnotKind::Open
+                } else {
+                    KnotKind::Periodic
+                }
+            );
+        }
+        let knots = KnotVector::periodic(3, &[0.0, 1.0, 2.0]).expect("knots");
+        assert_eq!(knots.wrap(2.0), 0.0);
+        assert_eq!(knots.wrap(-0.5), 1.5);
+        assert_eq!(knots.wrap(1.5), 1.5);
+        assert!(knots.wrap(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn derivatives_of_the_basis_sum_to_zero() {
+        let knots = KnotVector::uniform(4, 5, -1.0, 2.0).expect("knots");
+        for x in [-1.0, -0.3, 0.2, 2.0] {
+            let (_, rows) = knots.basis_derivatives(x, 5);
+            assert!((rows[0].iter().sum::<f64>() - 1.0).abs() < 1e-14);
+            for row in &rows[1..] {
+                assert!(row.iter().sum::<f64>().abs() < 1e-9);
+            }
+            assert!(rows[5].iter().all(|&v| v == 0.0));
+        }
+    }
+}

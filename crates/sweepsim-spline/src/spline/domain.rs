@@ -1,0 +1,475 @@
+//! Parts of the domain, more and fewer variables, and other parameters.
+
+use super::{BSpline, Knots, SplineError};
+use crate::bernstein::{Bernstein, MAX_VARIABLES};
+use crate::knots::KnotVector;
+use crate::map::BernsteinMap;
+use crate::rounding::{UNDERFLOW, UNIT, magnitude, up};
+use crate::rows::{self, Row};
+use crate::tensor::along;
+use smallvec::SmallVec;
+
+impl BSpline {
+    /// The spline on `x_axis ≤ at` and on `x_axis ≥ at`. Both keep their parameters; the cut ends are open.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) unless `at` is strictly inside the domain.
+    pub fn split(&self, axis: usize, at: f64) -> Result<(Self, Self), SplineError> {
+        self.check_axis(axis)?;
+        let vector = &self.knots[axis];
+        let (start, end) = vector.domain();
+        if !(at > start && at < end) {
+            return Err(SplineError::Outside { axis, value: at });
+        }
+        let p = vector.degree();
+        let times = p.saturating_sub(vector.multiplicity(at));
+        let fine = self.refine(axis, &vec![at; times])?;
+        let t = fine.knots[axis].knots();
+        let up_to = t.partition_point(|&x| x <= at);
+        let below = t.partition_point(|&x| x < at);
+        // Left: all coefficients up to the one at the cut; right: from it on. At a jump each side has its own.
+        let jump = up_to - below > p;
+        let first_right = up_to - 1 - p;
+        let last_left = if jump { first_right } else { first_right + 1 };
+        let knots_of = |inner: &[f64], left: bool| {
+            let ends = std::iter::repeat_n(at, p + 1);
+            let knots: Vec<f64> = if left {
+                inner.iter().copied().chain(ends).collect()
+            } else {
+                ends.chain(inner.iter().copied()).collect()
+            };
+            KnotVector::new(p, knots).map_err(|error| SplineError::Knots { axis, error })
+        };
+        let units = |from: usize, to: usize| (from..to).map(Row::unit).collect::<Vec<_>>();
+        let left = fine.with_rows(axis, &units(0, last_left), knots_of(&t[..below], true)?);
+        let count = fine.knots[axis].count();
+        let right = fine.with_rows(axis, &units(first_right, count), knots_of(&t[up_to..], false)?);
+        Ok((left, right))
+    }
+
+    /// The spline on `lo ≤ x_axis ≤ hi`.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) unless `start ≤ lo < hi ≤ end`.
+    pub fn restrict(&self, axis: usize, lo: f64, hi: f64) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        let (start, end) = self.knots[axis].domain();
+        if !(lo >= start && lo < end) {
+            return Err(SplineError::Outside { axis, value: lo });
+        }
+        if !(hi > lo && hi <= end) {
+            return Err(SplineError::Outside { axis, value: hi });
+        }
+        let mut part = self.clone();
+        if lo > start {
+            part = part.split(axis, lo)?.1;
+        }
+        if hi < end {
+            part = part.split(axis, hi)?.0;
+        }
+        Ok(part)
+    }
+
+    /// The spline on a box, one interval a variable; variables without an entry keep their domain.
+    ///
+    /// # Errors
+    ///
+    /// As [`restrict`](Self::restrict).
+    pub fn restrict_box(&self, ranges: &[(f64, f64)]) -> Result<Self, SplineError> {
+        let mut part = self.clone();
+        for (axis, &(lo, hi)) in ranges.iter().enumerate() {
+            part = part.restrict(axis, lo, hi)?;
+        }
+        Ok(part)
+    }
+
+    /// Puts two splines together that share a face: `self` on the lower side in variable `axis`, `other` on the upper.
+    ///
+    /// At the seam the knot has multiplicity degree if the faces agree within their error bounds, degree + 1 (a jump)
+    /// otherwise; [`remove_knot`](Self::remove_knot) lowers it where the spline is smoother.
+    ///
+    /// ```
+    /// use sweepsim_spline::{BSpline, KnotVector};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let f = BSpline::new(vec![KnotVector::open(2, &[0.0, 2.0])?], 1, vec![0.0, 1.0, 4.0])?;
+    /// let (left, right) = f.split(0, 0.5)?;
+    /// let joined = left.join(&right, 0)?;
+    /// let whole = joined.remove_knot(0, 0.5)?.remove_knot(0, 0.5)?;
+    /// assert!(whole.points().len() == 3 && whole.sub(&f)?.may_vanish());
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Count`](SplineError::Count), [`Dimension`](SplineError::Dimension) if the numbers of variables
+    /// or components differ; [`Domain`](SplineError::Domain) if the domains do not meet, or degree or other knots differ.
+    pub fn join(&self, other: &Self, axis: usize) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        self.same_shape(other)?;
+        let fits = |i: usize| {
+            if i == axis {
+                self.degree(i) == other.degree(i) && self.knots[i].domain().1 == other.knots[i].domain().0
+            } else {
+                self.knots[i] == other.knots[i]
+            }
+        };
+        if let Some(axis) = (0..self.variables()).find(|&i| !fits(i)) {
+            return Err(SplineError::Domain { axis });
+        }
+        let (left, right) = (self.open(axis)?, other.open(axis)?);
+        let p = self.degree(axis);
+        let seam = self.knots[axis].domain().1;
+        let (a, b) = (left.view(axis), right.view(axis));
+        let block_a = |o: usize| &left.coefficients[o * a.inner * a.len..(o + 1) * a.inner * a.len];
+        let block_b = |o: usize| &right.coefficients[o * b.inner * b.len..(o + 1) * b.inner * b.len];
+        let mut gap: f64 = 0.0;
+        for o in 0..a.outer {
+            let (end, start) = (&block_a(o)[a.inner * (a.len - 1)..], &block_b(o)[..a.inner]);
+            gap = gap.max(super::pieces::largest_difference(end, start));
+        }
+        let smooth = p > 0 && gap <= up(left.error + right.error);
+        let skip = if smooth { b.inner } else { 0 };
+        let mut coefficients = Vec::new();
+        for o in 0..a.outer {
+            coefficients.extend_from_slice(block_a(o));
+            coefficients.extend_from_slice(&block_b(o)[skip..]);
+        }
+        let (ta, tb) = (left.knots[axis].knots(), right.knots[axis].knots());
+        let mut knots = ta[..ta.len() - p - 1].to_vec();
+        knots.extend(std::iter::repeat_n(seam, if smooth { p } else { p + 1 }));
+        knots.extend_from_slice(&tb[p + 1..]);
+        let target = KnotVector::new(p, knots).map_err(|error| SplineError::Knots { axis, error })?;
+        let mut all = left.knots.clone();
+        all[axis] = target;
+        super::coefficient_count(&all, self.dimension)?;
+        let error = up(left.error.max(right.error) + if smooth { gap } else { 0.0 });
+        Ok(Self::computed(all, self.dimension, coefficients, error))
+    }
+
+    /// The spline with `x_axis` fixed: one variable fewer. At an open end (a face) exact.
+    ///
+    /// ```
+    /// use sweepsim_spline::{BSpline, KnotVector};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let line = KnotVector::bernstein(1, 0.0, 2.0)?;
+    /// let surface = BSpline::new(vec![line.clone(), line], 1, vec![0.0, 1.0, 2.0, 5.0])?;
+    /// assert_eq!(surface.slice(1, 2.0)?.coefficients(), [2.0, 5.0]);
+    /// assert_eq!(surface.slice(0, 1.0)?.coefficients(), [0.5, 3.5]);
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) the domain.
+    pub fn slice(&self, axis: usize, at: f64) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        let vector = &self.knots[axis];
+        let (start, end) = vector.domain();
+        if !(at >= start && at <= end) {
+            return Err(SplineError::Outside { axis, value: at });
+        }
+        let p = vector.degree();
+        let span = vector.span(at);
+        let weights = vector.basis_in(span, at, p);
+        // At an open end exactly one weight is 1.
+        let row = match weights.iter().position(|&w| w == 1.0) {
+            Some(one) if weights.iter().filter(|&&w| w != 0.0).count() == 1 => Row::unit(span - p + one),
+            _ => Row {
+                start: span - p,
+                weights,
+                growth: up(1.0),
+                roundings: 6 * p,
+            },
+        };
+        let (coefficients, error) = rows::apply(
+            &[row],
+            &self.coefficients,
+            self.view(axis),
+            self.magnitude(),
+            self.error,
+        );
+        let mut knots = self.knots.clone();
+        knots.remove(axis);
+        Ok(Self::computed(knots, self.dimension, coefficients, error))
+    }
+
+    /// The lower (`false`) or upper (`true`) face in variable `axis`: [`slice`](Self::slice) at the end of the domain.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis).
+    pub fn face(&self, axis: usize, upper: bool) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        let (start, end) = self.knots[axis].domain();
+        self.slice(axis, if upper { end } else { start })
+    }
+
+    /// The spline as a function of more variables: a new variable `axis` with the domain of `knots`, on which it does not
+    /// depend. Exact.
+    ///
+    /// To be cheap the new variable is best of degree 0.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis) if `axis` is above the number of variables; [`Size`](SplineError::Size).
+    pub fn extend(&self, axis: usize, knots: KnotVector) -> Result<Self, SplineError> {
+        if axis > self.variables() {
+            return self.check_axis(axis).map(|()| self.clone());
+        }
+        if self.variables() == MAX_VARIABLES {
+            return Err(SplineError::Size);
+        }
+        let mut all = self.knots.clone();
+        all.insert(axis, knots);
+        let count = super::coefficient_count(&all, self.dimension)?;
+        let copies = all[axis].count();
+        let inner: usize = self.knots[..axis].iter().map(KnotVector::count).product::<usize>() * self.dimension;
+        let mut coefficients = Vec::with_capacity(count);
+        for block in self.coefficients.chunks_exact(inner) {
+            for _ in 0..copies {
+                coefficients.extend_from_slice(block);
+            }
+        }
+        Ok(Self::computed(all, self.dimension, coefficients, self.error))
+    }
+
+    /// The variables in another order: variable `i` of the result is variable `axes[i]`. Exact.
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](SplineError::Count) unless there is one entry a variable; [`Axis`](SplineError::Axis) for an entry that is
+    /// double or not there.
+    pub fn permute(&self, axes: &[usize]) -> Result<Self, SplineError> {
+        let n = self.variables();
+        if axes.len() != n {
+            return Err(SplineError::Count {
+                expected: n,
+                found: axes.len(),
+            });
+        }
+        if let Some(i) = (0..n).find(|&i| axes[i] >= n || axes[..i].contains(&axes[i])) {
+            return Err(SplineError::Axis {
+                axis: axes[i],
+                variables: n,
+            });
+        }
+        let mut strides: SmallVec<[usize; 4]> = SmallVec::new();
+        let mut stride = self.dimension;
+        for vector in &self.knots {
+            strides.push(stride);
+            stride *= vector.count();
+        }
+        let knots: Knots = axes.iter().map(|&axis| self.knots[axis].clone()).collect();
+        let mut index: SmallVec<[usize; 4]> = SmallVec::from_elem(0, n);
+        let mut at = 0;
+        let mut coefficients = Vec::with_capacity(self.coefficients.len());
+        for _ in 0..self.coefficients.len() / self.dimension {
+            coefficients.extend_from_slice(&self.coefficients[at..at + self.dimension]);
+            for i in 0..n {
+                index[i] += 1;
+                at += strides[axes[i]];
+                if index[i] < knots[i].count() {
+                    break;
+                }
+                at -= index[i] * strides[axes[i]];
+                index[i] = 0;
+            }
+        }
+        Ok(Self::computed(knots, self.dimension, coefficients, self.error))
+    }
+
+    /// The product of functions of *separate* variables: `(f ⊗ g)(x, y) = f(x) g(y)`, this spline's variables first.
+    ///
+    /// Component by component; one of dimension 1 multiplies every component of the other. One rounding a coefficient.
+    ///
+    /// # Errors
+    ///
+    /// [`Dimension`](SplineError::Dimension) if the dimensions differ and neither is 1; [`Size`](SplineError::Size).
+    pub fn tensor_product(&self, other: &Self) -> Result<Self, SplineError> {
+        let m = self.common_dimension(other)?;
+        let knots: Knots = self.knots.iter().chain(&other.knots).cloned().collect();
+        let count = super::coefficient_count(&knots, m)?;
+        let mut coefficients = Vec::with_capacity(count);
+        for q in other.points() {
+            for p in self.points() {
+                let entry = |point: &[f64], k: usize| if point.len() == 1 { point[0] } else { point[k] };
+                coefficients.extend((0..m).map(|k| entry(p, k) * entry(q, k)));
+            }
+        }
+        let (a, b) = (self.magnitude(), other.magnitude());
+        let rounding = if a == 0.0 || b == 0.0 {
+            0.0
+        } else {
+            UNIT * a * b + UNDERFLOW
+        };
+        let error = up(a * other.error + b * self.error + self.error * other.error + rounding);
+        Ok(Self::computed(knots, m, coefficients, error))
+    }
+
+    /// The spline run through backwards in variable `axis`, on the same domain: `x ↦ start + end − x`.
+    ///
+    /// The coefficients are exact; the new knots are rounded and count as exact from then on.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Knots`](SplineError::Knots) if rounding makes knots coincide too often.
+    pub fn reverse(&self, axis: usize) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        let target = self.knots[axis]
+            .reversed()
+            .map_err(|error| SplineError::Knots { axis, error })?;
+        let rows: Vec<Row> = (0..target.count()).rev().map(Row::unit).collect();
+        Ok(self.with_rows(axis, &rows, target))
+    }
+
+    /// The same spline over the domain `[lo, hi]` in variable `axis`: the parameter is mapped affinely.
+    ///
+    /// The coefficients are exact; the new knots are rounded and count as exact from then on.
+    ///
+    /// # Errors
+    ///
+    /// [`Axis`](SplineError::Axis); [`Knots`](SplineError::Knots) if `lo ≥ hi`, or rounding makes knots coincide too often.
+    pub fn reparametrise(&self, axis: usize, lo: f64, hi: f64) -> Result<Self, SplineError> {
+        self.check_axis(axis)?;
+        let target = self.knots[axis]
+            .mapped(lo, hi)
+            .map_err(|error| SplineError::Knots { axis, error })?;
+        let mut spline = self.clone();
+        spline.knots[axis] = target;
+        Ok(spline)
+    }
+
+    /// The spline of a Bernstein map whose image lies in one box between neighbouring breakpoints: a curve in a surface,
+    /// an affine map, any other form.
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](SplineError::Count) unless `inner` has one component a variable; [`Outside`](SplineError::Outside) if its
+    /// enclosure is not within one span of that variable: split the inner map where it crosses the knots.
+    pub fn compose(&self, inner: &BernsteinMap) -> Result<BernsteinMap, SplineError> {
+        if inner.dimension() != self.variables() {
+            return Err(SplineError::Count {
+                expected: self.variables(),
+                found: inner.dimension(),
+            });
+        }
+        let mut breakpoints = Vec::new();
+        let mut local = Vec::new();
+        let mut part = self.clone();
+        for (axis, component) in inner.components().iter().enumerate() {
+            let own = self.knots[axis].breakpoints();
+            let (lo, hi) = component.enclosure();
+            let Some(span) = own.windows(2).find(|ends| ends[0] <= lo && hi <= ends[1]) else {
+                return Err(SplineError::Outside { axis, value: hi });
+            };
+            let (a, b) = (span[0], span[1]);
+            part = part.restrict(axis, a, b)?;
+            let offset = Bernstein::constant(component.variables(), a);
+            let moved = component.sub(&offset);
+            let length = b - a;
+            // 1/(b − a) carries two roundings.
+            let scaled = moved.scale(1.0 / length);
+            let more = up(4.0 * UNIT * scaled.magnitude() + UNDERFLOW);
+            let scaled = scaled.with_more_error(more);
+            local.push(scaled);
+            breakpoints.push(vec![a, b]);
+        }
+        let tensor = part.piece_tensor(&breakpoints)?;
+        let places = tensor.places(0);
+        let components = (0..self.dimension).map(|k| {
+            let coefficients = places.iter().map(|&place| tensor.data[place + k]).collect();
+            Bernstein::computed(self.degrees(), coefficients, tensor.error).compose(&local)
+        });
+        Ok(BernsteinMap::new(components.collect::<Result<_, _>>()?))
+    }
+
+    /// One component as a spline of its own.
+    ///
+    /// # Errors
+    ///
+    /// [`Dimension`](SplineError::Dimension) if there is no such component.
+    pub fn component(&self, index: usize) -> Result<Self, SplineError> {
+        if index >= self.dimension {
+            return Err(SplineError::Dimension {
+                expected: index.saturating_add(1),
+                found: self.dimension,
+            });
+        }
+        let own = self
+            .coefficients
+            .iter()
+            .skip(index)
+            .step_by(self.dimension)
+            .copied()
+            .collect();
+        Ok(Self::computed(self.knots.clone(), 1, own, self.error))
+    }
+
+    /// The splines' components side by side, on the common refinement of their knots.
+    ///
+    /// # Errors
+    ///
+    /// [`Size`](SplineError::Size) for none; [`Count`](SplineError::Count), [`Domain`](SplineError::Domain) if variables or
+    /// domains differ.
+    pub fn stack(parts: &[Self]) -> Result<Self, SplineError> {
+        let first = parts.first().ok_or(SplineError::Size)?;
+        let mut knots = first.knots.clone();
+        for part in parts {
+            knots = first.common_knots(part, Some(knots))?;
+        }
+        let parts: Vec<Self> = parts.iter().map(|p| p.on_all_knots(&knots)).collect::<Result<_, _>>()?;
+        let dimension = parts.iter().map(|p| p.dimension).sum();
+        let count = super::coefficient_count(&knots, dimension)?;
+        let mut coefficients = Vec::with_capacity(count);
+        for i in 0..count / dimension {
+            for part in &parts {
+                coefficients.extend_from_slice(&part.coefficients[i * part.dimension..(i + 1) * part.dimension]);
+            }
+        }
+        let error = parts.iter().map(|p| p.error).fold(0.0, f64::max);
+        Ok(Self::computed(knots, dimension, coefficients, error))
+    }
+
+    /// The spline after an affine map of its values: `A f + b`, `rows[i]` a row of `A` and the entry of `b`.
+    ///
+    /// # Errors
+    ///
+    /// [`Dimension`](SplineError::Dimension) unless each row of `A` has one entry a component; [`Size`](SplineError::Size) for
+    /// no rows.
+    pub fn transform(&self, rows: &[(Vec<f64>, f64)]) -> Result<Self, SplineError> {
+        if let Some((odd, _)) = rows.iter().find(|(row, _)| row.len() != self.dimension) {
+            return Err(SplineError::Dimension {
+                expected: self.dimension,
+                found: odd.len(),
+            });
+        }
+        super::coefficient_count(&self.knots, rows.len())?;
+        let linear: Vec<Row> = rows
+            .iter()
+            .map(|(row, _)| Row {
+                start: 0,
+                weights: row.as_slice().into(),
+                growth: up(up(row.iter().map(|w| w.abs()).sum())),
+                roundings: 0,
+            })
+            .collect();
+        let view = along([self.dimension].into_iter(), 0, 1);
+        let view = crate::tensor::Along {
+            outer: self.coefficients.len() / self.dimension,
+            ..view
+        };
+        let (mut coefficients, mut error) =
+            rows::apply(&linear, &self.coefficients, view, self.magnitude(), self.error);
+        if rows.iter().any(|(_, b)| *b != 0.0) {
+            for point in coefficients.chunks_exact_mut(rows.len()) {
+                for (c, (_, b)) in point.iter_mut().zip(rows) {
+                    *c += b;
+                }
+            }
+            error = up(error + UNIT * magnitude(&coefficients));
+        }
+        Ok(Self::computed(self.knots.clone(), rows.len(), coefficients, error))
+    }
+}
