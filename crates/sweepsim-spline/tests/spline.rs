@@ -388,6 +388,42 @@ proptest! {
     }
 
     #[test]
+    fn uneven_knots(seed: u64) {
+        // Distances over many orders of magnitude, arguments of all bits.
+        let mut random = Random(seed);
+        let degree = 1 + random.below(4);
+        let mut list = vec![-0.3];
+        for _ in 0..random.below(5) {
+            let last = list[list.len() - 1];
+            list.push(last + random.unit() * (-(random.below(24) as f64)).exp2() + 1e-9);
+        }
+        let mut of = |list: &[f64], degree: usize| {
+            let vector = KnotVector::open(degree, &[list, &[5.1]].concat()).expect("knots");
+            let count = vector.count();
+            BSpline::new(vec![vector], 1, random.coefficients(count)).expect("a spline")
+        };
+        let (f, g) = (of(&list, degree), of(&list[..1 + list.len() / 2], 2));
+        let random = &mut random;
+        let x = random.between(-0.2, 5.0);
+        let halves = f.split(0, x).expect("inside");
+        let smooth = |h: Result<BSpline, SplineError>| h.expect("of a variable");
+        assert_is(&smooth(f.mul(&g)), random, "f g", |p, k| value(&f, k, p) * value(&g, k, p));
+        assert_is(&smooth(f.add(&g)), random, "f + g", |p, k| value(&f, k, p) + value(&g, k, p));
+        assert_is(&smooth(f.elevate(0, 2)), random, "elevated", |p, k| value(&f, k, p));
+        assert_is(&smooth(f.elevate(0, 1).and_then(|h| h.reduce(0))), random, "reduced", |p, k| value(&f, k, p));
+        assert_is(&smooth(f.insert_knot(0, x, 1)), random, "inserted", |p, k| value(&f, k, p));
+        assert_is(&smooth(f.insert_knot(0, x, 1).and_then(|h| h.remove_knot(0, x))), random, "removed", |p, k| value(&f, k, p));
+        assert_is(&halves.1, random, "right", |p, k| value(&f, k, p));
+        assert_is(&smooth(f.integral(0).and_then(|h| h.derivative(0))), random, "∂∫f", |p, k| value(&f, k, p));
+        // Errors that come in go on: (f g)² with what f g was off by.
+        let product = smooth(f.mul(&g));
+        assert_is(&smooth(product.mul(&product)), random, "(f g)²", |p, k| {
+            let v = value(&f, k, p) * value(&g, k, p);
+            &v * &v
+        });
+    }
+
+    #[test]
     fn enclosures(seed: u64) {
         let mut random = Random(seed);
         let f = spline(&mut random, 2, 3, 2);

@@ -6,6 +6,7 @@ mod domain;
 mod evaluate;
 mod pieces;
 mod refine;
+mod values;
 
 pub use pieces::Piece;
 
