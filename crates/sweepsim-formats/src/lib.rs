@@ -17,6 +17,7 @@
 //! | what | read | write |
 //! | --- | --- | --- |
 //! | jobs (RON) | [`Job::read`] | |
+//! | tools of B-spline surfaces (RON) | with the job | |
 //! | paths as tables (`.csv`) | [`csv::read_path`] | [`csv::write_path`] |
 //! | paths as programs (`.nc`, `.ngc`, …) | [`gcode::read`] | |
 //! | either, by extension | [`read_path_file`] | |
@@ -46,6 +47,7 @@ mod raw;
 mod read_job;
 mod report;
 mod stl;
+mod surface_tool;
 mod text;
 mod tools;
 

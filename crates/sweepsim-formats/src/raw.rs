@@ -89,7 +89,6 @@ pub(crate) enum Tool {
         start: [f64; 2],
         segments: Vec<Segment>,
     },
-    #[expect(dead_code, reason = "the file is named, but not opened yet")]
     Surface(String),
 }
 

@@ -11,6 +11,7 @@ use crate::job::{Job, Limits, Target, Units};
 use crate::locate::Node;
 use crate::paths::{self, JobPath, PathOptions};
 use crate::stl::read_stl;
+use crate::surface_tool;
 use crate::tools::{self, Step};
 use crate::{gcode, raw, text};
 
@@ -22,7 +23,7 @@ const ARC_TOLERANCE: f64 = 10.0;
 
 /// Reads a job whose file is, or would be, `file`.
 pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
-    let raw = syntax(text)?;
+    let raw: raw::Job = text::ron(text)?;
     let units = match raw.units {
         raw::Units::Mm => Units::Mm,
         raw::Units::Inch => Units::Inch,
@@ -34,35 +35,6 @@ pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
         unit: units.in_mm(),
     };
     reader.job(raw, units)
-}
-
-/// The values of the text, not checked yet.
-fn syntax(text: &str) -> Result<raw::Job, FormatError> {
-    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    options.from_str(text).map_err(|error| {
-        // Positions are lines and characters from 1; the text around them is found again by bytes.
-        let byte = |position: ron::error::Position| {
-            let start: usize = text
-                .split_inclusive('\n')
-                .take(position.line.saturating_sub(1))
-                .map(str::len)
-                .sum();
-            let column = text[start..].char_indices().nth(position.col.saturating_sub(1));
-            start + column.map_or(text.len() - start, |(byte, _)| byte)
-        };
-        let span = byte(error.span.start)..byte(error.span.end);
-        // The span may have space around what is meant.
-        let skipped = text[span.start..].len() - text[span.start..].trim_start().len();
-        let start = if error.code == ron::Error::Eof {
-            span.start
-        } else {
-            span.start + skipped
-        };
-        FormatError::new(
-            Problem::syntax(error.code.to_string()),
-            Some(text::place(text, start..span.end.max(start))),
-        )
-    })
 }
 
 struct Reader<'a> {
@@ -108,11 +80,17 @@ impl Reader<'_> {
         }
         let mut tools = BTreeMap::new();
         for (&number, tool) in &raw.tools {
-            let made = tools::tool(number, tool, self.unit).map_err(|fault| {
-                let mut steps = vec!["tools".into(), Step::Key(number.to_string())];
-                steps.extend(fault.field);
-                self.error(fault.problem, &steps)
-            })?;
+            let steps = vec!["tools".into(), Step::Key(number.to_string())];
+            let made = match tool {
+                raw::Tool::Surface(name) => {
+                    let file = paths::beside(self.file, name);
+                    self.named(surface_tool::read(&file, self.unit), &file, "tool", &steps)?
+                }
+                tool => tools::tool(number, tool, self.unit).map_err(|fault| {
+                    let steps: Vec<Step> = steps.into_iter().chain(fault.field).collect();
+                    self.error(fault.problem, &steps)
+                })?,
+            };
             tools.insert(number, made);
         }
         let mut paths = Vec::new();

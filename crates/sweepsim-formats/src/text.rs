@@ -49,6 +49,35 @@ pub(crate) fn read(file: &Path) -> Result<String, FormatError> {
     })
 }
 
+/// The values of a RON text, not checked yet.
+pub(crate) fn ron<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, FormatError> {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| {
+        // Positions are lines and characters from 1; the text around them is found again by bytes.
+        let byte = |position: ron::error::Position| {
+            let start: usize = text
+                .split_inclusive('\n')
+                .take(position.line.saturating_sub(1))
+                .map(str::len)
+                .sum();
+            let column = text[start..].char_indices().nth(position.col.saturating_sub(1));
+            start + column.map_or(text.len() - start, |(byte, _)| byte)
+        };
+        let span = byte(error.span.start)..byte(error.span.end);
+        // The span may have space around what is meant.
+        let skipped = text[span.start..].len() - text[span.start..].trim_start().len();
+        let start = if error.code == ron::Error::Eof {
+            span.start
+        } else {
+            span.start + skipped
+        };
+        FormatError::new(
+            Problem::syntax(error.code.to_string()),
+            Some(place(text, start..span.end.max(start))),
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -46,12 +46,9 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             };
         }
         raw::Tool::Profile { start, ref segments } => profile(start, segments, unit)?,
-        raw::Tool::Surface(_) => {
+        raw::Tool::Surface(ref name) => {
             return Err(Fault {
-                problem: Problem::unsupported(
-                    "tools of B-spline surfaces (Surface) are",
-                    "expected Ball, Flat, Bull, Apt or Profile",
-                ),
+                problem: Problem::syntax(format!("the surfaces of {name} are read from their file")),
                 field: vec![],
             });
         }

@@ -187,7 +187,7 @@ fn one_message_with_its_place() {
         (
             tool,
             "Surface(\"x.ron\")".into(),
-            "job.ron:7:12: tools of B-spline surfaces (Surface) are not supported yet",
+            "job.ron:7:12: cannot read the tool file",
         ),
         (
             tool,

@@ -2,7 +2,7 @@
 
 use crate::boundary::{Edge, NormalField, Patch};
 use nalgebra::Vector3;
-use sweepsim_spline::Bernstein;
+use sweepsim_spline::{Bernstein, RationalSpline, SplineError};
 use thiserror::Error;
 
 /// Why a surface is no patch of a tool.
@@ -89,6 +89,34 @@ pub enum ToolError {
     /// All patches face inwards.
     #[error("the patches face into the tool: swap u and v of each")]
     InsideOut,
+    /// A surface is not one of two variables in space.
+    #[error("surface {surface} maps {variables} variables to {dimension} coordinates: expected 2 and 3")]
+    Surface {
+        /// The surface, from 0.
+        surface: usize,
+        /// Its variables.
+        variables: usize,
+        /// Its coordinates.
+        dimension: usize,
+    },
+    /// A surface cannot be taken apart.
+    #[error("surface {surface}: {source}")]
+    Spline {
+        /// The surface, from 0.
+        surface: usize,
+        /// Why.
+        source: SplineError,
+    },
+    /// A piece of a surface is no patch.
+    #[error("surface {surface}, where u is in [{}, {}] and v in [{}, {}]: {source}", .ranges[0].0, .ranges[0].1, .ranges[1].0, .ranges[1].1)]
+    Patch {
+        /// The surface, from 0.
+        surface: usize,
+        /// The piece between knots: its range of `u` and of `v`. The error counts `u` and `v` from 0 to 1 in it.
+        ranges: [(f64, f64); 2],
+        /// Why.
+        source: PatchError,
+    },
 }
 
 /// A side of a patch, counter-clockwise seen from outside.
@@ -236,6 +264,37 @@ fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
         stack.push(([a.1, b.1, c.1], high, depth + 1));
     }
     Ok(())
+}
+
+/// The pieces between knots of B-spline surfaces, as patches.
+///
+/// # Errors
+/// [`ToolError`]: not surfaces in space, or a piece that is no patch.
+pub(crate) fn pieces(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolError> {
+    let mut patches = Vec::new();
+    for (surface, spline) in surfaces.iter().enumerate() {
+        if (spline.variables(), spline.dimension()) != (2, 3) {
+            return Err(ToolError::Surface {
+                surface,
+                variables: spline.variables(),
+                dimension: spline.dimension(),
+            });
+        }
+        let pieces = spline
+            .pieces()
+            .map_err(|source| ToolError::Spline { surface, source })?;
+        for piece in pieces {
+            let forms = piece.map.numerators();
+            let position = [0, 1, 2].map(|k| forms[k].clone().assumed_exact());
+            let weight = piece.map.weight().clone().assumed_exact();
+            patches.push(Patch::new(position, weight).map_err(|source| ToolError::Patch {
+                surface,
+                ranges: [piece.ranges[0], piece.ranges[1]],
+                source,
+            })?);
+        }
+    }
+    Ok(patches)
 }
 
 /// A side as a curve in `r` from 0 to 1, with the normals of its patch.

@@ -3,6 +3,7 @@
 use crate::boundary::{self, Edge, Patch};
 use crate::freeform::{self, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
+use sweepsim_spline::RationalSpline;
 
 /// A milling tool: a solid with an exact B-spline boundary. Its origin is the tip, its `+z` runs along the axis to the holder.
 #[derive(Clone, Debug)]
@@ -123,6 +124,14 @@ impl Tool {
             patches,
             profile: None,
         })
+    }
+
+    /// A tool that is enclosed by B-spline surfaces, each with `F_u × F_v` pointing out of it. They are taken apart at their knots.
+    ///
+    /// # Errors
+    /// As [`Tool::from_patches`], and when a surface is none or has a fold.
+    pub fn from_surfaces(surfaces: &[RationalSpline], tolerance: f64) -> Result<Self, ToolError> {
+        Self::from_patches(freeform::pieces(surfaces)?, tolerance)
     }
 
     /// The outline of a solid of revolution; none for tools of other shapes.

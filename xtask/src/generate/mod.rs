@@ -1,6 +1,7 @@
 //! `cargo xtask generate`: writes the jobs and paths under `fixtures/` that are computed rather than written by hand.
 
 mod impeller;
+mod router;
 mod teapot;
 mod toolpath;
 
@@ -11,6 +12,7 @@ use std::{fs, io};
 fn files() -> Vec<(&'static str, String)> {
     let mut files = teapot::files();
     files.extend(impeller::files());
+    files.extend(router::files());
     files
 }
 
