@@ -99,19 +99,17 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
     if !(0..3).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k]) {
         return Err(StockError::Block { min, max });
     }
-    let mut dexels = Dexels::empty(*grid);
-    let piece = [Interval {
+    let piece = Interval {
         lower: end(min[2], [0.0, 0.0, -1.0]),
         upper: end(max[2], [0.0, 0.0, 1.0]),
-    }];
-    for index in 0..grid.len() {
+    };
+    Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         let p = [grid.x(i), grid.y(j)];
         if (0..2).all(|k| min[k] <= p[k] && p[k] <= max[k]) {
-            dexels.set(index, &piece);
+            line.push(piece);
         }
-    }
-    Ok(dexels)
+    }))
 }
 
 fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Result<Dexels, StockError> {
@@ -121,8 +119,7 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
         return Err(StockError::Cylinder { radius, height });
     }
     let a = axis.map(|c| c / length);
-    let mut dexels = Dexels::empty(*grid);
-    for index in 0..grid.len() {
+    Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         // The line (x, y, z): along the axis at s = p·a + z a_z, across it at q + z e with e = z-direction less a_z a.
         let p = [grid.x(i) - base[0], grid.y(j) - base[1], -base[2]];
@@ -135,14 +132,14 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
         if ee > 1e-30 {
             let square = qe * qe - ee * rest;
             if square <= 0.0 {
-                continue;
+                return;
             }
             let root = square.sqrt();
             let side = |z: f64| end(z, [0, 1, 2].map(|k| (q[k] + z * e[k]) / radius));
             lower = side((-qe - root) / ee);
             upper = side((-qe + root) / ee);
         } else if rest > 0.0 {
-            continue;
+            return;
         }
         if a[2] != 0.0 {
             let disk = |s: f64, out: f64| end((s - along) / a[2], a.map(|c| c * out));
@@ -157,13 +154,12 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
                 upper = above;
             }
         } else if !(0.0..=height).contains(&along) {
-            continue;
+            return;
         }
         if lower.z < upper.z {
-            dexels.set(index, &[Interval { lower, upper }]);
+            line.push(Interval { lower, upper });
         }
-    }
-    Ok(dexels)
+    }))
 }
 
 fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
