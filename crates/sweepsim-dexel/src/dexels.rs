@@ -5,7 +5,8 @@ use crate::crossing::{AuditFailure, Crossing, cover};
 use crate::grid::Grid;
 use crate::interval::Interval;
 use crate::line::Line;
-use crate::operations::{difference, intersection, normalise, union};
+use crate::operations::{Run, difference, intersection, normalise, union};
+use crate::packed::Packed;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -25,10 +26,8 @@ pub enum Operation {
     Intersection,
 }
 
-type Run = fn(&[Piece], &[Piece], &mut Vec<Piece>);
-
 impl Operation {
-    fn run(self) -> Run {
+    fn run(self) -> Run<Packed> {
         match self {
             Self::Union => union,
             Self::Difference => difference,
@@ -157,7 +156,7 @@ impl Dexels {
     }
 
     /// Replaces a line by what `operation` makes of it and of `more`.
-    fn change(&mut self, index: usize, more: &[Interval], operation: Run) {
+    fn change(&mut self, index: usize, more: &[Interval], operation: Run<Packed>) {
         if index >= self.grid.len() {
             return;
         }

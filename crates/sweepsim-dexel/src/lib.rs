@@ -18,6 +18,7 @@
 //! ```
 
 mod chunk;
+mod compare;
 mod crossing;
 mod dexels;
 mod grid;
@@ -30,6 +31,7 @@ mod set;
 mod stock;
 mod surface;
 
+pub use compare::{Comparison, Deviation, compare};
 pub use crossing::{AuditFailure, Crossing, cover};
 pub use dexels::{Dexels, GridMismatch, Operation};
 pub use grid::{Grid, GridError};
@@ -40,3 +42,8 @@ pub use packed::{pack_normal, unpack_normal};
 pub use set::IntervalSet;
 pub use stock::{Stock, StockError};
 pub use surface::surface;
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,6 +5,9 @@
 
 use crate::interval::{Boundary, Interval};
 
+/// An operation: of two lists, to the third.
+pub(crate) type Run<E> = fn(&[Interval<E>], &[Interval<E>], &mut Vec<Interval<E>>);
+
 /// `a ∖ b`. New ends are those of `b`, flipped.
 pub(crate) fn difference<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
     let mut first = 0;

@@ -1,7 +1,7 @@
 //! Sets of intervals on a line.
 
 use crate::interval::{Boundary, Interval};
-use crate::operations::{difference, intersection, merge, normalise, union};
+use crate::operations::{Run, difference, intersection, merge, normalise, union};
 
 /// A set of points of a line: intervals in normal form, that is sorted, each of positive length, with gaps between them.
 ///
@@ -66,7 +66,7 @@ impl<E: Boundary> IntervalSet<E> {
         after > 0 && height <= self.pieces[after - 1].upper.height()
     }
 
-    fn with(&self, other: &Self, operation: fn(&[Interval<E>], &[Interval<E>], &mut Vec<Interval<E>>)) -> Self {
+    fn with(&self, other: &Self, operation: Run<E>) -> Self {
         let mut pieces = Vec::with_capacity(self.len() + other.len());
         operation(&self.pieces, &other.pieces, &mut pieces);
         Self { pieces }
