@@ -46,10 +46,10 @@ impl Stored {
             for j in 0..chosen[1] {
                 let index = sample.grid().index(i, j);
                 let (i, j) = place(i, j);
-                sample.set(index, dexels.intervals(i, j));
+                sample.set(index, &dexels.intervals(i, j).to_vec());
             }
         }
-        let intervals = (0..grid.len()).map(|index| dexels.at(index).len()).sum();
+        let intervals = dexels.count();
         let volume = dexels.volume();
         Ok(Self {
             sample,

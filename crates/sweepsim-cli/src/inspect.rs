@@ -148,6 +148,10 @@ fn job(text: &mut Text, job: &Job) {
             measure(*height)
         ),
         Stock::Mesh(soup) => counted(soup.triangles.len() as u64, "triangle"),
+        Stock::Dexels(dexels) => counted(dexels.count() as u64, "interval"),
+        Stock::Union(parts) => format!("union of {}", counted(parts.len() as u64, "piece")),
+        Stock::Intersection(parts) => format!("intersection of {}", counted(parts.len() as u64, "piece")),
+        Stock::Difference(_, parts) => format!("difference from {}", counted(parts.len() as u64, "piece")),
     };
     text.line("stock", &stock);
     for (number, cutter) in &job.tools {

@@ -6,6 +6,7 @@
 //! negative: a crossing lost or found twice breaks the audit (unless a second error of opposite sign hides it).
 
 use crate::interval::{End, Interval, Source};
+use crate::operations::merge;
 use thiserror::Error;
 
 /// A point of a line where the coverage count jumps.
@@ -37,10 +38,11 @@ pub struct AuditFailure {
 ///
 /// Heights are known to within some error, so crossings that follow one another by no more than `same` count as one: the
 /// order of a start and an end that coincide is not known, and neither a gap nor a count below 0 between them means anything.
-/// Intervals begin at the lowest and end at the highest of such a group.
+/// Intervals begin at the lowest and end at the highest of such a group. A group may be a chain that is longer than `same`: in
+/// there the count goes on from crossing to crossing, so no wall and no gap thicker than `same` is lost.
 ///
 /// # Errors
-/// [`AuditFailure`]: the jumps do not add up to 0, or a partial sum is negative. `intervals` is then empty.
+/// [`AuditFailure`]: the jumps do not add up to 0, or a sum between groups is negative. `intervals` is then empty.
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     crossings.sort_by(|a, b| {
         let source = |c: &Crossing| (c.source.path, c.source.segment, c.source.t.to_bits());
@@ -51,17 +53,17 @@ pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval
     intervals.clear();
     let (mut sum, mut lowest, mut place) = (0_i32, 0_i32, f64::NAN);
     let mut lower: Option<End> = None;
+    let mut chains = false;
     for group in crossings.chunk_by(|a, b| b.z - a.z <= same) {
+        let before = sum;
         sum += group.iter().map(|crossing| i32::from(crossing.jump)).sum::<i32>();
-        let end = |crossing: &Crossing| End {
-            z: crossing.z,
-            normal: crossing.normal,
-            source: crossing.source,
-        };
         if sum < lowest {
             (lowest, place) = (sum, group[0].z);
         }
-        if sum > 0 {
+        if group[group.len() - 1].z - group[0].z > same {
+            chains = true;
+            chain(group, before, &mut lower, intervals);
+        } else if sum > 0 {
             lower = lower.or_else(|| group.iter().find(|crossing| crossing.jump > 0).map(end));
         } else if let Some(lower) = lower.take()
             && let Some(upper) = group.iter().rfind(|crossing| crossing.jump < 0).map(end)
@@ -70,10 +72,36 @@ pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval
         }
     }
     if sum == 0 && lowest == 0 {
+        if chains {
+            merge(intervals, same);
+        }
         Ok(())
     } else {
         intervals.clear();
         Err(AuditFailure { sum, lowest, z: place })
+    }
+}
+
+fn end(crossing: &Crossing) -> End {
+    End {
+        z: crossing.z,
+        normal: crossing.normal,
+        source: crossing.source,
+    }
+}
+
+/// Counts from crossing to crossing. Where the order of crossings is wrong intervals or gaps come out that are too thin.
+fn chain(group: &[Crossing], mut sum: i32, lower: &mut Option<End>, intervals: &mut Vec<Interval>) {
+    for crossing in group {
+        sum += i32::from(crossing.jump);
+        if sum > 0 && crossing.jump > 0 {
+            lower.get_or_insert(end(crossing));
+        } else if sum <= 0
+            && let Some(lower) = lower.take()
+        {
+            let upper = end(crossing);
+            intervals.push(Interval { lower, upper });
+        }
     }
 }
 
@@ -134,6 +162,26 @@ mod tests {
         let mut intervals = Vec::new();
         let failure = cover(&mut [crossing(2.0, -1), crossing(3.0, 1)], 0.0, &mut intervals).unwrap_err();
         assert_eq!((failure.sum, failure.lowest, failure.z), (0, -1, 2.0));
+    }
+
+    #[test]
+    fn walls_in_a_chain_are_kept() {
+        // Each crossing within 1 of the next, but material from 0 to 2.7 and a gap from 3.2 to 6.
+        let all = [
+            (0.0, 1),
+            (0.9, 1),
+            (1.8, -1),
+            (2.7, -1),
+            (3.2, 1),
+            (3.3, -1),
+            (6.0, 1),
+            (9.0, -1),
+        ];
+        let mut crossings = all.map(|(z, j)| crossing(z, j));
+        let mut intervals = Vec::new();
+        cover(&mut crossings, 1.0, &mut intervals).unwrap();
+        let found: Vec<[f64; 2]> = intervals.iter().map(|i| [i.lower.z, i.upper.z]).collect();
+        assert_eq!(found, [[0.0, 3.3], [6.0, 9.0]]);
     }
 
     #[test]

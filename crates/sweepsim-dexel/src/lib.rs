@@ -12,23 +12,38 @@
 //! let mut part = Stock::Block { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 4.0] }.dexels(&grid)?;
 //! let end = |z, up| End { z, normal: [0.0, 0.0, up], source: Source { path: 0, segment: 3, t: 0.5 } };
 //! part.subtract(grid.index(2, 2), &[Interval { lower: end(1.0, -1.0), upper: end(9.0, 1.0) }]);
-//! assert_eq!(part.at(grid.index(2, 2))[0].upper.z, 1.0);
+//! assert_eq!(part.intervals(2, 2).to_vec()[0].upper.z, 1.0);
 //! assert_eq!(part.volume(), 400.0 - 3.0 * 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod chunk;
+mod compare;
 mod crossing;
 mod dexels;
 mod grid;
 mod interval;
+mod line;
 mod mesh;
+mod operations;
+mod packed;
+mod set;
 mod stock;
 mod surface;
 
+pub use compare::{Comparison, Deviation, compare};
 pub use crossing::{AuditFailure, Crossing, cover};
-pub use dexels::{Dexels, GridMismatch};
+pub use dexels::{Dexels, GridMismatch, Operation};
 pub use grid::{Grid, GridError};
-pub use interval::{End, Interval, Source};
+pub use interval::{Boundary, End, Interval, Source};
+pub use line::{Line, LineIter};
 pub use mesh::{Mesh, MeshError, TriangleSoup};
+pub use packed::{pack_normal, unpack_normal};
+pub use set::IntervalSet;
 pub use stock::{Stock, StockError};
 pub use surface::surface;
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

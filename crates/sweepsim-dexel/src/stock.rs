@@ -1,11 +1,12 @@
 //! What there is before the first cut.
 
-use crate::crossing::{Crossing, cover};
-use crate::dexels::Dexels;
+use crate::crossing::Crossing;
+use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Grid;
 use crate::interval::{End, Interval, Source};
 use crate::mesh::{MeshError, TriangleSoup};
 use rayon::prelude::*;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// A piece of stock.
@@ -31,6 +32,14 @@ pub enum Stock {
     },
     /// The inside of a closed surface of triangles.
     Mesh(TriangleSoup),
+    /// What an earlier run left, on the same grid.
+    Dexels(Arc<Dexels>),
+    /// All of these together.
+    Union(Vec<Stock>),
+    /// What is in all of these; nothing, if there are none.
+    Intersection(Vec<Stock>),
+    /// The first without the others.
+    Difference(Box<Stock>, Vec<Stock>),
 }
 
 /// Why a stock is none.
@@ -56,6 +65,9 @@ pub enum StockError {
     /// Triangles that enclose nothing.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// Dexels on another grid than the one asked for.
+    #[error(transparent)]
+    Grid(#[from] GridMismatch),
     /// Triangles that cross each other or are turned inside out: some lines do not pass through them in good order.
     #[error("the mesh is inside out or crosses itself: at ({x}, {y}) a line leaves it before it enters")]
     Tangled {
@@ -77,6 +89,16 @@ fn end(z: f64, normal: [f64; 3]) -> End {
 impl Stock {
     /// The dexels of the stock.
     ///
+    /// ```
+    /// use sweepsim_dexel::{Grid, Stock};
+    /// let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [20, 20])?;
+    /// let block = Stock::Block { min: [0.0; 3], max: [10.0, 10.0, 4.0] };
+    /// let slot = Stock::Block { min: [0.0, 4.0, 2.0], max: [10.0, 6.0, 9.0] };
+    /// let slotted = Stock::Difference(block.into(), vec![slot]).dexels(&grid)?;
+    /// assert_eq!(slotted.volume(), 400.0 - 10.0 * 2.0 * 2.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// Lines are taken a generic 1e-9 of their distance beside their place for meshes, so that none meets an edge.
     ///
     /// # Errors
@@ -91,27 +113,40 @@ impl Stock {
                 height,
             } => cylinder(grid, *base, *axis, *radius, *height),
             Self::Mesh(soup) => mesh(grid, soup),
+            Self::Dexels(dexels) if dexels.grid() == grid => Ok(Dexels::clone(dexels)),
+            Self::Dexels(_) => Err(GridMismatch.into()),
+            Self::Union(parts) => all(grid, Dexels::empty(*grid), Operation::Union, parts),
+            Self::Difference(whole, parts) => all(grid, whole.dexels(grid)?, Operation::Difference, parts),
+            Self::Intersection(parts) => match parts.split_first() {
+                Some((first, parts)) => all(grid, first.dexels(grid)?, Operation::Intersection, parts),
+                None => Ok(Dexels::empty(*grid)),
+            },
         }
     }
+}
+
+fn all(grid: &Grid, mut dexels: Dexels, operation: Operation, parts: &[Stock]) -> Result<Dexels, StockError> {
+    for part in parts {
+        dexels.combine(operation, &part.dexels(grid)?)?;
+    }
+    Ok(dexels)
 }
 
 fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError> {
     if !(0..3).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k]) {
         return Err(StockError::Block { min, max });
     }
-    let mut dexels = Dexels::empty(*grid);
-    let piece = [Interval {
+    let piece = Interval {
         lower: end(min[2], [0.0, 0.0, -1.0]),
         upper: end(max[2], [0.0, 0.0, 1.0]),
-    }];
-    for index in 0..grid.len() {
+    };
+    Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         let p = [grid.x(i), grid.y(j)];
         if (0..2).all(|k| min[k] <= p[k] && p[k] <= max[k]) {
-            dexels.set(index, &piece);
+            line.push(piece);
         }
-    }
-    Ok(dexels)
+    }))
 }
 
 fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Result<Dexels, StockError> {
@@ -121,8 +156,7 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
         return Err(StockError::Cylinder { radius, height });
     }
     let a = axis.map(|c| c / length);
-    let mut dexels = Dexels::empty(*grid);
-    for index in 0..grid.len() {
+    Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         // The line (x, y, z): along the axis at s = p·a + z a_z, across it at q + z e with e = z-direction less a_z a.
         let p = [grid.x(i) - base[0], grid.y(j) - base[1], -base[2]];
@@ -135,14 +169,14 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
         if ee > 1e-30 {
             let square = qe * qe - ee * rest;
             if square <= 0.0 {
-                continue;
+                return;
             }
             let root = square.sqrt();
             let side = |z: f64| end(z, [0, 1, 2].map(|k| (q[k] + z * e[k]) / radius));
             lower = side((-qe - root) / ee);
             upper = side((-qe + root) / ee);
         } else if rest > 0.0 {
-            continue;
+            return;
         }
         if a[2] != 0.0 {
             let disk = |s: f64, out: f64| end((s - along) / a[2], a.map(|c| c * out));
@@ -157,13 +191,12 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
                 upper = above;
             }
         } else if !(0.0..=height).contains(&along) {
-            continue;
+            return;
         }
         if lower.z < upper.z {
-            dexels.set(index, &[Interval { lower, upper }]);
+            line.push(Interval { lower, upper });
         }
-    }
-    Ok(dexels)
+    }))
 }
 
 fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
@@ -227,9 +260,7 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
                 })
         })
         .collect();
-    found.sort_by_key(|(index, _)| *index);
     let mut dexels = Dexels::empty(*grid);
-    let mut intervals = Vec::new();
     // Triangles that meet on a line give the same height but for rounding.
     let size = soup
         .triangles
@@ -238,19 +269,14 @@ fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
         .flatten()
         .fold(0.0, |size: f64, c| size.max(c.abs()));
     let same = 64.0 * f64::EPSILON * size;
-    for group in found.chunk_by(|a, b| a.0 == b.0) {
-        let mut crossings: Vec<Crossing> = group.iter().map(|(_, c)| *c).collect();
-        let index = group[0].0 as usize;
-        if cover(&mut crossings, same, &mut intervals).is_err() {
-            let (i, j) = grid.place(index);
-            return Err(StockError::Tangled {
-                x: grid.x(i),
-                y: grid.y(j),
-            });
+    match dexels.update_by_crossings(Operation::Union, &mut found, same).first() {
+        None => Ok(dexels),
+        Some((index, _)) => {
+            let (i, j) = grid.place(*index as usize);
+            let (x, y) = (grid.x(i), grid.y(j));
+            Err(StockError::Tangled { x, y })
         }
-        dexels.set(index, &intervals);
     }
-    Ok(dexels)
 }
 
 #[cfg(test)]
@@ -322,6 +348,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn stock_is_put_together() {
+        let block = |min, max| Stock::Block { min, max };
+        let (a, b) = (block([-5.0; 3], [5.0; 3]), block([0.0; 3], [7.0; 3]));
+        let volume = |stock: &Stock| stock.dexels(&grid()).unwrap().volume();
+        let close = |stock: Stock, expected: f64| assert!((volume(&stock) - expected).abs() < 1e-9, "{stock:?}");
+        close(Stock::Union(vec![a.clone(), b.clone()]), 1000.0 + 343.0 - 125.0);
+        close(Stock::Intersection(vec![a.clone(), b.clone()]), 125.0);
+        close(
+            Stock::Difference(Box::new(a.clone()), vec![b.clone(), b.clone()]),
+            875.0,
+        );
+        close(Stock::Union(Vec::new()), 0.0);
+        close(Stock::Intersection(Vec::new()), 0.0);
+        let earlier = Stock::Dexels(Arc::new(a.dexels(&grid()).unwrap()));
+        close(Stock::Difference(Box::new(earlier.clone()), vec![b]), 875.0);
+        let other = Grid::new([0.0; 2], [1.0; 2], [3, 3]).unwrap();
+        assert_eq!(earlier.dexels(&other), Err(StockError::Grid(GridMismatch)));
     }
 
     #[test]

@@ -79,6 +79,8 @@ pub fn surface(dexels: &Dexels) -> Mesh {
 /// Square `[si, sj]` has the dexels of columns `si − 1, si` and rows `sj − 1, sj`.
 struct Field<'a> {
     dexels: &'a Dexels,
+    /// The intervals of all dexels, as they are used many times.
+    intervals: Vec<Interval>,
     cells: [usize; 2],
     spacing: [f64; 2],
     /// The number of the first end of each dexel.
@@ -127,6 +129,7 @@ impl<'a> Field<'a> {
         first.push(count as u32);
         let mut field = Self {
             dexels,
+            intervals: dexels.iter().flat_map(|(_, line)| line).collect(),
             cells: grid.cells(),
             spacing: grid.spacing(),
             first,
@@ -134,7 +137,7 @@ impl<'a> Field<'a> {
             outside: outside(dexels),
             stock: dexels
                 .iter()
-                .any(|(_, line)| (0..2 * line.len()).any(|e| !is_cut(end(line, e)))),
+                .any(|(_, line)| line.iter().any(|i| !is_cut(&i.lower) || !is_cut(&i.upper))),
         };
         let [columns, rows] = field.cells;
         field.classes = (0..columns + 2)
@@ -150,7 +153,13 @@ impl<'a> Field<'a> {
         self.first.last().copied().unwrap_or(0)
     }
 
-    fn dexel(&self, si: usize, sj: usize) -> Dexel<'a> {
+    /// The intervals of dexel `index`.
+    fn line(&self, index: usize) -> &[Interval] {
+        let [from, to] = [index, index + 1].map(|k| self.first[k] as usize / 2);
+        self.intervals.get(from..to).unwrap_or_default()
+    }
+
+    fn dexel(&self, si: usize, sj: usize) -> Dexel<'_> {
         let grid = self.dexels.grid();
         let place = |k: usize, s: usize| grid.min()[k] + (s as f64 - 0.5) * self.spacing[k];
         if si == 0 || sj == 0 || si > self.cells[0] || sj > self.cells[1] {
@@ -163,7 +172,7 @@ impl<'a> Field<'a> {
         }
         let index = grid.index(si - 1, sj - 1);
         Dexel {
-            line: self.dexels.at(index),
+            line: self.line(index),
             at: [grid.x(si - 1), grid.y(sj - 1)],
             first: self.first[index],
             outside: self.stock && self.outside[index],
@@ -171,7 +180,7 @@ impl<'a> Field<'a> {
     }
 
     /// Dexel `q` of a square, counter-clockwise from its lower left.
-    fn corner(&self, [si, sj]: [usize; 2], q: usize) -> Dexel<'a> {
+    fn corner(&self, [si, sj]: [usize; 2], q: usize) -> Dexel<'_> {
         self.dexel(si + usize::from(q == 1 || q == 2), sj + usize::from(q >= 2))
     }
 
@@ -196,7 +205,7 @@ impl<'a> Field<'a> {
     }
 
     /// The two dexels of an edge, in the direction of growing `x` or `y`.
-    fn edge_dexels(&self, [si, sj]: [usize; 2], axis: usize) -> [Dexel<'a>; 2] {
+    fn edge_dexels(&self, [si, sj]: [usize; 2], axis: usize) -> [Dexel<'_>; 2] {
         [self.dexel(si, sj), self.dexel(si + 1 - axis, sj + axis)]
     }
 
@@ -258,8 +267,9 @@ fn assemble(field: &Field<'_>, parts: Vec<Part>) -> Mesh {
         triangles: Vec::with_capacity(parts.iter().map(|p| p.triangles.len()).sum()),
     };
     let grid = field.dexels.grid();
-    for (index, line) in field.dexels.iter() {
+    for index in 0..grid.len() {
         let (i, j) = grid.place(index);
+        let line = field.line(index);
         for e in 0..2 * line.len() {
             let end = end(line, e);
             mesh.vertices.push([grid.x(i), grid.y(j), end.z]);

@@ -82,8 +82,8 @@ fn assert_same(a: &Dexels, b: &Dexels) -> Result<(), TestCaseError> {
     for index in 0..a.grid().len() {
         let (x, y) = (a.at(index), b.at(index));
         // Films thinner than the tolerance may be missing.
-        let thick = |line: &[sweepsim_dexel::Interval]| {
-            let keep = |i: &&sweepsim_dexel::Interval| i.length() > 10.0 * TOLERANCE;
+        let thick = |line: sweepsim_dexel::Line<'_>| {
+            let keep = |i: &sweepsim_dexel::Interval| i.length() > 10.0 * TOLERANCE;
             line.iter()
                 .filter(keep)
                 .map(|i| [i.lower.z, i.upper.z])

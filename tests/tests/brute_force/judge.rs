@@ -101,7 +101,7 @@ pub fn judge(case: &Case, method: Method) -> Result<Tally, String> {
         .map(|index| {
             let (i, j) = grid.place(index);
             let place = [grid.x(i), grid.y(j)];
-            let intervals = sweep.volume.intervals(i, j);
+            let intervals = &sweep.volume.intervals(i, j).to_vec();
             let mut tally = judge_line(intervals, &outline, &motion, place, DENSITY)
                 .and_then(|tally| judge_ends(intervals, &depth, &motion, place, (7 * i + 3 * j) % 11 == 0, tally))
                 .map_err(|what| format!("{method}: dexel ({i}, {j}) at {place:?}: {what}"))?;
@@ -244,7 +244,10 @@ pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Resu
     for index in 0..grid.len() {
         let (i, j) = grid.place(index);
         let place = [grid.x(i), grid.y(j)];
-        let (a, b) = (ends(one.volume.intervals(i, j)), ends(other.volume.intervals(i, j)));
+        let (a, b) = (
+            ends(&one.volume.intervals(i, j).to_vec()),
+            ends(&other.volume.intervals(i, j).to_vec()),
+        );
         let error = [TOLERANCE; 2];
         let spans = b.iter().map(|&[low, high]| Span { low, high, error }).collect();
         let line = SweptLine {

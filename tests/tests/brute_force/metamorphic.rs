@@ -104,8 +104,8 @@ fn a_right_angle_about_z_turns_the_volume() {
         let mut back = one.volume.clone();
         for index in 0..grid.len() {
             let (i, j) = grid.place(index);
-            let intervals = other.volume.intervals(cells[1] - 1 - j, i);
-            back.set(index, intervals);
+            let intervals = other.volume.intervals(cells[1] - 1 - j, i).to_vec();
+            back.set(index, &intervals);
         }
         other.volume = back;
         same_volume(case, &grid, &one, &other)

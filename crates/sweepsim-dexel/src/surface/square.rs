@@ -61,7 +61,7 @@ fn corner_of(dexel: &Dexel<'_>, e: usize) -> Corner {
 
 impl<'a> Square<'a> {
     /// Adds the triangles of a square.
-    pub fn emit(field: &Field<'a>, outline: &Outline, s: [usize; 2], part: &mut Part) {
+    pub fn emit(field: &'a Field<'a>, outline: &Outline, s: [usize; 2], part: &mut Part) {
         let corners = [0, 1, 2, 3].map(|q| field.corner(s, q));
         if corners.iter().all(|c| c.line.is_empty()) {
             return;
@@ -79,7 +79,7 @@ impl<'a> Square<'a> {
         }
     }
 
-    fn new(field: &Field<'a>, outline: &Outline, s: [usize; 2], corners: [Dexel<'a>; 4]) -> Self {
+    fn new(field: &'a Field<'a>, outline: &Outline, s: [usize; 2], corners: [Dexel<'a>; 4]) -> Self {
         let sides = [0, 1, 2, 3].map(|k| side(field, outline, s, k));
         let mut offsets = [0; 5];
         for q in 0..4 {

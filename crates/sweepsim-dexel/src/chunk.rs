@@ -1,0 +1,414 @@
+//! Sixty-four neighbouring lines in one piece of memory.
+//!
+//! Intervals of all lines of a chunk stand one after the other; a table of 65 numbers says where each line begins. So a line
+//! costs 4 bytes, an interval its two ends, and a chunk without material one null pointer. A change of one line moves the
+//! rest of its chunk, a few kilobytes.
+//!
+//! Ends name the move that made them by its place in the chunk's own table of moves, so that a [`Source`] takes 32 bits:
+//! the number of the move first, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24 at first,
+//! and one fewer whenever the table outgrows the rest: times are good to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for 65,536.
+
+use crate::interval::{Boundary, End, Interval, Source};
+use crate::packed::{Octahedral, Packed};
+
+/// Lines of a chunk.
+pub(crate) const LINES: usize = 64;
+
+/// An interval as it is stored: 32 bytes.
+pub(crate) type Piece = Interval<Packed>;
+
+/// Path and segment of a source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Move {
+    pub path: u16,
+    pub segment: u32,
+}
+
+/// How many entries of the table, counted from its end, are looked at for a move before it is entered again.
+const LOOK: usize = 16;
+/// Bits of a time in a table of at most 256 moves.
+const TIME: u32 = 24;
+/// Fewest bits of a time: enough for no table that fits into memory to ask for less.
+const LEAST_TIME: u32 = 2;
+
+/// What a time needs to be read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Table<'a> {
+    moves: &'a [Move],
+    time: u32,
+}
+
+impl Table<'_> {
+    pub const EMPTY: Self = Self { moves: &[], time: TIME };
+
+    fn source(self, packed: u32) -> Source {
+        if packed == Packed::STOCK {
+            return Source::STOCK;
+        }
+        let ticks = packed & ((1 << self.time) - 1);
+        match self.moves.get((packed >> self.time) as usize) {
+            Some(Move { path, segment }) => Source {
+                path: *path,
+                segment: *segment,
+                t: (f64::from(ticks) / f64::from(1_u32 << (self.time - 1))) as f32,
+            },
+            None => Source::STOCK,
+        }
+    }
+
+    pub fn end(self, packed: &Packed) -> End {
+        End {
+            z: packed.z,
+            normal: packed.normal.vector(),
+            source: self.source(packed.source),
+        }
+    }
+
+    pub fn interval(self, piece: &Piece) -> Interval {
+        Interval {
+            lower: self.end(&piece.lower),
+            upper: self.end(&piece.upper),
+        }
+    }
+}
+
+/// The table, growing.
+#[derive(Clone, Debug)]
+pub(crate) struct Moves {
+    moves: Vec<Move>,
+    time: u32,
+}
+
+impl Default for Moves {
+    fn default() -> Self {
+        Self {
+            moves: Vec::new(),
+            time: TIME,
+        }
+    }
+}
+
+impl Moves {
+    fn table(&self) -> Table<'_> {
+        Table {
+            moves: &self.moves,
+            time: self.time,
+        }
+    }
+
+    fn number(&mut self, wanted: Move) -> u32 {
+        let first = self.moves.len().saturating_sub(LOOK);
+        let found = self.moves[first..].iter().rposition(|m| *m == wanted);
+        let number = found.map_or(self.moves.len(), |k| first + k);
+        if found.is_none() {
+            if self.moves.len() == self.moves.capacity() {
+                self.moves.reserve_exact(4 + self.moves.len() / 4);
+            }
+            self.moves.push(wanted);
+        }
+        number as u32
+    }
+
+    fn source(&mut self, source: Source) -> u32 {
+        if source == Source::STOCK {
+            return Packed::STOCK;
+        }
+        let number = self.number(Move {
+            path: source.path,
+            segment: source.segment,
+        });
+        // A NaN becomes 0.
+        let ticks = (f64::from(source.t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1))).round() as u32;
+        number << self.time | ticks
+    }
+
+    fn interval(&mut self, interval: &Interval) -> Piece {
+        let mut end = |end: &End| Packed {
+            z: end.z,
+            normal: Octahedral::new(end.normal),
+            source: self.source(end.source),
+        };
+        Interval {
+            lower: end(&interval.lower),
+            upper: end(&interval.upper),
+        }
+    }
+}
+
+/// The intervals of [`LINES`] lines.
+#[derive(Clone, Debug)]
+pub(crate) struct Chunk {
+    first: [u32; LINES + 1],
+    pieces: Vec<Piece>,
+    moves: Moves,
+}
+
+impl Default for Chunk {
+    fn default() -> Self {
+        Self {
+            first: [0; LINES + 1],
+            pieces: Vec::new(),
+            moves: Moves::default(),
+        }
+    }
+}
+
+impl Chunk {
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    pub fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Stored intervals of a line.
+    pub fn line(&self, line: usize) -> &[Piece] {
+        &self.pieces[self.first[line] as usize..self.first[line + 1] as usize]
+    }
+
+    /// Stored intervals of all lines, one line after the other.
+    pub fn all(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    pub fn table(&self) -> Table<'_> {
+        self.moves.table()
+    }
+
+    /// Bytes of memory, the chunk itself with what it points to.
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>()
+            + self.pieces.capacity() * size_of::<Piece>()
+            + self.moves.moves.capacity() * size_of::<Move>()
+    }
+
+    /// Appends packed intervals to `out`, their moves to the table.
+    pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<Piece>) {
+        self.make_room(2 * intervals.len(), out);
+        out.extend(intervals.iter().map(|interval| self.moves.interval(interval)));
+    }
+
+    /// Appends stored intervals of another chunk to `out`, their moves to the table.
+    pub fn adopt(&mut self, table: Table<'_>, pieces: &[Piece], out: &mut Vec<Piece>) {
+        self.make_room(table.moves.len().min(2 * pieces.len()), out);
+        let mut numbers = vec![u32::MAX; table.moves.len()];
+        let moves = &mut self.moves;
+        let mut end = |end: &Packed| {
+            let old = (end.source >> table.time) as usize;
+            if end.source == Packed::STOCK || old >= numbers.len() {
+                return Packed {
+                    source: Packed::STOCK,
+                    ..*end
+                };
+            }
+            if numbers[old] == u32::MAX {
+                numbers[old] = moves.number(table.moves[old]);
+            }
+            let ticks = end.source & ((1 << table.time) - 1);
+            let ticks = if moves.time < table.time {
+                ticks >> (table.time - moves.time)
+            } else {
+                ticks << (moves.time - table.time)
+            };
+            let source = numbers[old] << moves.time | ticks;
+            Packed { source, ..*end }
+        };
+        out.extend(pieces.iter().map(|piece| Interval {
+            lower: end(&piece.lower),
+            upper: end(&piece.upper),
+        }));
+    }
+
+    /// Makes room for more moves: the table loses what no end names, then times lose bits. `out` holds intervals that are not
+    /// in the chunk yet.
+    fn make_room(&mut self, more: usize, out: &mut [Piece]) {
+        let full = |moves: &Moves| moves.moves.len() + more > 1 << (32 - moves.time);
+        let wasteful = self.moves.moves.len() > 64 + 4 * (self.pieces.len() + out.len());
+        if wasteful || full(&self.moves) {
+            self.tidy(out);
+        }
+        while full(&self.moves) && self.moves.time > LEAST_TIME {
+            let time = self.moves.time;
+            for_sources(&mut self.pieces, out, |source| {
+                if *source != Packed::STOCK {
+                    let ticks = *source & ((1 << time) - 1);
+                    *source = *source >> time << (time - 1) | ticks >> 1;
+                }
+            });
+            self.moves.time -= 1;
+        }
+    }
+
+    /// Drops moves that no end names, and the second of any two that are the same.
+    fn tidy(&mut self, out: &mut [Piece]) {
+        let mut used = vec![false; self.moves.moves.len()];
+        let time = self.moves.time;
+        for_sources(&mut self.pieces, out, |source| {
+            if let Some(used) = used.get_mut((*source >> time) as usize)
+                && *source != Packed::STOCK
+            {
+                *used = true;
+            }
+        });
+        let old = std::mem::take(&mut self.moves.moves);
+        let mut kept: Vec<Move> = old
+            .iter()
+            .zip(&used)
+            .filter(|(_, used)| **used)
+            .map(|(m, _)| *m)
+            .collect();
+        kept.sort_unstable();
+        kept.dedup();
+        let number = |m: &Move| kept.binary_search(m).unwrap_or(0) as u32;
+        for_sources(&mut self.pieces, out, |source| {
+            if let Some(m) = old.get((*source >> time) as usize)
+                && *source != Packed::STOCK
+            {
+                *source = number(m) << time | *source & ((1 << time) - 1);
+            }
+        });
+        kept.shrink_to_fit();
+        self.moves.moves = kept;
+    }
+
+    /// Replaces the intervals of a line by packed ones.
+    pub fn replace(&mut self, line: usize, pieces: &[Piece]) {
+        let (from, to) = (self.first[line] as usize, self.first[line + 1] as usize);
+        let (old, new) = (to - from, pieces.len());
+        if old == new {
+            self.pieces[from..to].copy_from_slice(pieces);
+            return;
+        }
+        if new > old {
+            let needed = self.pieces.len() + new - old;
+            if needed > self.pieces.capacity() {
+                let room = (needed + needed / 8).next_multiple_of(8);
+                self.pieces.reserve_exact(room - self.pieces.len());
+            }
+        }
+        self.pieces.splice(from..to, pieces.iter().copied());
+        for first in &mut self.first[line + 1..] {
+            *first = (*first as usize + new - old) as u32;
+        }
+    }
+
+    /// Replaces all lines: `write` appends the new intervals of each line to the list, given the old ones.
+    pub fn rebuild(&mut self, scratch: &mut Vec<Piece>, mut write: impl FnMut(usize, &[Piece], &mut Vec<Piece>)) {
+        scratch.clear();
+        let mut first = [0; LINES + 1];
+        for line in 0..LINES {
+            write(line, self.line(line), scratch);
+            first[line + 1] = scratch.len() as u32;
+        }
+        self.first = first;
+        self.refill(scratch);
+    }
+
+    /// Exactly as much memory as is needed, unless what there is nearly fits.
+    fn refill(&mut self, pieces: &[Piece]) {
+        let room = self.pieces.capacity();
+        if room < pieces.len() || room > pieces.len() + pieces.len() / 8 + 8 {
+            self.pieces = pieces.to_vec();
+        } else {
+            self.pieces.clear();
+            self.pieces.extend_from_slice(pieces);
+        }
+    }
+
+    /// Fills an empty chunk: `write` appends the intervals of each line, in normal form.
+    pub fn fill(&mut self, scratch: &mut Vec<Piece>, mut write: impl FnMut(usize, &mut Vec<Interval>)) {
+        scratch.clear();
+        let mut line_pieces = Vec::new();
+        for line in 0..LINES {
+            line_pieces.clear();
+            write(line, &mut line_pieces);
+            self.pack(&line_pieces, scratch);
+            self.first[line + 1] = scratch.len() as u32;
+        }
+        self.refill(scratch);
+        self.moves.moves.shrink_to_fit();
+    }
+
+    /// Gives back memory that is kept for growth.
+    pub fn shrink(&mut self) {
+        self.tidy(&mut []);
+        self.pieces.shrink_to_fit();
+    }
+}
+
+fn for_sources(pieces: &mut [Piece], more: &mut [Piece], mut visit: impl FnMut(&mut u32)) {
+    for piece in pieces.iter_mut().chain(more) {
+        visit(&mut piece.lower.source);
+        visit(&mut piece.upper.source);
+    }
+}
+
+/// Whether intervals are in normal form.
+pub(crate) fn is_normal<E: Boundary>(pieces: &[Interval<E>]) -> bool {
+    pieces.iter().all(|piece| piece.lower.height() < piece.upper.height())
+        && pieces.windows(2).all(|w| w[0].upper.height() < w[1].lower.height())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_as_promised() {
+        assert_eq!(size_of::<Piece>(), 32);
+        assert_eq!(size_of::<Move>(), 8);
+        assert!(size_of::<Chunk>() <= 5 * LINES);
+    }
+
+    fn made(z: f64, segment: u32, t: f32) -> Interval {
+        let mut interval = Interval::between(z, z + 0.5);
+        interval.lower.source = Source { path: 7, segment, t };
+        interval
+    }
+
+    #[test]
+    fn sources_survive_crowds() {
+        let mut chunk = Chunk::default();
+        let count = 3000_u32;
+        let time = |k: u32| (k % 1000) as f32 / 999.0;
+        for round in 0..3 {
+            let intervals: Vec<Interval> = (0..count).map(|k| made(f64::from(k), k * 3 + round, time(k))).collect();
+            let mut packed = Vec::new();
+            chunk.pack(&intervals, &mut packed);
+            chunk.replace(5, &packed);
+            for (piece, interval) in chunk.line(5).iter().zip(&intervals) {
+                let found = chunk.table().interval(piece);
+                assert_eq!(found.upper.source, Source::STOCK);
+                let (a, b) = (found.lower.source, interval.lower.source);
+                assert_eq!((a.path, a.segment), (b.path, b.segment));
+                // 12 bits for up to 4096 moves, 13 when two rounds are in the table.
+                assert!((a.t - b.t).abs() <= 2.0_f32.powi(-16), "{} {}", a.t, b.t);
+            }
+        }
+        chunk.shrink();
+        assert_eq!(chunk.moves.moves.len(), count as usize);
+        // Among few, times are good to a quarter of a ten-millionth, and those of binary fractions exact.
+        let mut other = Chunk::default();
+        let mut adopted = Vec::new();
+        other.adopt(chunk.table(), chunk.line(5), &mut adopted);
+        other.replace(63, &adopted);
+        for (a, b) in other.line(63).iter().zip(chunk.line(5)) {
+            assert_eq!(other.table().interval(a), chunk.table().interval(b));
+        }
+        let mut few = Chunk::default();
+        let mut packed = Vec::new();
+        few.pack(
+            &[
+                made(0.0, 1, 0.3),
+                made(1.0, 2, 0.75),
+                made(2.0, 2, f32::NAN),
+                made(3.0, 2, 9.0),
+            ],
+            &mut packed,
+        );
+        let times: Vec<f32> = packed.iter().map(|p| few.table().interval(p).lower.source.t).collect();
+        assert!((times[0] - 0.3).abs() <= 2.0_f32.powi(-24));
+        assert_eq!(times[1..], [0.75, 0.0, 1.0]);
+    }
+}

@@ -1,0 +1,261 @@
+//! How two sets of dexels differ: end by end, and in all.
+//!
+//! Distances are measured along normals: an end is compared with the tangent plane of the other surface at the nearest of its
+//! ends around. So a wall that is a little off is a little off, though the ends on its line are far apart; on flat faces
+//! the distance is exact, on faces of curvature radius `r` it errs by about `d²/2r` when the nearest end is `d` away.
+
+use crate::dexels::{Dexels, GridMismatch};
+use crate::interval::End;
+use rayon::prelude::*;
+
+/// What became of one end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// Number of the line.
+    pub line: u32,
+    /// Number of the end on its line, from 0 going up.
+    pub end: u32,
+    /// How far the end is outside of the target: negative inside of it. `None` when no end of the target that faces the same way is
+    /// within reach.
+    pub distance: Option<f64>,
+    /// Area of surface that the end stands for: that of its cell over the cosine of its slope, at most a thousand cells.
+    pub area: f64,
+}
+
+/// How dexels differ from their target.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Comparison {
+    /// Volume of the dexels.
+    pub volume: f64,
+    /// Volume of the target.
+    pub target: f64,
+    /// Volume of the dexels that is outside of the target.
+    pub excess: f64,
+    /// Volume of the target that is missing.
+    pub missing: f64,
+    /// All ends of the dexels, by line, going up.
+    pub deviations: Vec<Deviation>,
+}
+
+impl Comparison {
+    fn matched(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.deviations.iter().filter_map(|d| Some((d.distance?, d.area)))
+    }
+
+    /// Area of the surface, as far as it is compared.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.matched().map(|(_, area)| area).sum()
+    }
+
+    /// How many ends have nothing to be compared with.
+    #[must_use]
+    pub fn unmatched(&self) -> usize {
+        self.deviations.iter().filter(|d| d.distance.is_none()).count()
+    }
+
+    /// Least and largest distance, if there is any.
+    #[must_use]
+    pub fn range(&self) -> Option<[f64; 2]> {
+        self.matched()
+            .map(|(distance, _)| [distance; 2])
+            .reduce(|[lo, hi], [d, _]| [lo.min(d), hi.max(d)])
+    }
+
+    /// Mean distance over the area; 0 without any.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.average(|distance| distance)
+    }
+
+    /// Root of the mean square distance over the area; 0 without any.
+    #[must_use]
+    pub fn rms(&self) -> f64 {
+        self.average(|distance| distance * distance).sqrt()
+    }
+
+    fn average(&self, of: impl Fn(f64) -> f64) -> f64 {
+        let sum: f64 = self.matched().map(|(distance, area)| area * of(distance)).sum();
+        let area = self.area();
+        if area > 0.0 { sum / area } else { 0.0 }
+    }
+
+    /// Areas by distance: below `limits[0]`, from there to below `limits[1]`, …, and from the last limit up. Limits are sorted.
+    #[must_use]
+    pub fn histogram(&self, limits: &[f64]) -> Vec<f64> {
+        let mut areas = vec![0.0; limits.len() + 1];
+        for (distance, area) in self.matched() {
+            areas[limits.partition_point(|limit| *limit <= distance)] += area;
+        }
+        areas
+    }
+}
+
+/// Compares dexels with those of a target.
+///
+/// Each end of `dexels` is compared with the nearest end of `target` on its line and the eight around, if it is no further away than
+/// `reach` and faces the same way (their normals less than 90° apart). A mesh as target is compared by its
+/// [dexels](crate::Stock::Mesh), which have its exact normals.
+///
+/// # Errors
+/// [`GridMismatch`] when the grids differ.
+///
+/// ```
+/// use sweepsim_dexel::{Grid, Stock, compare};
+/// let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [20, 20])?;
+/// let block = |top| Stock::Block { min: [0.0; 3], max: [10.0, 10.0, top] }.dexels(&grid);
+/// let found = compare(&block(5.25)?, &block(5.0)?, 1.0)?;
+/// assert_eq!(found.excess, 25.0);
+/// assert_eq!(found.range(), Some([0.0, 0.25]));
+/// assert_eq!(found.histogram(&[-0.1, 0.1]), [0.0, 100.0, 100.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Comparison, GridMismatch> {
+    let grid = *dexels.grid();
+    if grid != *target.grid() {
+        return Err(GridMismatch);
+    }
+    let [columns, _] = grid.cells();
+    let parts: Vec<Comparison> = (0..columns)
+        .into_par_iter()
+        .map(|i| column(dexels, target, i, reach))
+        .collect();
+    // One after the other, so that rounding does not depend on the threads.
+    let mut all = Comparison::default();
+    for part in parts {
+        all.volume += part.volume;
+        all.target += part.target;
+        all.excess += part.excess;
+        all.missing += part.missing;
+        all.deviations.extend(part.deviations);
+    }
+    Ok(all)
+}
+
+fn column(dexels: &Dexels, target: &Dexels, i: usize, reach: f64) -> Comparison {
+    let grid = dexels.grid();
+    let [columns, rows] = grid.cells();
+    let [dx, dy] = grid.spacing();
+    let mut part = Comparison::default();
+    for j in 0..rows {
+        let (line, goal) = (dexels.intervals(i, j), target.intervals(i, j));
+        let (length, wanted) = (line.length(), goal.length());
+        let common = overlap(line.heights(), goal.heights());
+        part.volume += length * dx * dy;
+        part.target += wanted * dx * dy;
+        part.excess += (length - common).max(0.0) * dx * dy;
+        part.missing += (wanted - common).max(0.0) * dx * dy;
+        for (number, end) in line.iter().flat_map(|i| [i.lower, i.upper]).enumerate() {
+            let mut nearest: Option<(f64, f64)> = None;
+            // The own line first: of equally near ends the first is taken.
+            for (a, b) in [(1, 1), (0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (0, 2), (2, 0), (2, 2)] {
+                let (k, l) = (i + a, j + b);
+                if k == 0 || l == 0 || k > columns || l > rows {
+                    continue;
+                }
+                let side = [(a as f64 - 1.0) * dx, (b as f64 - 1.0) * dy];
+                for other in target.intervals(k - 1, l - 1).iter().flat_map(|i| [i.lower, i.upper]) {
+                    let away = side[0].hypot(side[1]).hypot(end.z - other.z);
+                    let best = nearest.map_or(reach, |(best, _)| best);
+                    if away <= best && (nearest.is_none() || away < best) && dot(&end, &other) > 0.0 {
+                        let n = other.normal.map(f64::from);
+                        let distance = n[2] * (end.z - other.z) - n[0] * side[0] - n[1] * side[1];
+                        nearest = Some((away, distance));
+                    }
+                }
+            }
+            part.deviations.push(Deviation {
+                line: grid.index(i, j) as u32,
+                end: number as u32,
+                distance: nearest.map(|(_, distance)| distance),
+                area: dx * dy / f64::from(end.normal[2].abs()).max(1e-3),
+            });
+        }
+    }
+    part
+}
+
+fn dot(a: &End, b: &End) -> f32 {
+    (0..3).map(|k| a.normal[k] * b.normal[k]).sum()
+}
+
+/// Length of what is in both.
+fn overlap(a: impl Iterator<Item = [f64; 2]>, b: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let mut b = b.peekable();
+    let mut sum = 0.0;
+    for [lower, upper] in a {
+        while let Some([from, to]) = b.peek().copied() {
+            let length = to.min(upper) - from.max(lower);
+            sum += length.max(0.0);
+            if to > upper {
+                break;
+            }
+            b.next();
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Grid, Stock};
+
+    fn grid(cells: usize) -> Grid {
+        Grid::new([-10.0, -10.0], [10.0, 10.0], [cells, cells]).unwrap()
+    }
+
+    fn cylinder(radius: f64) -> Stock {
+        let (base, axis) = ([-8.0, -2.0, 0.0], [8.0, 3.0, 1.0]);
+        let height = 15.0;
+        Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height,
+        }
+    }
+
+    #[test]
+    fn grown_cylinders_are_off_by_what_they_grew() {
+        let [small, large] = [5.0, 5.1].map(|r| cylinder(r).dexels(&grid(200)).unwrap());
+        let found = compare(&large, &small, 1.0).unwrap();
+        let sides: Vec<&Deviation> = found.deviations.iter().filter(|d| d.area < 0.02).collect();
+        assert!(sides.len() > 10_000);
+        for d in sides {
+            // Ends are at most half a cell's diagonal apart, on a radius of 5, or on the rim, where it is a disk that is nearest.
+            let distance = d.distance.unwrap();
+            assert!((0.09..0.11).contains(&distance) || distance.abs() < 1e-4, "{d:?}");
+        }
+        let area = std::f64::consts::TAU * 5.1 * 15.0 + std::f64::consts::TAU * 5.1 * 5.1;
+        assert!((found.area() - area).abs() < 0.05 * area, "{} {area}", found.area());
+        assert!(found.missing < 1e-9 && (found.excess - (found.volume - found.target)).abs() < 1e-6);
+        let sum: f64 = found.histogram(&[0.0, 0.05, 0.2]).iter().sum();
+        assert!((sum - found.area()).abs() < 1e-6 * sum);
+        // Seen from the other side.
+        let back = compare(&small, &large, 1.0).unwrap();
+        assert!((back.missing - found.excess).abs() < 1e-9 && (back.mean() + found.mean()).abs() < 0.01);
+        assert!(back.rms() >= back.mean().abs());
+    }
+
+    #[test]
+    fn what_is_far_away_is_not_compared() {
+        let block = |lower, upper| {
+            Stock::Block {
+                min: [-5.0, -5.0, lower],
+                max: [5.0, 5.0, upper],
+            }
+            .dexels(&grid(20))
+            .unwrap()
+        };
+        let found = compare(&block(0.0, 1.0), &block(0.5, 8.0), 2.0).unwrap();
+        assert_eq!((found.unmatched(), found.range()), (100, Some([0.5, 0.5])));
+        assert_eq!((found.excess, found.missing), (50.0, 700.0));
+        let nothing = compare(&Dexels::empty(grid(20)), &block(0.0, 1.0), 2.0).unwrap();
+        assert_eq!((nothing.range(), nothing.mean(), nothing.missing), (None, 0.0, 100.0));
+        assert_eq!(
+            compare(&Dexels::empty(grid(2)), &Dexels::empty(grid(3)), 1.0),
+            Err(GridMismatch)
+        );
+    }
+}

@@ -1,0 +1,129 @@
+//! The intervals of one line, as they are handed out.
+
+use crate::chunk::{Piece, Table};
+use crate::interval::Interval;
+use std::fmt;
+
+/// The intervals of one line of [`Dexels`](crate::Dexels): sorted, disjoint, of positive length.
+///
+/// They are stored in half the space of an [`Interval`], so they are handed out by value. A line is a view: it is `Copy`.
+#[derive(Clone, Copy)]
+pub struct Line<'a> {
+    pieces: &'a [Piece],
+    table: Table<'a>,
+}
+
+impl<'a> Line<'a> {
+    pub(crate) const EMPTY: Self = Self {
+        pieces: &[],
+        table: Table::EMPTY,
+    };
+
+    pub(crate) fn new(pieces: &'a [Piece], table: Table<'a>) -> Self {
+        Self { pieces, table }
+    }
+
+    /// The number of intervals.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Whether there is no material on the line.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// Interval number `k`, going up, if there are so many.
+    #[must_use]
+    pub fn get(&self, k: usize) -> Option<Interval> {
+        self.pieces.get(k).map(|piece| self.table.interval(piece))
+    }
+
+    /// The lowest interval.
+    #[must_use]
+    pub fn first(&self) -> Option<Interval> {
+        self.get(0)
+    }
+
+    /// The highest interval.
+    #[must_use]
+    pub fn last(&self) -> Option<Interval> {
+        self.get(self.len().checked_sub(1)?)
+    }
+
+    /// All intervals, going up.
+    #[must_use]
+    pub fn iter(&self) -> LineIter<'a> {
+        LineIter {
+            pieces: self.pieces.iter(),
+            table: self.table,
+        }
+    }
+
+    /// Their heights only, `[lower, upper]`: faster than whole intervals.
+    pub fn heights(&self) -> impl DoubleEndedIterator<Item = [f64; 2]> + ExactSizeIterator + 'a {
+        self.pieces.iter().map(|piece| [piece.lower.z, piece.upper.z])
+    }
+
+    /// Length of all intervals.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.pieces.iter().map(Interval::length).sum()
+    }
+
+    /// The intervals in a list.
+    #[must_use]
+    pub fn to_vec(&self) -> Vec<Interval> {
+        self.iter().collect()
+    }
+}
+
+impl PartialEq for Line<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        self.iter().eq(other.iter())
+    }
+}
+
+impl fmt::Debug for Line<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}
+
+impl<'a> IntoIterator for Line<'a> {
+    type Item = Interval;
+    type IntoIter = LineIter<'a>;
+
+    fn into_iter(self) -> LineIter<'a> {
+        self.iter()
+    }
+}
+
+/// The intervals of a [`Line`], going up.
+#[derive(Clone, Debug)]
+pub struct LineIter<'a> {
+    pieces: std::slice::Iter<'a, Piece>,
+    table: Table<'a>,
+}
+
+impl Iterator for LineIter<'_> {
+    type Item = Interval;
+
+    fn next(&mut self) -> Option<Interval> {
+        self.pieces.next().map(|piece| self.table.interval(piece))
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        self.pieces.size_hint()
+    }
+}
+
+impl DoubleEndedIterator for LineIter<'_> {
+    fn next_back(&mut self) -> Option<Interval> {
+        self.pieces.next_back().map(|piece| self.table.interval(piece))
+    }
+}
+
+impl ExactSizeIterator for LineIter<'_> {}

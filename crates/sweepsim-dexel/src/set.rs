@@ -1,0 +1,243 @@
+//! Sets of intervals on a line.
+
+use crate::interval::{Boundary, Interval};
+use crate::operations::{Run, difference, intersection, merge, normalise, union};
+
+/// A set of points of a line: intervals in normal form, that is sorted, each of positive length, with gaps between them.
+///
+/// Sets of points that differ by single points are one: whether ends belong to intervals has no meaning here. Ends may be plain
+/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is a [`Boundary`]; an end costs what
+/// its type costs. Heights may be infinite.
+///
+/// ```
+/// use sweepsim_dexel::IntervalSet;
+/// let stock = IntervalSet::from([[0.0, 10.0]]);
+/// let holes = IntervalSet::from([[2.0, 3.0], [2.5, 4.0], [9.0, 12.0]]);
+/// assert_eq!(holes.len(), 2);
+/// assert_eq!(stock.difference(&holes), IntervalSet::from([[0.0, 2.0], [4.0, 9.0]]));
+/// assert_eq!(stock.intersection(&holes).length(), 3.0);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct IntervalSet<E = f64> {
+    pieces: Vec<Interval<E>>,
+}
+
+impl<E> Default for IntervalSet<E> {
+    fn default() -> Self {
+        Self { pieces: Vec::new() }
+    }
+}
+
+impl<E: Boundary> IntervalSet<E> {
+    /// The empty set.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The intervals, from the lowest up.
+    #[must_use]
+    pub fn pieces(&self) -> &[Interval<E>] {
+        &self.pieces
+    }
+
+    /// The number of intervals.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+
+    /// Length of all intervals.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.pieces.iter().map(Interval::length).sum()
+    }
+
+    /// Whether a height lies inside of an interval or on its end.
+    #[must_use]
+    pub fn contains(&self, height: f64) -> bool {
+        let after = self.pieces.partition_point(|piece| piece.lower.height() <= height);
+        after > 0 && height <= self.pieces[after - 1].upper.height()
+    }
+
+    fn with(&self, other: &Self, operation: Run<E>) -> Self {
+        let mut pieces = Vec::with_capacity(self.len() + other.len());
+        operation(&self.pieces, &other.pieces, &mut pieces);
+        Self { pieces }
+    }
+
+    /// What is in either. Intervals that touch become one; of ends at one height those of `self` are kept.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        self.with(other, union)
+    }
+
+    /// What is in both. Of ends at one height those of `self` are kept.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        self.with(other, intersection)
+    }
+
+    /// What is in `self` only. Ends that `other` makes are flipped.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Self {
+        self.with(other, difference)
+    }
+
+    /// What is in one only.
+    #[must_use]
+    pub fn symmetric_difference(&self, other: &Self) -> Self {
+        self.difference(other).union(&other.difference(self))
+    }
+
+    /// What of `range` is not in the set. Ends of the set are flipped.
+    #[must_use]
+    pub fn complement(&self, range: Interval<E>) -> Self {
+        Self::from_iter([range]).difference(self)
+    }
+
+    /// Without what is too thin to mean anything: gaps of at most `tolerance` are filled, then intervals of at most
+    /// `tolerance` left out.
+    ///
+    /// Every interval longer than the tolerance is in the result, whole. Every gap longer than the tolerance is a gap of
+    /// it or part of one, however many thin intervals are beside it. Doing it twice changes nothing. A tolerance that is
+    /// negative or NaN changes nothing either.
+    #[must_use]
+    pub fn merged(mut self, tolerance: f64) -> Self {
+        if tolerance >= 0.0 {
+            merge(&mut self.pieces, tolerance);
+        }
+        self
+    }
+}
+
+/// Intervals in any order that may overlap. Those that have no positive length (or a NaN) are left out.
+impl<E: Boundary> FromIterator<Interval<E>> for IntervalSet<E> {
+    fn from_iter<I: IntoIterator<Item = Interval<E>>>(pieces: I) -> Self {
+        let mut pieces: Vec<Interval<E>> = pieces.into_iter().collect();
+        normalise(&mut pieces);
+        Self { pieces }
+    }
+}
+
+/// As [`FromIterator`], from pairs `[lower, upper]`.
+impl<E: Boundary, const N: usize> From<[[E; 2]; N]> for IntervalSet<E> {
+    fn from(pieces: [[E; 2]; N]) -> Self {
+        pieces
+            .into_iter()
+            .map(|[lower, upper]| Interval { lower, upper })
+            .collect()
+    }
+}
+
+impl<'a, E> IntoIterator for &'a IntervalSet<E> {
+    type Item = &'a Interval<E>;
+    type IntoIter = std::slice::Iter<'a, Interval<E>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.pieces.iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::End;
+    use proptest::prelude::*;
+
+    /// Any intervals with ends on whole numbers: in no order, overlapping, empty, upside down.
+    fn pieces() -> impl Strategy<Value = Vec<[i32; 2]>> {
+        proptest::collection::vec([0..60i32, 0..60i32], 0..14)
+    }
+
+    fn set(pieces: &[[i32; 2]]) -> IntervalSet<End> {
+        pieces
+            .iter()
+            .map(|[a, b]| Interval::between(f64::from(*a), f64::from(*b)))
+            .collect()
+    }
+
+    /// The model: which unit cells are covered, by looking at every interval.
+    fn cells(pieces: &[[i32; 2]]) -> Vec<bool> {
+        (0..60).map(|k| pieces.iter().any(|[a, b]| *a <= k && k < *b)).collect()
+    }
+
+    /// The sorted list of places where the model changes.
+    fn boundary(cells: &[bool]) -> Vec<f64> {
+        let at = |k: usize| k.checked_sub(1).and_then(|k| cells.get(k)).copied().unwrap_or(false);
+        (0..=cells.len())
+            .filter(|k| at(*k) != at(k + 1))
+            .map(|k| k as f64)
+            .collect()
+    }
+
+    fn ends(set: &IntervalSet<End>) -> Vec<f64> {
+        set.into_iter().flat_map(|i| [i.lower.z, i.upper.z]).collect()
+    }
+
+    fn outwards(set: &IntervalSet<End>) -> bool {
+        set.into_iter()
+            .all(|i| i.lower.normal[2] == -1.0 && i.upper.normal[2] == 1.0)
+    }
+
+    proptest! {
+        #[test]
+        fn operations_agree_with_the_model(a in pieces(), b in pieces(), lo in 0..60i32, hi in 0..60i32) {
+            let (p, q) = (cells(&a), cells(&b));
+            let (x, y) = (set(&a), set(&b));
+            let model = |f: &dyn Fn(bool, bool) -> bool| {
+                boundary(&p.iter().zip(&q).map(|(p, q)| f(*p, *q)).collect::<Vec<_>>())
+            };
+            let cases: [(IntervalSet<End>, Vec<f64>); 6] = [
+                (x.clone(), boundary(&p)),
+                (x.union(&y), model(&|p, q| p || q)),
+                (x.intersection(&y), model(&|p, q| p && q)),
+                (x.difference(&y), model(&|p, q| p && !q)),
+                (x.symmetric_difference(&y), model(&|p, q| p != q)),
+                (x.complement(Interval::between(f64::from(lo), f64::from(hi))), {
+                    let outside = p.iter().zip(lo.min(60)..).enumerate();
+                    boundary(&outside.map(|(k, (p, _))| !p && lo <= k as i32 && (k as i32) < hi).collect::<Vec<_>>())
+                }),
+            ];
+            for (k, (found, expected)) in cases.iter().enumerate() {
+                prop_assert_eq!(&ends(found), expected, "case {}", k);
+                prop_assert!(outwards(found), "case {}", k);
+            }
+            for k in 0..60 {
+                prop_assert_eq!(x.contains(f64::from(k) + 0.5), p[k as usize]);
+            }
+            prop_assert_eq!(x.union(&y), y.union(&x));
+            prop_assert_eq!(x.intersection(&y), y.intersection(&x));
+        }
+
+        #[test]
+        fn merging_keeps_all_that_is_thick(a in pieces(), tolerance in 0..6i32) {
+            let x = set(&a);
+            let merged = x.clone().merged(f64::from(tolerance));
+            let thick = |set: &IntervalSet<End>| -> IntervalSet<End> {
+                set.into_iter().filter(|i| i.length() > f64::from(tolerance)).copied().collect()
+            };
+            let all = Interval::between(-100.0, 200.0);
+            prop_assert!(thick(&x).difference(&merged).is_empty());
+            prop_assert!(thick(&x.complement(all)).intersection(&merged).is_empty());
+            prop_assert!(merged.into_iter().all(|i| i.length() > f64::from(tolerance)));
+            prop_assert!(merged.complement(all).into_iter().all(|i| i.length() > f64::from(tolerance)));
+            prop_assert_eq!(merged.clone().merged(f64::from(tolerance)), merged);
+        }
+    }
+
+    #[test]
+    fn what_is_no_interval_is_left_out() {
+        let odd = IntervalSet::from([[f64::NAN, 1.0], [0.0, f64::NAN], [3.0, 2.0], [f64::NEG_INFINITY, -1.0]]);
+        assert_eq!(odd, IntervalSet::from([[f64::NEG_INFINITY, -1.0]]));
+        assert_eq!(odd.clone().merged(f64::NAN), odd);
+        assert!(IntervalSet::<f64>::new().merged(1.0).is_empty());
+        assert_eq!(size_of::<Interval<f64>>(), 16);
+    }
+}
