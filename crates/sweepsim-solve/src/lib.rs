@@ -1,7 +1,21 @@
 //! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems
+
 mod charts;
+mod double;
 mod interval;
+mod layout;
+mod matrix;
+mod points;
+mod search;
+mod system;
+mod tensor;
+
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };
 pub use interval::Interval;
+pub use layout::MAX_DEGREE;
+pub use matrix::MAX_UNKNOWNS;
+pub use points::{Place, PointSolver, Points, Root, SolveError};
+pub use search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Unresolved};
+pub use system::{Equation, MAX_SYSTEM, System, SystemError};

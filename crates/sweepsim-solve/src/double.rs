@@ -1,0 +1,128 @@
+//! Numbers of twice the precision, as unevaluated sums, for restricting a polynomial to a small box from its first
+//! coefficients: what a hundred subdivisions have rounded away is there again.
+//!
+//! Dekker's and Knuth's error-free transforms; products by Veltkamp's splitting, so that results do not depend on the processor.
+//! An operation errs by at most `2⁻¹⁰⁰` relative to the operands (barring underflow), which the callers' bounds use with room.
+
+/// `hi + lo`, `|lo|` at most half a unit in the last place of `hi`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Double {
+    pub hi: f64,
+    pub lo: f64,
+}
+
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    let bb = s - a;
+    (s, (a - (s - bb)) + (b - bb))
+}
+
+fn split(a: f64) -> (f64, f64) {
+    let c = 134_217_729.0 * a;
+    let hi = c - (c - a);
+    (hi, a - hi)
+}
+
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let p = a * b;
+    let (ah, al) = split(a);
+    let (bh, bl) = split(b);
+    (p, ((ah * bh - p) + ah * bl + al * bh) + al * bl)
+}
+
+impl Double {
+    pub(crate) const fn new(x: f64) -> Self {
+        Self { hi: x, lo: 0.0 }
+    }
+
+    pub(crate) fn add(self, other: Self) -> Self {
+        let (s, e) = two_sum(self.hi, other.hi);
+        let (t, f) = two_sum(self.lo, other.lo);
+        let (s, e) = two_sum(s, e + t);
+        let (hi, lo) = two_sum(s, e + f);
+        Self { hi, lo }
+    }
+
+    pub(crate) fn sub(self, other: Self) -> Self {
+        self.add(Self {
+            hi: -other.hi,
+            lo: -other.lo,
+        })
+    }
+
+    pub(crate) fn mul(self, other: Self) -> Self {
+        let (p, e) = two_product(self.hi, other.hi);
+        let (hi, lo) = two_sum(p, e + (self.hi * other.lo + self.lo * other.hi));
+        Self { hi, lo }
+    }
+
+    pub(crate) fn div(self, other: Self) -> Self {
+        let q = self.hi / other.hi;
+        let rest = self.sub(other.mul(Self::new(q)));
+        let q2 = rest.hi / other.hi;
+        let rest = rest.sub(other.mul(Self::new(q2)));
+        let (hi, lo) = two_sum(q, q2);
+        Self { hi, lo }.add(Self::new(rest.hi / other.hi))
+    }
+}
+
+/// Restricts along one axis to `[lo, hi] ⊂ [0, 1]`, in place.
+pub(crate) fn restrict(c: &mut [Double], degree: usize, inner: usize, lo: f64, hi: f64) {
+    if degree == 0 {
+        return;
+    }
+    let one = Double::new(1.0);
+    let block = (degree + 1) * inner;
+    // Upper part first unless the box lies in the upper half: the second ratio then stays away from 0/0.
+    let upper = |c: &mut [Double], t: Double| {
+        let s = one.sub(t);
+        for b in c.chunks_exact_mut(block) {
+            for level in 0..degree {
+                for i in 0..(degree - level) * inner {
+                    b[i] = s.mul(b[i]).add(t.mul(b[i + inner]));
+                }
+            }
+        }
+    };
+    let lower = |c: &mut [Double], t: Double| {
+        let s = one.sub(t);
+        for b in c.chunks_exact_mut(block) {
+            for level in 0..degree {
+                for i in ((level + 1) * inner..block).rev() {
+                    b[i] = s.mul(b[i - inner]).add(t.mul(b[i]));
+                }
+            }
+        }
+    };
+    let (lo, hi) = (Double::new(lo), Double::new(hi));
+    if lo.hi <= 0.5 {
+        upper(c, lo);
+        lower(c, hi.sub(lo).div(one.sub(lo)));
+    } else {
+        lower(c, hi);
+        upper(c, lo.div(hi));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keeps_what_single_precision_loses() {
+        let third = Double::new(1.0).div(Double::new(3.0));
+        let rest = third.mul(Double::new(3.0)).sub(Double::new(1.0));
+        assert!(rest.hi.abs() < 1e-31);
+        let tiny = Double::new(1.0).add(Double::new(1e-25)).sub(Double::new(1.0));
+        assert!((tiny.hi - 1e-25).abs() < 1e-40);
+    }
+
+    #[test]
+    fn restricts_a_double_root_without_cancellation() {
+        // (x − 1/2)² on [1/2, 1/2 + 2⁻³⁰]: the last coefficient is 2⁻⁶⁰.
+        let mut c = [0.25, -0.25, 0.25].map(Double::new);
+        restrict(&mut c, 2, 1, 0.5, 0.5 + 2f64.powi(-30));
+        assert!((c[2].hi - 2f64.powi(-60)).abs() < 1e-31);
+        assert!(c[0].hi.abs() < 1e-31 && c[1].hi.abs() < 1e-31);
+    }
+}

@@ -1,0 +1,515 @@
+//! Where the coefficients of a system lie, and what can be read off them: ranges, slopes, affine enclosures, values, each
+//! with its rounding.
+//!
+//! An equation is a sum of *parts* in disjoint sets of variables, each a flat tensor. Bounds of such a sum are sums of bounds
+//! and lose nothing, because the parts vary independently; `p(x) + q(y)` of degree 6 needs 14 coefficients, not 49.
+//!
+//! Errors come in two kinds. *Noise* bounds the difference of each equation's coefficients from those of a polynomial: a
+//! derivative then errs by at most `2 d · noise`. The *remainder* bounds the difference of the polynomial from the function that it
+//! stands for, and of its derivatives from that function's; it does not change under subdivision (but derivatives scale).
+
+use crate::double::{self, Double};
+use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO};
+use crate::tensor;
+use smallvec::SmallVec;
+
+/// `2⁻⁵²`: twice the unit roundoff.
+pub(crate) const EPSILON: f64 = f64::EPSILON;
+
+/// The highest degree in one variable.
+pub const MAX_DEGREE: usize = 63;
+
+/// A variable that a part depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    pub variable: usize,
+    pub degree: usize,
+    /// Coefficients between neighbours along this axis.
+    pub inner: usize,
+}
+
+/// One summand of an equation.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    pub equation: usize,
+    pub offset: usize,
+    pub len: usize,
+    /// Fastest first.
+    pub axes: SmallVec<[Axis; 4]>,
+}
+
+impl Part {
+    fn of<'a>(&self, c: &'a [f64]) -> &'a [f64] {
+        &c[self.offset..self.offset + self.len]
+    }
+
+    fn of_mut<'a>(&self, c: &'a mut [f64]) -> &'a mut [f64] {
+        &mut c[self.offset..self.offset + self.len]
+    }
+
+    fn axis(&self, variable: usize) -> Option<Axis> {
+        self.axes.iter().copied().find(|a| a.variable == variable)
+    }
+}
+
+/// All parts of a system.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Layout {
+    /// Variables.
+    pub n: usize,
+    /// Equations.
+    pub m: usize,
+    pub parts: Vec<Part>,
+    /// Coefficients in all.
+    pub len: usize,
+    /// Value remainder of each equation.
+    pub remainder: Row,
+    /// Remainder of each equation's derivatives with respect to coordinates in which the domain is `[0,1]ⁿ`.
+    pub slope_remainder: Row,
+    /// Largest degree sum of an equation: for the rounding of values.
+    pub degrees: usize,
+    /// The first coefficients, and their noise.
+    pub first: Vec<f64>,
+    pub first_noise: Row,
+}
+
+/// A box with the coefficients of all equations over it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cell {
+    /// In coordinates in which the domain is `[0,1]ⁿ`; exact.
+    pub lo: Row,
+    pub hi: Row,
+    /// Error of each equation's coefficients.
+    pub noise: Row,
+    /// Bound of their sizes.
+    pub scale: Row,
+    pub c: Vec<f64>,
+}
+
+/// An affine function with a bound of the rest, per equation: `fᵢ(z) ∈ constant + Σ slope·z ± radius` for `z ∈ [−½, ½]ⁿ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Affine {
+    pub constant: Row,
+    pub slope: Square,
+    pub radius: Row,
+}
+
+/// Ranges of all first derivatives over a cell, in coordinates in which it is `[0,1]ⁿ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slopes {
+    pub lo: Square,
+    pub hi: Square,
+}
+
+impl Layout {
+    /// A cell that holds the first coefficients.
+    pub(crate) fn root(&self) -> Cell {
+        let mut cell = Cell {
+            lo: [0.0; MAX_UNKNOWNS],
+            hi: [1.0; MAX_UNKNOWNS],
+            noise: self.first_noise,
+            scale: [0.0; MAX_UNKNOWNS],
+            c: self.first.clone(),
+        };
+        self.ranges(&mut cell);
+        cell
+    }
+
+    /// Enclosures of the equations' values; also brings the cell's `scale` up to date.
+    pub(crate) fn ranges(&self, cell: &mut Cell) -> (Row, Row) {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        cell.scale = [0.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            let (l, h) = tensor::range(part.of(&cell.c));
+            let e = part.equation;
+            lo[e] += l;
+            hi[e] += h;
+            cell.scale[e] += tensor::greater(l.abs(), h.abs());
+        }
+        for e in 0..self.m {
+            // Sums of a few parts: a rounding each.
+            let pad = cell.noise[e] + self.remainder[e] + 4.0 * EPSILON * cell.scale[e];
+            lo[e] -= pad;
+            hi[e] += pad;
+        }
+        (lo, hi)
+    }
+
+    /// Restricts along one variable; the new ends may lie outside the old ones.
+    pub(crate) fn restrict(&self, cell: &mut Cell, variable: usize, lo: f64, hi: f64) {
+        let (old_lo, old_hi) = (cell.lo[variable], cell.hi[variable]);
+        let upper_first = lo - old_lo <= old_hi - lo;
+        let width = old_hi - old_lo;
+        // Two cuts, each as computed shares (s, t) of the exact sides.
+        let (upper, lower) = if upper_first {
+            let rest = old_hi - lo;
+            (
+                ((old_hi - lo) / width, (lo - old_lo) / width),
+                ((old_hi - hi) / rest, (hi - lo) / rest),
+            )
+        } else {
+            let rest = hi - old_lo;
+            (
+                ((hi - lo) / rest, (lo - old_lo) / rest),
+                ((old_hi - hi) / width, (hi - old_lo) / width),
+            )
+        };
+        let (cut_upper, cut_lower) = (lo != old_lo, hi != old_hi);
+        let growth_upper = if cut_upper { upper.0.abs() + upper.1.abs() } else { 1.0 };
+        let growth_lower = if cut_lower { lower.0.abs() + lower.1.abs() } else { 1.0 };
+        let passes = f64::from(u8::from(cut_upper) + u8::from(cut_lower));
+        let mut grown = [1.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            let Some(axis) = part.axis(variable) else { continue };
+            let c = part.of_mut(&mut cell.c);
+            if upper_first && cut_upper {
+                tensor::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
+            }
+            if cut_lower {
+                tensor::keep_lower(c, axis.degree, axis.inner, lower.0, lower.1);
+            }
+            if !upper_first && cut_upper {
+                tensor::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
+            }
+            let growth = (growth_upper * growth_lower).max(1.0);
+            let growth = if growth < 1.0 + 1e-12 {
+                1.0 + 1e-14
+            } else {
+                growth.powi(axis.degree as i32)
+            };
+            let e = part.equation;
+            let added = 4.0 * EPSILON * axis.degree as f64 * passes * cell.scale[e];
+            cell.noise[e] = (cell.noise[e] + added) * growth;
+            grown[e] = tensor::greater(grown[e], growth);
+        }
+        for e in 0..self.m {
+            cell.scale[e] *= grown[e];
+        }
+        cell.lo[variable] = lo;
+        cell.hi[variable] = hi;
+    }
+
+    /// Splits across a variable at `at`: the upper part stays in `cell`, the lower one goes to `lower`.
+    pub(crate) fn split(&self, cell: &mut Cell, lower: &mut Cell, variable: usize, at: f64) {
+        let (lo, hi) = (cell.lo[variable], cell.hi[variable]);
+        let width = hi - lo;
+        let (s, t) = ((hi - at) / width, (at - lo) / width);
+        lower.c.resize(self.len, 0.0);
+        for part in &self.parts {
+            let c = part.of_mut(&mut cell.c);
+            let low = &mut lower.c[part.offset..part.offset + part.len];
+            match part.axis(variable) {
+                Some(axis) => {
+                    tensor::split(c, low, axis.degree, axis.inner, s, t);
+                    let e = part.equation;
+                    cell.noise[e] += 4.0 * EPSILON * axis.degree as f64 * cell.scale[e];
+                }
+                None => low.copy_from_slice(c),
+            }
+        }
+        (lower.lo, lower.hi, lower.noise, lower.scale) = (cell.lo, cell.hi, cell.noise, cell.scale);
+        lower.hi[variable] = at;
+        cell.lo[variable] = at;
+    }
+
+    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Only inside the domain.
+    pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
+        for part in &self.parts {
+            buffer.clear();
+            buffer.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
+            for axis in &part.axes {
+                let (lo, hi) = (cell.lo[axis.variable], cell.hi[axis.variable]);
+                if lo != 0.0 || hi != 1.0 {
+                    double::restrict(buffer, axis.degree, axis.inner, lo, hi);
+                }
+            }
+            for (x, d) in part.of_mut(&mut cell.c).iter_mut().zip(buffer.iter()) {
+                *x = d.hi;
+            }
+        }
+        cell.noise = self.first_noise;
+        self.ranges(cell);
+        for part in &self.parts {
+            let e = part.equation;
+            let steps: usize = part.axes.iter().map(|a| a.degree).sum();
+            // Coefficients are normalised to at most 2 at first; the rounding to single precision is local.
+            cell.noise[e] += 2f64.powi(-94) * (steps + 1) as f64 + EPSILON * cell.scale[e];
+        }
+    }
+
+    /// The mean of each derivative over the cell (not rigorous; what uses it bounds the rest).
+    pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
+        let mut slope = ZERO;
+        for part in &self.parts {
+            let values = part.of(c);
+            for axis in &part.axes {
+                slope[part.equation][axis.variable] = tensor::mean_slope(values, axis.degree, axis.inner);
+            }
+        }
+        slope
+    }
+
+    /// An affine enclosure of each equation with the given slopes.
+    pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        for part in &self.parts {
+            let (l, h) = rest_range(part, part.of(&cell.c), &slope[part.equation]);
+            lo[part.equation] += l;
+            hi[part.equation] += h;
+        }
+        let (mut constant, mut radius) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        for e in 0..self.m {
+            let slopes: f64 = slope[e][..self.n].iter().map(|s| s.abs()).sum();
+            let rounding = EPSILON * (self.n + 8) as f64 * (cell.scale[e] + slopes);
+            constant[e] = 0.5 * (lo[e] + hi[e]);
+            radius[e] = 0.5 * (hi[e] - lo[e]) + rounding + cell.noise[e] + self.remainder[e];
+        }
+        Affine {
+            constant,
+            slope,
+            radius,
+        }
+    }
+
+    /// Enclosures of all derivatives over the cell.
+    pub(crate) fn slopes(&self, cell: &Cell) -> Slopes {
+        let (mut lo, mut hi) = (ZERO, ZERO);
+        for part in &self.parts {
+            let values = part.of(&cell.c);
+            let e = part.equation;
+            for axis in &part.axes {
+                let (l, h) = tensor::slopes(values, axis.degree, axis.inner);
+                let pad = 2.0 * axis.degree as f64 * (cell.noise[e] + 2.0 * EPSILON * cell.scale[e]);
+                lo[e][axis.variable] = l - pad;
+                hi[e][axis.variable] = h + pad;
+            }
+        }
+        for e in 0..self.m {
+            if self.slope_remainder[e] > 0.0 {
+                for j in 0..self.n {
+                    let pad = self.slope_remainder[e] * (cell.hi[j] - cell.lo[j]) * (1.0 + 4.0 * EPSILON);
+                    lo[e][j] -= pad;
+                    hi[e][j] += pad;
+                }
+            }
+        }
+        Slopes { lo, hi }
+    }
+
+    /// Value and derivatives of each equation at `s` (in coordinates in which the cell is `[0,1]ⁿ`), without error bounds.
+    pub(crate) fn evaluate(&self, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (Row, Square) {
+        let mut value = [0.0; MAX_UNKNOWNS];
+        let mut jacobian = ZERO;
+        for part in &self.parts {
+            let (v, gradient) = evaluate_part(part, part.of(c), s, buffer);
+            value[part.equation] += v;
+            for (axis, g) in part.axes.iter().zip(gradient) {
+                jacobian[part.equation][axis.variable] += g;
+            }
+        }
+        (value, jacobian)
+    }
+
+    /// What [`evaluate`](Self::evaluate)'s values can be wrong by, for `s` within `[0,1]ⁿ`.
+    pub(crate) fn value_error(&self, cell: &Cell, equation: usize) -> f64 {
+        let steps = (4 * self.degrees + 8 * self.n + 8) as f64;
+        cell.noise[equation] + self.remainder[equation] + EPSILON * steps * cell.scale[equation]
+    }
+
+    /// Where along `variable` an equation can vanish, by the convex hulls of its slabs' ranges: calls `found` with each
+    /// equation's interval in `[0,1]`, or `None` where it cannot.
+    pub(crate) fn project(
+        &self,
+        cell: &Cell,
+        part_ranges: &[(f64, f64)],
+        totals: &(Row, Row),
+        variable: usize,
+        window: &mut (f64, f64),
+    ) {
+        let (mut low, mut high) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
+        for (part, own) in self.parts.iter().zip(part_ranges) {
+            let Some(axis) = part.axis(variable) else { continue };
+            let e = part.equation;
+            tensor::envelope(part.of(&cell.c), axis.degree, axis.inner, &mut low, &mut high);
+            // The other parts' ranges: the equation's (padded) less this part's.
+            let pad = 8.0 * EPSILON * cell.scale[e];
+            let (below, above) = (totals.0[e] - own.0 - pad, totals.1[e] - own.1 + pad);
+            for k in 0..=axis.degree {
+                low[k] += below;
+                high[k] += above;
+            }
+            hull_zeros(&low[..=axis.degree], &high[..=axis.degree], window);
+            if window.0 > window.1 {
+                return;
+            }
+        }
+    }
+
+    /// Ranges of the parts, for [`project`](Self::project).
+    pub(crate) fn part_ranges(&self, cell: &Cell, out: &mut Vec<(f64, f64)>) {
+        out.clear();
+        out.extend(self.parts.iter().map(|p| tensor::range(p.of(&cell.c))));
+    }
+}
+
+/// Range of `c − Σ slope (I/d − ½)`: the part less an affine function, by coefficients (affine functions have their values
+/// at `I/d` as coefficients).
+fn rest_range(part: &Part, c: &[f64], slope: &Row) -> (f64, f64) {
+    let Some(first) = part.axes.first() else {
+        return (c[0], c[0]);
+    };
+    let count = first.degree + 1;
+    let (mut low, mut high) = ([f64::INFINITY; MAX_DEGREE + 1], [f64::NEG_INFINITY; MAX_DEGREE + 1]);
+    let mut index = [0usize; MAX_UNKNOWNS];
+    let others = &part.axes[1..];
+    for row in c.chunks_exact(count) {
+        let mut base = 0.0;
+        for (axis, i) in others.iter().zip(index) {
+            base += slope[axis.variable] * (i as f64 / axis.degree as f64 - 0.5);
+        }
+        for ((l, h), x) in low[..count].iter_mut().zip(&mut high[..count]).zip(row) {
+            let rest = *x - base;
+            *l = tensor::lesser(*l, rest);
+            *h = tensor::greater(*h, rest);
+        }
+        for (axis, i) in others.iter().zip(index.iter_mut()) {
+            *i += 1;
+            if *i <= axis.degree {
+                break;
+            }
+            *i = 0;
+        }
+    }
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for i in 0..count {
+        let shift = slope[first.variable] * (i as f64 / first.degree as f64 - 0.5);
+        lo = tensor::lesser(lo, low[i] - shift);
+        hi = tensor::greater(hi, high[i] - shift);
+    }
+    (lo, hi)
+}
+
+/// Intersects the window with where the hull of the points `(k/d, low[k])`, `(k/d, high[k])` meets 0.
+fn hull_zeros(low: &[f64], high: &[f64], window: &mut (f64, f64)) {
+    let degree = low.len() - 1;
+    let step = 1.0 / degree as f64;
+    /// Rounding of the crossings, relative to the whole side.
+    const PAD: f64 = 16.0 * EPSILON;
+    // From the left: with all on one side at the start, the first crossing of a segment between two of the points.
+    let ends = |values: &dyn Fn(usize) -> f64| -> Option<f64> {
+        // `values(0) > 0`: the least position where the lower hull reaches 0.
+        let mut best = f64::INFINITY;
+        for k in 1..=degree {
+            let v = values(k);
+            if v > 0.0 {
+                continue;
+            }
+            for i in 0..=degree {
+                let u = values(i);
+                if u > 0.0 {
+                    let at = (i as f64 + (k as f64 - i as f64) * (u / (u - v))) * step;
+                    best = tensor::lesser(best, at);
+                }
+            }
+        }
+        (best < f64::INFINITY).then_some(best)
+    };
+    let left = if low[0] > 0.0 {
+        ends(&|k| low[k])
+    } else if high[0] < 0.0 {
+        ends(&|k| -high[k])
+    } else {
+        Some(0.0)
+    };
+    let right = if low[degree] > 0.0 {
+        ends(&|k| low[degree - k])
+    } else if high[degree] < 0.0 {
+        ends(&|k| -high[degree - k])
+    } else {
+        Some(0.0)
+    };
+    let (Some(left), Some(right)) = (left, right) else {
+        *window = (1.0, 0.0);
+        return;
+    };
+    window.0 = tensor::greater(window.0, left - PAD);
+    window.1 = tensor::lesser(window.1, 1.0 - right + PAD);
+}
+
+/// Value and gradient (one entry an axis) of a part.
+fn evaluate_part(part: &Part, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (f64, Row) {
+    let mut gradient = [0.0; MAX_UNKNOWNS];
+    let count = part.axes.len();
+    if count == 0 {
+        return (c[0], gradient);
+    }
+    let (mut w, mut d) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
+    // Contract the slowest axis first. Tensors alive: the value's, then one for each contracted axis.
+    let last = part.axes[count - 1];
+    let size = last.inner;
+    let room = (count + 1) * size;
+    if buffer.len() < 2 * room {
+        buffer.resize(2 * room, 0.0);
+    }
+    let (mut from, mut to) = buffer.split_at_mut(room);
+    tensor::basis(last.degree, s[last.variable], &mut w, &mut d);
+    tensor::contract(c, &w, &mut from[..size]);
+    tensor::contract(c, &d, &mut from[size..2 * size]);
+    let mut alive = 2;
+    let mut length = size;
+    for axis in part.axes[..count - 1].iter().rev() {
+        tensor::basis(axis.degree, s[axis.variable], &mut w, &mut d);
+        let size = axis.inner;
+        for t in 0..alive {
+            tensor::contract(
+                &from[t * length..(t + 1) * length],
+                &w,
+                &mut to[t * size..(t + 1) * size],
+            );
+        }
+        tensor::contract(&from[..length], &d, &mut to[alive * size..(alive + 1) * size]);
+        alive += 1;
+        length = size;
+        std::mem::swap(&mut from, &mut to);
+    }
+    for (k, g) in gradient[..count].iter_mut().rev().enumerate() {
+        *g = from[1 + k];
+    }
+    (from[0], gradient)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hull_of_a_line_is_its_zero() {
+        let mut window = (0.0, 1.0);
+        hull_zeros(&[-1.0, 3.0], &[-1.0, 3.0], &mut window);
+        assert!((window.0 - 0.25).abs() < 1e-14 && (window.1 - 0.25).abs() < 1e-14);
+        assert!(window.0 < 0.25 && window.1 > 0.25);
+    }
+
+    #[test]
+    fn hull_without_zero_is_empty() {
+        let mut window = (0.0, 1.0);
+        hull_zeros(&[1.0, 0.5, 2.0], &[2.0, 3.0, 2.0], &mut window);
+        assert!(window.0 > window.1);
+    }
+
+    #[test]
+    fn hull_needs_pairs_beyond_the_first_point() {
+        // From (0, 10) the line to (1, −1) would cross late; the hull's edge from (0.1, 0.01) crosses early.
+        let low: Vec<f64> = (0..=10)
+            .map(|k| match k {
+                0 => 10.0,
+                1 => 0.01,
+                10 => -1.0,
+                _ => 5.0,
+            })
+            .collect();
+        let mut window = (0.0, 1.0);
+        hull_zeros(&low, &low, &mut window);
+        assert!(window.0 < 0.12, "{window:?}");
+    }
+}

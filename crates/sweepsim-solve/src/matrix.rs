@@ -1,0 +1,143 @@
+//! Small dense matrices in fixed arrays: inverses for preconditioning. Nothing here needs to be rigorous: what is done with
+//! an inverse always bounds `I − K A` for the `K` at hand.
+
+/// The most variables that a system may have.
+pub const MAX_UNKNOWNS: usize = 8;
+
+/// A row of a small matrix, or a point.
+pub(crate) type Row = [f64; MAX_UNKNOWNS];
+/// A small matrix.
+pub(crate) type Square = [Row; MAX_UNKNOWNS];
+
+/// Zero.
+pub(crate) const ZERO: Square = [[0.0; MAX_UNKNOWNS]; MAX_UNKNOWNS];
+
+/// Below this pivot, with rows and columns scaled to 1, a matrix counts as singular.
+const SINGULAR: f64 = 1e-11;
+
+/// The inverse and the sign of the determinant; `None` if the matrix is nearly singular or not finite.
+pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
+    let mut a = *matrix;
+    let mut columns = [1.0; MAX_UNKNOWNS];
+    let mut rows = [1.0; MAX_UNKNOWNS];
+    for j in 0..n {
+        let largest = (0..n).fold(0.0, |m: f64, i| m.max(a[i][j].abs()));
+        if !(largest > 0.0 && largest.is_finite()) {
+            return None;
+        }
+        columns[j] = 1.0 / largest;
+        if !f64::is_finite(columns[j]) {
+            return None;
+        }
+        for i in 0..n {
+            a[i][j] *= columns[j];
+        }
+    }
+    for i in 0..n {
+        let largest = a[i][..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if !(largest > 0.0) {
+            return None;
+        }
+        rows[i] = 1.0 / largest;
+        if !f64::is_finite(rows[i]) {
+            return None;
+        }
+        for j in 0..n {
+            a[i][j] *= rows[i];
+        }
+    }
+    // Gauss and Jordan, the inverse built beside.
+    let mut k = ZERO;
+    for i in 0..n {
+        k[i][i] = 1.0;
+    }
+    let mut sign = 1;
+    for c in 0..n {
+        let mut pivot = c;
+        for i in c + 1..n {
+            if a[i][c].abs() > a[pivot][c].abs() {
+                pivot = i;
+            }
+        }
+        if !(a[pivot][c].abs() > SINGULAR) {
+            return None;
+        }
+        if pivot != c {
+            a.swap(pivot, c);
+            k.swap(pivot, c);
+            sign = -sign;
+        }
+        if a[c][c] < 0.0 {
+            sign = -sign;
+        }
+        let factor = 1.0 / a[c][c];
+        for j in 0..n {
+            a[c][j] *= factor;
+            k[c][j] *= factor;
+        }
+        let (pivot_row, pivot_k) = (a[c], k[c]);
+        for i in 0..n {
+            let factor = a[i][c];
+            if i == c || factor == 0.0 {
+                continue;
+            }
+            for j in 0..n {
+                a[i][j] -= factor * pivot_row[j];
+                k[i][j] -= factor * pivot_k[j];
+            }
+        }
+    }
+    for i in 0..n {
+        for j in 0..n {
+            k[i][j] *= columns[i] * rows[j];
+            if !k[i][j].is_finite() {
+                return None;
+            }
+        }
+    }
+    Some((k, sign))
+}
+
+/// `A x`.
+pub(crate) fn apply(a: &Square, x: &Row, n: usize) -> Row {
+    let mut out = [0.0; MAX_UNKNOWNS];
+    for i in 0..n {
+        for j in 0..n {
+            out[i] += a[i][j] * x[j];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_times_matrix_is_one() {
+        let mut a = ZERO;
+        for i in 0..5 {
+            for j in 0..5 {
+                a[i][j] = ((i * i * 7 + j * j * 3 + i * j + 1) % 11) as f64 * 10f64.powi(i as i32 - 2);
+            }
+        }
+        let (k, _) = inverse(&a, 5).unwrap();
+        for i in 0..5 {
+            for j in 0..5 {
+                let product: f64 = (0..5).map(|l| k[i][l] * a[l][j]).sum();
+                assert!((product - f64::from(u8::from(i == j))).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn sign_is_that_of_the_determinant() {
+        let mut a = ZERO;
+        (a[0][1], a[1][0]) = (2.0, 3.0);
+        assert_eq!(inverse(&a, 2).unwrap().1, -1);
+        a[1][0] = -3.0;
+        assert_eq!(inverse(&a, 2).unwrap().1, 1);
+        a[1][0] = 0.0;
+        assert!(inverse(&a, 2).is_none());
+    }
+}

@@ -1,0 +1,667 @@
+//! 0-D: all solutions of `n` equations in `n` unknowns.
+//!
+//! For each box, the cheapest test first:
+//!
+//! 1. *Sign*: an equation whose coefficients (with their rounding bound) have one sign excludes the box.
+//! 2. *Linear*: with the mean Jacobian `A`, each equation is `constant + A z + rest`, `|rest| ≤ r`, over the box (`z` from its
+//!    centre). With `K ≈ A⁻¹`, every root lies in `N = (I − K A) Z − K constant ± |K| r`. If `N` misses the box, it has none.
+//! 3. *Certificate*: if `N` is small, take a box `C` around it (also beyond the box's faces). If `‖I − K J(C)‖∞ < 1`, the map is
+//!    injective on `C`; if `N(C) ⊂ C`, the map `z ↦ z − K f(z)` takes `C` into itself, so by Brouwer there is a root. Newton's method
+//!    finds it, and the same `K` bounds its error. All roots of the box lie in `C`: the box is settled.
+//! 4. *Projection*: where the convex hull of an equation's coefficient ranges along an axis meets 0 (Sherbrooke, Patrikalakis 1993).
+//! 5. Reduce, or split a little off the middle, in the direction in which the Jacobian varies most.
+//!
+//! A box at the smallest size stays open, with its cause. A root on a face between boxes is found from both, and is known to be the
+//! same because each is the only one in a box `C` that also holds the other: never because it is near.
+
+use crate::double::Double;
+use crate::layout::{Affine, Cell, EPSILON, Layout};
+use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
+use crate::search::{Cause, Fate, Observer, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
+use crate::{Interval, System};
+use thiserror::Error;
+
+/// Where a certified root lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// Inside the region.
+    Inside,
+    /// On the region's boundary, or nearer to it than the root's enclosure is wide: certified on a larger box.
+    Boundary,
+}
+
+/// A root with its certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root {
+    /// The root, as near as numbers allow.
+    pub point: Vec<f64>,
+    /// Holds the root.
+    pub enclosure: Vec<Interval>,
+    /// Holds no other root. It may reach beyond the domain.
+    pub unique_in: Vec<Interval>,
+    /// The sign of `det ∂f/∂x` at the root (and wherever the root is unique).
+    pub orientation: i8,
+    /// Inside or on the boundary.
+    pub place: Place,
+}
+
+/// All roots of a system in a region: each lies in the enclosure of one of `roots`, or in one of `unresolved`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// Simple roots, each certified, in lexical order.
+    pub roots: Vec<Root>,
+    /// What could not be settled.
+    pub unresolved: Vec<Unresolved>,
+    /// What the search did.
+    pub statistics: SolveStatistics,
+}
+
+/// A solver was given a system of another kind, or limits that make no sense.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// Another number of equations is needed.
+    #[error("{equations} equations in {variables} variables; this solver needs {expected}")]
+    Equations {
+        /// Of the system.
+        equations: usize,
+        /// Of the system.
+        variables: usize,
+        /// What this solver needs for so many variables.
+        expected: usize,
+    },
+    /// Another number of variables is needed.
+    #[error("{variables} variables; this solver takes {least} to {most}")]
+    Variables {
+        /// Of the system.
+        variables: usize,
+        /// The fewest.
+        least: usize,
+        /// The most.
+        most: usize,
+    },
+    /// [`SolveOptions::smallest`] or another size is not a number between 1e-14 and 1.
+    #[error("a smallest size or tolerance is not between 1e-14 and 1")]
+    Smallest,
+}
+
+/// The largest half width of `N`, in sides of the box, at which a certificate is tried.
+const TRY: f64 = 0.45;
+/// The least half width of the box `C`, in sides of the box.
+const LEAST: f64 = 1.0 / 16.0;
+/// How far beyond the domain a certificate may reach, in its sides: the bounds of separated forms hold so far.
+pub(crate) const BEYOND: f64 = 1.0 / 64.0;
+/// A reduction to more than this part of each side is not worth its cost.
+const WORTH: f64 = 0.75;
+/// No side shrinks below this part in one reduction, nor below [`THIN`] of the widest.
+const SHRINK: f64 = 1.0 / 64.0;
+const THIN: f64 = 1e-3;
+/// Boxes are split here.
+const CUT: f64 = 0.492;
+/// Noise above this part of an equation's size makes its coefficients worth computing anew.
+const NOISY: f64 = 1.5e-8;
+
+/// A certified root in inner coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    pub point: Row,
+    pub lo: Row,
+    pub hi: Row,
+    pub unique_lo: Row,
+    pub unique_hi: Row,
+    pub orientation: i8,
+    /// Whether the enclosure leaves the box that it was found from.
+    pub straddles: bool,
+    pub boundary: bool,
+}
+
+enum Verdict {
+    Root(Found),
+    Elsewhere,
+    Unclear,
+}
+
+/// The 0-D solver, with memory that it keeps from one system to the next.
+///
+/// ```
+/// use sweepsim_solve::{Interval, PointSolver, System};
+/// use sweepsim_spline::Bernstein;
+///
+/// // x² + y² = 1 and y = x, on [−2, 2]². In u = (x + 2)/4: x² = 16 u² − 16 u + 4 has coefficients 4, −4, 4.
+/// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [4.0, -4.0, 4.0][i[axis]]).unwrap();
+/// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 1.0));
+/// let line = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
+/// let system = System::new(&[Interval::new(-2.0, 2.0); 2], [&circle, &line])?;
+/// let points = PointSolver::default().solve(&system, &mut ())?;
+/// assert_eq!(points.roots.len(), 2);
+/// assert!(points.unresolved.is_empty());
+/// assert!(points.roots[1].enclosure[0].contains(0.5f64.sqrt()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct PointSolver {
+    /// Limits.
+    pub options: SolveOptions,
+    stack: Vec<f64>,
+    depths: Vec<u32>,
+    cell: Cell,
+    trial: Cell,
+    lower: Cell,
+    buffer: Vec<f64>,
+    doubles: Vec<Double>,
+    ranges: Vec<(f64, f64)>,
+    pub(crate) found: Vec<Found>,
+    open: Vec<Open>,
+    statistics: SolveStatistics,
+}
+
+impl PointSolver {
+    /// A solver with these limits.
+    #[must_use]
+    pub fn new(options: SolveOptions) -> Self {
+        Self {
+            options,
+            ..Self::default()
+        }
+    }
+
+    /// All roots of the system in its region.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
+    pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Points, SolveError> {
+        let (n, m) = (system.layout.n, system.layout.m);
+        if m != n {
+            return Err(SolveError::Equations {
+                equations: m,
+                variables: n,
+                expected: n,
+            });
+        }
+        if !(1e-14..=1.0).contains(&self.options.smallest) {
+            return Err(SolveError::Smallest);
+        }
+        self.statistics = SolveStatistics::default();
+        self.found.clear();
+        self.open.clear();
+        let root = system.root();
+        self.search(system, root, observer);
+        self.identify(n);
+        // An open box inside a box where a found root is the only one holds nothing else.
+        let found = &self.found;
+        self.open.retain(|o| {
+            !found
+                .iter()
+                .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
+        });
+        unite(&mut self.open, n);
+        self.found.sort_by(|a, b| {
+            let ends = a.point[..n].iter().zip(&b.point[..n]);
+            ends.map(|(x, y)| x.total_cmp(y))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        let root = |f: &Found| Root {
+            point: system.outer_point(&f.point),
+            enclosure: system.outward(&f.lo, &f.hi),
+            unique_in: system.inward(&f.unique_lo, &f.unique_hi),
+            orientation: f.orientation,
+            place: if f.boundary { Place::Boundary } else { Place::Inside },
+        };
+        Ok(Points {
+            roots: self.found.iter().map(root).collect(),
+            unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
+            statistics: self.statistics,
+        })
+    }
+
+    /// The depth-first search from one cell; adds to `found` and `open`.
+    fn search(&mut self, system: &System, root: Cell, observer: &mut dyn Observer) {
+        let layout = &system.layout;
+        let mut watch = Watch::new(&self.options);
+        self.stack.clear();
+        self.depths.clear();
+        push(&mut self.stack, &root, layout);
+        self.depths.push(0);
+        while let Some(depth) = self.depths.pop() {
+            pop(&mut self.stack, &mut self.cell, layout);
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
+            if let Some(cause) = stop {
+                self.leave(cause);
+                while self.depths.pop().is_some() {
+                    pop(&mut self.stack, &mut self.cell, layout);
+                    self.leave(cause);
+                }
+                break;
+            }
+            self.statistics.boxes += 1;
+            self.statistics.depth = self.statistics.depth.max(depth);
+            let fate = self.treat(system, depth);
+            self.statistics.count(fate);
+            if observer.traces() {
+                // Where the cell was split, `cell` is the upper part by now and `lower` the other.
+                let lo = if fate == Fate::Split {
+                    &self.lower.lo
+                } else {
+                    &self.cell.lo
+                };
+                observer.visited(&system.outward(lo, &self.cell.hi), depth, fate);
+            }
+        }
+    }
+
+    /// Leaves the current cell open.
+    fn leave(&mut self, cause: Cause) {
+        self.open.push(Open {
+            lo: self.cell.lo,
+            hi: self.cell.hi,
+            cause,
+            boxes: 1,
+        });
+    }
+
+    /// Tests, reduces and, if need be, splits the current cell (pushing the parts).
+    fn treat(&mut self, system: &System, depth: u32) -> Fate {
+        let layout = &system.layout;
+        let n = layout.n;
+        let mut attempts_left = 3;
+        let (totals, inverted) = loop {
+            let mut totals = layout.ranges(&mut self.cell);
+            if excluded(&totals, n) {
+                return Fate::Sign;
+            }
+            let noisy = (0..n).any(|i| {
+                self.cell.noise[i] > NOISY * self.cell.scale[i] && self.cell.noise[i] > 4.0 * layout.first_noise[i]
+            });
+            if noisy && within_domain(&self.cell, n) {
+                layout.refresh(&mut self.cell, &mut self.doubles);
+                self.statistics.refreshed += 1;
+                totals = layout.ranges(&mut self.cell);
+                if excluded(&totals, n) {
+                    return Fate::Sign;
+                }
+            }
+            let affine = layout.affine(&self.cell, layout.mean_slopes(&self.cell.c));
+            let inverted = inverse(&affine.slope, n);
+            let mut window = [(0.0, 1.0); MAX_UNKNOWNS];
+            if let Some((k, _)) = &inverted {
+                let (centre, half) = newton_box(&affine, k, n);
+                for j in 0..n {
+                    window[j].0 = (0.5 + centre[j] - half[j]).max(0.0);
+                    window[j].1 = (0.5 + centre[j] + half[j]).min(1.0);
+                    if window[j].0 > window[j].1 {
+                        return Fate::Linear;
+                    }
+                }
+                if attempts_left > 0 && half[..n].iter().all(|h| *h <= TRY) {
+                    attempts_left -= 1;
+                    match self.certify(system, &centre, &half) {
+                        Verdict::Root(found) => {
+                            self.found.push(found);
+                            return Fate::Certified;
+                        }
+                        Verdict::Elsewhere => return Fate::Elsewhere,
+                        Verdict::Unclear => {}
+                    }
+                }
+            }
+            layout.part_ranges(&self.cell, &mut self.ranges);
+            for j in 0..n {
+                layout.project(&self.cell, &self.ranges, &totals, j, &mut window[j]);
+                if window[j].0 > window[j].1 {
+                    return Fate::Projection;
+                }
+            }
+            if !self.reduce(layout, &mut window) {
+                break (totals, inverted);
+            }
+            self.statistics.reductions += 1;
+        };
+        let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
+        let vanishing = |i: usize| {
+            let size = totals.0[i].abs().max(totals.1[i].abs());
+            size <= 2.5 * (self.cell.noise[i] + layout.remainder[i]) + 64.0 * EPSILON * self.cell.scale[i]
+        };
+        let cause = if (0..n).all(|j| width(j) <= self.options.smallest) {
+            Some(Cause::Smallest)
+        } else if (0..n).any(vanishing) {
+            Some(Cause::Vanishing)
+        } else if depth >= self.options.depth {
+            Some(Cause::Depth)
+        } else {
+            None
+        };
+        if let Some(cause) = cause {
+            self.leave(cause);
+            return Fate::Unresolved;
+        }
+        let axis = self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k));
+        let (lo, hi) = (self.cell.lo[axis], self.cell.hi[axis]);
+        let at = lo + CUT * (hi - lo);
+        if !(at > lo && at < hi) {
+            self.leave(Cause::Smallest);
+            return Fate::Unresolved;
+        }
+        layout.split(&mut self.cell, &mut self.lower, axis, at);
+        push(&mut self.stack, &self.cell, layout);
+        push(&mut self.stack, &self.lower, layout);
+        self.depths.push(depth + 1);
+        self.depths.push(depth + 1);
+        Fate::Split
+    }
+
+    /// Shrinks the cell to the window (in its sides) where that is worth it.
+    fn reduce(&mut self, layout: &Layout, window: &mut [(f64, f64); MAX_UNKNOWNS]) -> bool {
+        let n = layout.n;
+        if !window[..n].iter().any(|w| w.1 - w.0 < WORTH) {
+            return false;
+        }
+        let widest = (0..n).fold(0.0, |m: f64, j| {
+            m.max((window[j].1 - window[j].0) * (self.cell.hi[j] - self.cell.lo[j]))
+        });
+        let mut worth = false;
+        for j in 0..n {
+            let (lo, hi) = (self.cell.lo[j], self.cell.hi[j]);
+            let side = hi - lo;
+            let least = SHRINK
+                .max(THIN * widest / side)
+                .max(0.25 * self.options.smallest / side)
+                .min(1.0);
+            let (mut a, mut b) = window[j];
+            // A tenth of slack on either side, and at least the least width.
+            let middle = 0.5 * (a + b);
+            let half = (0.55 * (b - a)).max(0.5 * least);
+            (a, b) = ((middle - half).max(0.0), (middle + half).min(1.0));
+            if b - a > 0.9 {
+                continue;
+            }
+            let new_lo = if a > 0.0 { (lo + a * side).max(lo) } else { lo };
+            let new_hi = if b < 1.0 { (lo + b * side).min(hi) } else { hi };
+            if !(new_lo < new_hi) || (new_lo == lo && new_hi == hi) {
+                continue;
+            }
+            worth |= new_hi - new_lo < 0.85 * side;
+            layout.restrict(&mut self.cell, j, new_lo, new_hi);
+        }
+        worth
+    }
+
+    /// The axis to split across.
+    fn direction(&self, layout: &Layout, depth: u32, inverse: Option<&Square>) -> usize {
+        let n = layout.n;
+        let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
+        let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
+        if depth % 4 == 3 {
+            return widest;
+        }
+        let slopes = layout.slopes(&self.cell);
+        let mut weight = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            for k in 0..n {
+                match inverse {
+                    Some(inverse) => {
+                        let radius = 0.5 * (slopes.hi[k][j] - slopes.lo[k][j]);
+                        for i in 0..n {
+                            weight[j] += inverse[i][k].abs() * radius;
+                        }
+                    }
+                    None => {
+                        if self.cell.scale[k] > 0.0 {
+                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / self.cell.scale[k];
+                        }
+                    }
+                }
+            }
+            if !weight[j].is_finite() || width(j) <= self.options.smallest.max(THIN * width(widest)) {
+                weight[j] = -1.0;
+            }
+        }
+        let best = (0..n).fold(0, |best, j| if weight[j] > weight[best] { j } else { best });
+        if weight[best] > 0.0 { best } else { widest }
+    }
+
+    /// Tries to prove that a box around the candidate holds exactly one root, and finds it.
+    fn certify(&mut self, system: &System, centre: &Row, half: &Row) -> Verdict {
+        let layout = &system.layout;
+        let n = layout.n;
+        self.statistics.attempts += 1;
+        let cell = &self.cell;
+        let trial = &mut self.trial;
+        trial.c.clear();
+        trial.c.extend_from_slice(&cell.c);
+        (trial.lo, trial.hi, trial.noise, trial.scale) = (cell.lo, cell.hi, cell.noise, cell.scale);
+        let limit = if system.bounded() { 0.0 } else { BEYOND };
+        for j in 0..n {
+            let side = cell.hi[j] - cell.lo[j];
+            let reach = (1.5 * half[j]).max(LEAST);
+            let middle = 0.5 + centre[j];
+            let lo = (cell.lo[j] + (middle - reach) * side).max(-limit);
+            let hi = (cell.lo[j] + (middle + reach) * side).min(1.0 + limit);
+            if !(hi - lo > 64.0 * EPSILON * lo.abs().max(hi.abs())) {
+                return Verdict::Unclear;
+            }
+            layout.restrict(trial, j, lo, hi);
+        }
+        let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
+            return Verdict::Unclear;
+        };
+        let (mut found, mut straddles, mut boundary) = (unique, false, false);
+        for j in 0..n {
+            if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
+                return Verdict::Elsewhere;
+            }
+            straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
+            boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+        }
+        found.straddles = straddles;
+        found.boundary = boundary;
+        Verdict::Root(found)
+    }
+
+    /// Drops roots that were found from several boxes.
+    fn identify(&mut self, n: usize) {
+        let mut kept: Vec<Found> = Vec::with_capacity(self.found.len());
+        let mut straddling: Vec<usize> = Vec::new();
+        for next in self.found.drain(..) {
+            if next.straddles {
+                let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
+                if let Some(&same) = straddling.iter().find(|k| touches(&kept[**k], &next)) {
+                    let first = &mut kept[same];
+                    let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
+                        || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n);
+                    if one {
+                        first.boundary |= next.boundary;
+                        continue;
+                    }
+                    // Two enclosures that meet, neither within the other's box: say so rather than guess.
+                    self.open.push(Open {
+                        lo: next.lo,
+                        hi: next.hi,
+                        cause: Cause::Smallest,
+                        boxes: 1,
+                    });
+                }
+                straddling.push(kept.len());
+            }
+            kept.push(next);
+        }
+        self.found = kept;
+    }
+}
+
+pub(crate) fn open_box(system: &System, open: &Open) -> Unresolved {
+    Unresolved {
+        bounds: system.outward(&open.lo, &open.hi),
+        cause: open.cause,
+        boxes: open.boxes,
+    }
+}
+
+fn inside(lo: &Row, hi: &Row, outer_lo: &Row, outer_hi: &Row, n: usize) -> bool {
+    (0..n).all(|j| outer_lo[j] <= lo[j] && hi[j] <= outer_hi[j])
+}
+
+pub(crate) fn within_domain(cell: &Cell, n: usize) -> bool {
+    (0..n).all(|j| cell.lo[j] >= 0.0 && cell.hi[j] <= 1.0)
+}
+
+pub(crate) fn excluded(totals: &(Row, Row), m: usize) -> bool {
+    (0..m).any(|i| totals.0[i] > 0.0 || totals.1[i] < 0.0)
+}
+
+/// Centre and half widths of the box that holds all roots of the cell, from its centre, in its sides.
+pub(crate) fn newton_box(affine: &Affine, k: &Square, n: usize) -> (Row, Row) {
+    let (mut centre, mut half) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+    for i in 0..n {
+        let (mut sum, mut size) = (0.0, 0.0);
+        for e in 0..n {
+            sum -= k[i][e] * affine.constant[e];
+            size += k[i][e].abs() * affine.constant[e].abs();
+            half[i] += k[i][e].abs() * affine.radius[e];
+        }
+        // |I − K A| on z within ±½, with the rounding of its entries.
+        let mut rest = 0.0;
+        for j in 0..n {
+            let (mut entry, mut entries) = (if i == j { -1.0 } else { 0.0 }, 1.0);
+            for e in 0..n {
+                entry += k[i][e] * affine.slope[e][j];
+                entries += (k[i][e] * affine.slope[e][j]).abs();
+            }
+            rest += 0.5 * (f64::abs(entry) + 16.0 * EPSILON * entries);
+        }
+        centre[i] = sum;
+        half[i] = (half[i] + rest) * (1.0 + 32.0 * EPSILON) + 16.0 * EPSILON * (size + 1.0);
+    }
+    (centre, half)
+}
+
+/// Proves that the cell holds exactly one root, and encloses it; `None` if that cannot be proved.
+pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64>) -> Option<Found> {
+    let n = layout.n;
+    layout.ranges(cell);
+    let mean = layout.mean_slopes(&cell.c);
+    let (k, orientation) = inverse(&mean, n)?;
+    let affine = layout.affine(cell, mean);
+    let (centre, half) = newton_box(&affine, &k, n);
+    if !(0..n).all(|j| centre[j].abs() + half[j] < 0.5) {
+        return None;
+    }
+    // |I − K J| over the cell.
+    let slopes = layout.slopes(cell);
+    let mut rest = ZERO;
+    let mut contraction: f64 = 0.0;
+    for i in 0..n {
+        let mut row = 0.0;
+        for j in 0..n {
+            let (mut middle, mut radius, mut size) = (if i == j { -1.0 } else { 0.0 }, 0.0, 1.0);
+            for e in 0..n {
+                let (lo, hi) = (slopes.lo[e][j], slopes.hi[e][j]);
+                middle += k[i][e] * (0.5 * (lo + hi));
+                radius += k[i][e].abs() * (0.5 * (hi - lo));
+                size += k[i][e].abs() * lo.abs().max(hi.abs());
+            }
+            rest[i][j] = f64::abs(middle) + radius + 32.0 * EPSILON * size;
+            row += rest[i][j];
+        }
+        contraction = contraction.max(row);
+    }
+    if !(contraction < 0.999) {
+        return None;
+    }
+    // Newton's method inside the cell; the last point's error is bounded whatever it is.
+    let mut s = [0.0; MAX_UNKNOWNS];
+    for j in 0..n {
+        s[j] = 0.5 + centre[j];
+    }
+    let mut before = f64::INFINITY;
+    let mut value;
+    let mut steps = 0;
+    loop {
+        let jacobian;
+        (value, jacobian) = layout.evaluate(&cell.c, &s, buffer);
+        let step = match inverse(&jacobian, n) {
+            Some((k, _)) => apply(&k, &value, n),
+            None => apply(&k, &value, n),
+        };
+        let size = step[..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        steps += 1;
+        // Quadratic convergence: the step after one of 1e-9 would be below rounding, but the value at the end is needed.
+        if size == 0.0 || !(size < before) || steps > 30 {
+            break;
+        }
+        before = size;
+        let mut moved = false;
+        for j in 0..n {
+            let next = (s[j] - step[j]).clamp(0.0, 1.0);
+            moved |= next != s[j];
+            s[j] = next;
+        }
+        if !moved {
+            break;
+        }
+        if size < 1e-8 {
+            (value, _) = layout.evaluate(&cell.c, &s, buffer);
+            break;
+        }
+    }
+    let mut direct = [0.0; MAX_UNKNOWNS];
+    let mut largest: f64 = 0.0;
+    for i in 0..n {
+        let (mut sum, mut error) = (0.0, 0.0);
+        for e in 0..n {
+            sum += k[i][e] * value[e];
+            error += k[i][e].abs() * (layout.value_error(cell, e) + 16.0 * EPSILON * f64::abs(value[e]));
+        }
+        direct[i] = f64::abs(sum) + error;
+        largest = largest.max(direct[i]);
+    }
+    let all = largest / (1.0 - contraction) * (1.0 + 8.0 * EPSILON);
+    if !(all <= 1.0) {
+        return None;
+    }
+    let mut found = Found {
+        point: [0.0; MAX_UNKNOWNS],
+        lo: [0.0; MAX_UNKNOWNS],
+        hi: [0.0; MAX_UNKNOWNS],
+        unique_lo: cell.lo,
+        unique_hi: cell.hi,
+        orientation,
+        straddles: false,
+        boundary: false,
+    };
+    for i in 0..n {
+        let error = direct[i] + rest[i][..n].iter().sum::<f64>() * all;
+        let side = cell.hi[i] - cell.lo[i];
+        let x = cell.lo[i] + s[i] * side;
+        let pad = error * side * (1.0 + 8.0 * EPSILON) + 2.0 * EPSILON * (x.abs() + side);
+        found.point[i] = x;
+        found.lo[i] = (x - pad).max(cell.lo[i]);
+        found.hi[i] = (x + pad).min(cell.hi[i]);
+    }
+    Some(found)
+}
+
+pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
+    let (n, m) = (layout.n, layout.m);
+    stack.extend_from_slice(&cell.lo[..n]);
+    stack.extend_from_slice(&cell.hi[..n]);
+    stack.extend_from_slice(&cell.noise[..m]);
+    stack.extend_from_slice(&cell.scale[..m]);
+    stack.extend_from_slice(&cell.c);
+}
+
+pub(crate) fn pop(stack: &mut Vec<f64>, cell: &mut Cell, layout: &Layout) {
+    let (n, m) = (layout.n, layout.m);
+    let size = 2 * n + 2 * m + layout.len;
+    let start = stack.len() - size;
+    let record = &stack[start..];
+    cell.lo[..n].copy_from_slice(&record[..n]);
+    cell.hi[..n].copy_from_slice(&record[n..2 * n]);
+    cell.noise[..m].copy_from_slice(&record[2 * n..2 * n + m]);
+    cell.scale[..m].copy_from_slice(&record[2 * n + m..2 * n + 2 * m]);
+    cell.c.clear();
+    cell.c.extend_from_slice(&record[2 * n + 2 * m..]);
+    stack.truncate(start);
+}

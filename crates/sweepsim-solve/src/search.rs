@@ -1,0 +1,248 @@
+//! What all subdivision searches share: limits, counts, observers, and what is left open.
+
+use crate::Interval;
+use std::time::{Duration, Instant};
+
+/// Limits of a search.
+///
+/// ```
+/// use sweepsim_solve::SolveOptions;
+/// let options = SolveOptions { boxes: 10_000, ..SolveOptions::default() };
+/// assert!(options.smallest < 1e-9);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SolveOptions {
+    /// A box whose sides are all at most this part of the domain's is not split further. At least 1e-14.
+    pub smallest: f64,
+    /// The most boxes that are looked at.
+    pub boxes: u64,
+    /// The most splits above a box.
+    pub depth: u32,
+    /// The most boxes that may stay open before the search gives up: a continuum of solutions must not flood it.
+    pub unresolved: usize,
+    /// The longest that the search may take. Results then depend on the machine's speed; the other limits do not.
+    pub time: Option<Duration>,
+}
+
+impl Default for SolveOptions {
+    fn default() -> Self {
+        Self {
+            smallest: 1e-11,
+            boxes: 2_000_000,
+            depth: 2_000,
+            unresolved: 512,
+            time: None,
+        }
+    }
+}
+
+/// What became of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fate {
+    /// An equation has one sign on it.
+    Sign,
+    /// The affine enclosures have no common zero in it.
+    Linear,
+    /// Some equation cannot vanish in any part of some side.
+    Projection,
+    /// It holds one solution, or one piece of a curve or surface, with certificate.
+    Certified,
+    /// The one solution that could lie in it lies outside.
+    Elsewhere,
+    /// It was split.
+    Split,
+    /// It stays open.
+    Unresolved,
+}
+
+/// Why a box stays open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Cause {
+    /// It is as small as [`SolveOptions::smallest`]: a multiple root, a singular point, or solutions nearer to one another than that.
+    Smallest,
+    /// An equation is zero on it up to rounding (or its stated error).
+    Vanishing,
+    /// [`SolveOptions::boxes`] is spent.
+    Boxes,
+    /// [`SolveOptions::depth`] is reached.
+    Depth,
+    /// [`SolveOptions::unresolved`] is reached.
+    Flood,
+    /// [`SolveOptions::time`] is spent.
+    Time,
+    /// The observer asked to stop.
+    Cancelled,
+}
+
+impl std::fmt::Display for Cause {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Smallest => "smallest size reached: a multiple or singular solution, or a cluster",
+            Self::Vanishing => "an equation vanishes up to rounding",
+            Self::Boxes => "budget of boxes spent",
+            Self::Depth => "depth reached",
+            Self::Flood => "too many boxes stay open",
+            Self::Time => "time spent",
+            Self::Cancelled => "cancelled",
+        })
+    }
+}
+
+/// A box that may hold solutions besides those returned: neither settled nor excluded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unresolved {
+    /// The box; touching ones of the same cause are united.
+    pub bounds: Vec<Interval>,
+    /// Why.
+    pub cause: Cause,
+    /// How many boxes of the subdivision it unites.
+    pub boxes: usize,
+}
+
+/// How many boxes met which fate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SolveStatistics {
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// Of these, excluded by a sign of the coefficients.
+    pub sign: u64,
+    /// Excluded by affine enclosures.
+    pub linear: u64,
+    /// Excluded by projection.
+    pub projection: u64,
+    /// Settled with a certificate.
+    pub certified: u64,
+    /// Whose only candidate lies elsewhere.
+    pub elsewhere: u64,
+    /// Split.
+    pub splits: u64,
+    /// Left open.
+    pub unresolved: u64,
+    /// Reductions of boxes.
+    pub reductions: u64,
+    /// Attempts at a certificate.
+    pub attempts: u64,
+    /// Computations anew from the first coefficients, in twice the precision.
+    pub refreshed: u64,
+    /// The most splits above a box.
+    pub depth: u32,
+}
+
+impl SolveStatistics {
+    pub(crate) fn count(&mut self, fate: Fate) {
+        *match fate {
+            Fate::Sign => &mut self.sign,
+            Fate::Linear => &mut self.linear,
+            Fate::Projection => &mut self.projection,
+            Fate::Certified => &mut self.certified,
+            Fate::Elsewhere => &mut self.elsewhere,
+            Fate::Split => &mut self.splits,
+            Fate::Unresolved => &mut self.unresolved,
+        } += 1;
+    }
+}
+
+/// Watches a search: progress, cancellation, pictures. `()` watches nothing.
+pub trait Observer {
+    /// Called now and then (every few dozen boxes): `false` stops the search.
+    fn proceed(&mut self, statistics: &SolveStatistics) -> bool {
+        let _ = statistics;
+        true
+    }
+
+    /// Whether [`visited`](Self::visited) wants to be called.
+    fn traces(&self) -> bool {
+        false
+    }
+
+    /// A box, as it was when its fate was known (it may have been reduced), with the number of splits above it.
+    fn visited(&mut self, bounds: &[Interval], depth: u32, fate: Fate) {
+        let _ = (bounds, depth, fate);
+    }
+}
+
+impl Observer for () {}
+
+/// The budget's clock.
+#[derive(Debug)]
+pub(crate) struct Watch {
+    deadline: Option<Instant>,
+    ticks: u32,
+}
+
+impl Watch {
+    pub(crate) fn new(options: &SolveOptions) -> Self {
+        Self {
+            deadline: options.time.map(|t| Instant::now() + t),
+            ticks: 0,
+        }
+    }
+
+    /// Why to stop before the next box, if at all.
+    pub(crate) fn stop(
+        &mut self,
+        options: &SolveOptions,
+        statistics: &SolveStatistics,
+        open: usize,
+        observer: &mut dyn Observer,
+    ) -> Option<Cause> {
+        if statistics.boxes >= options.boxes {
+            return Some(Cause::Boxes);
+        }
+        if open > options.unresolved {
+            return Some(Cause::Flood);
+        }
+        self.ticks += 1;
+        if self.ticks.is_multiple_of(32) {
+            if self.deadline.is_some_and(|d| Instant::now() >= d) {
+                return Some(Cause::Time);
+            }
+            if !observer.proceed(statistics) {
+                return Some(Cause::Cancelled);
+            }
+        }
+        None
+    }
+}
+
+/// An open box in inner coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Open {
+    pub lo: crate::matrix::Row,
+    pub hi: crate::matrix::Row,
+    pub cause: Cause,
+    pub boxes: usize,
+}
+
+/// Unites boxes of one cause that touch, or nearly so.
+pub(crate) fn unite(open: &mut Vec<Open>, n: usize) {
+    let near = |a: &Open, b: &Open| {
+        a.cause == b.cause
+            && (0..n).all(|j| {
+                let pad = 0.5 * (a.hi[j] - a.lo[j]).max(b.hi[j] - b.lo[j]);
+                a.lo[j] <= b.hi[j] + pad && b.lo[j] <= a.hi[j] + pad
+            })
+    };
+    loop {
+        let before = open.len();
+        let mut united: Vec<Open> = Vec::with_capacity(before);
+        for next in open.drain(..) {
+            match united.iter_mut().find(|u| near(u, &next)) {
+                Some(u) => {
+                    for j in 0..n {
+                        u.lo[j] = u.lo[j].min(next.lo[j]);
+                        u.hi[j] = u.hi[j].max(next.hi[j]);
+                    }
+                    u.boxes += next.boxes;
+                }
+                None => united.push(next),
+            }
+        }
+        *open = united;
+        if open.len() == before {
+            return;
+        }
+    }
+}

@@ -1,0 +1,589 @@
+//! Systems of equations in Bernstein form over a box, checked once and brought into the solvers' inner form.
+
+use crate::Interval;
+use crate::layout::{Axis, Cell, EPSILON, Layout, MAX_DEGREE, Part};
+use crate::matrix::{MAX_UNKNOWNS, Row};
+use smallvec::SmallVec;
+use sweepsim_spline::{Bernstein, RationalBernstein};
+use thiserror::Error;
+
+/// The most coefficients that a system may have in all.
+pub const MAX_SYSTEM: usize = 1 << 24;
+
+/// One equation `f = 0`: a sum of Bernstein forms, with what the sum may differ from `f` by.
+///
+/// Every form has as many variables as the system, on `[0,1]ⁿ` (the system's domain maps to it). A form's own
+/// [`error`](Bernstein::error) counts as an error of its coefficients.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    terms: Vec<Bernstein>,
+    remainder: f64,
+    slope_remainder: f64,
+}
+
+impl Equation {
+    /// `f` is the sum of the forms. If the forms depend on different variables, solvers use that: bounds are sharper and cheaper.
+    #[must_use]
+    pub fn sum(terms: Vec<Bernstein>) -> Self {
+        Self {
+            terms,
+            remainder: 0.0,
+            slope_remainder: 0.0,
+        }
+    }
+
+    /// `f` is any continuously differentiable function that differs from the forms' sum by at most `remainder` on the domain, and
+    /// whose derivatives, with respect to coordinates in which the domain is `[0,1]ⁿ`, differ from the sum's by at most
+    /// `slope_remainder`.
+    #[must_use]
+    pub fn with_remainder(mut self, remainder: f64, slope_remainder: f64) -> Self {
+        self.remainder = remainder;
+        self.slope_remainder = slope_remainder;
+        self
+    }
+
+    /// The zeros of a rational function's component are those of its numerator, for its weight is positive.
+    #[must_use]
+    pub fn component(rational: &RationalBernstein, component: usize) -> Option<Self> {
+        rational.numerators().get(component).cloned().map(Self::from)
+    }
+}
+
+impl From<Bernstein> for Equation {
+    fn from(form: Bernstein) -> Self {
+        Self::sum(vec![form])
+    }
+}
+
+impl From<&Bernstein> for Equation {
+    fn from(form: &Bernstein) -> Self {
+        Self::sum(vec![form.clone()])
+    }
+}
+
+/// What is wrong with the parts of a system.
+///
+/// ```
+/// use sweepsim_solve::{Interval, System, SystemError};
+/// use sweepsim_spline::Bernstein;
+///
+/// let x = Bernstein::variable(1, 0);
+/// let infinite = [Interval::new(0.0, f64::INFINITY)];
+/// assert_eq!(System::new(&infinite, [&x]).unwrap_err(), SystemError::Domain { variable: 0 });
+/// let unit = [Interval::new(0.0, 1.0)];
+/// assert_eq!(System::new::<Bernstein>(&unit, []).unwrap_err(), SystemError::NoEquations);
+/// assert_eq!(System::new::<Bernstein>(&[], []).unwrap_err(), SystemError::Variables { variables: 0 });
+/// let too_many = System::new(&unit, [&x, &x]).unwrap_err();
+/// assert_eq!(too_many, SystemError::TooManyEquations { equations: 2, variables: 1 });
+/// let plane = Bernstein::variable(2, 0);
+/// let other = System::new(&unit, [&plane]).unwrap_err();
+/// assert_eq!(other, SystemError::FormVariables { equation: 0, variables: 2, expected: 1 });
+/// let huge = Bernstein::constant(1, f64::NAN);
+/// assert_eq!(System::new(&unit, [&huge]).unwrap_err(), SystemError::NotFinite { equation: 0 });
+/// let outside = System::new(&unit, [&x]).unwrap().within(&[Interval::new(0.5, 2.0)]).unwrap_err();
+/// assert_eq!(outside, SystemError::Region { variable: 0 });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum SystemError {
+    /// Between 1 and [`MAX_UNKNOWNS`] variables are possible.
+    #[error("a system has 1 to {MAX_UNKNOWNS} variables, not {variables}")]
+    Variables {
+        /// As many were given.
+        variables: usize,
+    },
+    /// There is nothing to solve.
+    #[error("a system needs an equation")]
+    NoEquations,
+    /// More equations than variables.
+    #[error("{equations} equations in {variables} variables are overdetermined")]
+    TooManyEquations {
+        /// Equations given.
+        equations: usize,
+        /// Variables given.
+        variables: usize,
+    },
+    /// A side of the domain is empty, reversed, infinite or NaN, or so far from 0 that its ends are neighbouring numbers.
+    #[error("the domain's side {variable} is not an interval of positive finite length")]
+    Domain {
+        /// The variable.
+        variable: usize,
+    },
+    /// A region does not lie in the domain, or is empty.
+    #[error("the region's side {variable} is empty or leaves the domain")]
+    Region {
+        /// The variable.
+        variable: usize,
+    },
+    /// A form has another number of variables.
+    #[error("equation {equation} has a form in {variables} variables, not {expected}")]
+    FormVariables {
+        /// The equation.
+        equation: usize,
+        /// What its form has.
+        variables: usize,
+        /// What the domain has.
+        expected: usize,
+    },
+    /// An equation is the sum of no forms.
+    #[error("equation {equation} is an empty sum")]
+    EmptySum {
+        /// The equation.
+        equation: usize,
+    },
+    /// A coefficient or an error bound is infinite or NaN, or a remainder is negative.
+    #[error("equation {equation} has a coefficient or bound that is not a finite number")]
+    NotFinite {
+        /// The equation.
+        equation: usize,
+    },
+    /// A degree is above [`MAX_DEGREE`], or there are more than [`MAX_SYSTEM`] coefficients.
+    #[error("equation {equation} is too large: degree {degree}, {coefficients} coefficients in all so far")]
+    TooLarge {
+        /// The equation.
+        equation: usize,
+        /// Its largest degree.
+        degree: usize,
+        /// Coefficients up to here.
+        coefficients: usize,
+    },
+}
+
+/// Equations over a box, ready to be solved.
+#[derive(Clone, Debug)]
+pub struct System {
+    pub(crate) layout: Layout,
+    pub(crate) domain: SmallVec<[Interval; 4]>,
+    /// What is searched, in coordinates in which the domain is `[0,1]ⁿ`.
+    pub(crate) region: (Row, Row),
+    /// Some equation is only known on the domain.
+    bounded: bool,
+}
+
+impl System {
+    /// The system of these equations over the domain, one interval a variable.
+    ///
+    /// # Errors
+    ///
+    /// See [`SystemError`].
+    pub fn new<E: Into<Equation>>(
+        domain: &[Interval],
+        equations: impl IntoIterator<Item = E>,
+    ) -> Result<Self, SystemError> {
+        let n = domain.len();
+        if n == 0 || n > MAX_UNKNOWNS {
+            return Err(SystemError::Variables { variables: n });
+        }
+        for (variable, side) in domain.iter().enumerate() {
+            let width = side.hi - side.lo;
+            let magnitude = side.lo.abs().max(side.hi.abs());
+            if !(width.is_finite() && width > 64.0 * EPSILON * magnitude && width > f64::MIN_POSITIVE) {
+                return Err(SystemError::Domain { variable });
+            }
+        }
+        let mut layout = Layout { n, ..Layout::default() };
+        let mut bounded = false;
+        for (equation, given) in equations.into_iter().enumerate() {
+            let given: Equation = given.into();
+            bounded |= given.remainder > 0.0;
+            if equation >= n {
+                return Err(SystemError::TooManyEquations {
+                    equations: equation + 1,
+                    variables: n,
+                });
+            }
+            add(&mut layout, equation, &given)?;
+            layout.m = equation + 1;
+        }
+        if layout.m == 0 {
+            return Err(SystemError::NoEquations);
+        }
+        Ok(Self {
+            layout,
+            domain: domain.into(),
+            region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
+            bounded,
+        })
+    }
+
+    /// The same system, searched in a part of its domain only. Roots on the part's boundary count as on the boundary.
+    ///
+    /// # Errors
+    ///
+    /// [`SystemError::Region`], [`SystemError::Variables`].
+    pub fn within(mut self, region: &[Interval]) -> Result<Self, SystemError> {
+        if region.len() != self.domain.len() {
+            return Err(SystemError::Variables {
+                variables: region.len(),
+            });
+        }
+        for (variable, (part, whole)) in region.iter().zip(&self.domain).enumerate() {
+            let width = whole.hi - whole.lo;
+            let (lo, hi) = ((part.lo - whole.lo) / width, (part.hi - whole.lo) / width);
+            if !(lo >= 0.0 && hi <= 1.0 && lo < hi) {
+                return Err(SystemError::Region { variable });
+            }
+            self.region.0[variable] = lo;
+            self.region.1[variable] = hi;
+        }
+        Ok(self)
+    }
+
+    /// The number of variables.
+    #[must_use]
+    pub fn variables(&self) -> usize {
+        self.layout.n
+    }
+
+    /// The number of equations.
+    #[must_use]
+    pub fn equations(&self) -> usize {
+        self.layout.m
+    }
+
+    /// The domain, one interval a variable.
+    #[must_use]
+    pub fn domain(&self) -> &[Interval] {
+        &self.domain
+    }
+
+    /// The coefficients that the solvers subdivide: after parts that depend on different variables were separated.
+    #[must_use]
+    pub fn coefficients(&self) -> usize {
+        self.layout.len
+    }
+
+    /// A cell over the region.
+    pub(crate) fn root(&self) -> Cell {
+        let mut cell = self.layout.root();
+        for j in 0..self.layout.n {
+            self.layout.restrict(&mut cell, j, self.region.0[j], self.region.1[j]);
+        }
+        cell
+    }
+
+    /// An inner box in the domain's coordinates, rounded outwards.
+    pub(crate) fn outward(&self, lo: &Row, hi: &Row) -> Vec<Interval> {
+        self.domain
+            .iter()
+            .enumerate()
+            .map(|(j, side)| {
+                let width = side.hi - side.lo;
+                let pad = 4.0 * EPSILON * (side.lo.abs().max(side.hi.abs()) + width * (lo[j].abs().max(hi[j].abs())));
+                let end = |s: f64| {
+                    if s == 0.0 {
+                        (side.lo, 0.0)
+                    } else if s == 1.0 {
+                        (side.hi, 0.0)
+                    } else {
+                        (side.lo + s * width, pad)
+                    }
+                };
+                let ((l, lp), (h, hp)) = (end(lo[j]), end(hi[j]));
+                Interval::new(l - lp, h + hp)
+            })
+            .collect()
+    }
+
+    /// An inner box in the domain's coordinates, rounded inwards.
+    pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Vec<Interval> {
+        let outer = self.outward(lo, hi);
+        let place = |(j, (o, side)): (usize, (Interval, &Interval))| {
+            let width = side.hi - side.lo;
+            let (l, h) = (side.lo + lo[j] * width, side.lo + hi[j] * width);
+            Interval::new(2.0 * l - o.lo, 2.0 * h - o.hi)
+        };
+        outer.into_iter().zip(&self.domain).enumerate().map(place).collect()
+    }
+
+    /// Whether nothing is known beyond the domain.
+    pub(crate) fn bounded(&self) -> bool {
+        self.bounded
+    }
+
+    /// An inner point in the domain's coordinates.
+    pub(crate) fn outer_point(&self, s: &Row) -> Vec<f64> {
+        let place = |(j, side): (usize, &Interval)| side.lo + s[j] * (side.hi - side.lo);
+        self.domain.iter().enumerate().map(place).collect()
+    }
+}
+
+/// Adds an equation's parts, normalised by a power of two.
+fn add(layout: &mut Layout, equation: usize, given: &Equation) -> Result<(), SystemError> {
+    let n = layout.n;
+    let not_finite = SystemError::NotFinite { equation };
+    if given.terms.is_empty() {
+        return Err(SystemError::EmptySum { equation });
+    }
+    let bounds_valid = |x: f64| x.is_finite() && x >= 0.0;
+    if !bounds_valid(given.remainder) || !bounds_valid(given.slope_remainder) {
+        return Err(not_finite);
+    }
+    let mut magnitude: f64 = 0.0;
+    for term in &given.terms {
+        if term.variables() != n {
+            return Err(SystemError::FormVariables {
+                equation,
+                variables: term.variables(),
+                expected: n,
+            });
+        }
+        if !bounds_valid(term.error()) {
+            return Err(not_finite);
+        }
+        let (lo, hi) = crate::tensor::range(term.coefficients());
+        if !(lo.is_finite() && hi.is_finite()) || term.coefficients().iter().any(|c| c.is_nan()) {
+            return Err(not_finite);
+        }
+        magnitude = magnitude.max(lo.abs()).max(hi.abs());
+        let degree = term.degrees().iter().copied().max().unwrap_or(0);
+        let coefficients = layout.len + term.coefficients().len();
+        if degree > MAX_DEGREE || coefficients > MAX_SYSTEM {
+            return Err(SystemError::TooLarge {
+                equation,
+                degree,
+                coefficients,
+            });
+        }
+    }
+    // A power of two: no rounding. Two factors, since one may overflow.
+    let exponent = if magnitude > 0.0 {
+        -(magnitude.log2().floor().clamp(-1074.0, 1023.0) as i32)
+    } else {
+        0
+    };
+    let (half, rest) = (2f64.powi(exponent / 2), 2f64.powi(exponent - exponent / 2));
+    let scaled = |x: f64| x * half * rest;
+    let mut noise = 0.0;
+    let mut remainder = scaled(given.remainder);
+    let mut slope_remainder = scaled(given.slope_remainder);
+    let mut degrees = 0;
+    for term in &given.terms {
+        let coefficients: Vec<f64> = term.coefficients().iter().map(|c| scaled(*c)).collect();
+        noise += scaled(term.error());
+        degrees += term.degrees().iter().sum::<usize>();
+        let separated = separate(term.degrees(), coefficients);
+        // The residual is one of coefficients; a little beyond the domain, at most (1 + 1/32)^(degrees) as much.
+        let top = term.degrees().iter().copied().max().unwrap_or(0) as f64;
+        let all: usize = term.degrees().iter().sum();
+        let residual = separated.residual * (1.0f64 + 1.0 / 32.0).powi(all as i32);
+        remainder += residual;
+        slope_remainder += 2.0 * top * residual;
+        for (degrees, block) in separated.blocks {
+            push(layout, equation, &degrees, &block);
+        }
+    }
+    // `push` may add to these. Underflow in the scaling: below any normal number's rounding.
+    layout.first_noise[equation] += noise + 1e-290;
+    layout.remainder[equation] += remainder;
+    layout.slope_remainder[equation] = slope_remainder;
+    layout.degrees = layout.degrees.max(degrees);
+    Ok(())
+}
+
+/// Adds a part. Parts of one equation must not share variables: one that does is added to the part that it shares them with.
+fn push(layout: &mut Layout, equation: usize, degrees: &[usize], block: &[f64]) {
+    let shares = |part: &Part| part.equation == equation && part.axes.iter().any(|a| degrees[a.variable] > 0);
+    let constant = degrees.iter().all(|d| *d == 0);
+    let own = layout.parts.iter().position(|p| p.equation == equation);
+    if constant && let Some(own) = own {
+        // A constant joins the first part.
+        let part = &layout.parts[own];
+        for x in &mut layout.first[part.offset..part.offset + part.len] {
+            *x += block[0];
+        }
+        layout.first_noise[equation] += 4.0 * EPSILON * (block[0].abs() + 2.0);
+        return;
+    }
+    let Some(sharing) = layout.parts.iter().position(shares) else {
+        append(layout, equation, degrees, block);
+        return;
+    };
+    // Elevate both to a common degree and add.
+    let part = layout.parts.remove(sharing);
+    let mut own = vec![0; layout.n];
+    for axis in &part.axes {
+        own[axis.variable] = axis.degree;
+    }
+    let old: Vec<f64> = layout.first.drain(part.offset..part.offset + part.len).collect();
+    for other in &mut layout.parts {
+        if other.offset > part.offset {
+            other.offset -= part.len;
+        }
+    }
+    layout.len -= part.len;
+    let sum = Bernstein::new(&own, old)
+        .and_then(|a| Bernstein::new(degrees, block.to_vec()).map(|b| a.add(&b)))
+        .ok();
+    let Some(sum) = sum else { return };
+    layout.first_noise[equation] += sum.error();
+    let (degrees, coefficients) = (sum.degrees().to_vec(), sum.coefficients().to_vec());
+    layout.remainder[equation] += sum.error();
+    push(layout, equation, &degrees, &coefficients);
+}
+
+fn append(layout: &mut Layout, equation: usize, degrees: &[usize], block: &[f64]) {
+    let mut axes = SmallVec::new();
+    let mut inner = 1;
+    for (variable, &degree) in degrees.iter().enumerate() {
+        if degree > 0 {
+            axes.push(Axis {
+                variable,
+                degree,
+                inner,
+            });
+            inner *= degree + 1;
+        }
+    }
+    layout.parts.push(Part {
+        equation,
+        offset: layout.first.len(),
+        len: block.len(),
+        axes,
+    });
+    layout.first.extend_from_slice(block);
+    layout.len = layout.first.len();
+}
+
+/// A tensor as a sum of tensors in disjoint variables.
+struct Separated {
+    blocks: Vec<(Vec<usize>, Vec<f64>)>,
+    /// Bound of the difference, coefficient by coefficient in the full basis.
+    residual: f64,
+}
+
+/// Finds variables on which a tensor does not depend, and groups of variables between which it does not mix, up to a few
+/// roundings of its largest coefficient (which is at most 2).
+fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
+    let n = degrees.len();
+    let tolerance = 8.0 * EPSILON * coefficients.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+    let mut residual = 0.0;
+    let mut degrees = degrees.to_vec();
+    let mut c = coefficients;
+    // Variables that change nothing.
+    for j in 0..n {
+        if degrees[j] == 0 {
+            continue;
+        }
+        let inner: usize = degrees[..j].iter().map(|d| d + 1).product();
+        let block = inner * (degrees[j] + 1);
+        let mut change: f64 = 0.0;
+        for b in c.chunks_exact(block) {
+            for (i, x) in b.iter().enumerate() {
+                change = change.max((x - b[i % inner]).abs());
+            }
+        }
+        if change <= tolerance {
+            residual += change * (1.0 + 4.0 * EPSILON);
+            c = c.chunks_exact(block).flat_map(|b| b[..inner].iter().copied()).collect();
+            degrees[j] = 0;
+        }
+    }
+    // Groups of variables that mix.
+    let active: Vec<usize> = (0..n).filter(|j| degrees[*j] > 0).collect();
+    let stride = |j: usize| degrees[..j].iter().map(|d| d + 1).product::<usize>();
+    let mut group: Vec<usize> = (0..n).collect();
+    for (a, &j) in active.iter().enumerate() {
+        for &k in &active[a + 1..] {
+            if group[j] == group[k] {
+                continue;
+            }
+            let (sj, sk) = (stride(j), stride(k));
+            let mixes = (0..c.len()).any(|i| {
+                let room = (i / sj) % (degrees[j] + 1) < degrees[j] && (i / sk) % (degrees[k] + 1) < degrees[k];
+                room && (c[i + sj + sk] - c[i + sj] - c[i + sk] + c[i]).abs() > tolerance
+            });
+            if mixes {
+                let (from, to) = (group[k], group[j]);
+                for g in &mut group {
+                    if *g == from {
+                        *g = to;
+                    }
+                }
+            }
+        }
+    }
+    let mut groups: Vec<usize> = active.iter().map(|j| group[*j]).collect();
+    groups.sort_unstable();
+    groups.dedup();
+    if groups.len() <= 1 {
+        return Separated {
+            blocks: vec![(degrees, c)],
+            residual,
+        };
+    }
+    let mut blocks: Vec<(Vec<usize>, Vec<f64>)> = Vec::new();
+    for (number, g) in groups.iter().enumerate() {
+        let own: Vec<usize> = (0..n).map(|j| if group[j] == *g { degrees[j] } else { 0 }).collect();
+        let block: Vec<f64> = (0..c.len())
+            .filter(|i| (0..n).all(|j| own[j] > 0 || degrees[j] == 0 || (i / stride(j)) % (degrees[j] + 1) == 0))
+            .map(|i| if number == 0 { c[i] } else { c[i] - c[0] })
+            .collect();
+        blocks.push((own, block));
+    }
+    let mut worst: f64 = 0.0;
+    let mut size: f64 = 0.0;
+    for (i, x) in c.iter().enumerate() {
+        let mut sum = 0.0;
+        for (own, block) in &blocks {
+            let (mut at, mut step) = (0, 1);
+            for j in 0..n {
+                if own[j] > 0 {
+                    at += step * ((i / stride(j)) % (degrees[j] + 1));
+                    step *= own[j] + 1;
+                }
+            }
+            sum += block[at];
+            size = size.max(block[at].abs());
+        }
+        worst = worst.max((sum - x).abs());
+    }
+    if worst > 8.0 * tolerance {
+        return Separated {
+            blocks: vec![(degrees, c)],
+            residual,
+        };
+    }
+    // The sums above round too.
+    residual += worst + 2.0 * EPSILON * blocks.len() as f64 * size;
+    Separated { blocks, residual }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit(n: usize) -> Vec<Interval> {
+        vec![Interval::new(0.0, 1.0); n]
+    }
+
+    #[test]
+    fn dense_sums_are_separated() {
+        let p = Bernstein::from_fn(&[8, 0], |i| ((i[0] * 5) % 7) as f64 - 3.0).unwrap();
+        let q = Bernstein::from_fn(&[0, 8], |i| ((i[1] * 3) % 5) as f64 - 2.0).unwrap();
+        let dense = p.elevated_to(&[8, 8]).add(&q.elevated_to(&[8, 8]));
+        let system = System::new(&unit(2), [&dense]).unwrap();
+        assert_eq!(system.coefficients(), 18);
+        let alone = System::new(&unit(2), [&p.elevated_to(&[8, 8])]).unwrap();
+        assert_eq!(alone.coefficients(), 9);
+    }
+
+    #[test]
+    fn mixed_forms_stay_whole() {
+        let xy = Bernstein::new(&[1, 1, 0], vec![0.0, 0.0, 0.0, 1.0]).unwrap();
+        let z = Bernstein::variable(3, 2);
+        let system = System::new(&unit(3), [&xy.add(&z)]).unwrap();
+        assert_eq!(system.coefficients(), 6);
+        let as_sum = System::new(&unit(3), [Equation::sum(vec![xy.clone(), z, xy])]).unwrap();
+        assert_eq!(as_sum.coefficients(), 6);
+    }
+
+    #[test]
+    fn extreme_scales_are_normalised() {
+        for factor in [1e-300, 1e300, 5e-324] {
+            let x = Bernstein::new(&[1], vec![-factor, factor]).unwrap();
+            let system = System::new(&unit(1), [&x]).unwrap();
+            assert!(system.layout.first.iter().all(|c| (0.5..=2.0).contains(&c.abs())));
+        }
+    }
+}
