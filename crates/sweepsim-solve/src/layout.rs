@@ -213,8 +213,13 @@ impl Layout {
     }
 
     /// Computes the cell's coefficients anew from the first ones, in twice the precision. Only inside the domain.
+    ///
+    /// Parts of one equation may be large where their sum is small: constants move to the first part, so that what is rounded is small.
     pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
-        for part in &self.parts {
+        let mut carried = [Double::default(); MAX_UNKNOWNS];
+        // Last parts first: the first part of each equation takes what the others give away.
+        for (number, part) in self.parts.iter().enumerate().rev() {
+            let e = part.equation;
             buffer.clear();
             buffer.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
             for axis in &part.axes {
@@ -223,8 +228,16 @@ impl Layout {
                     double::restrict(buffer, axis.degree, axis.inner, lo, hi);
                 }
             }
+            let is_first = !self.parts[..number].iter().any(|p| p.equation == e);
+            let shift = if is_first {
+                carried[e]
+            } else {
+                let away = buffer[part.len / 2];
+                carried[e] = carried[e].add(away);
+                Double::default().sub(away)
+            };
             for (x, d) in part.of_mut(&mut cell.c).iter_mut().zip(buffer.iter()) {
-                *x = d.hi;
+                *x = d.add(shift).hi;
             }
         }
         cell.noise = self.first_noise;
@@ -233,7 +246,7 @@ impl Layout {
             let e = part.equation;
             let steps: usize = part.axes.iter().map(|a| a.degree).sum();
             // Coefficients are normalised to at most 2 at first; the rounding to single precision is local.
-            cell.noise[e] += 2f64.powi(-94) * (steps + 1) as f64 + EPSILON * cell.scale[e];
+            cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 + EPSILON * cell.scale[e];
         }
     }
 

@@ -86,8 +86,10 @@ pub enum SolveError {
     Smallest,
 }
 
-/// The largest half width of `N`, in sides of the box, at which a certificate is tried.
-const TRY: f64 = 0.45;
+/// The largest half width `h` of `N`, in sides of the box, at which a certificate is tried: for a quadratic, `‖I − K J‖` is
+/// about `8 h` on the box and `24 h²` on the box three times as wide as `N`. After a failure it must have shrunk by [`AGAIN`].
+const TRY: f64 = 0.2;
+const AGAIN: f64 = 0.6;
 /// The least half width of the box `C`, in sides of the box.
 const LEAST: f64 = 1.0 / 16.0;
 /// How far beyond the domain a certificate may reach, in its sides: the bounds of separated forms hold so far.
@@ -96,7 +98,9 @@ pub(crate) const BEYOND: f64 = 1.0 / 64.0;
 const WORTH: f64 = 0.75;
 /// No side shrinks below this part in one reduction, nor below [`THIN`] of the widest.
 const SHRINK: f64 = 1.0 / 64.0;
-const THIN: f64 = 1e-3;
+const THIN: f64 = 1e-8;
+/// The least side, in those of the domain: some units in the last place.
+const LEAST_SIDE: f64 = 4e-15;
 /// Boxes are split here.
 const CUT: f64 = 0.492;
 /// Noise above this part of an equation's size makes its coefficients worth computing anew.
@@ -266,14 +270,15 @@ impl PointSolver {
     fn treat(&mut self, system: &System, depth: u32) -> Fate {
         let layout = &system.layout;
         let n = layout.n;
-        let mut attempts_left = 3;
+        let mut threshold = TRY;
         let (totals, inverted) = loop {
             let mut totals = layout.ranges(&mut self.cell);
             if excluded(&totals, n) {
                 return Fate::Sign;
             }
             let noisy = (0..n).any(|i| {
-                self.cell.noise[i] > NOISY * self.cell.scale[i] && self.cell.noise[i] > 4.0 * layout.first_noise[i]
+                let size = totals.0[i].abs().max(totals.1[i].abs());
+                self.cell.noise[i] > NOISY * size && self.cell.noise[i] > 4.0 * layout.first_noise[i]
             });
             if noisy && within_domain(&self.cell, n) {
                 layout.refresh(&mut self.cell, &mut self.doubles);
@@ -295,8 +300,9 @@ impl PointSolver {
                         return Fate::Linear;
                     }
                 }
-                if attempts_left > 0 && half[..n].iter().all(|h| *h <= TRY) {
-                    attempts_left -= 1;
+                let largest = half[..n].iter().fold(0.0, |m: f64, h| m.max(*h));
+                if largest <= threshold {
+                    threshold = AGAIN * largest;
                     match self.certify(system, &centre, &half) {
                         Verdict::Root(found) => {
                             self.found.push(found);
@@ -365,15 +371,17 @@ impl PointSolver {
         for j in 0..n {
             let (lo, hi) = (self.cell.lo[j], self.cell.hi[j]);
             let side = hi - lo;
-            let least = SHRINK
-                .max(THIN * widest / side)
-                .max(0.25 * self.options.smallest / side)
-                .min(1.0);
+            let least = SHRINK.max(THIN * widest / side).max(LEAST_SIDE / side).min(1.0);
             let (mut a, mut b) = window[j];
             // A tenth of slack on either side, and at least the least width.
             let middle = 0.5 * (a + b);
             let half = (0.55 * (b - a)).max(0.5 * least);
-            (a, b) = ((middle - half).max(0.0), (middle + half).min(1.0));
+            (a, b) = (middle - half, middle + half);
+            if a < 0.0 {
+                (a, b) = (0.0, (b - a).min(1.0));
+            } else if b > 1.0 {
+                (a, b) = ((1.0 - (b - a)).max(0.0), 1.0);
+            }
             if b - a > 0.9 {
                 continue;
             }

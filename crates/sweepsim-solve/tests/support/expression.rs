@@ -292,7 +292,12 @@ impl Polynomial {
             }
             stride *= d + 1;
         }
-        Bernstein::new(&degrees, c.iter().map(|x| x.to_f64().value()).collect()).unwrap()
+        let rounded: Vec<f64> = c.iter().map(|x| x.to_f64().value()).collect();
+        let error = c.iter().zip(&rounded).fold(0.0, |worst: f64, (x, r)| {
+            let difference = (x - exact(*r)).to_f64().value().abs();
+            worst.max(difference * (1.0 + 1e-12))
+        });
+        Bernstein::with_error(&degrees, rounded, error).unwrap()
     }
 
     /// The same as a sum of forms in disjoint variables.
