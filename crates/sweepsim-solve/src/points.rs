@@ -468,32 +468,37 @@ impl PointSolver {
         Verdict::Root(found)
     }
 
-    /// Drops roots that were found from several boxes.
+    /// Drops roots that were found from several boxes: only one whose enclosure leaves its box can have been.
     fn identify(&mut self, n: usize) {
+        let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
         let mut kept: Vec<Found> = Vec::with_capacity(self.found.len());
         let mut straddling: Vec<usize> = Vec::new();
         for next in self.found.drain(..) {
-            if next.straddles {
-                let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
-                if let Some(&same) = straddling.iter().find(|k| touches(&kept[**k], &next)) {
-                    let first = &mut kept[same];
-                    let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
-                        || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n);
-                    if one {
-                        first.boundary |= next.boundary;
-                        continue;
-                    }
-                    // Two enclosures that meet, neither within the other's box: say so rather than guess.
-                    self.open.push(Open {
-                        lo: next.lo,
-                        hi: next.hi,
-                        cause: Cause::Smallest,
-                        boxes: 1,
-                    });
+            let same = if next.straddles {
+                kept.iter().position(|k| touches(k, &next))
+            } else {
+                straddling.iter().copied().find(|k| touches(&kept[*k], &next))
+            };
+            let Some(same) = same else {
+                if next.straddles {
+                    straddling.push(kept.len());
                 }
-                straddling.push(kept.len());
+                kept.push(next);
+                continue;
+            };
+            let first = &mut kept[same];
+            let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
+                || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n);
+            first.boundary |= next.boundary;
+            if !one {
+                // Two enclosures that meet, neither within the other's box: one root or two.
+                self.open.push(Open {
+                    lo: next.lo,
+                    hi: next.hi,
+                    cause: Cause::Smallest,
+                    boxes: 1,
+                });
             }
-            kept.push(next);
         }
         self.found = kept;
     }

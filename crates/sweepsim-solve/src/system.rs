@@ -1,6 +1,7 @@
 //! Systems of equations in Bernstein form over a box, checked once and brought into the solvers' inner form.
 
 use crate::Interval;
+use crate::double::Double;
 use crate::layout::{Axis, Cell, EPSILON, Layout, MAX_DEGREE, Part};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use smallvec::SmallVec;
@@ -524,7 +525,8 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
     let mut worst: f64 = 0.0;
     let mut size: f64 = 0.0;
     for (i, x) in c.iter().enumerate() {
-        let mut sum = 0.0;
+        // In twice the precision: where nothing was rounded, the residual is next to 0.
+        let mut sum = Double::new(-x);
         for (own, block) in &blocks {
             let (mut at, mut step) = (0, 1);
             for j in 0..n {
@@ -533,10 +535,10 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
                     step *= own[j] + 1;
                 }
             }
-            sum += block[at];
+            sum = sum.add(Double::new(block[at]));
             size = size.max(block[at].abs());
         }
-        worst = worst.max((sum - x).abs());
+        worst = worst.max(sum.hi.abs());
     }
     if worst > 8.0 * tolerance {
         return Separated {
@@ -544,8 +546,8 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
             residual,
         };
     }
-    // The sums above round too.
-    residual += worst + 2.0 * EPSILON * blocks.len() as f64 * size;
+    // The sums above round too, a little.
+    residual += worst * (1.0 + 1e-12) + 2f64.powi(-98) * blocks.len() as f64 * size;
     Separated { blocks, residual }
 }
 

@@ -1,0 +1,196 @@
+//! Bad and degenerate input: structured errors or open boxes, never a panic, a hang or a flood.
+
+use std::time::{Duration, Instant};
+use sweepsim_solve::{
+    Cause, Equation, Fate, Interval, Observer, PointSolver, SolveError, SolveOptions, SolveStatistics, System,
+    SystemError,
+};
+use sweepsim_spline::Bernstein;
+
+fn unit(n: usize) -> Vec<Interval> {
+    vec![Interval::new(0.0, 1.0); n]
+}
+
+fn solve(forms: &[Bernstein]) -> sweepsim_solve::Points {
+    let start = Instant::now();
+    let system = System::new(&unit(forms.len()), forms).unwrap();
+    let points = PointSolver::default().solve(&system, &mut ()).unwrap();
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", points.statistics);
+    assert!(points.unresolved.len() < 40, "{} open boxes", points.unresolved.len());
+    points
+}
+
+#[test]
+fn domains_are_checked() {
+    let x = Bernstein::variable(1, 0);
+    for (lo, hi) in [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::NAN),
+        (f64::NEG_INFINITY, 0.0),
+        (-f64::MAX, f64::MAX),
+        (1e17, 1e17 + 16.0),
+    ] {
+        let bad = System::new(&[Interval::new(lo, hi)], [&x]);
+        assert_eq!(bad.unwrap_err(), SystemError::Domain { variable: 0 }, "{lo} {hi}");
+    }
+}
+
+#[test]
+fn remainders_are_checked() {
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let equation = Equation::from(Bernstein::variable(1, 0)).with_remainder(bad, 0.0);
+        assert_eq!(
+            System::new(&unit(1), [equation]).unwrap_err(),
+            SystemError::NotFinite { equation: 0 }
+        );
+    }
+    let empty = Equation::sum(Vec::new());
+    assert_eq!(
+        System::new(&unit(1), [empty]).unwrap_err(),
+        SystemError::EmptySum { equation: 0 }
+    );
+}
+
+#[test]
+fn counts_are_checked() {
+    let system = System::new(&unit(2), [Bernstein::variable(2, 0)]).unwrap();
+    let error = PointSolver::default().solve(&system, &mut ()).unwrap_err();
+    assert_eq!(
+        error,
+        SolveError::Equations {
+            equations: 1,
+            variables: 2,
+            expected: 2
+        }
+    );
+    let system = System::new(&unit(1), [Bernstein::variable(1, 0)]).unwrap();
+    for smallest in [0.0, -1.0, f64::NAN, 2.0] {
+        let mut solver = PointSolver::new(SolveOptions {
+            smallest,
+            ..SolveOptions::default()
+        });
+        assert_eq!(solver.solve(&system, &mut ()).unwrap_err(), SolveError::Smallest);
+    }
+    let nine = vec![Interval::new(0.0, 1.0); 9];
+    let error = System::new(&nine, [Bernstein::variable(9, 0)]).unwrap_err();
+    assert_eq!(error, SystemError::Variables { variables: 9 });
+}
+
+#[test]
+fn an_equation_that_is_zero_leaves_the_box_open() {
+    let zero = Bernstein::constant(2, 0.0);
+    let points = solve(&[
+        zero.clone(),
+        Bernstein::variable(2, 1).sub(&Bernstein::constant(2, 0.5)),
+    ]);
+    assert!(points.roots.is_empty());
+    assert_eq!(points.unresolved.len(), 1);
+    assert_eq!(points.unresolved[0].cause, Cause::Vanishing);
+    // Zero up to its stated error.
+    let noise = Bernstein::with_error(&[1, 1], vec![1e-17, -1e-17, 1e-17, 0.0], 1e-16).unwrap();
+    let points = solve(&[noise, Bernstein::variable(2, 1).sub(&Bernstein::constant(2, 0.5))]);
+    assert_eq!(points.unresolved.len(), 1);
+    // Zero, but the other equation has no root: nothing is open.
+    let points = solve(&[zero, Bernstein::constant(2, 1.0)]);
+    assert!(points.roots.is_empty() && points.unresolved.is_empty());
+}
+
+#[test]
+fn a_continuum_does_not_flood() {
+    // The same curve twice, a curve and its multiple, a curve and its square.
+    let circle = Bernstein::from_fn(&[2, 2], |i| [0.25, -0.25, 0.25][i[0]] + [0.25, -0.25, 0.25][i[1]] - 0.1).unwrap();
+    for other in [circle.clone(), circle.scale(-3.7), circle.mul(&circle)] {
+        let points = solve(&[circle.clone(), other]);
+        assert!(points.roots.is_empty());
+        assert!(
+            points
+                .unresolved
+                .iter()
+                .any(|u| u.cause == Cause::Flood || u.cause == Cause::Smallest)
+        );
+        // The circle is covered.
+        for k in 0..64 {
+            let angle = f64::from(k) * std::f64::consts::TAU / 64.0;
+            let radius = 0.1f64.sqrt();
+            let p = [0.5 + radius * angle.cos(), 0.5 + radius * angle.sin()];
+            let near = |b: &Interval, x: f64| b.lo - 1e-9 <= x && x <= b.hi + 1e-9;
+            assert!(
+                points
+                    .unresolved
+                    .iter()
+                    .any(|u| u.bounds.iter().zip(p).all(|(b, x)| near(b, x)))
+            );
+        }
+    }
+}
+
+#[test]
+fn budgets_hold_and_name_what_is_left() {
+    struct Stop;
+    impl Observer for Stop {
+        fn proceed(&mut self, _: &SolveStatistics) -> bool {
+            false
+        }
+    }
+    let wave = |axis: usize| {
+        let factor = |k: u32| {
+            let root = Bernstein::constant(2, (f64::from(k) + 0.5) / 6.0);
+            Bernstein::variable(2, axis).sub(&root).scale(6.0)
+        };
+        (1..6).fold(factor(0), |p, k| p.mul(&factor(k)))
+    };
+    let mixed = [wave(0).add(&wave(1).scale(0.01)), wave(1).sub(&wave(0).scale(0.02))];
+    let system = System::new(&unit(2), &mixed).unwrap();
+    let all = PointSolver::default().solve(&system, &mut ()).unwrap();
+    assert!(all.roots.len() > 30 && all.unresolved.is_empty());
+    let limited = |options: SolveOptions, cause: Cause, observer: &mut dyn Observer| {
+        let points = PointSolver::new(options).solve(&system, observer).unwrap();
+        assert!(points.unresolved.iter().any(|u| u.cause == cause), "{cause}");
+        for root in &all.roots {
+            let found = points.roots.iter().any(|r| r.point == root.point);
+            let open = points
+                .unresolved
+                .iter()
+                .any(|u| u.bounds.iter().zip(&root.point).all(|(b, x)| b.contains(*x)));
+            assert!(found || open, "{cause}: {:?} lost", root.point);
+        }
+    };
+    let options = SolveOptions::default;
+    limited(SolveOptions { boxes: 20, ..options() }, Cause::Boxes, &mut ());
+    limited(SolveOptions { depth: 3, ..options() }, Cause::Depth, &mut ());
+    limited(
+        SolveOptions {
+            time: Some(Duration::ZERO),
+            ..options()
+        },
+        Cause::Time,
+        &mut (),
+    );
+    limited(options(), Cause::Cancelled, &mut Stop);
+}
+
+#[test]
+fn observers_see_every_box() {
+    #[derive(Default)]
+    struct Count(Vec<Fate>);
+    impl Observer for Count {
+        fn traces(&self) -> bool {
+            true
+        }
+        fn visited(&mut self, bounds: &[Interval], _: u32, fate: Fate) {
+            assert!(bounds.iter().all(|b| b.lo < b.hi));
+            self.0.push(fate);
+        }
+    }
+    let x = Bernstein::from_fn(&[3], |i| [1.0, -2.0, 2.0, -1.0][i[0]]).unwrap();
+    let system = System::new(&unit(1), [&x]).unwrap();
+    let mut count = Count::default();
+    let points = PointSolver::default().solve(&system, &mut count).unwrap();
+    assert_eq!(count.0.len() as u64, points.statistics.boxes);
+    assert_eq!(
+        count.0.iter().filter(|f| **f == Fate::Certified).count(),
+        points.roots.len()
+    );
+}
