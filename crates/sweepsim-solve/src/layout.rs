@@ -250,6 +250,61 @@ impl Layout {
         }
     }
 
+    /// The equations on the face `variable = lo` (or `hi`) of the cell, as a layout in the other variables over that face.
+    ///
+    /// Coefficients are taken over as they are, but for a power of two.
+    pub(crate) fn face(&self, cell: &Cell, variable: usize, upper: bool) -> Layout {
+        let others = |j: usize| if j < variable { j } else { j - 1 };
+        let mut face = Layout {
+            n: self.n - 1,
+            m: self.m,
+            degrees: self.degrees,
+            ..Layout::default()
+        };
+        let mut factor = [1.0; MAX_UNKNOWNS];
+        for e in 0..self.m {
+            if cell.scale[e] > 0.0 {
+                factor[e] = 2f64.powi(-(cell.scale[e].log2().floor().clamp(-900.0, 900.0) as i32));
+            }
+            face.first_noise[e] = cell.noise[e] * factor[e];
+            face.remainder[e] = self.remainder[e] * factor[e];
+            let widest = (0..self.n).fold(0.0, |m: f64, j| m.max(cell.hi[j] - cell.lo[j]));
+            face.slope_remainder[e] = self.slope_remainder[e] * factor[e] * widest * (1.0 + 4.0 * EPSILON);
+        }
+        for part in &self.parts {
+            let c = part.of(&cell.c);
+            let offset = face.first.len();
+            let scaled = |x: &f64| x * factor[part.equation];
+            match part.axis(variable) {
+                Some(axis) => {
+                    let from = if upper { axis.degree * axis.inner } else { 0 };
+                    for block in c.chunks_exact((axis.degree + 1) * axis.inner) {
+                        face.first.extend(block[from..from + axis.inner].iter().map(scaled));
+                    }
+                }
+                None => face.first.extend(c.iter().map(scaled)),
+            }
+            let mut axes = SmallVec::new();
+            let mut inner = 1;
+            for axis in part.axes.iter().filter(|a| a.variable != variable) {
+                axes.push(Axis {
+                    variable: others(axis.variable),
+                    degree: axis.degree,
+                    inner,
+                });
+                inner *= axis.degree + 1;
+            }
+            face.parts.push(Part {
+                equation: part.equation,
+                offset,
+                len: inner,
+                axes,
+            });
+        }
+        face.len = face.first.len();
+        face
+    }
+
     /// The mean of each derivative over the cell (not rigorous; what uses it bounds the rest).
     pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
         let mut slope = ZERO;

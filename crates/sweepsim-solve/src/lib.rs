@@ -1,6 +1,7 @@
 //! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems
 
 mod charts;
+mod curves;
 mod double;
 mod interval;
 mod layout;
@@ -9,10 +10,12 @@ mod points;
 mod search;
 mod system;
 mod tensor;
+mod trace;
 
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };
+pub use curves::{Curve, CurvePoint, CurveSolver, Curves, End, Singular};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;
 pub use matrix::MAX_UNKNOWNS;

@@ -156,8 +156,8 @@ pub struct PointSolver {
     doubles: Vec<Double>,
     ranges: Vec<(f64, f64)>,
     pub(crate) found: Vec<Found>,
-    open: Vec<Open>,
-    statistics: SolveStatistics,
+    pub(crate) open: Vec<Open>,
+    pub(crate) statistics: SolveStatistics,
 }
 
 impl PointSolver {
@@ -219,6 +219,25 @@ impl PointSolver {
             unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
             statistics: self.statistics,
         })
+    }
+
+    /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
+    pub(crate) fn run(&mut self, system: &System, observer: &mut dyn Observer) {
+        let n = system.layout.n;
+        self.statistics = SolveStatistics::default();
+        self.found.clear();
+        self.open.clear();
+        let root = system.root();
+        self.search(system, root, observer);
+        self.identify(n);
+        // An open box inside a box where a found root is the only one holds nothing else.
+        let found = &self.found;
+        self.open.retain(|o| {
+            !found
+                .iter()
+                .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
+        });
+        unite(&mut self.open, n);
     }
 
     /// The depth-first search from one cell; adds to `found` and `open`.

@@ -230,6 +230,18 @@ impl System {
         Ok(self)
     }
 
+    /// A system over a face of a cell, in coordinates in which the face is `[0,1]ⁿ`.
+    pub(crate) fn on_face(&self, cell: &Cell, variable: usize, upper: bool) -> Self {
+        let layout = self.layout.face(cell, variable, upper);
+        let n = layout.n;
+        Self {
+            layout,
+            domain: SmallVec::from_elem(Interval::new(0.0, 1.0), n),
+            region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
+            bounded: self.bounded,
+        }
+    }
+
     /// The number of variables.
     #[must_use]
     pub fn variables(&self) -> usize {
@@ -295,6 +307,11 @@ impl System {
             Interval::new(2.0 * l - o.lo, 2.0 * h - o.hi)
         };
         outer.into_iter().zip(&self.domain).enumerate().map(place).collect()
+    }
+
+    /// Length of a side of the domain.
+    pub(crate) fn domain_width(&self, variable: usize) -> f64 {
+        self.domain[variable].hi - self.domain[variable].lo
     }
 
     /// Whether nothing is known beyond the domain.

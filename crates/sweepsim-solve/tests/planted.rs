@@ -216,7 +216,9 @@ fn near_pairs_of_exact_systems_are_told_apart() {
     for exponent in 7..=29 {
         let distance = 0.5f64.powi(exponent);
         for number in 0..10 {
-            let second: Vec<f64> = (0..2).map(|_| distance * (0.5 + 0.5 * random.direction().abs())).collect();
+            let second: Vec<f64> = (0..2)
+                .map(|_| distance * (0.5 + 0.5 * random.direction().abs()))
+                .collect();
             let case = case(&[vec![0.0; 2], second], &mut random);
             assert!(case.forms.iter().all(|f| f.error() == 0.0));
             let found = solve(&case.forms);

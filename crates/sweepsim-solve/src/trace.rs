@@ -1,0 +1,198 @@
+//! Polylines within a given distance of a certified piece of curve. Geometry only: what is connected to what is known before.
+//!
+//! Over a part of the cell between two points of the curve, the affine enclosures say that each other variable is an affine function of
+//! the graph's variable, up to `half`. Both ends lie in that tube, so the chord does, and the curve is within `2 half` of it.
+//! Where that is more than the tolerance, the part is halved at a point of the curve.
+
+use crate::System;
+use crate::curves::{Crossing, CurvePoint, Graph, minor, tube, without};
+use crate::double::Double;
+use crate::layout::Cell;
+use crate::matrix::{MAX_UNKNOWNS, Row, apply, inverse};
+
+/// A vertex in inner coordinates, with the tangent (unit length in the domain's).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Vertex {
+    pub point: Row,
+    pub tangent: Row,
+}
+
+/// Halvings above which a piece is given up.
+const DEPTH: u32 = 40;
+
+pub(crate) struct Tracer<'a> {
+    system: &'a System,
+    tolerance: f64,
+    buffer: Vec<f64>,
+    doubles: Vec<Double>,
+}
+
+impl<'a> Tracer<'a> {
+    pub(crate) fn new(system: &'a System, tolerance: f64) -> Self {
+        Self {
+            system,
+            tolerance,
+            buffer: Vec::new(),
+            doubles: Vec::new(),
+        }
+    }
+
+    pub(crate) fn doubles(&mut self) -> &mut Vec<Double> {
+        &mut self.doubles
+    }
+
+    /// The vertices from one end to the other, `ends` being sorted by the graph's variable.
+    pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&Crossing; 2]) -> Option<Vec<Vertex>> {
+        let mut vertices = vec![self.vertex(cell, graph, &ends[0].point)];
+        let mut part = cell.clone();
+        self.halve(
+            cell,
+            &mut part,
+            graph,
+            [ends[0].point, ends[1].point],
+            DEPTH,
+            &mut vertices,
+        )?;
+        Some(vertices)
+    }
+
+    /// Adds the vertices after the first end.
+    fn halve(
+        &mut self,
+        cell: &Cell,
+        part: &mut Cell,
+        graph: &Graph,
+        ends: [Row; 2],
+        depth: u32,
+        out: &mut Vec<Vertex>,
+    ) -> Option<()> {
+        let layout = &self.system.layout;
+        let (n, over) = (layout.n, graph.over);
+        let (from, to) = (ends[0][over], ends[1][over]);
+        // The part of the cell between the two points, shrunk to its tube.
+        part.clone_from(cell);
+        let close = {
+            let width = to - from;
+            if width > 1e-13 * (cell.hi[over] - cell.lo[over]) && from >= cell.lo[over] && to <= cell.hi[over] {
+                layout.restrict(part, over, from, to);
+            }
+            let mut distance = f64::INFINITY;
+            for _ in 0..4 {
+                layout.ranges(part);
+                let mean = layout.mean_slopes(&part.c);
+                let local = match inverse(&without(&mean, over, layout.m), layout.m) {
+                    Some((inverse, sign)) => Graph { over, inverse, sign },
+                    None => break,
+                };
+                let (centre, slope, half) = tube(layout, part, &mean, &local);
+                let mut square = 0.0;
+                let mut shrunk = false;
+                let mut place = 0;
+                let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
+                for j in (0..n).filter(|j| *j != over) {
+                    let side = part.hi[j] - part.lo[j];
+                    let error = 2.0 * half[place] * side * self.system.domain_width(j);
+                    square += error * error;
+                    let reach = 0.5 * slope[place].abs() + half[place];
+                    let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
+                    let hi = (part.lo[j] + (0.5 + centre[place] + 1.05 * reach) * side).min(part.hi[j]);
+                    windows[j] = (lo, hi);
+                    shrunk |= hi - lo < 0.8 * side;
+                    place += 1;
+                }
+                distance = f64::sqrt(square);
+                if distance <= self.tolerance || !shrunk {
+                    break;
+                }
+                for j in (0..n).filter(|j| *j != over) {
+                    let (lo, hi) = windows[j];
+                    let side = part.hi[j] - part.lo[j];
+                    if hi - lo > 1e-6 * side && hi - lo < 0.9 * side {
+                        layout.restrict(part, j, lo, hi);
+                    }
+                }
+            }
+            distance <= self.tolerance
+        };
+        if close || depth == 0 {
+            out.push(self.vertex(cell, graph, &ends[1]));
+            return close.then_some(());
+        }
+        let middle = self.between(cell, graph, &ends)?;
+        self.halve(cell, part, graph, [ends[0], middle], depth - 1, out)?;
+        self.halve(cell, part, graph, [middle, ends[1]], depth - 1, out)
+    }
+
+    /// The curve's point halfway in the graph's variable.
+    fn between(&mut self, cell: &Cell, graph: &Graph, ends: &[Row; 2]) -> Option<Row> {
+        let layout = &self.system.layout;
+        let (n, m, over) = (layout.n, layout.m, graph.over);
+        let side = |j: usize| cell.hi[j] - cell.lo[j];
+        let mut s = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            s[j] = (0.5 * (ends[0][j] + ends[1][j]) - cell.lo[j]) / side(j);
+        }
+        let mut before = f64::INFINITY;
+        for _ in 0..60 {
+            let (value, jacobian) = layout.evaluate(&cell.c, &s, &mut self.buffer);
+            let newton = inverse(&without(&jacobian, over, m), m).map_or(graph.inverse, |(k, _)| k);
+            let step = apply(&newton, &value, m);
+            let mut size: f64 = 0.0;
+            for (i, j) in (0..n).filter(|j| *j != over).enumerate() {
+                // The root lies in the cell: steps beyond it are cut.
+                s[j] = (s[j] - step[i]).clamp(-0.1, 1.1);
+                size = size.max(step[i].abs());
+            }
+            if size <= 1e-15 || (size < 1e-10 && size >= 0.25 * before) {
+                break;
+            }
+            before = size;
+        }
+        let mut x = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            if !(-1e-9..=1.0 + 1e-9).contains(&s[j]) {
+                return None;
+            }
+            x[j] = cell.lo[j] + s[j] * side(j);
+        }
+        (before < 1e-6).then_some(x)
+    }
+
+    /// The point with its tangent: towards growing values of the graph's variable.
+    fn vertex(&mut self, cell: &Cell, graph: &Graph, point: &Row) -> Vertex {
+        let layout = &self.system.layout;
+        let (n, m) = (layout.n, layout.m);
+        let mut s = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            s[j] = (point[j] - cell.lo[j]) / (cell.hi[j] - cell.lo[j]);
+        }
+        let (_, mut jacobian) = layout.evaluate(&cell.c, &s, &mut self.buffer);
+        // Columns with respect to the domain's units, rows of length one: any scale gives the same direction.
+        for row in jacobian.iter_mut().take(m) {
+            for j in 0..n {
+                row[j] /= (cell.hi[j] - cell.lo[j]) * self.system.domain_width(j);
+            }
+            let length = row[..n].iter().fold(0.0, |l: f64, x| l.max(x.abs()));
+            row.iter_mut().for_each(|x| *x /= length);
+        }
+        let mut tangent = [0.0; MAX_UNKNOWNS];
+        let mut square = 0.0;
+        for j in 0..n {
+            let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
+            tangent[j] = sign * minor(&jacobian, j, m);
+            square += tangent[j] * tangent[j];
+        }
+        let forward = if tangent[graph.over] < 0.0 { -1.0 } else { 1.0 };
+        let factor = forward / f64::sqrt(square);
+        tangent.iter_mut().for_each(|x| *x *= factor);
+        Vertex { point: *point, tangent }
+    }
+
+    /// A vertex in the domain's coordinates.
+    pub(crate) fn outer(&self, vertex: &Vertex) -> CurvePoint {
+        CurvePoint {
+            point: self.system.outer_point(&vertex.point),
+            tangent: vertex.tangent[..self.system.layout.n].to_vec(),
+        }
+    }
+}
