@@ -112,6 +112,48 @@ struct OpenCell {
     crossings: Vec<usize>,
 }
 
+/// Open cells near one another, with a box around them.
+struct Cluster {
+    members: Vec<usize>,
+    lo: Row,
+    hi: Row,
+}
+
+impl Cluster {
+    fn of(open: &[OpenCell], number: usize, n: usize) -> Self {
+        let (mut lo, mut hi) = (open[number].lo, open[number].hi);
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max(hi[j] - lo[j]));
+        for j in 0..n {
+            lo[j] -= widest;
+            hi[j] += widest;
+        }
+        Self {
+            members: vec![number],
+            lo,
+            hi,
+        }
+    }
+
+    fn unite(&mut self, other: Self, n: usize) {
+        self.members.extend(other.members);
+        for j in 0..n {
+            self.lo[j] = self.lo[j].min(other.lo[j]);
+            self.hi[j] = self.hi[j].max(other.hi[j]);
+        }
+    }
+}
+
+/// Two clusters whose boxes meet.
+fn near_pair(clusters: &[Cluster], n: usize) -> Option<(usize, usize)> {
+    let meet = |a: &Cluster, b: &Cluster| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
+    for b in 1..clusters.len() {
+        if let Some(a) = (0..b).find(|a| meet(&clusters[*a], &clusters[b])) {
+            return Some((a, b));
+        }
+    }
+    None
+}
+
 /// The 1-D solver.
 ///
 /// ```
@@ -546,41 +588,17 @@ impl Search<'_> {
     /// Joins pieces at shared crossings.
     fn assemble(self, skin: f64) -> Curves {
         let n = self.system.layout.n;
-        // United open cells, each with the crossings of its outside: those that only one of its cells has.
-        let mut groups: Vec<usize> = (0..self.open.len()).collect();
-        for a in 0..self.open.len() {
-            for b in 0..a {
-                let (x, y) = (&self.open[a], &self.open[b]);
-                let near = (0..n).all(|j| {
-                    let pad = 0.01 * (x.hi[j] - x.lo[j]).min(y.hi[j] - y.lo[j]);
-                    x.lo[j] <= y.hi[j] + pad && y.lo[j] <= x.hi[j] + pad
-                });
-                if near && groups[a] != groups[b] {
-                    let (from, to) = (groups[a], groups[b]);
-                    groups.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
-                }
-            }
+        // Open cells that are near one another, measured by the size of what is united already, are one cluster: around a singular
+        // point some cells in between are settled. Each cluster has the crossings that only one of its cells has.
+        let mut clusters: Vec<Cluster> = (0..self.open.len()).map(|o| Cluster::of(&self.open, o, n)).collect();
+        while let Some((a, b)) = near_pair(&clusters, n) {
+            let other = clusters.remove(b);
+            clusters[a].unite(other, n);
         }
-        let mut heads: Vec<usize> = groups.clone();
-        heads.sort_unstable();
-        heads.dedup();
         let mut at_group: Vec<Option<usize>> = vec![None; self.crossings.len()];
         let mut singular = Vec::new();
-        for (number, head) in heads.iter().enumerate() {
-            let members: Vec<&OpenCell> = self
-                .open
-                .iter()
-                .zip(&groups)
-                .filter(|(_, g)| *g == head)
-                .map(|(o, _)| o)
-                .collect();
-            let (mut lo, mut hi) = (members[0].lo, members[0].hi);
-            for o in &members {
-                for j in 0..n {
-                    lo[j] = lo[j].min(o.lo[j]);
-                    hi[j] = hi[j].max(o.hi[j]);
-                }
-            }
+        for (number, cluster) in clusters.iter().enumerate() {
+            let members: Vec<&OpenCell> = cluster.members.iter().map(|o| &self.open[*o]).collect();
             for c in members.iter().flat_map(|o| &o.crossings) {
                 let once = members.iter().filter(|o| o.crossings.contains(c)).count() == 1;
                 if once {
@@ -588,7 +606,7 @@ impl Search<'_> {
                 }
             }
             singular.push(Singular {
-                bounds: self.system.outward(&lo, &hi),
+                bounds: self.system.outward(&cluster.lo, &cluster.hi),
                 cause: members[0].cause,
                 branches: Vec::new(),
             });
@@ -660,6 +678,13 @@ impl Search<'_> {
             }
             if skin > 0.0 && self.only_in_skin(&chain) {
                 continue;
+            }
+            if let (Some(a), Some(b)) = (at_group[ends[0]], at_group[ends[1]]) {
+                // A bit of curve within the cluster's box is part of the cluster.
+                let inside = |p: &CurvePoint| singular[a].bounds.iter().zip(&p.point).all(|(b, x)| b.contains(*x));
+                if a == b && !closed && points.iter().all(inside) {
+                    continue;
+                }
             }
             let number = curves.len();
             let mut end = |k: usize| -> End {
