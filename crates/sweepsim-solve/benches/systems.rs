@@ -5,8 +5,11 @@ use sweepsim_spline::Bernstein;
 
 /// A named system.
 pub struct Named {
+    /// What it is called.
     pub name: &'static str,
+    /// Its equations.
     pub system: System,
+    /// How many roots it has.
     pub roots: usize,
 }
 

@@ -120,6 +120,7 @@ pub(crate) struct Found {
     pub boundary: bool,
 }
 
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
 enum Verdict {
     Root(Found),
     Elsewhere,
