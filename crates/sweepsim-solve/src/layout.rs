@@ -71,6 +71,8 @@ pub(crate) struct Layout {
     /// The first coefficients, and their noise.
     pub first: Vec<f64>,
     pub first_noise: Row,
+    /// What each equation was multiplied by: a power of two.
+    pub factor: Row,
 }
 
 /// A box with the coefficients of all equations over it.

@@ -372,6 +372,7 @@ fn add(layout: &mut Layout, equation: usize, given: &Equation) -> Result<(), Sys
     };
     let (half, rest) = (2f64.powi(exponent / 2), 2f64.powi(exponent - exponent / 2));
     let scaled = |x: f64| x * half * rest;
+    layout.factor[equation] = scaled(1.0);
     let mut noise = 0.0;
     let mut remainder = scaled(given.remainder);
     let mut slope_remainder = scaled(given.slope_remainder);
