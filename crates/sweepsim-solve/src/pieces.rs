@@ -289,7 +289,8 @@ fn one_root(systems: &[&System], bounds: &[Interval]) -> Option<(Vec<f64>, Vec<I
             mean[i][j] = 0.5 * (lo[i][j] + hi[i][j]);
             reach += lo[i][j].abs().max(hi[i][j].abs());
         }
-        if !(most[i] - least[i] <= reach) {
+        let continuous = most[i] - least[i] <= reach;
+        if !continuous {
             return None;
         }
     }

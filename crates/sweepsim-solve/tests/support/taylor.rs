@@ -212,7 +212,11 @@ pub fn equation(expression: &Expression, cell: &[Interval]) -> Equation {
 fn to_bernstein(d: usize) -> Vec<Vec<RBig>> {
     let binomial = |n: usize, k: usize| (0..k).fold(RBig::ONE, |b, i| b * RBig::from(n - i) / RBig::from(i + 1));
     let term = |i: usize, k: usize, l: usize| {
-        let sign = if (k - l) % 2 == 0 { RBig::ONE } else { -RBig::ONE };
+        let sign = if (k - l).is_multiple_of(2) {
+            RBig::ONE
+        } else {
+            -RBig::ONE
+        };
         let two = (0..l).fold(RBig::ONE, |p, _| p * RBig::from(2));
         sign * binomial(k, l) * two * binomial(i, l) / binomial(d, l)
     };

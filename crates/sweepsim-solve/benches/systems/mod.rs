@@ -5,8 +5,11 @@ use sweepsim_spline::Bernstein;
 
 /// A named system.
 pub struct Named {
+    /// Its name.
     pub name: &'static str,
+    /// The system.
     pub system: System,
+    /// How many roots it has, if that is known, else 0.
     pub roots: usize,
 }
 
