@@ -1,5 +1,19 @@
-//! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems
+//! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems.
+//!
+//! A [`System`] is a number of equations in Bernstein form over a box. [`PointSolver`] finds all roots of square systems, [`CurveSolver`] the curves
+//! of systems with one equation fewer, [`SurfaceSolver`] the surface of one equation in three unknowns, [`ChartSolver`] the preimages of many
+//! targets under one map. [`Pieces`] makes systems of splines.
+//!
+//! Nothing is lost: what a solver cannot certify it returns as an open box with its [`Cause`]. Every decision by a sign carries a bound of its
+//! rounding, from the coefficients (which count as exact unless they come with an error bound) to the result.
+//!
+//! | read | for |
+//! | --- | --- |
+//! | [`points`](PointSolver) | the tests of a box, and why they suffice |
+//! | `layout.rs`, `tensor.rs` | how coefficients lie, and what rounding does to them |
+//! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
 
+mod certify;
 mod charts;
 mod curves;
 mod double;
@@ -7,12 +21,15 @@ mod interval;
 mod layout;
 mod matrix;
 mod mesh;
+mod part;
+mod picture;
+mod pieces;
 mod points;
 mod search;
+mod separate;
 mod surface;
 mod system;
 mod tensor;
-mod trace;
 
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
@@ -21,7 +38,14 @@ pub use curves::{Curve, CurvePoint, CurveSolver, Curves, End, Singular};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;
 pub use matrix::MAX_UNKNOWNS;
+pub use picture::Picture;
+pub use pieces::{Pieces, PiecesError};
 pub use points::{Place, PointSolver, Points, Root, SolveError};
 pub use search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Unresolved};
 pub use surface::{Surface, SurfaceSolver};
 pub use system::{Equation, MAX_SYSTEM, System, SystemError};
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -35,9 +35,6 @@ pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
     }
     for i in 0..n {
         let largest = a[i][..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        if !(largest > 0.0) {
-            return None;
-        }
         rows[i] = 1.0 / largest;
         if !f64::is_finite(rows[i]) {
             return None;
@@ -59,7 +56,8 @@ pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
                 pivot = i;
             }
         }
-        if !(a[pivot][c].abs() > SINGULAR) {
+        let regular = a[pivot][c].abs() > SINGULAR;
+        if !regular {
             return None;
         }
         if pivot != c {

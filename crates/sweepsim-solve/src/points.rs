@@ -14,9 +14,10 @@
 //! A box at the smallest size stays open, with its cause. A root on a face between boxes is found from both, and is known to be the
 //! same because each is the only one in a box `C` that also holds the other: never because it is near.
 
+use crate::certify::{Found, newton_box, unique_root};
 use crate::double::Double;
-use crate::layout::{Affine, Cell, EPSILON, Layout};
-use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
+use crate::layout::{Cell, EPSILON, Layout};
+use crate::matrix::{MAX_UNKNOWNS, Row, Square, inverse};
 use crate::search::{Cause, Fate, Observer, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
 use crate::{Interval, System};
 use thiserror::Error;
@@ -106,21 +107,7 @@ const CUT: f64 = 0.492;
 /// Noise above this part of an equation's size makes its coefficients worth computing anew.
 const NOISY: f64 = 1.5e-8;
 
-/// A certified root in inner coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
-    pub point: Row,
-    pub lo: Row,
-    pub hi: Row,
-    pub unique_lo: Row,
-    pub unique_hi: Row,
-    pub orientation: i8,
-    /// Whether the enclosure leaves the box that it was found from.
-    pub straddles: bool,
-    pub boundary: bool,
-}
-
-#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack")]
+#[expect(clippy::large_enum_variant, reason = "made once an attempt, and taken apart at once")]
 enum Verdict {
     Root(Found),
     Elsewhere,
@@ -407,7 +394,8 @@ impl PointSolver {
             }
             let new_lo = if a > 0.0 { (lo + a * side).max(lo) } else { lo };
             let new_hi = if b < 1.0 { (lo + b * side).min(hi) } else { hi };
-            if !(new_lo < new_hi) || (new_lo == lo && new_hi == hi) {
+            let smaller = new_lo < new_hi && (new_lo != lo || new_hi != hi);
+            if !smaller {
                 continue;
             }
             worth |= new_hi - new_lo < 0.85 * side;
@@ -467,7 +455,8 @@ impl PointSolver {
             let middle = 0.5 + centre[j];
             let lo = (cell.lo[j] + (middle - reach) * side).max(-limit);
             let hi = (cell.lo[j] + (middle + reach) * side).min(1.0 + limit);
-            if !(hi - lo > 64.0 * EPSILON * lo.abs().max(hi.abs())) {
+            let wide = hi - lo > 64.0 * EPSILON * lo.abs().max(hi.abs());
+            if !wide {
                 return Verdict::Unclear;
             }
             layout.restrict(trial, j, lo, hi);
@@ -542,138 +531,6 @@ pub(crate) fn within_domain(cell: &Cell, n: usize) -> bool {
 
 pub(crate) fn excluded(totals: &(Row, Row), m: usize) -> bool {
     (0..m).any(|i| totals.0[i] > 0.0 || totals.1[i] < 0.0)
-}
-
-/// Centre and half widths of the box that holds all roots of the cell, from its centre, in its sides.
-pub(crate) fn newton_box(affine: &Affine, k: &Square, n: usize) -> (Row, Row) {
-    let (mut centre, mut half) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
-    for i in 0..n {
-        let (mut sum, mut size) = (0.0, 0.0);
-        for e in 0..n {
-            sum -= k[i][e] * affine.constant[e];
-            size += k[i][e].abs() * affine.constant[e].abs();
-            half[i] += k[i][e].abs() * affine.radius[e];
-        }
-        // |I − K A| on z within ±½, with the rounding of its entries.
-        let mut rest = 0.0;
-        for j in 0..n {
-            let (mut entry, mut entries) = (if i == j { -1.0 } else { 0.0 }, 1.0);
-            for e in 0..n {
-                entry += k[i][e] * affine.slope[e][j];
-                entries += (k[i][e] * affine.slope[e][j]).abs();
-            }
-            rest += 0.5 * (f64::abs(entry) + 16.0 * EPSILON * entries);
-        }
-        centre[i] = sum;
-        half[i] = (half[i] + rest) * (1.0 + 32.0 * EPSILON) + 16.0 * EPSILON * (size + 1.0);
-    }
-    (centre, half)
-}
-
-/// Proves that the cell holds exactly one root, and encloses it; `None` if that cannot be proved.
-pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64>) -> Option<Found> {
-    let n = layout.n;
-    layout.ranges(cell);
-    let mean = layout.mean_slopes(&cell.c);
-    let (k, orientation) = inverse(&mean, n)?;
-    let affine = layout.affine(cell, mean);
-    let (centre, half) = newton_box(&affine, &k, n);
-    if !(0..n).all(|j| centre[j].abs() + half[j] < 0.5) {
-        return None;
-    }
-    // |I − K J| over the cell.
-    let slopes = layout.slopes(cell);
-    let mut rest = ZERO;
-    let mut contraction: f64 = 0.0;
-    for i in 0..n {
-        let mut row = 0.0;
-        for j in 0..n {
-            let (mut middle, mut radius, mut size) = (if i == j { -1.0 } else { 0.0 }, 0.0, 1.0);
-            for e in 0..n {
-                let (lo, hi) = (slopes.lo[e][j], slopes.hi[e][j]);
-                middle += k[i][e] * (0.5 * (lo + hi));
-                radius += k[i][e].abs() * (0.5 * (hi - lo));
-                size += k[i][e].abs() * lo.abs().max(hi.abs());
-            }
-            rest[i][j] = f64::abs(middle) + radius + 32.0 * EPSILON * size;
-            row += rest[i][j];
-        }
-        contraction = contraction.max(row);
-    }
-    if !(contraction < 0.999) {
-        return None;
-    }
-    // Newton's method inside the cell; the last point's error is bounded whatever it is.
-    let mut s = [0.0; MAX_UNKNOWNS];
-    for j in 0..n {
-        s[j] = 0.5 + centre[j];
-    }
-    let mut before = f64::INFINITY;
-    let mut value;
-    let mut steps = 0;
-    loop {
-        let jacobian;
-        (value, jacobian) = layout.evaluate(&cell.c, &s, buffer);
-        let step = match inverse(&jacobian, n) {
-            Some((k, _)) => apply(&k, &value, n),
-            None => apply(&k, &value, n),
-        };
-        let size = step[..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        steps += 1;
-        // Quadratic convergence: the step after one of 1e-9 would be below rounding, but the value at the end is needed.
-        if size == 0.0 || !(size < before) || steps > 30 {
-            break;
-        }
-        before = size;
-        let mut moved = false;
-        for j in 0..n {
-            let next = (s[j] - step[j]).clamp(0.0, 1.0);
-            moved |= next != s[j];
-            s[j] = next;
-        }
-        if !moved {
-            break;
-        }
-        if size < 1e-8 {
-            (value, _) = layout.evaluate(&cell.c, &s, buffer);
-            break;
-        }
-    }
-    let mut direct = [0.0; MAX_UNKNOWNS];
-    let mut largest: f64 = 0.0;
-    for i in 0..n {
-        let (mut sum, mut error) = (0.0, 0.0);
-        for e in 0..n {
-            sum += k[i][e] * value[e];
-            error += k[i][e].abs() * (layout.value_error(cell, e) + 16.0 * EPSILON * f64::abs(value[e]));
-        }
-        direct[i] = f64::abs(sum) + error;
-        largest = largest.max(direct[i]);
-    }
-    let all = largest / (1.0 - contraction) * (1.0 + 8.0 * EPSILON);
-    if !(all <= 1.0) {
-        return None;
-    }
-    let mut found = Found {
-        point: [0.0; MAX_UNKNOWNS],
-        lo: [0.0; MAX_UNKNOWNS],
-        hi: [0.0; MAX_UNKNOWNS],
-        unique_lo: cell.lo,
-        unique_hi: cell.hi,
-        orientation,
-        straddles: false,
-        boundary: false,
-    };
-    for i in 0..n {
-        let error = direct[i] + rest[i][..n].iter().sum::<f64>() * all;
-        let side = cell.hi[i] - cell.lo[i];
-        let x = cell.lo[i] + s[i] * side;
-        let pad = error * side * (1.0 + 8.0 * EPSILON) + 2.0 * EPSILON * (x.abs() + side);
-        found.point[i] = x;
-        found.lo[i] = (x - pad).max(cell.lo[i]);
-        found.hi[i] = (x + pad).min(cell.hi[i]);
-    }
-    Some(found)
 }
 
 pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {

@@ -131,6 +131,21 @@ pub struct SolveStatistics {
 }
 
 impl SolveStatistics {
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.boxes += other.boxes;
+        self.sign += other.sign;
+        self.linear += other.linear;
+        self.projection += other.projection;
+        self.certified += other.certified;
+        self.elsewhere += other.elsewhere;
+        self.splits += other.splits;
+        self.unresolved += other.unresolved;
+        self.reductions += other.reductions;
+        self.attempts += other.attempts;
+        self.refreshed += other.refreshed;
+        self.depth = self.depth.max(other.depth);
+    }
+
     pub(crate) fn count(&mut self, fate: Fate) {
         *match fate {
             Fate::Sign => &mut self.sign,

@@ -174,7 +174,8 @@ impl SurfaceSolver {
                 expected: 1,
             });
         }
-        if !(1e-14..=1.0).contains(&self.options.smallest) || !(self.tolerance > 0.0) {
+        let possible = (1e-14..=1.0).contains(&self.options.smallest) && self.tolerance > 0.0;
+        if !possible {
             return Err(SolveError::Smallest);
         }
         let deepest = self.options.smallest.log2().abs().ceil() as u32;

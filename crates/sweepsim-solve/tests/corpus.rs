@@ -76,7 +76,8 @@ fn check(stored: &Stored) -> (String, Option<String>) {
             }
             (points, best)
         }
-        None => solve_in_cells(stored, 16),
+        // Finer cells where the waves are short.
+        None => solve_in_cells(stored, if stored.bounds[0].radius() > 1.5 { 16 } else { 8 }),
     };
     let expected = stored.expected.as_u64().unwrap() as usize;
     // Multiple as well: x = −7/20, z = 0 makes rose's second equation a square.

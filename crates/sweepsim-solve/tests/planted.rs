@@ -171,9 +171,9 @@ fn solve(forms: &[Bernstein]) -> Points {
 fn planted_roots_on_faces_corners_and_cuts_are_found() {
     let mut random = Random(1);
     let (mut roots, mut certified) = (0, 0);
-    for n in 1..=3 {
-        for number in 0..[0, 60, 120, 40][n] {
-            let count = 1 + random.below(if n == 3 { 2 } else { 4 }) as usize;
+    for n in 1..=6 {
+        for number in 0..[0, 60, 120, 40, 20, 10, 5][n] {
+            let count = 1 + random.below(if n >= 3 { 2 } else { 4 }) as usize;
             let points: Vec<Vec<f64>> = (0..count)
                 .map(|_| (0..n).map(|_| random.coordinate()).collect())
                 .collect();

@@ -4,8 +4,10 @@
 //! the graph's variable, up to `half`. Both ends lie in that tube, so the chord does, and the curve is within `2 half` of it.
 //! Where that is more than the tolerance, the part is halved at a point of the curve.
 
+use super::CurvePoint;
+use super::graph::{Graph, minor, tube, without};
+use super::subdivide::Crossing;
 use crate::System;
-use crate::curves::{Crossing, CurvePoint, Graph, minor, tube, without};
 use crate::double::Double;
 use crate::layout::Cell;
 use crate::matrix::{MAX_UNKNOWNS, Row, apply, inverse};
@@ -87,9 +89,8 @@ impl<'a> Tracer<'a> {
                 let (centre, slope, half) = tube(layout, part, &mean, &local);
                 let mut square = 0.0;
                 let mut shrunk = false;
-                let mut place = 0;
                 let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
-                for j in (0..n).filter(|j| *j != over) {
+                for (place, j) in (0..n).filter(|j| *j != over).enumerate() {
                     let side = part.hi[j] - part.lo[j];
                     let error = 2.0 * half[place] * side * self.system.domain_width(j);
                     square += error * error;
@@ -98,7 +99,6 @@ impl<'a> Tracer<'a> {
                     let hi = (part.lo[j] + (0.5 + centre[place] + 1.05 * reach) * side).min(part.hi[j]);
                     windows[j] = (lo, hi);
                     shrunk |= hi - lo < 0.8 * side;
-                    place += 1;
                 }
                 distance = f64::sqrt(square);
                 if distance <= self.tolerance || !shrunk {

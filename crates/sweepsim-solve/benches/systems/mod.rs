@@ -5,11 +5,11 @@ use sweepsim_spline::Bernstein;
 
 /// A named system.
 pub struct Named {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
-    /// Its equations.
+    /// The system.
     pub system: System,
-    /// How many roots it has.
+    /// How many roots it has, if that is known, else 0.
     pub roots: usize,
 }
 

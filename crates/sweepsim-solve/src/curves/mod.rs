@@ -1,0 +1,205 @@
+//! 1-D: the curves of `n − 1` equations in `n` unknowns, with the right connectivity.
+//!
+//! A cell is settled when, for some variable `x_k`, the equations with `x_k` fixed have at most one solution in it: with `J_k` the
+//! Jacobian with respect to the other variables and `K ≈ J_k⁻¹`, when `‖I − K J_k‖∞ < 1` over the cell. Then the curve in the cell
+//! is a graph over a part of the `x_k` axis: there is no loop, its pieces follow one another in `x_k`, and their ends are the curve's
+//! crossings of the cell's faces. Sorted by `x_k`, the crossings are first end, second end, first end, … : nothing is joined by distance.
+//!
+//! Crossings are 0-D solutions on faces, each certified simple, hence transversal. The face between two cells is searched **once**, when
+//! it is made by a split; both cells get the same points. A split avoids all known crossings, and is moved where the search on it leaves
+//! something open (a tangency, a singular point on it).
+//!
+//! Where the curve is tangent to the region's own boundary, or passes through an edge or corner of it, the region is made larger by a skin
+//! (see [`Curves::skin`]); pieces that lie in the skin only are dropped.
+//!
+//! Cells at the smallest size stay open: singular points (nodes, cusps, isolated points), with their branches: the crossings of their outside.
+
+mod assemble;
+mod graph;
+mod subdivide;
+mod trace;
+
+use crate::matrix::MAX_UNKNOWNS;
+use crate::points::{PointSolver, SolveError};
+use crate::search::{Cause, Observer, SolveOptions, SolveStatistics};
+use crate::{Interval, System};
+use subdivide::Search;
+use trace::Tracer;
+
+/// A point of a polyline.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// The point.
+    pub point: Vec<f64>,
+    /// The unit tangent, in the polyline's direction.
+    pub tangent: Vec<f64>,
+}
+
+/// Where an arc ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum End {
+    /// On the region's boundary.
+    Boundary,
+    /// At the singular (or otherwise open) box of this number.
+    Singular(usize),
+}
+
+/// One component of the curve (less its singular points), as a polyline within the tolerance of it.
+///
+/// Its direction is that of the wedge product of the equations' gradients (`∇f × ∇g` for two equations in three unknowns, `(f_y, −f_x)` for
+/// one in two).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The vertices, each on the curve up to rounding. A loop's first is not repeated at its end.
+    pub points: Vec<CurvePoint>,
+    /// `None` for a loop.
+    pub ends: Option<[End; 2]>,
+}
+
+/// A box where the curve may be singular, or could not be settled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Singular {
+    /// The box; touching ones are united.
+    pub bounds: Vec<Interval>,
+    /// Why it is open.
+    pub cause: Cause,
+    /// The arcs that end here: their numbers, with `true` for the last end. No arc: an isolated point, or nothing.
+    pub branches: Vec<(usize, bool)>,
+}
+
+/// All curves of a system in its region.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curves {
+    /// The components.
+    pub curves: Vec<Curve>,
+    /// Singular and open boxes. Outside of these, `curves` are all there is.
+    pub singular: Vec<Singular>,
+    /// By what part of the domain's sides the region was made larger, because the curve touches its boundary. Mostly 0.
+    pub skin: f64,
+    /// What the search did.
+    pub statistics: SolveStatistics,
+}
+
+impl Curves {
+    /// The closed components.
+    pub fn loops(&self) -> impl Iterator<Item = &Curve> {
+        self.curves.iter().filter(|c| c.ends.is_none())
+    }
+
+    /// The components with ends.
+    pub fn arcs(&self) -> impl Iterator<Item = &Curve> {
+        self.curves.iter().filter(|c| c.ends.is_some())
+    }
+}
+
+/// The 1-D solver.
+///
+/// ```
+/// use sweepsim_solve::{CurveSolver, Interval, System};
+/// use sweepsim_spline::Bernstein;
+///
+/// // x² + y² = 1/4 on [−1, 1]². In u = (x + 1)/2: x² = 4 u² − 4 u + 1 has coefficients 1, −1, 1.
+/// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
+/// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
+/// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
+/// let curves = CurveSolver::new(1e-3).solve(&system, &mut ())?;
+/// assert_eq!((curves.loops().count(), curves.arcs().count()), (1, 0));
+/// for p in &curves.curves[0].points {
+///     assert!((p.point[0].hypot(p.point[1]) - 0.5).abs() < 1e-14);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct CurveSolver {
+    /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a cell counts as singular; 1e-9 by default here.
+    pub options: SolveOptions,
+    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units.
+    pub tolerance: f64,
+    points: PointSolver,
+}
+
+impl CurveSolver {
+    /// A solver with the default limits and this tolerance of the polylines.
+    #[must_use]
+    pub fn new(tolerance: f64) -> Self {
+        let options = SolveOptions {
+            smallest: 1e-9,
+            ..SolveOptions::default()
+        };
+        Self::with_options(tolerance, options)
+    }
+
+    /// A solver with these limits.
+    #[must_use]
+    pub fn with_options(tolerance: f64, options: SolveOptions) -> Self {
+        Self {
+            options,
+            tolerance,
+            points: PointSolver::default(),
+        }
+    }
+
+    /// All curves of the system in its region.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
+    /// there is one equation fewer, [`SolveError::Smallest`] for an impossible size or tolerance.
+    pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Curves, SolveError> {
+        let (n, m) = (system.layout.n, system.layout.m);
+        if n < 2 {
+            return Err(SolveError::Variables {
+                variables: n,
+                least: 2,
+                most: MAX_UNKNOWNS,
+            });
+        }
+        if m != n - 1 {
+            return Err(SolveError::Equations {
+                equations: m,
+                variables: n,
+                expected: n - 1,
+            });
+        }
+        let possible = (1e-14..=1.0).contains(&self.options.smallest) && self.tolerance > 0.0;
+        if !possible {
+            return Err(SolveError::Smallest);
+        }
+        self.points.options = SolveOptions {
+            smallest: 1e-8,
+            boxes: 20_000,
+            unresolved: 64,
+            ..SolveOptions::default()
+        };
+        let mut search = Search {
+            system,
+            options: self.options.clone(),
+            points: &mut self.points,
+            tracer: Tracer::new(system, self.tolerance),
+            crossings: Vec::new(),
+            pieces: Vec::new(),
+            open: Vec::new(),
+            statistics: SolveStatistics::default(),
+        };
+        let (root, first, skin) = search.boundary();
+        search.run(root, first, observer);
+        Ok(search.assemble(skin))
+    }
+
+    /// The same, handing over each component as a call.
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    pub fn for_each(
+        &mut self,
+        system: &System,
+        observer: &mut dyn Observer,
+        mut visit: impl FnMut(&Curve),
+    ) -> Result<Vec<Singular>, SolveError> {
+        let curves = self.solve(system, observer)?;
+        curves.curves.iter().for_each(&mut visit);
+        Ok(curves.singular)
+    }
+}

@@ -1,0 +1,345 @@
+//! The search: crossings of faces, cells that are graphs, splits that avoid what is known.
+
+use super::graph::{graph, minor};
+use super::trace::{Tracer, Vertex};
+use crate::System;
+use crate::layout::{Cell, EPSILON};
+use crate::matrix::{MAX_UNKNOWNS, Row};
+use crate::points::{PointSolver, excluded, pop, push, within_domain};
+use crate::search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Watch};
+
+/// A crossing of a face, in inner coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    pub point: Row,
+    pub lo: Row,
+    pub hi: Row,
+    /// On the region's boundary.
+    pub outer: bool,
+}
+
+/// A piece of the curve in a settled cell.
+pub(super) struct Piece {
+    pub ends: [usize; 2],
+    pub vertices: Vec<Vertex>,
+}
+
+/// An open cell with its crossings.
+pub(super) struct OpenCell {
+    pub lo: Row,
+    pub hi: Row,
+    pub cause: Cause,
+    pub crossings: Vec<usize>,
+}
+
+/// Skins that are tried, in parts of the domain's sides.
+const SKINS: [f64; 4] = [0.0, 1.0e-7, 2.3e-6, 4.1e-5];
+/// Where cells are cut, in order of preference.
+const CUTS: [f64; 9] = [0.492, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
+/// A cut keeps so far, in sides of the cell, from known crossings, if it can.
+const CLEAR: f64 = 0.01;
+
+pub(super) struct Search<'a> {
+    pub system: &'a System,
+    pub options: SolveOptions,
+    pub points: &'a mut PointSolver,
+    pub tracer: Tracer<'a>,
+    pub crossings: Vec<Crossing>,
+    pub pieces: Vec<Piece>,
+    pub open: Vec<OpenCell>,
+    pub statistics: SolveStatistics,
+}
+
+impl Search<'_> {
+    /// The root cell, its crossings, and the skin that it took.
+    pub(super) fn boundary(&mut self) -> (Cell, Vec<usize>, f64) {
+        let layout = &self.system.layout;
+        let n = layout.n;
+        let tries = if self.system.bounded() { 1 } else { SKINS.len() };
+        for (number, &skin) in SKINS[..tries].iter().enumerate() {
+            let mut root = self.system.root();
+            if skin > 0.0 {
+                for j in 0..n {
+                    // Each face by another amount: no edge through the same point.
+                    let (below, above) = (1.0 + 0.113 * j as f64, 1.271 + 0.171 * j as f64);
+                    let (lo, hi) = (root.lo[j] - skin * below, root.hi[j] + skin * above);
+                    layout.restrict(&mut root, j, lo, hi);
+                }
+            }
+            layout.ranges(&mut root);
+            self.crossings.clear();
+            let mut clean = true;
+            let mut stuck = Vec::new();
+            for j in 0..n {
+                for upper in [false, true] {
+                    clean &= self.cross(&root, j, upper, true, &mut stuck);
+                }
+            }
+            if clean || number + 1 == tries {
+                self.open.append(&mut stuck);
+                return (root, (0..self.crossings.len()).collect(), skin);
+            }
+        }
+        (self.system.root(), Vec::new(), 0.0)
+    }
+
+    /// Adds the crossings of a face of the cell; `false`, with what is open, if some could not be certified or lie on the face's edge.
+    fn cross(&mut self, cell: &Cell, axis: usize, upper: bool, outer: bool, stuck: &mut Vec<OpenCell>) -> bool {
+        let n = self.system.layout.n;
+        let face = self.system.on_face(cell, axis, upper);
+        self.points.run(&face, &mut ());
+        let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
+        let place = |s: &Row, outward: f64| -> Row {
+            let mut x = [0.0; MAX_UNKNOWNS];
+            for j in 0..n {
+                x[j] = if j == axis {
+                    at
+                } else {
+                    let side = cell.hi[j] - cell.lo[j];
+                    let value = cell.lo[j] + s[if j < axis { j } else { j - 1 }] * side;
+                    value + outward * 4.0 * EPSILON * (value.abs() + side)
+                };
+            }
+            x
+        };
+        let clean = self.points.open.is_empty() && self.points.found.iter().all(|f| !f.boundary);
+        for found in &self.points.found {
+            self.crossings.push(Crossing {
+                point: place(&found.point, 0.0),
+                lo: place(&found.lo, -1.0),
+                hi: place(&found.hi, 1.0),
+                outer,
+            });
+        }
+        for open in &self.points.open {
+            stuck.push(OpenCell {
+                lo: place(&open.lo, -1.0),
+                hi: place(&open.hi, 1.0),
+                cause: open.cause,
+                crossings: Vec::new(),
+            });
+        }
+        clean
+    }
+
+    pub(super) fn run(&mut self, root: Cell, first: Vec<usize>, observer: &mut dyn Observer) {
+        let layout = &self.system.layout;
+        let mut watch = Watch::new(&self.options);
+        let mut stack = Vec::new();
+        let mut frames: Vec<(u32, Vec<usize>)> = vec![(0, first)];
+        push(&mut stack, &root, layout);
+        let mut cell = root;
+        let mut lower = Cell::default();
+        while let Some((depth, crossings)) = frames.pop() {
+            pop(&mut stack, &mut cell, layout);
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
+            if let Some(cause) = stop {
+                self.leave(&cell, crossings, cause);
+                while let Some((_, crossings)) = frames.pop() {
+                    pop(&mut stack, &mut cell, layout);
+                    self.leave(&cell, crossings, cause);
+                }
+                return;
+            }
+            self.statistics.boxes += 1;
+            self.statistics.depth = self.statistics.depth.max(depth);
+            let (lo, hi) = (cell.lo, cell.hi);
+            let fate = match self.settle(&mut cell, &crossings) {
+                Ok(fate) => fate,
+                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings) {
+                    Some((below, above)) => {
+                        push(&mut stack, &cell, layout);
+                        frames.push((depth + 1, above));
+                        push(&mut stack, &lower, layout);
+                        frames.push((depth + 1, below));
+                        Fate::Split
+                    }
+                    None => Fate::Unresolved,
+                },
+            };
+            self.statistics.count(fate);
+            if observer.traces() {
+                observer.visited(&self.system.outward(&lo, &hi), depth, fate);
+            }
+        }
+    }
+
+    fn leave(&mut self, cell: &Cell, crossings: Vec<usize>, cause: Cause) {
+        self.open.push(OpenCell {
+            lo: cell.lo,
+            hi: cell.hi,
+            cause,
+            crossings,
+        });
+    }
+
+    /// Settles the cell, or says across which axis to split it.
+    fn settle(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
+        let layout = &self.system.layout;
+        let (n, m) = (layout.n, layout.m);
+        let mut totals = layout.ranges(cell);
+        if crossings.is_empty() && excluded(&totals, m) {
+            return Ok(Fate::Sign);
+        }
+        let noisy = (0..m).any(|e| {
+            let size = totals.0[e].abs().max(totals.1[e].abs());
+            cell.noise[e] > 1e-7 * size && cell.noise[e] > 4.0 * layout.first_noise[e]
+        });
+        if noisy && within_domain(cell, n) {
+            layout.refresh(cell, self.tracer.doubles());
+            self.statistics.refreshed += 1;
+            totals = layout.ranges(cell);
+            if crossings.is_empty() && excluded(&totals, m) {
+                return Ok(Fate::Sign);
+            }
+        }
+        let mean = layout.mean_slopes(&cell.c);
+        let slopes = layout.slopes(cell);
+        let mut tried = [false; MAX_UNKNOWNS];
+        for _ in 0..n {
+            // The variable along which the mean tangent is longest, of those not tried.
+            let mut best: Option<(f64, usize)> = None;
+            for k in (0..n).filter(|k| !tried[*k]) {
+                let size = minor(&mean, k, m).abs();
+                if best.is_none_or(|(s, _)| size > s) {
+                    best = Some((size, k));
+                }
+            }
+            let Some((_, over)) = best else { break };
+            tried[over] = true;
+            self.statistics.attempts += 1;
+            let Some((graph, misses)) = graph(layout, cell, &mean, &slopes, over) else {
+                continue;
+            };
+            if misses && crossings.is_empty() {
+                return Ok(Fate::Linear);
+            }
+            if crossings.is_empty() {
+                return Ok(Fate::Elsewhere);
+            }
+            if crossings.len() % 2 == 1 {
+                break;
+            }
+            let mut sorted = crossings.to_vec();
+            sorted.sort_by(|a, b| self.crossings[*a].point[over].total_cmp(&self.crossings[*b].point[over]));
+            let apart = sorted
+                .windows(2)
+                .all(|w| self.crossings[w[0]].hi[over] < self.crossings[w[1]].lo[over]);
+            if !apart {
+                continue;
+            }
+            let mut traced = Vec::with_capacity(sorted.len() / 2);
+            for pair in sorted.chunks_exact(2) {
+                let ends = [&self.crossings[pair[0]], &self.crossings[pair[1]]];
+                match self.tracer.piece(cell, &graph, ends) {
+                    Some(mut vertices) => {
+                        let mut ends = [pair[0], pair[1]];
+                        // The wedge product's entry k is (−1)ᵏ times the minor without column k.
+                        if (graph.sign < 0) == (over % 2 == 0) {
+                            ends.reverse();
+                            vertices.reverse();
+                            for v in &mut vertices {
+                                v.tangent.iter_mut().for_each(|x| *x = -*x);
+                            }
+                        }
+                        traced.push(Piece { ends, vertices });
+                    }
+                    None => break,
+                }
+            }
+            if traced.len() == sorted.len() / 2 {
+                self.pieces.append(&mut traced);
+                return Ok(Fate::Certified);
+            }
+        }
+        // Split where the derivatives vary most, relative to the equations' slopes.
+        let mut weight = [0.0; MAX_UNKNOWNS];
+        for e in 0..m {
+            let slope = (0..n)
+                .fold(0.0, |s: f64, j| s.max(mean[e][j].abs()))
+                .max(1e-3 * cell.scale[e]);
+            for j in 0..n {
+                if slope > 0.0 {
+                    weight[j] += (slopes.hi[e][j] - slopes.lo[e][j]) / slope;
+                }
+            }
+        }
+        let width = |j: usize| cell.hi[j] - cell.lo[j];
+        let widest = (0..n).fold(0, |b, j| if width(j) > width(b) { j } else { b });
+        for j in 0..n {
+            if width(j) < 0.02 * width(widest) || width(j) <= 0.5 * self.options.smallest {
+                weight[j] = -1.0;
+            }
+        }
+        let best = (0..n).fold(0, |b, j| if weight[j] > weight[b] { j } else { b });
+        Err(if weight[best] > 0.0 { best } else { widest })
+    }
+
+    /// Splits the cell (the upper part stays in it) and says which crossings go where; `None`, having left it open, if it cannot be split.
+    fn split(
+        &mut self,
+        cell: &mut Cell,
+        lower: &mut Cell,
+        axis: usize,
+        depth: u32,
+        crossings: Vec<usize>,
+    ) -> Option<(Vec<usize>, Vec<usize>)> {
+        let layout = &self.system.layout;
+        let n = layout.n;
+        let width = |j: usize| cell.hi[j] - cell.lo[j];
+        let tiny = (0..n).all(|j| width(j) <= self.options.smallest);
+        if tiny || depth >= self.options.depth {
+            let cause = if tiny { Cause::Smallest } else { Cause::Depth };
+            self.leave(cell, crossings, cause);
+            return None;
+        }
+        let mut order = [0usize; MAX_UNKNOWNS];
+        for (j, o) in order.iter_mut().enumerate() {
+            *o = j;
+        }
+        order[..n].sort_by_key(|j| usize::from(*j != axis));
+        let before = self.crossings.len();
+        for clear in [CLEAR, 1e-4] {
+            for &axis in &order[..n] {
+                let (lo, hi) = (cell.lo[axis], cell.hi[axis]);
+                let side = hi - lo;
+                for cut in CUTS {
+                    let at = lo + cut * side;
+                    let margin = clear * side;
+                    let near = |c: &usize| {
+                        let c = &self.crossings[*c];
+                        c.lo[axis] - margin <= at && at <= c.hi[axis] + margin
+                    };
+                    if !(at > lo && at < hi) || crossings.iter().any(near) {
+                        continue;
+                    }
+                    let mut upper = cell.clone();
+                    layout.split(&mut upper, lower, axis, at);
+                    let mut stuck = Vec::new();
+                    let mut face_cell = upper.clone();
+                    layout.ranges(&mut face_cell);
+                    if !self.cross(&face_cell, axis, false, false, &mut stuck) {
+                        self.crossings.truncate(before);
+                        continue;
+                    }
+                    *cell = upper;
+                    let (mut below, mut above) = (Vec::new(), Vec::new());
+                    for c in crossings {
+                        if self.crossings[c].point[axis] < at {
+                            below.push(c);
+                        } else {
+                            above.push(c);
+                        }
+                    }
+                    for c in before..self.crossings.len() {
+                        below.push(c);
+                        above.push(c);
+                    }
+                    return Some((below, above));
+                }
+            }
+        }
+        self.leave(cell, crossings, Cause::Smallest);
+        None
+    }
+}
