@@ -185,8 +185,10 @@ impl Chunk {
 
     /// Appends packed intervals to `out`, their moves to the table.
     pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<Piece>) {
-        self.make_room(2 * intervals.len(), out);
-        out.extend(intervals.iter().map(|interval| self.moves.interval(interval)));
+        for interval in intervals {
+            self.make_room(2, out);
+            out.push(self.moves.interval(interval));
+        }
     }
 
     /// Appends stored intervals of another chunk to `out`, their moves to the table.

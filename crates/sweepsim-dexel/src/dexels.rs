@@ -68,6 +68,15 @@ impl Dexels {
         }
     }
 
+    /// As many chunks as the grid needs, none without material.
+    pub(crate) fn from_chunks(grid: Grid, chunks: Vec<Option<Box<Chunk>>>) -> Self {
+        Self {
+            grid,
+            chunks,
+            scratch: Default::default(),
+        }
+    }
+
     /// Material on each line as `write` says: it gets the number of the line and a list, and appends intervals in any order.
     ///
     /// Lines are asked for in parallel, in the current rayon pool.

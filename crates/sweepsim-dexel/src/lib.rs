@@ -17,6 +17,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod builder;
 mod chunk;
 mod compare;
 mod crossing;
@@ -31,6 +32,7 @@ mod set;
 mod stock;
 mod surface;
 
+pub use builder::DexelsBuilder;
 pub use compare::{Comparison, Deviation, compare};
 pub use crossing::{AuditFailure, Crossing, cover};
 pub use dexels::{Dexels, GridMismatch, Operation};

@@ -24,6 +24,7 @@
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
 //! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |
 //! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
+//! | dexels to the bit, compact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
 //! | dexels, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
 //!
@@ -32,7 +33,9 @@
 
 mod apt;
 mod atomic;
+mod checksum;
 pub mod csv;
+mod dexels_binary;
 mod dexels_csv;
 mod error;
 mod fixtures;
@@ -52,6 +55,7 @@ mod text;
 mod tools;
 
 pub use atomic::{AtomicFile, write_atomically};
+pub use dexels_binary::{read_dexels_binary, write_dexels_binary};
 pub use dexels_csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
 pub use error::{FormatError, Place, Problem};
 pub use fixtures::{Difference, Fixture};

@@ -1,0 +1,98 @@
+//! Dexels line after line, without knowing how many will come.
+
+use crate::chunk::{Chunk, LINES, Piece, is_normal};
+use crate::dexels::Dexels;
+use crate::grid::Grid;
+use crate::interval::Interval;
+use crate::operations::normalise;
+
+/// Builds [`Dexels`] from their first line to the last. Memory grows with the lines that came, not with the grid, so that a
+/// file that promises much and holds little costs little.
+///
+/// ```
+/// use sweepsim_dexel::{DexelsBuilder, Grid, Interval};
+/// let grid = Grid::new([0.0, 0.0], [2.0, 2.0], [2, 2])?;
+/// let mut builder = DexelsBuilder::new(grid);
+/// builder.skip(3);
+/// builder.push(&[Interval::between(0.0, 5.0)]);
+/// assert_eq!(builder.finish().intervals(1, 1).length(), 5.0);
+/// # Ok::<(), sweepsim_dexel::GridError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DexelsBuilder {
+    grid: Grid,
+    chunks: Vec<Option<Box<Chunk>>>,
+    current: Option<Box<Chunk>>,
+    lines: usize,
+    packed: Vec<Piece>,
+}
+
+impl DexelsBuilder {
+    /// No lines yet.
+    #[must_use]
+    pub fn new(grid: Grid) -> Self {
+        Self {
+            grid,
+            chunks: Vec::new(),
+            current: None,
+            lines: 0,
+            packed: Vec::new(),
+        }
+    }
+
+    /// How many lines came, with those beyond the grid.
+    #[must_use]
+    pub fn lines(&self) -> usize {
+        self.lines
+    }
+
+    fn step(&mut self, lines: usize) {
+        for _ in 0..lines {
+            self.lines += 1;
+            if self.lines.is_multiple_of(LINES) {
+                let mut chunk = self.current.take();
+                if let Some(chunk) = &mut chunk {
+                    chunk.shrink();
+                }
+                self.chunks.push(chunk);
+            }
+        }
+    }
+
+    /// Lines without material. Those beyond the grid are nothing.
+    pub fn skip(&mut self, lines: usize) {
+        self.step(lines.min(self.grid.len().saturating_sub(self.lines)));
+    }
+
+    /// The next line, with intervals in any order. A line beyond the grid is nothing.
+    pub fn push(&mut self, intervals: &[Interval]) {
+        if self.lines >= self.grid.len() {
+            return;
+        }
+        let mut sorted = Vec::new();
+        let intervals = if is_normal(intervals) {
+            intervals
+        } else {
+            sorted.extend_from_slice(intervals);
+            normalise(&mut sorted);
+            &sorted
+        };
+        if !intervals.is_empty() {
+            let chunk = self.current.get_or_insert_default();
+            self.packed.clear();
+            chunk.pack(intervals, &mut self.packed);
+            chunk.replace(self.lines % LINES, &self.packed);
+        }
+        self.step(1);
+    }
+
+    /// The dexels; lines that did not come have no material.
+    #[must_use]
+    pub fn finish(mut self) -> Dexels {
+        if self.current.is_some() {
+            self.chunks.push(self.current);
+        }
+        self.chunks.resize(self.grid.len().div_ceil(LINES), None);
+        Dexels::from_chunks(self.grid, self.chunks)
+    }
+}
