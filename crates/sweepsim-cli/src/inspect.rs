@@ -148,6 +148,7 @@ fn job(text: &mut Text, job: &Job) {
             measure(*height)
         ),
         Stock::Mesh(soup) => counted(soup.triangles.len() as u64, "triangle"),
+        Stock::Ball { centre, radius } => format!("ball around {}, radius {radius} mm", point(*centre)),
         Stock::Dexels(dexels) => counted(dexels.count() as u64, "interval"),
         Stock::Union(parts) => format!("union of {}", counted(parts.len() as u64, "piece")),
         Stock::Intersection(parts) => format!("intersection of {}", counted(parts.len() as u64, "piece")),

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock, surface};
+use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock, TriDexels, surface};
 
 const CELLS: usize = 300;
 
@@ -92,6 +92,10 @@ fn meshes(c: &mut Criterion) {
     let triangles = surface(&dexels).triangles.len();
     group.sample_size(10).throughput(Throughput::Elements(triangles as u64));
     group.bench_function("surface", |b| b.iter(|| surface(black_box(&dexels))));
+    let solid = TriDexels::new([-10.0; 3], [10.0; 3], [150; 3], &cylinder).expect("a cylinder");
+    let triangles = solid.surface().triangles.len();
+    group.throughput(Throughput::Elements(triangles as u64));
+    group.bench_function("sharp", |b| b.iter(|| black_box(&solid).surface()));
     group.finish();
 }
 

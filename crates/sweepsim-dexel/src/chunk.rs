@@ -118,7 +118,7 @@ impl Moves {
             segment: source.segment,
         });
         // A NaN becomes 0.
-        let ticks = (f64::from(source.t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1))).round() as u32;
+        let ticks = (f64::from(source.t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1)) + 0.5) as u32;
         number << self.time | ticks
     }
 

@@ -4,6 +4,9 @@
 //! [`Dexels`] hold the intervals, whose [ends](End) know the surface's normal and which cut made them. [`cover`] turns
 //! signed [`Crossing`]s into intervals and audits them: see there for why a lost crossing cannot pass unnoticed.
 //!
+//! [`IntervalSet`] is for a single line; [`TriDexels`] stand along all three axes, and have a [surface](TriDexels::surface) with
+//! sharp edges. [`compare`] tells how dexels differ from their target.
+//!
 //! This crate knows no spline, no solver and no tool: whatever finds crossings can use it.
 //!
 //! ```
@@ -20,6 +23,7 @@
 mod builder;
 mod chunk;
 mod compare;
+mod contour;
 mod crossing;
 mod dexels;
 mod grid;
@@ -31,6 +35,7 @@ mod packed;
 mod set;
 mod stock;
 mod surface;
+mod tri;
 
 pub use builder::DexelsBuilder;
 pub use compare::{Comparison, Deviation, compare};
@@ -44,6 +49,7 @@ pub use packed::{pack_normal, unpack_normal};
 pub use set::IntervalSet;
 pub use stock::{Stock, StockError};
 pub use surface::surface;
+pub use tri::{TriDexels, TriDexelsError};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -53,7 +53,9 @@ impl Octahedral {
         if !(size > 0.0 && size.is_finite()) {
             return Self([0, 0]);
         }
-        let [x, y] = [0, 1].map(|k| (n[k] / size * f64::from(FULL)).round() as i32);
+        // To the nearest number: half more, then towards 0.
+        let scale = f64::from(FULL) / size;
+        let [x, y] = [0, 1].map(|k| (n[k] * scale + 0.5_f64.copysign(n[k])) as i32);
         // Rounding may leave the face.
         let over = (x.abs() + y.abs() - FULL).max(0);
         let x = x - over * sign(x);

@@ -30,6 +30,13 @@ pub enum Stock {
         /// Distance of the disks.
         height: f64,
     },
+    /// A ball.
+    Ball {
+        /// Its centre.
+        centre: [f64; 3],
+        /// Its radius.
+        radius: f64,
+    },
     /// The inside of a closed surface of triangles.
     Mesh(TriangleSoup),
     /// What an earlier run left, on the same grid.
@@ -62,6 +69,15 @@ pub enum StockError {
         /// Its height.
         height: f64,
     },
+    /// A ball with no volume.
+    #[error("the ball of radius {radius} is empty or not finite")]
+    Ball {
+        /// Its radius.
+        radius: f64,
+    },
+    /// Dexels have one direction: they cannot be turned.
+    #[error("dexels of an earlier run cannot be turned to another axis")]
+    Turned,
     /// Triangles that enclose nothing.
     #[error(transparent)]
     Mesh(#[from] MeshError),
@@ -112,6 +128,7 @@ impl Stock {
                 radius,
                 height,
             } => cylinder(grid, *base, *axis, *radius, *height),
+            Self::Ball { centre, radius } => ball(grid, *centre, *radius),
             Self::Mesh(soup) => mesh(grid, soup),
             Self::Dexels(dexels) if dexels.grid() == grid => Ok(Dexels::clone(dexels)),
             Self::Dexels(_) => Err(GridMismatch.into()),
@@ -123,6 +140,70 @@ impl Stock {
             },
         }
     }
+}
+
+impl Stock {
+    /// The stock as seen along another axis: its `x`, `y`, `z` are those with the numbers `axis + 1`, `axis + 2` and `axis` (mod 3).
+    ///
+    /// # Errors
+    /// [`StockError::Turned`] for dexels, unless along `z`, which changes nothing.
+    pub fn seen_along(&self, axis: usize) -> Result<Self, StockError> {
+        let turn = |p: [f64; 3]| [p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis % 3]];
+        let each = |parts: &[Self]| {
+            parts
+                .iter()
+                .map(|part| part.seen_along(axis))
+                .collect::<Result<Vec<_>, _>>()
+        };
+        Ok(match self {
+            Self::Block { min, max } => Self::Block {
+                min: turn(*min),
+                max: turn(*max),
+            },
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => Self::Cylinder {
+                base: turn(*base),
+                axis: turn(*axis),
+                radius: *radius,
+                height: *height,
+            },
+            Self::Ball { centre, radius } => Self::Ball {
+                centre: turn(*centre),
+                radius: *radius,
+            },
+            Self::Mesh(soup) => Self::Mesh(TriangleSoup {
+                triangles: soup.triangles.iter().map(|corners| corners.map(turn)).collect(),
+            }),
+            Self::Dexels(dexels) if axis % 3 == 2 => Self::Dexels(Arc::clone(dexels)),
+            Self::Dexels(_) => return Err(StockError::Turned),
+            Self::Union(parts) => Self::Union(each(parts)?),
+            Self::Intersection(parts) => Self::Intersection(each(parts)?),
+            Self::Difference(whole, parts) => Self::Difference(Box::new(whole.seen_along(axis)?), each(parts)?),
+        })
+    }
+}
+
+fn ball(grid: &Grid, centre: [f64; 3], radius: f64) -> Result<Dexels, StockError> {
+    if !(centre.iter().all(|c| c.is_finite()) && radius > 0.0 && radius.is_finite()) {
+        return Err(StockError::Ball { radius });
+    }
+    Ok(Dexels::from_fn(*grid, |index, line| {
+        let (i, j) = grid.place(index);
+        let [x, y] = [grid.x(i) - centre[0], grid.y(j) - centre[1]];
+        let square = radius * radius - x * x - y * y;
+        if square > 0.0 {
+            let half = square.sqrt();
+            let side = |z: f64| end(centre[2] + z, [x / radius, y / radius, z / radius]);
+            line.push(Interval {
+                lower: side(-half),
+                upper: side(half),
+            });
+        }
+    }))
 }
 
 fn all(grid: &Grid, mut dexels: Dexels, operation: Operation, parts: &[Stock]) -> Result<Dexels, StockError> {

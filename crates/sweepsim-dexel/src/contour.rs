@@ -1,0 +1,236 @@
+//! A closed surface from tri-dexels: dual contouring, with one vertex for each sheet in a cell.
+//!
+//! The lines of the three sets cross in the points of a lattice; a rim of points without material is put around it. Along each
+//! edge of the lattice whose ends differ there is an interval end, with its normal. In each cell of eight points:
+//!
+//! 1. Edges with an interval end are joined across the cell's faces to closed curves, as marching cubes would. Where all four
+//!    edges of a face have an end, the curves go around the points with material, on both sides of the face alike.
+//! 2. Each curve gets a vertex where the tangent planes of its ends meet: the least squares of the distances (Ju, Losasso,
+//!    Schaefer, Warren: *Dual Contouring of Hermite Data*, 2002). Where they do so more than one cell
+//!    outside, the best point within that.
+//! 3. Each interval end gets a quadrilateral of the vertices in the four cells around its edge.
+//!
+//! That is the dual of a marching-cubes surface (Nielson: *Dual Marching Cubes*, 2004), hence closed, and each vertex has one
+//! fan of faces. What can go wrong is that two vertices are joined twice, when both of the curves that cross a face are one
+//! on each side of it. So an edge of the mesh across such a face gets a vertex of its own there, on its curve. (Others turn the
+//! curves of such a face; this way a cell needs to know nothing of its neighbours.)
+
+mod cell;
+mod lattice;
+mod plane;
+
+use crate::mesh::Mesh;
+use crate::tri::TriDexels;
+use cell::{CELLS, EDGES};
+use lattice::{Hit, Lattice};
+use plane::Planes;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+pub(crate) fn disagreements(solid: &TriDexels) -> usize {
+    Lattice::new(solid).disagreements
+}
+
+pub(crate) fn contour(solid: &TriDexels) -> Mesh {
+    let lattice = Lattice::new(solid);
+    let hits = [0, 1, 2].map(|axis| lattice.hits(axis));
+    let find = |axis: usize, at: [usize; 3]| hits[axis].find(&lattice, at);
+    // Vertices, slab after slab of cells.
+    let slabs: Vec<Slab> = (0..lattice.points[0] - 1)
+        .into_par_iter()
+        .map(|i| Slab::new(&lattice, i, &find))
+        .collect();
+    let mut mesh = Mesh::default();
+    let mut first = Vec::with_capacity(slabs.len());
+    for slab in &slabs {
+        first.push(mesh.vertices.len() as u32);
+        mesh.vertices.extend(&slab.vertices);
+        mesh.normals.extend(&slab.normals);
+        mesh.cut.extend(&slab.cut);
+    }
+    let vertex = |cell: [usize; 3], edge: usize| {
+        let sheet = CELLS[usize::from(lattice.kind(cell))].sheet[edge];
+        let [i, j, k] = cell;
+        first[i] + slabs[i].first[j * (lattice.points[2] - 1) + k] + u32::from(sheet)
+    };
+    let mut extra = Extra::default();
+    for (axis, hits) in hits.iter().enumerate() {
+        for (at, hit) in hits.iter(&lattice) {
+            face(&lattice, axis, at, hit, &vertex, &mut mesh, &mut extra);
+        }
+    }
+    extra.finish(&mut mesh);
+    mesh
+}
+
+/// The vertices of the cells with a given first number.
+struct Slab {
+    vertices: Vec<[f64; 3]>,
+    normals: Vec<[f32; 3]>,
+    cut: Vec<bool>,
+    /// The number of the first vertex of each cell.
+    first: Vec<u32>,
+}
+
+impl Slab {
+    fn new<'a>(lattice: &Lattice, i: usize, find: &impl Fn(usize, [usize; 3]) -> Option<&'a Hit>) -> Self {
+        let [_, rows, levels] = lattice.points.map(|n| n - 1);
+        let mut slab = Self {
+            vertices: Vec::new(),
+            normals: Vec::new(),
+            cut: Vec::new(),
+            first: Vec::with_capacity(rows * levels),
+        };
+        for (j, k) in (0..rows).flat_map(|j| (0..levels).map(move |k| (j, k))) {
+            slab.first.push(slab.vertices.len() as u32);
+            let cell = [i, j, k];
+            let kind = &CELLS[usize::from(lattice.kind(cell))];
+            for sheet in 0..kind.sheets {
+                let mut planes = Planes::default();
+                for (edge, (axis, offset)) in EDGES.iter().enumerate() {
+                    if kind.sheet[edge] != sheet {
+                        continue;
+                    }
+                    let at = [0, 1, 2].map(|c| cell[c] + offset[c]);
+                    if let Some(hit) = find(*axis, at) {
+                        planes.add(lattice.place(*axis, at, hit), hit);
+                    }
+                }
+                let [lower, upper] = [0, 1].map(|d| [0, 1, 2].map(|c| lattice.coordinate(c, cell[c] + d)));
+                slab.vertices.push(planes.meet(lower, upper));
+                slab.normals.push(planes.normal());
+                slab.cut.push(planes.is_cut());
+            }
+        }
+        slab
+    }
+}
+
+/// A curve on a face that two curves cross.
+struct Key {
+    /// The axis that is normal to the face.
+    normal: usize,
+    /// The face's lowest point.
+    low: [usize; 3],
+    /// The point with material that the curve goes around.
+    solid: [usize; 3],
+}
+
+/// Vertices on faces of the lattice that two curves cross.
+#[derive(Default)]
+struct Extra {
+    /// By the numbers of [`Key`]: the number of the vertex.
+    numbers: BTreeMap<(usize, usize, usize), u32>,
+    first: Option<u32>,
+    /// Their planes, and the box where they may be.
+    planes: Vec<(Planes, [[f64; 3]; 2])>,
+}
+
+impl Extra {
+    fn number(&mut self, lattice: &Lattice, mesh: &Mesh, key: Key, place: [f64; 3], hit: &Hit) -> u32 {
+        let first = *self.first.get_or_insert(mesh.vertices.len() as u32);
+        let planes = &mut self.planes;
+        let number = *self
+            .numbers
+            .entry((key.normal, lattice.index(key.low), lattice.index(key.solid)))
+            .or_insert_with(|| {
+                let coordinates = |p: [usize; 3]| [0, 1, 2].map(|c| lattice.coordinate(c, p[c]));
+                let (lower, mut upper) = (coordinates(key.low), coordinates(key.low.map(|n| n + 1)));
+                upper[key.normal] = lower[key.normal];
+                planes.push((Planes::default(), [lower, upper]));
+                planes.len() as u32 - 1
+            });
+        planes[number as usize].0.add(place, hit);
+        first + number
+    }
+
+    /// Puts them behind the mesh's vertices.
+    fn finish(self, mesh: &mut Mesh) {
+        for (planes, [lower, upper]) in &self.planes {
+            mesh.vertices.push(planes.meet(*lower, *upper));
+            mesh.normals.push(planes.normal());
+            mesh.cut.push(planes.is_cut());
+        }
+    }
+
+    /// A vertex at an interval end.
+    fn at(&mut self, mesh: &Mesh, place: [f64; 3], hit: &Hit) -> u32 {
+        let first = *self.first.get_or_insert(mesh.vertices.len() as u32);
+        let mut planes = Planes::default();
+        planes.add(place, hit);
+        self.planes.push((planes, [place; 2]));
+        first + self.planes.len() as u32 - 1
+    }
+}
+
+/// The triangles around the interval end on the edge along `axis` that begins at a point.
+fn face(
+    lattice: &Lattice,
+    axis: usize,
+    at: [usize; 3],
+    hit: &Hit,
+    vertex: &impl Fn([usize; 3], usize) -> u32,
+    mesh: &mut Mesh,
+    extra: &mut Extra,
+) {
+    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+    let place = lattice.place(axis, at, hit);
+    let mut solid = at;
+    solid[axis] += usize::from(!hit.upper);
+    // The cells around the edge, counter-clockwise seen from its far end: by how far they begin below it.
+    let around = [[1, 1], [0, 1], [0, 0], [1, 0]];
+    let corner = |[a, b]: [usize; 2]| {
+        let mut cell = at;
+        cell[u] -= a;
+        cell[v] -= b;
+        vertex(cell, 4 * axis + a + 2 * b)
+    };
+    // The faces between them: normal to u below v, normal to v above u, normal to u above v, normal to v below u.
+    let between = [(u, v, 1), (v, u, 0), (u, v, 0), (v, u, 1)];
+    let mut polygon: Vec<u32> = Vec::with_capacity(8);
+    for k in 0..4 {
+        polygon.push(corner(around[k]));
+        let (normal, other, below) = between[k];
+        let mut low = at;
+        low[other] -= below;
+        let mut points = [low; 4];
+        points[1][axis] += 1;
+        points[2][other] += 1;
+        points[3][axis] += 1;
+        points[3][other] += 1;
+        let [a, b, c, d] = points.map(|p| lattice.inside(p));
+        if a == d && b == c && a != b {
+            let key = Key { normal, low, solid };
+            polygon.push(extra.number(lattice, mesh, key, place, hit));
+        }
+    }
+    if !hit.upper {
+        polygon.reverse();
+    }
+    if let [a, b, c, d] = polygon[..] {
+        // The diagonal that stays nearer to the tangent plane.
+        let p = [a, b, c, d].map(|n| mesh.vertices[n as usize]);
+        let off = |a: [f64; 3], b: [f64; 3]| match hit.normal {
+            Some(n) => [0, 1, 2]
+                .map(|k| (0.5 * (a[k] + b[k]) - place[k]) * f64::from(n[k]))
+                .iter()
+                .sum::<f64>()
+                .abs(),
+            None => [0, 1, 2].map(|k| (a[k] - b[k]).powi(2)).iter().sum::<f64>(),
+        };
+        if off(p[0], p[2]) <= off(p[1], p[3]) {
+            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+        } else {
+            mesh.triangles.extend([[a, b, d], [b, c, d]]);
+        }
+    } else {
+        let middle = extra.at(mesh, place, hit);
+        for k in 0..polygon.len() {
+            mesh.triangles
+                .push([middle, polygon[k], polygon[(k + 1) % polygon.len()]]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

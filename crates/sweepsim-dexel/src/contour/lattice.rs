@@ -1,0 +1,234 @@
+//! Which points of the lattice have material, and where it ends between them.
+
+use crate::dexels::Dexels;
+use crate::interval::Source;
+use crate::tri::TriDexels;
+use rayon::prelude::*;
+
+/// Points where lines of all three sets cross, with a rim of points without material around them.
+pub(super) struct Lattice<'a> {
+    sets: &'a [Dexels; 3],
+    min: [f64; 3],
+    step: [f64; 3],
+    /// Points along each axis, with the rim.
+    pub points: [usize; 3],
+    inside: Vec<bool>,
+    /// Points where the sets do not agree.
+    pub disagreements: usize,
+}
+
+/// How far beyond an edge, in steps, the end of an interval is still taken for one on it.
+const SLACK: f64 = 1e-3;
+
+impl<'a> Lattice<'a> {
+    pub fn new(solid: &'a TriDexels) -> Self {
+        let (min, max, cells) = (solid.min(), solid.max(), solid.cells());
+        let mut lattice = Self {
+            sets: solid.sets(),
+            min,
+            step: [0, 1, 2].map(|c| (max[c] - min[c]) / cells[c] as f64),
+            points: cells.map(|n| n + 2),
+            inside: Vec::new(),
+            disagreements: 0,
+        };
+        let [columns, rows, levels] = lattice.points;
+        let slabs: Vec<(Vec<bool>, usize)> = (0..columns).into_par_iter().map(|i| lattice.slab(i)).collect();
+        lattice.inside = Vec::with_capacity(columns * rows * levels);
+        for (slab, disagreements) in slabs {
+            lattice.inside.extend(slab);
+            lattice.disagreements += disagreements;
+        }
+        lattice
+    }
+
+    /// The points with a first number, by the majority of the sets.
+    fn slab(&self, i: usize) -> (Vec<bool>, usize) {
+        let [columns, rows, levels] = self.points;
+        if i == 0 || i == columns - 1 {
+            return (vec![false; rows * levels], 0);
+        }
+        let mut votes = vec![0_u8; rows * levels];
+        let index = |j: usize, k: usize| j * levels + k;
+        for j in 1..rows - 1 {
+            let line = self.sets[2].intervals(i - 1, j - 1);
+            for [lower, upper] in line.heights() {
+                self.points_in(2, lower, upper).for_each(|k| votes[index(j, k)] += 1);
+            }
+        }
+        for k in 1..levels - 1 {
+            let line = self.sets[1].intervals(k - 1, i - 1);
+            for [lower, upper] in line.heights() {
+                self.points_in(1, lower, upper).for_each(|j| votes[index(j, k)] += 1);
+            }
+            let x = self.coordinate(0, i);
+            for j in 1..rows - 1 {
+                let mut line = self.sets[0].intervals(j - 1, k - 1).heights();
+                votes[index(j, k)] += u8::from(line.any(|[lower, upper]| lower <= x && x < upper));
+            }
+        }
+        let open = votes.iter().filter(|votes| (1..3).contains(*votes)).count();
+        (votes.iter().map(|votes| *votes >= 2).collect(), open)
+    }
+
+    /// The numbers of the points along an axis from a lower to below an upper height.
+    fn points_in(&self, axis: usize, lower: f64, upper: f64) -> std::ops::Range<usize> {
+        let last = self.points[axis] - 1;
+        let first_from = |height: f64| {
+            let guess = (height - self.min[axis]) / self.step[axis] + 0.5;
+            // At most one off by rounding.
+            let mut n = (guess.ceil().clamp(1.0, last as f64) as usize).saturating_sub(1).max(1);
+            while n < last && self.coordinate(axis, n) < height {
+                n += 1;
+            }
+            n
+        };
+        first_from(lower)..first_from(upper)
+    }
+
+    /// Where point `n` of an axis is.
+    pub fn coordinate(&self, axis: usize, n: usize) -> f64 {
+        self.min[axis] + (n as f64 - 0.5) * self.step[axis]
+    }
+
+    pub fn index(&self, [i, j, k]: [usize; 3]) -> usize {
+        (i * self.points[1] + j) * self.points[2] + k
+    }
+
+    pub fn inside(&self, point: [usize; 3]) -> bool {
+        self.inside[self.index(point)]
+    }
+
+    /// Which corners of a cell have material: bits.
+    pub fn kind(&self, cell: [usize; 3]) -> u8 {
+        let corner = |n: usize| self.inside([0, 1, 2].map(|c| cell[c] + (n >> c & 1)));
+        (0..8).map(|n| u8::from(corner(n)) << n).sum()
+    }
+
+    /// The interval ends along an axis, one for each edge whose ends differ.
+    pub fn hits(&self, axis: usize) -> Hits {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let lines: Vec<Vec<Vec<Hit>>> = (0..self.points[u])
+            .into_par_iter()
+            .map(|i| (0..self.points[v]).map(|j| self.line(axis, i, j)).collect())
+            .collect();
+        let mut hits = Hits {
+            axis,
+            first: vec![0],
+            hits: Vec::new(),
+        };
+        for line in lines.into_iter().flatten() {
+            hits.hits.extend(line);
+            hits.first.push(hits.hits.len());
+        }
+        hits
+    }
+
+    fn line(&self, axis: usize, i: usize, j: usize) -> Vec<Hit> {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        if i == 0 || j == 0 || i == self.points[u] - 1 || j == self.points[v] - 1 {
+            return Vec::new();
+        }
+        let intervals = self.sets[axis].intervals(i - 1, j - 1);
+        let mut hits = Vec::new();
+        let mut point = [0; 3];
+        (point[u], point[v]) = (i, j);
+        let mut before = false;
+        for n in 0..self.points[axis] {
+            point[axis] = n;
+            let inside = self.inside(point);
+            if inside == before {
+                continue;
+            }
+            before = inside;
+            let (low, high) = (self.coordinate(axis, n - 1), self.coordinate(axis, n));
+            let slack = SLACK * self.step[axis];
+            let near = |z: f64| low - slack <= z && z <= high + slack;
+            let end = if inside {
+                // The last beginning, and the first end: nearest to the point with material.
+                intervals.iter().map(|i| i.lower).rfind(|end| near(end.z))
+            } else {
+                intervals.iter().map(|i| i.upper).find(|end| near(end.z))
+            };
+            // Cut off at the box.
+            let face = 0.5 * (low + high);
+            let (bottom, top) = (n == 1, n == self.points[axis] - 1);
+            let end = end.filter(|end| !(bottom && end.z < face || top && end.z > face));
+            hits.push(Hit {
+                edge: (n - 1) as u32,
+                upper: !inside,
+                z: end.map_or(face, |end| end.z.clamp(low, high)),
+                normal: match end {
+                    Some(end) => {
+                        let mut normal = [0.0; 3];
+                        (normal[u], normal[v], normal[axis]) = (end.normal[0], end.normal[1], end.normal[2]);
+                        Some(normal)
+                    }
+                    None if bottom || top => {
+                        let mut normal = [0.0; 3];
+                        normal[axis] = if inside { -1.0 } else { 1.0 };
+                        Some(normal)
+                    }
+                    None => None,
+                },
+                cut: end.is_some_and(|end| end.source != Source::STOCK),
+            });
+        }
+        hits
+    }
+
+    /// Where a hit on the edge from a point is.
+    pub fn place(&self, axis: usize, at: [usize; 3], hit: &Hit) -> [f64; 3] {
+        let mut place = [0, 1, 2].map(|c| self.coordinate(c, at[c]));
+        place[axis] = hit.z;
+        place
+    }
+}
+
+/// The end of an interval on an edge of the lattice.
+pub(super) struct Hit {
+    /// The number of the point before it.
+    edge: u32,
+    /// Whether material ends there, going up.
+    pub upper: bool,
+    z: f64,
+    /// Not known where the sets do not agree.
+    pub normal: Option<[f32; 3]>,
+    pub cut: bool,
+}
+
+/// All of an axis, by line and edge.
+pub(super) struct Hits {
+    axis: usize,
+    first: Vec<usize>,
+    hits: Vec<Hit>,
+}
+
+impl Hits {
+    fn line(&self, lattice: &Lattice<'_>, at: [usize; 3]) -> usize {
+        at[(self.axis + 1) % 3] * lattice.points[(self.axis + 2) % 3] + at[(self.axis + 2) % 3]
+    }
+
+    /// That on the edge from a point.
+    pub fn find(&self, lattice: &Lattice<'_>, at: [usize; 3]) -> Option<&Hit> {
+        let line = self.line(lattice, at);
+        let hits = &self.hits[self.first[line]..self.first[line + 1]];
+        let edge = at[self.axis] as u32;
+        hits.binary_search_by_key(&edge, |hit| hit.edge).ok().map(|k| &hits[k])
+    }
+
+    /// All, with the points where their edges begin.
+    pub fn iter(&self, lattice: &Lattice<'_>) -> impl Iterator<Item = ([usize; 3], &Hit)> {
+        let across = lattice.points[(self.axis + 2) % 3];
+        (0..self.first.len() - 1).flat_map(move |line| {
+            self.hits[self.first[line]..self.first[line + 1]]
+                .iter()
+                .map(move |hit| {
+                    let mut at = [0; 3];
+                    at[self.axis] = hit.edge as usize;
+                    at[(self.axis + 1) % 3] = line / across;
+                    at[(self.axis + 2) % 3] = line % across;
+                    (at, hit)
+                })
+        })
+    }
+}

@@ -1,0 +1,225 @@
+use crate::{Mesh, Stock, TriDexels, TriangleSoup};
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+
+/// Every edge has two triangles, in opposite directions; the triangles around a vertex are one fan.
+fn check_manifold(mesh: &Mesh) {
+    let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut fans: BTreeMap<u32, Vec<(u32, u32)>> = BTreeMap::new();
+    for t in &mesh.triangles {
+        assert!(t[0] != t[1] && t[1] != t[2] && t[2] != t[0], "{t:?}");
+        for k in 0..3 {
+            let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+            *edges.entry((a, b)).or_default() += 1;
+            fans.entry(a).or_default().push((b, c));
+        }
+    }
+    for ((a, b), count) in &edges {
+        assert_eq!(*count, 1, "edge {a} {b}");
+        assert!(edges.contains_key(&(*b, *a)), "edge {a} {b} is open");
+    }
+    for (vertex, fan) in fans {
+        let next: BTreeMap<u32, u32> = fan.iter().copied().collect();
+        let (start, mut at, mut count) = (fan[0].0, fan[0].0, 0);
+        loop {
+            at = next[&at];
+            count += 1;
+            if at == start || count > fan.len() {
+                break;
+            }
+        }
+        assert_eq!(count, fan.len(), "vertex {vertex}");
+    }
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let triple = |[a, b, c]: [[f64; 3]; 3]| {
+        a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    };
+    let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices[v as usize]);
+    mesh.triangles.iter().map(|t| triple(corners(t))).sum::<f64>() / 6.0
+}
+
+fn solid(cells: usize, stock: &Stock) -> TriDexels {
+    TriDexels::new([-10.0; 3], [10.0; 3], [cells, cells + 1, cells + 2], stock).unwrap()
+}
+
+#[test]
+fn boxes_are_sharp() {
+    let (min, max) = ([-6.13, -4.4, -5.77], [3.3, 5.21, 7.19]);
+    let solid = solid(24, &Stock::Block { min, max });
+    assert_eq!(solid.disagreements(), 0);
+    let mesh = solid.surface();
+    check_manifold(&mesh);
+    let exact: f64 = (0..3).map(|k| max[k] - min[k]).product();
+    assert!((volume(&mesh) - exact).abs() < 1e-9 * exact, "{}", volume(&mesh));
+    let mut on = [0; 4];
+    for v in &mesh.vertices {
+        let near = |k: usize| (v[k] - min[k]).abs().min((v[k] - max[k]).abs()) < 1e-12;
+        on[(0..3).filter(|k| near(*k)).count()] += 1;
+    }
+    // For pictures: normals of faces only.
+    let crisp = mesh.crisp(0.8);
+    assert_eq!(crisp.triangles.len(), mesh.triangles.len());
+    assert_eq!(crisp.vertices.len(), mesh.vertices.len() + on[2] + 2 * on[3]);
+    let level = |n: &[f32; 3]| n.iter().filter(|c| c.abs() > 1e-6).count() == 1;
+    assert!(crisp.normals.iter().all(level));
+    // All vertices on faces, each edge followed, each corner met.
+    assert_eq!((on[0], on[3]), (0, 8));
+    assert!(on[2] > 100);
+}
+
+#[test]
+fn edges_of_any_direction_are_sharp() {
+    // A cylinder's rim, and the edge where a ball cuts it.
+    let cylinder = Stock::Cylinder {
+        base: [-5.0, -3.0, -4.0],
+        axis: [3.0, 2.0, 2.5],
+        radius: 4.0,
+        height: 11.0,
+    };
+    let mesh = solid(60, &cylinder).surface();
+    check_manifold(&mesh);
+    let length = f64::sqrt(9.0 + 4.0 + 6.25);
+    let (mut rim, mut far) = (0, 0);
+    for v in &mesh.vertices {
+        let p = [v[0] + 5.0, v[1] + 3.0, v[2] + 4.0];
+        let along = (3.0 * p[0] + 2.0 * p[1] + 2.5 * p[2]) / length;
+        let across = (p.iter().map(|c| c * c).sum::<f64>() - along * along).max(0.0).sqrt();
+        let (side, end) = ((across - 4.0).abs(), along.abs().min((along - 11.0).abs()));
+        // Cells are a third wide; on a side of curvature 1/4 their tangent planes are off by at most (√3/3)²/8 = 0.04;
+        // a little more in faces that cut the rim at a flat angle.
+        assert!(side.min(end) < 0.06, "{v:?} {side} {end}");
+        far += usize::from(side.min(end) > 0.01);
+        rim += usize::from(side.max(end) < 0.02);
+    }
+    assert!(
+        rim > 80 && far * 100 < mesh.vertices.len(),
+        "{rim} {far} {}",
+        mesh.vertices.len()
+    );
+}
+
+#[test]
+fn the_box_cuts_off_what_reaches_beyond() {
+    let mesh = solid(
+        20,
+        &Stock::Ball {
+            centre: [9.0, 0.0, 0.0],
+            radius: 5.0,
+        },
+    )
+    .surface();
+    check_manifold(&mesh);
+    assert!(mesh.vertices.iter().all(|v| v[0] <= 10.0 + 0.1));
+    let cap = std::f64::consts::PI * 16.0 * (15.0 - 4.0) / 3.0;
+    let exact = 4.0 / 3.0 * std::f64::consts::PI * 125.0 - cap;
+    assert!(
+        (volume(&mesh) - exact).abs() < 0.02 * exact,
+        "{} {exact}",
+        volume(&mesh)
+    );
+    assert!(solid(5, &Stock::Union(Vec::new())).surface().triangles.is_empty());
+}
+
+#[test]
+fn the_same_at_any_thread_count() {
+    let solid = solid(
+        30,
+        &Stock::Ball {
+            centre: [0.1, 0.2, 0.3],
+            radius: 7.0,
+        },
+    );
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solid.surface())
+    };
+    assert_eq!(run(1), run(3));
+}
+
+fn part() -> impl Strategy<Value = Stock> {
+    let place = [-7.0..7.0_f64, -7.0..7.0, -7.0..7.0];
+    prop_oneof![
+        (place.clone(), [1.0..9.0_f64, 1.0..9.0, 1.0..9.0]).prop_map(|(min, size)| Stock::Block {
+            min,
+            max: [0, 1, 2].map(|k| min[k] + size[k])
+        }),
+        (place.clone(), 1.0..7.0_f64).prop_map(|(centre, radius)| Stock::Ball { centre, radius }),
+        (place.clone(), place, 1.0..4.0_f64, 2.0..14.0_f64).prop_map(|(base, axis, radius, height)| Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height
+        }),
+    ]
+}
+
+/// A few parts, added, taken away, intersected.
+fn csg() -> impl Strategy<Value = Stock> {
+    (part(), proptest::collection::vec((part(), 0..4), 0..5)).prop_map(|(first, more)| {
+        more.into_iter().fold(first, |whole, (part, kind)| match kind {
+            0 | 1 => Stock::Union(vec![whole, part]),
+            2 => Stock::Difference(Box::new(whole), vec![part]),
+            _ => Stock::Union(vec![
+                Stock::Intersection(vec![whole.clone(), part.clone()]),
+                Stock::Difference(Box::new(whole), vec![part]),
+            ]),
+        })
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, ..ProptestConfig::default() })]
+    #[test]
+    fn surfaces_of_csg_are_manifold(stock in csg(), cells in 6..20usize) {
+        let solid = solid(cells, &stock);
+        let mesh = solid.surface();
+        check_manifold(&mesh);
+        prop_assert!(mesh.vertices.iter().flatten().all(|c| c.is_finite()));
+        prop_assert_eq!(mesh.normals.len(), mesh.vertices.len());
+        prop_assert_eq!(mesh.cut.len(), mesh.vertices.len());
+        let triangles: Vec<_> = mesh.triangles.iter().map(|t| t.map(|v| mesh.vertices[v as usize])).collect();
+        let closed = triangles.is_empty() || TriangleSoup { triangles }.check_closed().is_ok();
+        prop_assert!(closed);
+    }
+
+    #[test]
+    fn volumes_converge(stock in csg()) {
+        // The truth, from many lines.
+        let grid = crate::Grid::new([-10.0; 2], [10.0; 2], [301, 301]).unwrap();
+        let whole = Stock::Block { min: [-10.0; 3], max: [10.0; 3] };
+        let exact = Stock::Intersection(vec![whole, stock.clone()]).dexels(&grid).unwrap().volume();
+        let mesh = solid(72, &stock).surface();
+        let found = volume(&mesh);
+        prop_assert!((found - exact).abs() < 0.01 * exact + 0.5, "{} {} {:?}", found, exact, stock);
+    }
+
+    /// Points at random: every kind of cell beside every other.
+    #[test]
+    fn any_lattice_gives_a_manifold(seed in any::<u64>(), share in 1..8_u32) {
+        use crate::{Dexels, Interval};
+        const N: usize = 6;
+        let filled = |p: [usize; 3]| {
+            let hash = (p[0] * N * N + p[1] * N + p[2]) as u64;
+            let mixed = (hash.wrapping_add(seed)).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(29).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            (mixed >> 40) % 8 < u64::from(share)
+        };
+        let set = |axis: usize| {
+            let grid = crate::Grid::new([0.0; 2], [N as f64; 2], [N; 2]).unwrap();
+            Dexels::from_fn(grid, |index, line| {
+                let (i, j) = grid.place(index);
+                for n in 0..N {
+                    let mut p = [0; 3];
+                    (p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]) = (i, j, n);
+                    if filled(p) {
+                        line.push(Interval::between(n as f64, n as f64 + 1.0));
+                    }
+                }
+            })
+        };
+        let solid = TriDexels::from_sets([set(0), set(1), set(2)]).unwrap();
+        prop_assert_eq!(solid.disagreements(), 0);
+        check_manifold(&solid.surface());
+    }
+}

@@ -1,0 +1,168 @@
+//! Dexels along all three axes.
+
+use crate::contour;
+use crate::dexels::{Dexels, GridMismatch, Operation};
+use crate::grid::{Grid, GridError};
+use crate::mesh::Mesh;
+use crate::stock::{Stock, StockError};
+use thiserror::Error;
+
+/// Three sets of dexels, along `x`, `y` and `z`, whose lines meet in the centres of `cells[0] × cells[1] × cells[2]` boxes.
+///
+/// Dexels along an axis see the solid turned: their `x`, `y` and `z` are the axes `axis + 1`, `axis + 2` and `axis` (mod 3), and
+/// so are the coordinates of their normals. What is steep for one set is flat for another, so every face is met by lines
+/// of at least one set at less than 55° from its normal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriDexels {
+    min: [f64; 3],
+    max: [f64; 3],
+    cells: [usize; 3],
+    sets: [Dexels; 3],
+}
+
+/// Why there are no tri-dexels.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum TriDexelsError {
+    /// The box is none, or has too many cells.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// The three sets have lines that do not meet.
+    #[error("the three sets of dexels do not share their lines' crossings")]
+    Mismatch,
+    /// The stock is none.
+    #[error(transparent)]
+    Stock(#[from] StockError),
+}
+
+impl TriDexels {
+    /// No material in the box from `min` to `max`.
+    ///
+    /// # Errors
+    /// [`TriDexelsError::Grid`]: an empty box, no cells, or more than [`Grid::MOST`] in all.
+    pub fn empty(min: [f64; 3], max: [f64; 3], cells: [usize; 3]) -> Result<Self, TriDexelsError> {
+        Self::grids(min, max, cells).map(|grids| Self {
+            min,
+            max,
+            cells,
+            sets: grids.map(Dexels::empty),
+        })
+    }
+
+    fn grids(min: [f64; 3], max: [f64; 3], cells: [usize; 3]) -> Result<[Grid; 3], TriDexelsError> {
+        let along = |axis: usize| {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            Grid::new([min[u], min[v]], [max[u], max[v]], [cells[u], cells[v]])
+        };
+        let grids = [along(0)?, along(1)?, along(2)?];
+        // Room for a rim, too.
+        let padded = cells
+            .iter()
+            .try_fold(1_usize, |all, n| all.checked_mul(n.checked_add(2)?));
+        match padded {
+            Some(all) if all <= Grid::MOST => Ok(grids),
+            _ => Err(GridError::Cells([cells[0].saturating_mul(cells[1]), cells[2]]).into()),
+        }
+    }
+
+    /// The dexels of a stock, as far as it is in the box.
+    ///
+    /// # Errors
+    /// [`TriDexelsError`]: no box, or no stock; dexels of an earlier run cannot be part of it, for they have one direction only.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Stock, TriDexels};
+    /// let ball = Stock::Ball { centre: [0.0; 3], radius: 4.0 };
+    /// let solid = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?;
+    /// assert!((solid.volume() - 268.08).abs() < 1.0);
+    /// assert_eq!(solid.disagreements(), 0);
+    /// let mesh = solid.surface();
+    /// assert!(mesh.vertices.iter().all(|v| (v[0].hypot(v[1]).hypot(v[2]) - 4.0).abs() < 0.01));
+    /// # Ok::<(), sweepsim_dexel::TriDexelsError>(())
+    /// ```
+    pub fn new(min: [f64; 3], max: [f64; 3], cells: [usize; 3], stock: &Stock) -> Result<Self, TriDexelsError> {
+        let [x, y, z] = Self::grids(min, max, cells)?;
+        let whole = Stock::Block { min, max };
+        let set = |axis: usize, grid: Grid| -> Result<Dexels, StockError> {
+            let mut set = stock.seen_along(axis)?.dexels(&grid)?;
+            set.intersect_all(&whole.seen_along(axis)?.dexels(&grid)?)?;
+            Ok(set)
+        };
+        let sets = [set(0, x)?, set(1, y)?, set(2, z)?];
+        Ok(Self { min, max, cells, sets })
+    }
+
+    /// Puts sets along `x`, `y` and `z` together.
+    ///
+    /// # Errors
+    /// [`TriDexelsError::Mismatch`]: their grids are not those of one box.
+    pub fn from_sets(sets: [Dexels; 3]) -> Result<Self, TriDexelsError> {
+        let [x, y, _] = &sets;
+        let pick = |of: fn(&Grid) -> [f64; 2]| [of(y.grid())[1], of(x.grid())[0], of(x.grid())[1]];
+        let (min, max) = (pick(Grid::min), pick(Grid::max));
+        let cells = [y.grid().cells()[1], x.grid().cells()[0], x.grid().cells()[1]];
+        let grids = Self::grids(min, max, cells)?;
+        let fits = grids.iter().zip(&sets).all(|(grid, set)| grid == set.grid());
+        fits.then_some(Self { min, max, cells, sets })
+            .ok_or(TriDexelsError::Mismatch)
+    }
+
+    /// Lower corner of the box.
+    #[must_use]
+    pub fn min(&self) -> [f64; 3] {
+        self.min
+    }
+
+    /// Upper corner of the box.
+    #[must_use]
+    pub fn max(&self) -> [f64; 3] {
+        self.max
+    }
+
+    /// Cells along the axes.
+    #[must_use]
+    pub fn cells(&self) -> [usize; 3] {
+        self.cells
+    }
+
+    /// The sets along `x`, `y` and `z`.
+    #[must_use]
+    pub fn sets(&self) -> &[Dexels; 3] {
+        &self.sets
+    }
+
+    /// Unites with, subtracts or intersects with `other`.
+    ///
+    /// # Errors
+    /// [`GridMismatch`] when the boxes or cells differ; nothing is changed then.
+    pub fn combine(&mut self, operation: Operation, other: &Self) -> Result<(), GridMismatch> {
+        if self.sets.iter().zip(&other.sets).any(|(a, b)| a.grid() != b.grid()) {
+            return Err(GridMismatch);
+        }
+        let both = self.sets.iter_mut().zip(&other.sets);
+        both.into_iter().try_for_each(|(a, b)| a.combine(operation, b))
+    }
+
+    /// Volume: the mean of the three sets' own.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.sets.iter().map(Dexels::volume).sum::<f64>() / 3.0
+    }
+
+    /// In how many crossings of their lines the three sets do not agree whether there is material: 0, but for points in the
+    /// surface itself. The [surface](Self::surface) follows the majority.
+    #[must_use]
+    pub fn disagreements(&self) -> usize {
+        contour::disagreements(self)
+    }
+
+    /// A closed surface with sharp edges and corners, by dual contouring: see the notes on the algorithm in the source.
+    ///
+    /// Every edge has two triangles, every vertex one fan of them. Vertices are shared and their normals means, so for
+    /// pictures see [`Mesh::crisp`]. Features thinner than the distance of two lines may be missing. Material that reaches
+    /// beyond the box is cut off at it. The mesh is the same for any number of threads.
+    #[must_use]
+    pub fn surface(&self) -> Mesh {
+        contour::contour(self)
+    }
+}
