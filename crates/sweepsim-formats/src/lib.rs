@@ -23,8 +23,11 @@
 //! | either, by extension | [`read_path_file`] | |
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
 //! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |
+//! | meshes for viewers (GLB) | [`read_glb`] | [`write_glb`] |
+//! | meshes for printers (3MF) | [`read_3mf`] | [`write_3mf`] |
 //! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
 //! | dexels to the bit, compact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
+//! | dexels as NumPy arrays (`.npz`) | [`read_dexels_npz`] | [`write_dexels_npz`] |
 //! | dexels, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
 //!
@@ -40,8 +43,10 @@ mod dexels_csv;
 mod error;
 mod fixtures;
 pub mod gcode;
+mod glb;
 mod job;
 mod locate;
+mod npz;
 mod numbers;
 mod paths;
 mod ply;
@@ -52,17 +57,22 @@ mod report;
 mod stl;
 mod surface_tool;
 mod text;
+mod threemf;
 mod tools;
+mod zip;
 
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels_binary::{read_dexels_binary, write_dexels_binary};
 pub use dexels_csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
 pub use error::{FormatError, Place, Problem};
 pub use fixtures::{Difference, Fixture};
+pub use glb::{read_glb, write_glb};
 pub use job::{Job, Limits, Target, Units};
+pub use npz::{read_dexels_npz, write_dexels_npz};
 pub use numbers::shortest;
 pub use paths::{JobPath, PathOptions, read_path_file};
 pub use ply::{read_ply, write_ply};
 pub use program::{Note, Program, ProgramPose};
 pub use report::{Collision, Deviation, DexelCounts, Report, UnresolvedDexel};
 pub use stl::{parse_stl, read_stl, write_stl};
+pub use threemf::{read_3mf, write_3mf};
