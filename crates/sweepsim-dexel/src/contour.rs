@@ -81,10 +81,17 @@ impl Slab {
             cut: Vec::new(),
             first: Vec::with_capacity(rows * levels),
         };
+        let mut corners = 0;
         for (j, k) in (0..rows).flat_map(|j| (0..levels).map(move |k| (j, k))) {
             slab.first.push(slab.vertices.len() as u32);
             let cell = [i, j, k];
-            let kind = &CELLS[usize::from(lattice.kind(cell))];
+            // The upper corners of the cell below are the lower ones of this.
+            corners = if k == 0 {
+                lattice.kind(cell)
+            } else {
+                lattice.upper_corners(cell) | corners >> 4
+            };
+            let kind = &CELLS[usize::from(corners)];
             for sheet in 0..kind.sheets {
                 let mut planes = Planes::default();
                 for (edge, (axis, offset)) in EDGES.iter().enumerate() {

@@ -184,7 +184,8 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
             upper: end(2 * k + 1),
         };
         let above = line.last().is_none_or(|last| last.upper.z < interval.lower.z);
-        if number >= grid.len() || number < builder.lines() || !above || !(interval.lower.z < interval.upper.z) {
+        let whole = interval.lower.z < interval.upper.z;
+        if number >= grid.len() || number < builder.lines() || !above || !whole {
             return Err(problem(format!(
                 "interval {k} (from 0) is out of order, empty, or not on the grid"
             )));

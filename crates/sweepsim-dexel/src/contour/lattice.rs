@@ -104,6 +104,12 @@ impl<'a> Lattice<'a> {
         (0..8).map(|n| u8::from(corner(n)) << n).sum()
     }
 
+    /// The bits of [`kind`](Self::kind) of the four upper corners.
+    pub fn upper_corners(&self, [i, j, k]: [usize; 3]) -> u8 {
+        let at = |a: usize, b: usize| u8::from(self.inside([i + a, j + b, k + 1]));
+        at(0, 0) << 4 | at(1, 0) << 5 | at(0, 1) << 6 | at(1, 1) << 7
+    }
+
     /// The interval ends along an axis, one for each edge whose ends differ.
     pub fn hits(&self, axis: usize) -> Hits {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
