@@ -337,9 +337,27 @@ impl<C: Clone> ChartSolver<C> {
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         let domain = map.bounds(&root);
+        self.solve_part(map, root, &domain, targets, sink);
+    }
+
+    /// The same in one box of several that fill `domain`, and share nothing but faces: a preimage on a face is found in the
+    /// box above it only.
+    pub fn solve_part<const N: usize, M, T, S>(
+        &mut self,
+        map: &mut M,
+        part: C,
+        domain: &[Interval; N],
+        targets: &T,
+        sink: &mut S,
+    ) where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, M::Seen>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
         let mut budget = self.options.boxes;
         self.stack.clear();
-        self.stack.push((root, 0));
+        self.stack.push((part, 0));
         while let Some((cell, depth)) = self.stack.pop() {
             let Some(values) = map.values(&cell) else {
                 self.statistics.boxes += 1;
@@ -365,13 +383,13 @@ impl<C: Clone> ChartSolver<C> {
             }
             budget -= 1;
             let linear = Linear::new(&bounds, &jacobian, &map.rounding());
-            let mut axis = widest(&bounds, &domain, &jacobian, &map.scales());
+            let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
                 let chart = linear.norm() < 1.0;
                 let first_found =
-                    chart.then(|| self.chart(map, &linear, &bounds, &domain, &value, &values, targets, sink));
+                    chart.then(|| self.chart(map, &linear, &bounds, domain, &value, &values, targets, sink));
                 match first_found {
                     Some(true) => {
                         self.statistics.charts += 1;

@@ -30,6 +30,9 @@ pub struct Surface {
     pub vertices: Vec<[f64; 3]>,
     /// Triangles, counter-clockwise seen from where the equation is positive.
     pub triangles: Vec<[u32; 3]>,
+    /// The boxes, disjoint but for their faces, in which the surface was found to be a graph (or nothing): with
+    /// [`unresolved`](Self::unresolved) they hold all of it.
+    pub boxes: Vec<[Interval; 3]>,
     /// Boxes where the surface may be singular, or could not be settled. Outside of these the mesh is all there is.
     pub unresolved: Vec<Unresolved>,
     /// What the search did.
@@ -212,7 +215,13 @@ impl SurfaceSolver {
         let mut mesher = Mesher::new(&search.grid, &search.nodes);
         let (vertices, triangles) = mesher.mesh();
         let mut open: Vec<Open> = Vec::new();
+        let mut boxes = Vec::new();
         for node in &search.nodes {
+            if matches!(node.state, State::Plain(_)) {
+                let (lo, hi) = search.grid.bounds(node);
+                let (lo, hi) = (search.grid.outer(&lo), search.grid.outer(&hi));
+                boxes.push([0, 1, 2].map(|j| Interval::new(lo[j], hi[j])));
+            }
             if let State::Open(cause) = node.state {
                 let (lo, hi) = search.grid.bounds(node);
                 open.push(Open {
@@ -240,6 +249,7 @@ impl SurfaceSolver {
         Ok(Surface {
             vertices,
             triangles,
+            boxes,
             unresolved: open.iter().map(|o| crate::points::open_box(system, o)).collect(),
             statistics: search.statistics,
         })

@@ -1,14 +1,17 @@
 //! All crossings of dexel lines with the boundary of a stretch of path: envelope, edges, kinks and the two caps.
 
 use crate::element::{Cells, Element};
-use crate::envelope::{Face, Joint, Near, ROOT, Rim, Side, Size, Twist};
+use crate::envelope::{Face, Joint, Near, OnFace, ROOT, Rim, Side, Size, Twist};
 use crate::generic::Part;
 use crate::lattice::Lattice;
+use crate::placed::Placed;
+use crate::planes::Slicer;
+use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
 use crate::time::Times;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, Tool};
-use sweepsim_solve::{ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, Undecided};
+use sweepsim_solve::{ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SurfaceSolver, System, SystemError, Undecided};
 
 /// A tool, prepared.
 pub(crate) struct Cutter {
@@ -41,6 +44,7 @@ pub(crate) struct Workspace {
     pub rims: Vec<Cells>,
     pub bricks: ChartSolver<(u32, u32)>,
     pub placed: ChartSolver<u32>,
+    pub slicer: Slicer,
 }
 
 impl Workspace {
@@ -55,9 +59,47 @@ impl Workspace {
             rims: cutter.rims.iter().map(Cells::new).collect(),
             bricks: ChartSolver::new(options),
             placed: ChartSolver::new(options),
+            slicer: Slicer::new(),
         }
     }
 }
+
+/// How the maps of a search are solved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum How<'a> {
+    /// By charts, from the whole domain.
+    Charts,
+    /// By curves in the lattice's one plane `x = const`: Algorithm 3. The forms of each part.
+    Planes(&'a [Forms]),
+    /// By charts within the boxes of the envelope surfaces: Algorithm 1.
+    Surface,
+}
+
+/// A tool under one motion, and at rest at its start and end.
+#[derive(Clone, Debug)]
+pub(crate) struct Forms {
+    faces: Vec<PatchMotion>,
+    rims: Vec<EdgeMotion>,
+    placed: [Vec<PlacedPatch>; 2],
+}
+
+impl Forms {
+    pub fn new(tool: &Tool, segment: &Segment) -> Self {
+        let [first, last] = segment.tips();
+        let at_rest = |turn: Matrix3<f64>, tip: &Vector3<f64>| {
+            let patches = tool.patches().iter();
+            patches.map(|patch| PlacedPatch::new(patch, &turn, tip)).collect()
+        };
+        Self {
+            faces: tool.patches().iter().map(|patch| PatchMotion::new(patch, segment)).collect(),
+            rims: tool.edges().iter().map(|edge| EdgeMotion::new(edge, segment)).collect(),
+            placed: [at_rest(segment.start(), first), at_rest(segment.end(), last)],
+        }
+    }
+}
+
+/// How flat the surface is in the boxes of Algorithm 1, in parts of the parameters' ranges.
+const SURFACE: f64 = 0.02;
 
 /// A crossing and the number of its line.
 pub(crate) type Numbered = (u32, Crossing);
@@ -103,12 +145,14 @@ fn unit(normal: Vector3<f64>) -> [f32; 3] {
 }
 
 /// A placement between two motions.
-struct Placed {
+struct Placement {
     turn: Matrix3<f64>,
     tip: Vector3<f64>,
     before: Side,
     after: Side,
     source: Source,
+    /// Of [`Forms`].
+    end: usize,
 }
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
@@ -122,7 +166,9 @@ pub(crate) fn twist(segment: &Segment, turn: &Matrix3<f64>) -> Side {
 
 /// A search of some lines along some segments.
 pub(crate) struct Search<'a> {
+    pub tool: &'a Tool,
     pub cutter: &'a Cutter,
+    pub how: How<'a>,
     pub lattice: &'a Lattice<'a>,
     pub size: Size,
     pub path: u16,
@@ -146,31 +192,39 @@ impl Search<'_> {
             t: start + share * t as f32,
         };
         let mut times = Times::new(segment);
-        self.faces(&mut times, &source, space, harvest);
-        self.rims(&mut times, &source, space, harvest);
+        let forms = match self.how {
+            How::Planes(forms) => Some(&forms[at]),
+            _ => None,
+        };
+        let surface = matches!(self.how, How::Surface).then_some(segment);
+        self.faces(&mut times, (forms, surface), &source, space, harvest);
+        self.rims(&mut times, forms, &source, space, harvest);
         let turn = segment.start();
         let before = at
             .checked_sub(1)
             .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, &turn));
-        let placed = Placed {
+        let placed = Placement {
             turn,
             tip: segment.tips()[0],
             before,
             after: twist(segment, &turn),
             source: source(0.0),
+            end: 0,
         };
-        self.joint(&placed, space, harvest);
+        self.joint(&placed, forms, space, harvest);
         if at + 1 == parts.len() {
             let turn = segment.end();
-            let placed = Placed {
+            let placed = Placement {
                 turn,
                 tip: segment.tips()[1],
                 before: twist(segment, &turn),
                 after: Side::Beyond(true),
                 source: source(1.0),
+                end: 1,
             };
-            self.joint(&placed, space, harvest);
+            self.joint(&placed, forms, space, harvest);
         }
+        harvest.count_slices(&mut space.slicer);
         for cells in space.faces.iter_mut().chain(&mut space.rims) {
             cells.trim();
         }
@@ -189,8 +243,41 @@ impl Search<'_> {
         })
     }
 
-    fn faces(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
-        for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
+    /// The plane of a lattice with one `x`.
+    fn plane(&self) -> Plane {
+        Plane::x(self.lattice.coordinate(0, self.lattice.i[0]))
+    }
+
+    /// Solves a map by the curves in the lattice's plane.
+    fn slice<const N: usize, M: Placed<N>>(
+        &self,
+        map: &mut M,
+        system: impl FnOnce() -> Result<System, SystemError>,
+        (slicer, accept): (&mut Slicer, f64),
+        sink: &mut Collector<N, M::Seen>,
+    ) where
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        // Most planes miss most patches.
+        let root = map.root();
+        let touches = map.values(&root).is_some_and(|values| {
+            self.lattice.numbers(0, values[0]).is_some() && self.lattice.numbers(1, values[1]).is_some()
+        });
+        if touches {
+            slicer.solve(map, system(), self.lattice, accept, sink);
+        }
+    }
+
+    fn faces(
+        &self,
+        times: &mut Times,
+        (forms, surface): (Option<&Forms>, Option<&Segment>),
+        source: &dyn Fn(f64) -> Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        let accept = space.bricks.options.accept;
+        for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Face {
                 element,
                 cells,
@@ -198,7 +285,14 @@ impl Search<'_> {
                 size: self.size,
             };
             let mut sink = Collector::new();
-            space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+            if let Some(forms) = forms {
+                let system = || forms.faces[number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+            } else if let Some(segment) = surface {
+                self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
+            } else {
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+            }
             for found in sink.found {
                 let crossing = Crossing {
                     z: found.seen.height.at(&found.x, &found.from),
@@ -213,8 +307,51 @@ impl Search<'_> {
         harvest.count(&mut space.bricks.statistics);
     }
 
-    fn rims(&self, times: &mut Times, source: &dyn Fn(f64) -> Source, space: &mut Workspace, harvest: &mut Harvest) {
-        for (element, cells) in self.cutter.rims.iter().zip(&mut space.rims) {
+    /// Solves a patch's map within the boxes that hold its envelope surface.
+    fn within_surface(
+        &self,
+        map: &mut Face,
+        number: usize,
+        segment: &Segment,
+        charts: &mut ChartSolver<(u32, u32)>,
+        sink: &mut Collector<3, OnFace>,
+    ) {
+        let touches = map
+            .values(&ROOT)
+            .is_some_and(|v| self.lattice.numbers(0, v[0]).is_some() && self.lattice.numbers(1, v[1]).is_some());
+        if !touches {
+            return;
+        }
+        let domain = map.bounds(&ROOT);
+        let motion = PatchMotion::new(&self.tool.patches()[number], segment);
+        let surface = motion
+            .envelope()
+            .ok()
+            .and_then(|system| SurfaceSolver::new(SURFACE).solve(&system, &mut ()).ok());
+        let Some(surface) = surface else {
+            // Not an equation: the whole domain is the box.
+            charts.solve(map, ROOT, self.lattice, sink);
+            return;
+        };
+        let open = surface.unresolved.iter().map(|open| [0, 1, 2].map(|k| open.bounds[k]));
+        for bounds in surface.boxes.iter().copied().chain(open) {
+            let mark = map.mark();
+            let part = map.place(&bounds);
+            charts.solve_part(map, part, &domain, self.lattice, sink);
+            map.release(mark);
+        }
+    }
+
+    fn rims(
+        &self,
+        times: &mut Times,
+        forms: Option<&Forms>,
+        source: &dyn Fn(f64) -> Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        let accept = space.bricks.options.accept;
+        for (number, (element, cells)) in self.cutter.rims.iter().zip(&mut space.rims).enumerate() {
             let mut map = Rim {
                 element,
                 cells,
@@ -222,7 +359,13 @@ impl Search<'_> {
                 size: self.size,
             };
             let mut sink = Collector::new();
-            space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+            match forms {
+                Some(forms) => {
+                    let system = || forms.rims[number].section(&self.plane());
+                    self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+                }
+                None => space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink),
+            }
             for found in sink.found {
                 let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
                 if (a < 0.0) == (b < 0.0) {
@@ -244,8 +387,9 @@ impl Search<'_> {
         harvest.count(&mut space.bricks.statistics);
     }
 
-    fn joint(&self, placed: &Placed, space: &mut Workspace, harvest: &mut Harvest) {
-        for (element, cells) in self.cutter.faces.iter().zip(&mut space.faces) {
+    fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
+        let accept = space.placed.options.accept;
+        for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Joint {
                 element,
                 cells,
@@ -256,7 +400,13 @@ impl Search<'_> {
                 size: self.size,
             };
             let mut sink = Collector::new();
-            space.placed.solve(&mut map, 0, self.lattice, &mut sink);
+            match forms {
+                Some(forms) => {
+                    let system = || forms.placed[placed.end][number].section(&self.plane());
+                    self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+                }
+                None => space.placed.solve(&mut map, 0, self.lattice, &mut sink),
+            }
             for found in sink.found {
                 let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
                 let change = negative(found.seen.after) - negative(found.seen.before);
@@ -278,6 +428,13 @@ impl Search<'_> {
 }
 
 impl Harvest {
+    /// Counts what the slicer did since the last time.
+    fn count_slices(&mut self, slicer: &mut Slicer) {
+        self.statistics.boxes += std::mem::take(&mut slicer.boxes);
+        self.statistics.charts += std::mem::take(&mut slicer.regular);
+        self.statistics.evaluations += std::mem::take(&mut slicer.evaluations);
+    }
+
     fn count(&mut self, statistics: &mut ChartStatistics) {
         self.statistics.boxes += statistics.boxes;
         self.statistics.charts += statistics.charts;

@@ -342,6 +342,41 @@ impl Cells {
         }
     }
 
+    /// A cell of its own, over any box; it is kept until it is [released](Self::release).
+    pub fn place(&mut self, element: &Element, lower: [f64; 2], upper: [f64; 2]) -> u32 {
+        let layout = &element.layout;
+        let mut c = element.whole.clone();
+        let (mut low, mut high) = (Vec::new(), Vec::new());
+        let rational = std::iter::once(&layout.position)
+            .chain(&layout.slopes)
+            .map(|slot| (slot, 4));
+        for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
+            low.resize(slot.len(), 0.0);
+            high.resize(slot.len(), 0.0);
+            for c in c[slot.start..][..count * slot.len()].chunks_exact_mut(slot.len()) {
+                for axis in (0..2).filter(|axis| slot.degrees[*axis] > 0) {
+                    cut(c, slot.degrees, axis, upper[axis], &mut low, &mut high);
+                    c.copy_from_slice(&low);
+                    cut(c, slot.degrees, axis, lower[axis] / upper[axis], &mut low, &mut high);
+                    c.copy_from_slice(&high);
+                }
+            }
+        }
+        let node = self.node(element, lower, upper, c);
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// How many cells there are, to release those that come after.
+    pub fn mark(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Forgets the cells made since the mark: placed ones, and what they were split into.
+    pub fn release(&mut self, mark: usize) {
+        self.nodes.truncate(mark);
+    }
+
     fn node(&self, element: &Element, lower: [f64; 2], upper: [f64; 2], c: Vec<f64>) -> Node {
         let layout = &element.layout;
         let mut points = vec![0.0; self.points];

@@ -24,6 +24,14 @@ impl<'a> Lattice<'a> {
         }
     }
 
+    /// The lines of one column: those with one `x`.
+    pub fn column(grid: &'a Grid, i: usize, shift: [f64; 2]) -> Self {
+        Self {
+            i: [i, i],
+            ..Self::all(grid, shift)
+        }
+    }
+
     /// One line.
     pub fn one(grid: &'a Grid, index: usize, shift: [f64; 2]) -> Self {
         let (i, j) = grid.place(index);
@@ -36,7 +44,7 @@ impl<'a> Lattice<'a> {
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.
-    fn numbers(&self, axis: usize, range: Interval) -> Option<(usize, usize)> {
+    pub fn numbers(&self, axis: usize, range: Interval) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
         let spacing = self.grid.spacing()[axis];
         let first = self.grid.min()[axis] + 0.5 * spacing + self.shift[axis];
@@ -65,7 +73,7 @@ impl<'a> Lattice<'a> {
     }
 
     /// Where a line stands.
-    fn coordinate(&self, axis: usize, number: usize) -> f64 {
+    pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
         self.shift[axis]
             + if axis == 0 {
                 self.grid.x(number)

@@ -34,9 +34,12 @@ mod envelope;
 mod form;
 mod generic;
 mod lattice;
+mod placed;
+mod planes;
 mod point;
 mod simulate;
 mod sweep;
+pub mod systems;
 mod time;
 
 pub use simulate::{Cut, Simulation, simulate, sweep_all};

@@ -1,6 +1,6 @@
 //! The sweep of a path: crossings of all dexel lines, chunk by chunk, counted to intervals, audited, and repaired.
 
-use crate::crossings::{Cutter, Harvest, Numbered, Search, Workspace};
+use crate::crossings::{Cutter, Forms, Harvest, How, Numbered, Search, Workspace};
 use crate::envelope::Size;
 use crate::generic::{self, Part};
 use crate::lattice::Lattice;
@@ -22,6 +22,10 @@ pub enum Method {
     Charts,
     /// Every line for itself: the paper's Algorithm 4.
     Lines,
+    /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
+    Planes,
+    /// The envelope as surfaces, cut by the lines: the paper's Algorithm 1.
+    Surface,
 }
 
 impl fmt::Display for Method {
@@ -29,13 +33,15 @@ impl fmt::Display for Method {
         f.write_str(match self {
             Self::Charts => "charts",
             Self::Lines => "lines",
+            Self::Planes => "planes",
+            Self::Surface => "surface",
         })
     }
 }
 
 /// A name that is no method.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("unknown method `{0}`: expected `charts` or `lines`")]
+#[error("unknown method `{0}`: expected `charts`, `planes`, `lines` or `surface`")]
 pub struct UnknownMethod(pub String);
 
 impl FromStr for Method {
@@ -45,6 +51,8 @@ impl FromStr for Method {
         match name {
             "charts" => Ok(Self::Charts),
             "lines" => Ok(Self::Lines),
+            "planes" => Ok(Self::Planes),
+            "surface" => Ok(Self::Surface),
             _ => Err(UnknownMethod(name.to_owned())),
         }
     }
@@ -225,6 +233,7 @@ pub fn sweep(
     }
     let parts = generic::parts(path.poses(), tool.profile().is_some(), tolerance);
     let job = Job {
+        tool,
         cutter: &cutter,
         grid,
         tolerance,
@@ -262,6 +271,7 @@ pub fn sweep(
 
 /// What all chunks of a sweep share.
 struct Job<'a> {
+    tool: &'a Tool,
     cutter: &'a Cutter,
     grid: &'a Grid,
     tolerance: f64,
@@ -286,19 +296,47 @@ impl Job<'_> {
         result
     }
 
+    fn search<'b>(&'b self, lattice: &'b Lattice<'b>, how: How<'b>) -> Search<'b> {
+        Search {
+            tool: self.tool,
+            cutter: self.cutter,
+            how,
+            lattice,
+            size: self.size,
+            path: self.path,
+        }
+    }
+
     /// All crossings of a chunk, in an order that does not depend on the threads.
     fn harvest(&self, chunk: &[Part]) -> Result<Harvest, SweepError> {
+        let shift = generic::shift(self.tolerance, 0);
         match self.method {
-            Method::Charts => {
-                let lattice = Lattice::all(self.grid, generic::shift(self.tolerance, 0));
-                let search = Search {
-                    cutter: self.cutter,
-                    lattice: &lattice,
-                    size: self.size,
-                    path: self.path,
+            Method::Charts | Method::Surface => {
+                let lattice = Lattice::all(self.grid, shift);
+                let how = if self.method == Method::Charts {
+                    How::Charts
+                } else {
+                    How::Surface
                 };
+                let search = self.search(&lattice, how);
                 self.gather(chunk.len().div_ceil(BLOCK), |block, space, harvest| {
                     for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
+                        if self.monitor.cancelled() {
+                            break;
+                        }
+                        search.part(chunk, at, space, harvest);
+                    }
+                })
+            }
+            Method::Planes => {
+                let forms: Vec<Forms> = chunk
+                    .par_iter()
+                    .map(|part| Forms::new(self.tool, &part.segment))
+                    .collect();
+                self.gather(self.grid.cells()[0], |column, space, harvest| {
+                    let lattice = Lattice::column(self.grid, column, shift);
+                    let search = self.search(&lattice, How::Planes(&forms));
+                    for at in 0..chunk.len() {
                         if self.monitor.cancelled() {
                             break;
                         }
@@ -317,12 +355,7 @@ impl Job<'_> {
     /// The crossings of one line, moved as in the given attempt.
     fn line(&self, chunk: &[Part], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let lattice = Lattice::one(self.grid, line, generic::shift(self.tolerance, attempt));
-        let search = Search {
-            cutter: self.cutter,
-            lattice: &lattice,
-            size: self.size,
-            path: self.path,
-        };
+        let search = self.search(&lattice, How::Charts);
         for at in 0..chunk.len() {
             search.part(chunk, at, space, harvest);
         }

@@ -59,6 +59,33 @@ impl Times {
         times
     }
 
+    /// A piece of its own, over any interval; it is kept until it is [released](Self::release).
+    pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
+        let root = &self.nodes[0];
+        let (mut turns, mut weights) = (root.turns, root.weights);
+        if self.count == 3 {
+            // Values of the blossoms at (lower, lower), (lower, upper), (upper, upper).
+            for (i, [a, b]) in [[lower, lower], [lower, upper], [upper, upper]].into_iter().enumerate() {
+                let mix = [(1.0 - a) * (1.0 - b), (1.0 - a) * b + a * (1.0 - b), a * b];
+                turns[i] = root.turns[0] * mix[0] + root.turns[1] * mix[1] + root.turns[2] * mix[2];
+                weights[i] = root.weights[0] * mix[0] + root.weights[1] * mix[1] + root.weights[2] * mix[2];
+            }
+        }
+        let node = self.node(lower, upper, turns, weights);
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// How many pieces there are, to release those that come after.
+    pub fn mark(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Forgets the pieces made since the mark: placed ones, and what they were split into.
+    pub fn release(&mut self, mark: usize) {
+        self.nodes.truncate(mark);
+    }
+
     fn node(&self, lower: f64, upper: f64, turns: [Matrix3<f64>; 3], weights: [f64; 3]) -> Node {
         let row = |m: &Matrix3<f64>, r: usize| [m[(r, 0)], m[(r, 1)], m[(r, 2)]];
         let mut node = Node {

@@ -1,0 +1,430 @@
+//! Algorithm 3: the envelope's section by a plane `x = const`, as curves, cut by the lines of that plane.
+//!
+//! [`CurveSolver`] gives the curves of Eq. 4 (patches) and Eq. 5 (edges; caps and kinks alike) with the right connectivity, as
+//! polylines whose vertices lie on the curve. Each *span*, the curve between two vertices, lies in a known box: its chord's,
+//! widened by the polyline's tolerance. Where the Jacobian of `(X, Y, g)` is regular on the box, `Y` is monotone along the span: a
+//! line crosses it once, if it passes between the two ends, or never. Where it is not (about the extrema of `Y`), and a line may
+//! cross, the span is halved at a point of the curve, and the boxes of the halves shrink around it by the mean value theorem.
+//!
+//! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. What cannot be decided
+//! is handed out as open, and solved line by line.
+
+use crate::crossings::Collector;
+use crate::lattice::Lattice;
+use crate::placed::Placed;
+use nalgebra::{Const, DimMin, Matrix2, ToTypenum, Vector2};
+use sweepsim_solve::{Cause, CurveSolver, Curves, Interval, Preimage, Reason, Sample, Sink, SolveOptions, System, SystemError, Undecided};
+
+/// The polylines' tolerance, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'.
+const TOLERANCE: f64 = 0.03;
+/// Halvings of a span.
+const DEPTH: u32 = 44;
+/// Steps of Newton's method.
+const STEPS: usize = 24;
+
+/// Makes the curves of sections.
+#[derive(Debug)]
+pub(crate) struct Slicer {
+    curves: CurveSolver,
+    /// Spans looked at, regular ones, evaluations.
+    pub boxes: u64,
+    pub regular: u64,
+    pub evaluations: u64,
+}
+
+impl Slicer {
+    pub fn new() -> Self {
+        let options = SolveOptions {
+            smallest: 1e-10,
+            boxes: 200_000,
+            unresolved: 64,
+            ..SolveOptions::default()
+        };
+        Self {
+            curves: CurveSolver::with_options(TOLERANCE, options),
+            boxes: 0,
+            regular: 0,
+            evaluations: 0,
+        }
+    }
+
+    /// Finds the preimages of the lines of `lattice`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
+    /// where the map has it).
+    pub fn solve<const N: usize, M>(
+        &mut self,
+        map: &mut M,
+        system: Result<System, SystemError>,
+        lattice: &Lattice,
+        accept: f64,
+        sink: &mut Collector<N, M::Seen>,
+    ) where
+        M: Placed<N>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let Ok(Curves {
+            curves, singular, skin, ..
+        }) = system.map_err(drop).and_then(|system| self.curves.solve(&system, &mut ()).map_err(drop))
+        else {
+            // Not a system, for some form vanishes: nothing is known of any line.
+            let everywhere = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+            leave(lattice, everywhere, [Interval::new(0.0, 1.0); N], Reason::Smallest, sink);
+            return;
+        };
+        for open in &singular {
+            let bounds: [Interval; N] = std::array::from_fn(|k| open.bounds[k]);
+            let reason = match open.cause {
+                Cause::Smallest => Reason::Smallest,
+                _ => Reason::Budget,
+            };
+            let mark = map.mark();
+            let cell = map.place(&widened(&bounds, 1e-12));
+            if let Some(values) = map.values(&cell) {
+                leave(lattice, values[1], bounds, reason, sink);
+            }
+            map.release(mark);
+        }
+        // With a skin, curves run on beyond the domain: at most this far.
+        let region = Interval::new(-2.0 * skin, 1.0 + 2.0 * skin);
+        let mut cutting = Cutting {
+            map,
+            lattice,
+            x: lattice.coordinate(0, lattice.i[0]),
+            accept,
+            sink,
+            slicer: self,
+        };
+        for curve in &curves {
+            let count = curve.points.len();
+            let mut from: Option<Vertex<N>> = None;
+            let last = if curve.ends.is_none() { count + 1 } else { count };
+            for k in 0..last {
+                let point = &curve.points[k % count].point;
+                let to = cutting.vertex(std::array::from_fn(|j| point[j]));
+                if let Some(from) = from {
+                    let within = std::array::from_fn(|j| {
+                        let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
+                        Interval::new((lo - TOLERANCE).max(region.lo), (hi + TOLERANCE).min(region.hi))
+                    });
+                    cutting.span(&from, &to, within, DEPTH);
+                }
+                from = Some(to);
+            }
+        }
+    }
+}
+
+fn widened<const N: usize>(bounds: &[Interval; N], by: f64) -> [Interval; N] {
+    bounds.map(|side| Interval::new(side.lo - by, side.hi + by))
+}
+
+/// Hands out the lines with `y` in the range as open.
+fn leave<const N: usize, S>(
+    lattice: &Lattice,
+    y: Interval,
+    bounds: [Interval; N],
+    reason: Reason,
+    sink: &mut Collector<N, S>,
+) {
+    let Some((first, last)) = lattice.numbers(1, y) else {
+        return;
+    };
+    for j in first..=last {
+        sink.undecided(Undecided {
+            target: lattice.grid.index(lattice.i[0], j),
+            bounds,
+            reason,
+        });
+    }
+}
+
+/// A point of a curve, and where along the plane it is.
+#[derive(Clone, Copy, Debug)]
+struct Vertex<const N: usize> {
+    x: [f64; N],
+    y: f64,
+}
+
+/// The curves of one section being cut by the lines.
+struct Cutting<'a, const N: usize, M: Placed<N>> {
+    map: &'a mut M,
+    lattice: &'a Lattice<'a>,
+    x: f64,
+    accept: f64,
+    sink: &'a mut Collector<N, M::Seen>,
+    slicer: &'a mut Slicer,
+}
+
+/// What is seen of the equations without that of `Y`: row 0 is `X`, row 2 is `g`.
+fn rows<const N: usize>() -> impl Iterator<Item = usize> {
+    (0..N).filter(|r| *r != 1)
+}
+
+impl<const N: usize, M> Cutting<'_, N, M>
+where
+    M: Placed<N>,
+    Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+{
+    fn evaluate(&mut self, x: &[f64; N]) -> Sample<N, M::Seen> {
+        self.slicer.evaluations += 1;
+        self.map.evaluate(x)
+    }
+
+    fn vertex(&mut self, x: [f64; N]) -> Vertex<N> {
+        let y = self.evaluate(&x).value[1];
+        Vertex { x, y }
+    }
+
+    /// Cuts the curve from `p` to `q`, which lies in the box `within`.
+    fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) {
+        self.slicer.boxes += 1;
+        let mark = self.map.mark();
+        let cell = self.map.place(&within);
+        // Where the map asks for nothing (an edge both of whose faces move in, …) no crossing counts.
+        let lines = self
+            .map
+            .values(&cell)
+            .and_then(|values| Some((values[1], self.lattice.numbers(1, values[1])?)));
+        let Some((reach, (first, last))) = lines else {
+            self.map.release(mark);
+            return;
+        };
+        let jacobian = self.map.jacobian(&cell);
+        self.map.release(mark);
+        if regular(&within, &jacobian) {
+            self.slicer.regular += 1;
+            self.cross(p, q, &within, [first, last]);
+            return;
+        }
+        let halves = (depth > 0).then(|| self.halves(p, q, &within, &jacobian)).flatten();
+        let Some((middle, parts)) = halves else {
+            leave(self.lattice, reach, within, Reason::Smallest, self.sink);
+            return;
+        };
+        self.span(p, &middle, parts[0], depth - 1);
+        self.span(&middle, q, parts[1], depth - 1);
+    }
+
+    /// The crossings of a span along which `Y` is monotone.
+    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) {
+        let mut from = *p;
+        let forward = p.y < q.y;
+        for n in 0..=last - first {
+            let j = if forward { first + n } else { last - n };
+            let y = self.lattice.coordinate(1, j);
+            if (p.y < y) == (q.y < y) {
+                continue;
+            }
+            let target = self.lattice.grid.index(self.lattice.i[0], j);
+            match self.root(&from, q, y, within) {
+                Some((x, base, sample, orientation)) => {
+                    from = Vertex { x, y };
+                    // Beyond the domain another patch, or another segment, has the curve.
+                    if x.iter().all(|x| (0.0..=1.0).contains(x)) {
+                        self.sink.found(Preimage {
+                            target,
+                            x,
+                            from: base,
+                            seen: sample.seen,
+                            orientation,
+                        });
+                    }
+                }
+                None => self.sink.undecided(Undecided {
+                    target,
+                    bounds: *within,
+                    reason: Reason::Smallest,
+                }),
+            }
+        }
+    }
+
+    /// The point of the span where `Y = y`, by Newton's method from between `p` and `q`; with the last point evaluated.
+    fn root(
+        &mut self,
+        p: &Vertex<N>,
+        q: &Vertex<N>,
+        y: f64,
+        within: &[Interval; N],
+    ) -> Option<([f64; N], [f64; N], Sample<N, M::Seen>, i8)> {
+        let part = ((y - p.y) / (q.y - p.y)).clamp(0.0, 1.0);
+        let mut x: [f64; N] = std::array::from_fn(|k| p.x[k] + part * (q.x[k] - p.x[k]));
+        for _ in 0..STEPS {
+            let sample = self.evaluate(&x);
+            let target = [self.x, y, 0.0];
+            let rest = nalgebra::SVector::<f64, N>::from_fn(|i, _| sample.value[i] - target[i]);
+            let matrix = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, k| sample.jacobian[i][k]);
+            let determinant = matrix.determinant();
+            let step = matrix.try_inverse()? * rest;
+            let next: [f64; N] = std::array::from_fn(|k| x[k] - step[k]);
+            if !next.iter().all(|x| x.is_finite()) {
+                return None;
+            }
+            if step.amax() <= self.accept {
+                // The box holds one point of the span with this Y: if Newton's method found it, it is in the box.
+                let inside = (0..N).all(|k| next[k] >= within[k].lo - 1e-9 && next[k] <= within[k].hi + 1e-9);
+                return inside.then(|| (next, x, sample, if determinant > 0.0 { 1 } else { -1 }));
+            }
+            x = std::array::from_fn(|k| next[k].clamp(within[k].lo, within[k].hi));
+        }
+        None
+    }
+
+    /// A point of the curve between `p` and `q`, and boxes around the two halves.
+    ///
+    /// Some variable grows or falls all along the span: one without which the other equations' Jacobian is regular on the box.
+    fn halves(
+        &mut self,
+        p: &Vertex<N>,
+        q: &Vertex<N>,
+        within: &[Interval; N],
+        jacobian: &[[Interval; N]; N],
+    ) -> Option<(Vertex<N>, [[Interval; N]; 2])> {
+        let length = |k: usize| (q.x[k] - p.x[k]).abs();
+        let over = (0..N)
+            .filter(|k| minor_is_definite(jacobian, *k))
+            .max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
+        let at = 0.5 * (p.x[over] + q.x[over]);
+        if !(length(over) > 1e-14) {
+            return None;
+        }
+        let middle = self.on_curve(p, q, over, at, within)?;
+        let parts = [p, q].map(|end| {
+            let mut part = *within;
+            part[over] = Interval::new(end.x[over].min(at), end.x[over].max(at));
+            part
+        });
+        let parts = parts.map(|part| self.shrunk(part, over));
+        Some((middle, parts))
+    }
+
+    /// The point of the curve where the variable `over` is `at`.
+    fn on_curve(
+        &mut self,
+        p: &Vertex<N>,
+        q: &Vertex<N>,
+        over: usize,
+        at: f64,
+        within: &[Interval; N],
+    ) -> Option<Vertex<N>> {
+        let mut x: [f64; N] = std::array::from_fn(|k| 0.5 * (p.x[k] + q.x[k]));
+        x[over] = at;
+        let mut before = f64::INFINITY;
+        for _ in 0..STEPS {
+            let sample = self.evaluate(&x);
+            let target = [self.x, 0.0, 0.0];
+            let mut rest = Vector2::zeros();
+            for (n, r) in rows::<N>().enumerate() {
+                rest[n] = sample.value[r] - target[r];
+            }
+            let step = without(&sample.jacobian, over).try_inverse()? * rest;
+            if !(step.x.is_finite() && step.y.is_finite()) {
+                return None;
+            }
+            for (k, n) in (0..N).filter(|k| *k != over).zip(0..) {
+                x[k] = (x[k] - step[n]).clamp(within[k].lo, within[k].hi);
+            }
+            let size = step.amax();
+            if size <= 1e-15 || (size <= 1e-11 && size >= 0.25 * before) {
+                return Some(self.vertex(x));
+            }
+            before = size;
+        }
+        None
+    }
+
+    /// A smaller box that holds all of the curve in `part`: by the mean value theorem around its middle, the other variables are
+    /// affine functions of `over`, up to how much the Jacobian varies.
+    fn shrunk(&mut self, part: [Interval; N], over: usize) -> [Interval; N] {
+        let mark = self.map.mark();
+        let cell = self.map.place(&part);
+        let jacobian = self.map.jacobian(&cell);
+        self.map.release(mark);
+        let centre: [f64; N] = std::array::from_fn(|k| part[k].mid());
+        let sample = self.evaluate(&centre);
+        let Some(inverse) = without(&sample.jacobian, over).try_inverse() else {
+            return part;
+        };
+        let target = [self.x, 0.0, 0.0];
+        let rounding = self.map.rounding();
+        let others: smallvec::SmallVec<[usize; 3]> = (0..N).filter(|k| *k != over).collect();
+        let mut smaller = part;
+        for (n, &k) in others.iter().enumerate() {
+            let (mut shift, mut reach) = (0.0, 0.0);
+            let mut row = [0.0; N];
+            let mut spread = [0.0; N];
+            for (m, r) in rows::<N>().enumerate() {
+                let factor = inverse[(n, m)];
+                shift -= factor * (sample.value[r] - target[r]);
+                reach += factor.abs() * rounding[r];
+                for (j, side) in jacobian[r].iter().enumerate() {
+                    row[j] += factor * side.mid();
+                    spread[j] += factor.abs() * side.radius() * (1.0 + 1e-12);
+                }
+            }
+            for j in 0..N {
+                let unit = if j == k { 1.0 } else { 0.0 };
+                reach += ((row[j] - unit).abs() + spread[j] + 1e-14) * part[j].radius();
+            }
+            let (lo, hi) = (centre[k] + shift - reach - 1e-15, centre[k] + shift + reach + 1e-15);
+            let cut = Interval::new(part[k].lo.max(lo), part[k].hi.min(hi));
+            if cut.lo < cut.hi {
+                smaller[k] = cut;
+            }
+        }
+        smaller
+    }
+}
+
+/// The Jacobian of `X` (and `g`) with respect to the variables other than `over`; with one variable, a unit row fills it up.
+fn without<const N: usize>(jacobian: &[[f64; N]; N], over: usize) -> Matrix2<f64> {
+    let mut matrix = Matrix2::identity();
+    for (n, r) in rows::<N>().enumerate() {
+        for (m, k) in (0..N).filter(|k| *k != over).enumerate() {
+            matrix[(n, m)] = jacobian[r][k];
+        }
+    }
+    matrix
+}
+
+/// Whether the Jacobian of `X` (and `g`) with respect to the variables other than `over` has one sign of its determinant.
+fn minor_is_definite<const N: usize>(jacobian: &[[Interval; N]; N], over: usize) -> bool {
+    let mut others = (0..N).filter(|k| *k != over);
+    let (a, b) = (others.next(), others.next());
+    let (lo, hi) = match (a, b) {
+        (Some(a), Some(b)) => {
+            let [p, q] = [jacobian[0][a], jacobian[0][b]];
+            let [r, s] = [jacobian[2][a], jacobian[2][b]];
+            let (first, second) = (product(p, s), product(q, r));
+            (first.lo - second.hi, first.hi - second.lo)
+        }
+        (Some(a), None) => (jacobian[0][a].lo, jacobian[0][a].hi),
+        _ => (0.0, 0.0),
+    };
+    let margin = 8.0 * f64::EPSILON * lo.abs().max(hi.abs());
+    lo > margin || hi < -margin
+}
+
+fn product(a: Interval, b: Interval) -> Interval {
+    let all = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
+    Interval::new(
+        all.iter().fold(f64::INFINITY, |m, x| m.min(*x)),
+        all.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)),
+    )
+}
+
+/// Whether no matrix of the enclosure is singular: `‖I − K J‖∞ < 1`, `K` the inverse of its middle, in coordinates scaled to the box.
+fn regular<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N]) -> bool
+where
+    Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+{
+    type Square<const N: usize> = nalgebra::SMatrix<f64, N, N>;
+    let half = bounds.map(Interval::radius);
+    let middle = Square::<N>::from_fn(|i, j| jacobian[i][j].mid() * half[j]);
+    let radius = Square::<N>::from_fn(|i, j| jacobian[i][j].radius() * half[j]);
+    let Some(inverse) = middle.try_inverse() else {
+        return false;
+    };
+    let size = inverse.abs();
+    let rest = (Square::<N>::identity() - inverse * middle).abs() + size * radius + size * middle.abs() * 1e-14;
+    (0..N).all(|i| rest.row(i).sum() < 1.0)
+}
