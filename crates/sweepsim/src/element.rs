@@ -4,7 +4,7 @@
 //! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
-use crate::form::{Form, MOST, basis, cut};
+use crate::form::{Form, MOST, basis, cut, restrict};
 use crate::point::{FacePoint, FieldPoint, RimPoint, revolved};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
@@ -292,10 +292,19 @@ struct Node {
     points: Vec<f64>,
 }
 
+/// The lists of a cell.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    c: Vec<f64>,
+    points: Vec<f64>,
+}
+
 /// The cells of one element, made on demand and kept.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     nodes: Vec<Node>,
+    /// Of released cells.
+    spare: Vec<Buffers>,
     /// Per field and axis, where the derivatives of N and M stand in `points`, and how long each is.
     derivatives: Vec<[(usize, usize); 2]>,
     points: usize,
@@ -326,10 +335,15 @@ impl Cells {
             .collect();
         let mut cells = Self {
             nodes: Vec::new(),
+            spare: Vec::new(),
             derivatives,
             points,
         };
-        let root = cells.node(element, [0.0; 2], [1.0; 2], element.whole.clone());
+        let whole = Buffers {
+            c: element.whole.clone(),
+            points: Vec::new(),
+        };
+        let root = cells.node(element, [0.0; 2], [1.0; 2], whole);
         cells.nodes.push(root);
         cells
     }
@@ -345,24 +359,22 @@ impl Cells {
     /// A cell of its own, over any box; it is kept until it is [released](Self::release).
     pub fn place(&mut self, element: &Element, lower: [f64; 2], upper: [f64; 2]) -> u32 {
         let layout = &element.layout;
-        let mut c = element.whole.clone();
-        let (mut low, mut high) = (Vec::new(), Vec::new());
+        let mut spare = self.spare.pop().unwrap_or_default();
+        spare.c.resize(layout.len, 0.0);
         let rational = std::iter::once(&layout.position)
             .chain(&layout.slopes)
             .map(|slot| (slot, 4));
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
-            low.resize(slot.len(), 0.0);
-            high.resize(slot.len(), 0.0);
-            for c in c[slot.start..][..count * slot.len()].chunks_exact_mut(slot.len()) {
-                for axis in (0..2).filter(|axis| slot.degrees[*axis] > 0) {
-                    cut(c, slot.degrees, axis, upper[axis], &mut low, &mut high);
-                    c.copy_from_slice(&low);
-                    cut(c, slot.degrees, axis, lower[axis] / upper[axis], &mut low, &mut high);
-                    c.copy_from_slice(&high);
-                }
-            }
+            let range = slot.start..slot.start + count * slot.len();
+            restrict(
+                &element.whole[range.clone()],
+                slot.degrees,
+                lower,
+                upper,
+                &mut spare.c[range],
+            );
         }
-        let node = self.node(element, lower, upper, c);
+        let node = self.node(element, lower, upper, spare);
         self.nodes.push(node);
         self.nodes.len() as u32 - 1
     }
@@ -374,12 +386,18 @@ impl Cells {
 
     /// Forgets the cells made since the mark: placed ones, and what they were split into.
     pub fn release(&mut self, mark: usize) {
-        self.nodes.truncate(mark);
+        let released = self.nodes.drain(mark..);
+        self.spare.extend(released.map(|node| Buffers {
+            c: node.c,
+            points: node.points,
+        }));
     }
 
-    fn node(&self, element: &Element, lower: [f64; 2], upper: [f64; 2], c: Vec<f64>) -> Node {
+    /// The cell with these homogeneous tensors, its control points put into the other buffer.
+    fn node(&self, element: &Element, lower: [f64; 2], upper: [f64; 2], buffers: Buffers) -> Node {
         let layout = &element.layout;
-        let mut points = vec![0.0; self.points];
+        let Buffers { c, mut points } = buffers;
+        points.resize(self.points, 0.0);
         for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
             let len = slot.len();
             let weights = &c[slot.start + 3 * len..][..len];
@@ -433,6 +451,7 @@ impl Cells {
         }
         let node = &self.nodes[cell as usize];
         let (mut lower, mut upper) = (vec![0.0; node.c.len()], vec![0.0; node.c.len()]);
+        let buffers = |c| Buffers { c, points: Vec::new() };
         let layout = &element.layout;
         let rational = std::iter::once(&layout.position)
             .chain(&layout.slopes)
@@ -450,8 +469,8 @@ impl Cells {
         low_end[axis] = at;
         high_start[axis] = at;
         let (start, end) = (node.lower, node.upper);
-        let low = self.node(element, start, low_end, lower);
-        let high = self.node(element, high_start, end, upper);
+        let low = self.node(element, start, low_end, buffers(lower));
+        let high = self.node(element, high_start, end, buffers(upper));
         let first = self.nodes.len() as u32;
         self.nodes.push(low);
         self.nodes.push(high);

@@ -156,6 +156,76 @@ pub(crate) fn cut(source: &[f64], degrees: [usize; 2], axis: usize, at: f64, low
     }
 }
 
+/// The coefficients of forms of these degrees, one after the other in `source`, over the box from `lower` to `upper`: the values
+/// of their blossoms there.
+pub(crate) fn restrict(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
+    match degrees {
+        [2, 0] => restrict_small::<3, 1>(source, lower, upper, out),
+        [2, 1] => restrict_small::<3, 2>(source, lower, upper, out),
+        [2, 2] => restrict_small::<3, 3>(source, lower, upper, out),
+        [p, q] => {
+            let (rows, columns) = (
+                blossoms::<MOST>(p, lower[0], upper[0]),
+                blossoms::<MOST>(q, lower[1], upper[1]),
+            );
+            let mut line = [0.0; MOST];
+            let count = (p + 1) * (q + 1);
+            for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
+                for j in 0..=q {
+                    for i in 0..=p {
+                        out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
+                    }
+                }
+                for i in 0..=p {
+                    for (j, x) in line[..=q].iter_mut().enumerate() {
+                        *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
+                    }
+                    for (j, x) in line[..=q].iter().enumerate() {
+                        out[i + (p + 1) * j] = *x;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// As [`restrict`], for degrees `P − 1` and `Q − 1` known to the compiler.
+fn restrict_small<const P: usize, const Q: usize>(source: &[f64], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
+    let (rows, columns) = (
+        blossoms::<P>(P - 1, lower[0], upper[0]),
+        blossoms::<Q>(Q - 1, lower[1], upper[1]),
+    );
+    for (source, out) in source.chunks_exact(P * Q).zip(out.chunks_exact_mut(P * Q)) {
+        let mut half = [[0.0; P]; Q];
+        for j in 0..Q {
+            for i in 0..P {
+                half[j][i] = (0..P).map(|k| rows[i][k] * source[k + P * j]).sum();
+            }
+        }
+        for j in 0..Q {
+            for i in 0..P {
+                out[i + P * j] = (0..Q).map(|k| columns[j][k] * half[k][i]).sum();
+            }
+        }
+    }
+}
+
+/// Row `k`: the weights of the coefficients in the blossom of degree `n` at `n − k` times `lower` and `k` times `upper`.
+fn blossoms<const N: usize>(n: usize, lower: f64, upper: f64) -> [[f64; N]; N] {
+    let mut rows = [[0.0; N]; N];
+    for (k, row) in rows[..=n].iter_mut().enumerate() {
+        row[0] = 1.0;
+        for level in 1..=n {
+            let at = if level <= k { upper } else { lower };
+            for i in (0..=level).rev() {
+                let left = if i > 0 { row[i - 1] } else { 0.0 };
+                row[i] = (1.0 - at) * row[i] + at * left;
+            }
+        }
+    }
+    rows
+}
+
 /// Values and derivatives of the Bernstein polynomials of degree `n` at `x` (also outside `[0, 1]`).
 pub(crate) fn basis(n: usize, x: f64, value: &mut [f64; MOST], slope: &mut [f64; MOST]) {
     value[0] = 1.0;

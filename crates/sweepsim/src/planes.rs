@@ -15,8 +15,9 @@ use crate::placed::Placed;
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum, Vector2};
 use sweepsim_solve::{Cause, CurveSolver, Curves, Interval, Preimage, Reason, Sample, Sink, SolveOptions, System, SystemError, Undecided};
 
-/// The polylines' tolerance, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'.
-const TOLERANCE: f64 = 0.03;
+/// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
+/// is tried where a span of the one before could not be decided.
+const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
 /// Halvings of a span.
 const DEPTH: u32 = 44;
 /// Steps of Newton's method.
@@ -41,7 +42,7 @@ impl Slicer {
             ..SolveOptions::default()
         };
         Self {
-            curves: CurveSolver::with_options(TOLERANCE, options),
+            curves: CurveSolver::with_options(TOLERANCES[0], options),
             boxes: 0,
             regular: 0,
             evaluations: 0,
@@ -61,16 +62,44 @@ impl Slicer {
         M: Placed<N>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
-        let Ok(Curves {
+        let (found, open) = (sink.found.len(), sink.open.len());
+        let system = system.ok();
+        for tolerance in TOLERANCES {
+            sink.found.truncate(found);
+            sink.open.truncate(open);
+            self.curves.tolerance = tolerance;
+            let curves = system
+                .as_ref()
+                .and_then(|system| self.curves.solve(system, &mut ()).ok());
+            let Some(curves) = curves else {
+                // Not a system, for some form vanishes: nothing is known of any line.
+                let everywhere = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+                leave(lattice, everywhere, [Interval::new(0.0, 1.0); N], Reason::Smallest, sink);
+                return;
+            };
+            self.cut(map, &curves, tolerance, lattice, accept, sink);
+            if sink.open.len() == open {
+                break;
+            }
+        }
+    }
+
+    /// Cuts the curves by the lines.
+    fn cut<const N: usize, M>(
+        &mut self,
+        map: &mut M,
+        Curves {
             curves, singular, skin, ..
-        }) = system.map_err(drop).and_then(|system| self.curves.solve(&system, &mut ()).map_err(drop))
-        else {
-            // Not a system, for some form vanishes: nothing is known of any line.
-            let everywhere = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
-            leave(lattice, everywhere, [Interval::new(0.0, 1.0); N], Reason::Smallest, sink);
-            return;
-        };
-        for open in &singular {
+        }: &Curves,
+        tolerance: f64,
+        lattice: &Lattice,
+        accept: f64,
+        sink: &mut Collector<N, M::Seen>,
+    ) where
+        M: Placed<N>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        for open in singular {
             let bounds: [Interval; N] = std::array::from_fn(|k| open.bounds[k]);
             let reason = match open.cause {
                 Cause::Smallest => Reason::Smallest,
@@ -93,7 +122,7 @@ impl Slicer {
             sink,
             slicer: self,
         };
-        for curve in &curves {
+        for curve in curves {
             let count = curve.points.len();
             let mut from: Option<Vertex<N>> = None;
             let last = if curve.ends.is_none() { count + 1 } else { count };
@@ -103,7 +132,7 @@ impl Slicer {
                 if let Some(from) = from {
                     let within = std::array::from_fn(|j| {
                         let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
-                        Interval::new((lo - TOLERANCE).max(region.lo), (hi + TOLERANCE).min(region.hi))
+                        Interval::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
                     });
                     cutting.span(&from, &to, within, DEPTH);
                 }
