@@ -203,13 +203,21 @@ impl SurfaceSolver {
             state: State::Plain(Box::new(root)),
         });
         search.treat(0, observer);
-        loop {
+        while search.stopped.is_none() {
             let failures = Mesher::new(&search.grid, &search.nodes).check();
             if failures.is_empty() {
                 break;
             }
             for node in failures {
                 search.split(node, observer);
+            }
+        }
+        if let Some(cause) = search.stopped {
+            // Leaves that were not checked against their neighbours are not settled.
+            for number in 0..search.nodes.len() {
+                if matches!(search.nodes[number].state, State::Plain(_)) {
+                    search.leave(number, cause);
+                }
             }
         }
         let mut mesher = Mesher::new(&search.grid, &search.nodes);

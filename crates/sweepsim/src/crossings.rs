@@ -11,7 +11,10 @@ use crate::time::Times;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, Tool};
-use sweepsim_solve::{ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SurfaceSolver, System, SystemError, Undecided};
+use sweepsim_solve::{
+    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions, SurfaceSolver, System,
+    SystemError, Undecided,
+};
 
 /// A tool, prepared.
 pub(crate) struct Cutter {
@@ -91,7 +94,11 @@ impl Forms {
             patches.map(|patch| PlacedPatch::new(patch, &turn, tip)).collect()
         };
         Self {
-            faces: tool.patches().iter().map(|patch| PatchMotion::new(patch, segment)).collect(),
+            faces: tool
+                .patches()
+                .iter()
+                .map(|patch| PatchMotion::new(patch, segment))
+                .collect(),
             rims: tool.edges().iter().map(|edge| EdgeMotion::new(edge, segment)).collect(),
             placed: [at_rest(segment.start(), first), at_rest(segment.end(), last)],
         }
@@ -99,7 +106,9 @@ impl Forms {
 }
 
 /// How flat the surface is in the boxes of Algorithm 1, in parts of the parameters' ranges.
-const SURFACE: f64 = 0.02;
+const FLATNESS: f64 = 0.02;
+/// Boxes of an envelope surface. Those without trouble need some ten to a thousand.
+const BOXES: u64 = 2_000;
 
 /// A crossing and the number of its line.
 pub(crate) type Numbered = (u32, Crossing);
@@ -248,12 +257,12 @@ impl Search<'_> {
         Plane::x(self.lattice.coordinate(0, self.lattice.i[0]))
     }
 
-    /// Solves a map by the curves in the lattice's plane.
+    /// Solves a map by the curves in the lattice's plane; by charts, where that does not decide it.
     fn slice<const N: usize, M: Placed<N>>(
         &self,
         map: &mut M,
         system: impl FnOnce() -> Result<System, SystemError>,
-        (slicer, accept): (&mut Slicer, f64),
+        (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
         sink: &mut Collector<N, M::Seen>,
     ) where
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
@@ -263,8 +272,8 @@ impl Search<'_> {
         let touches = map.values(&root).is_some_and(|values| {
             self.lattice.numbers(0, values[0]).is_some() && self.lattice.numbers(1, values[1]).is_some()
         });
-        if touches {
-            slicer.solve(map, system(), self.lattice, accept, sink);
+        if touches && !slicer.solve(map, system(), self.lattice, charts.options.accept, sink) {
+            charts.solve(map, root, self.lattice, sink);
         }
     }
 
@@ -276,7 +285,6 @@ impl Search<'_> {
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
-        let accept = space.bricks.options.accept;
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Face {
                 element,
@@ -287,7 +295,7 @@ impl Search<'_> {
             let mut sink = Collector::new();
             if let Some(forms) = forms {
                 let system = || forms.faces[number].section(&self.plane());
-                self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
             } else if let Some(segment) = surface {
                 self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
             } else {
@@ -324,17 +332,26 @@ impl Search<'_> {
         }
         let domain = map.bounds(&ROOT);
         let motion = PatchMotion::new(&self.tool.patches()[number], segment);
+        let options = SolveOptions {
+            boxes: BOXES,
+            unresolved: 0,
+            ..SurfaceSolver::new(FLATNESS).options
+        };
         let surface = motion
             .envelope()
             .ok()
-            .and_then(|system| SurfaceSolver::new(SURFACE).solve(&system, &mut ()).ok());
+            .and_then(|system| {
+                SurfaceSolver::with_options(FLATNESS, options)
+                    .solve(&system, &mut ())
+                    .ok()
+            })
+            .filter(|surface| surface.unresolved.is_empty());
         let Some(surface) = surface else {
-            // Not an equation: the whole domain is the box.
+            // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
             charts.solve(map, ROOT, self.lattice, sink);
             return;
         };
-        let open = surface.unresolved.iter().map(|open| [0, 1, 2].map(|k| open.bounds[k]));
-        for bounds in surface.boxes.iter().copied().chain(open) {
+        for bounds in surface.boxes {
             let mark = map.mark();
             let part = map.place(&bounds);
             charts.solve_part(map, part, &domain, self.lattice, sink);
@@ -350,7 +367,6 @@ impl Search<'_> {
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
-        let accept = space.bricks.options.accept;
         for (number, (element, cells)) in self.cutter.rims.iter().zip(&mut space.rims).enumerate() {
             let mut map = Rim {
                 element,
@@ -362,7 +378,7 @@ impl Search<'_> {
             match forms {
                 Some(forms) => {
                     let system = || forms.rims[number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+                    self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
                 }
                 None => space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink),
             }
@@ -388,7 +404,6 @@ impl Search<'_> {
     }
 
     fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
-        let accept = space.placed.options.accept;
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Joint {
                 element,
@@ -403,7 +418,7 @@ impl Search<'_> {
             match forms {
                 Some(forms) => {
                     let system = || forms.placed[placed.end][number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, accept), &mut sink);
+                    self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
                 }
                 None => space.placed.solve(&mut map, 0, self.lattice, &mut sink),
             }

@@ -103,23 +103,13 @@ impl<'a> Lattice<'a> {
     }
 }
 
-impl Targets<2> for Lattice<'_> {
-    fn any(&self, range: &[Interval; 2]) -> bool {
+/// The lines as targets of `(X, Y)`, or of `(X, Y, g)` with `g = 0`.
+impl<const N: usize> Targets<N> for Lattice<'_> {
+    fn any(&self, range: &[Interval; N]) -> bool {
         self.range(range[0], range[1]).is_some()
     }
 
-    fn visit(&self, range: &[Interval; 2], visit: &mut dyn FnMut(usize, &[f64; 2]) -> bool) {
-        self.each(range, visit);
-    }
-}
-
-/// The same lines with `g = 0` as third coordinate.
-impl Targets<3> for Lattice<'_> {
-    fn any(&self, range: &[Interval; 3]) -> bool {
-        self.range(range[0], range[1]).is_some()
-    }
-
-    fn visit(&self, range: &[Interval; 3], visit: &mut dyn FnMut(usize, &[f64; 3]) -> bool) {
+    fn visit(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool) {
         self.each(range, visit);
     }
 }

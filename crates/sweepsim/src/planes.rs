@@ -6,18 +6,21 @@
 //! line crosses it once, if it passes between the two ends, or never. Where it is not (about the extrema of `Y`), and a line may
 //! cross, the span is halved at a point of the curve, and the boxes of the halves shrink around it by the mean value theorem.
 //!
-//! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. What cannot be decided
-//! is handed out as open, and solved line by line.
+//! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. Where curves or spans
+//! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), the answer is none, and the patch is
+//! left to the charts of the column's lines.
 
 use crate::crossings::Collector;
 use crate::lattice::Lattice;
 use crate::placed::Placed;
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum, Vector2};
-use sweepsim_solve::{Cause, CurveSolver, Curves, Interval, Preimage, Reason, Sample, Sink, SolveOptions, System, SystemError, Undecided};
+use sweepsim_solve::{CurveSolver, Curves, Interval, Preimage, Sample, Sink, SolveOptions, System, SystemError};
 
 /// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
 /// is tried where a span of the one before could not be decided.
 const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
+/// Boxes of a section, and of each search on a face of one. Sections without trouble need some ten to a hundred.
+const BOXES: u64 = 4_000;
 /// Halvings of a span.
 const DEPTH: u32 = 44;
 /// Steps of Newton's method.
@@ -37,8 +40,8 @@ impl Slicer {
     pub fn new() -> Self {
         let options = SolveOptions {
             smallest: 1e-10,
-            boxes: 200_000,
-            unresolved: 64,
+            boxes: BOXES,
+            unresolved: 4,
             ..SolveOptions::default()
         };
         Self {
@@ -50,7 +53,7 @@ impl Slicer {
     }
 
     /// Finds the preimages of the lines of `lattice`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
-    /// where the map has it).
+    /// where the map has it). `false`, and nothing found, where that does not decide it.
     pub fn solve<const N: usize, M>(
         &mut self,
         map: &mut M,
@@ -58,60 +61,45 @@ impl Slicer {
         lattice: &Lattice,
         accept: f64,
         sink: &mut Collector<N, M::Seen>,
-    ) where
+    ) -> bool
+    where
         M: Placed<N>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
-        let (found, open) = (sink.found.len(), sink.open.len());
-        let system = system.ok();
+        let Ok(system) = system else {
+            return false;
+        };
+        let found = sink.found.len();
         for tolerance in TOLERANCES {
-            sink.found.truncate(found);
-            sink.open.truncate(open);
             self.curves.tolerance = tolerance;
-            let curves = system
-                .as_ref()
-                .and_then(|system| self.curves.solve(system, &mut ()).ok());
-            let Some(curves) = curves else {
-                // Not a system, for some form vanishes: nothing is known of any line.
-                let everywhere = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
-                leave(lattice, everywhere, [Interval::new(0.0, 1.0); N], Reason::Smallest, sink);
-                return;
+            let Ok(curves) = self.curves.solve(&system, &mut ()) else {
+                return false;
             };
-            self.cut(map, &curves, tolerance, lattice, accept, sink);
-            if sink.open.len() == open {
-                break;
+            if !curves.singular.is_empty() {
+                return false;
             }
+            if self.cut(map, &curves, tolerance, lattice, accept, sink) {
+                return true;
+            }
+            sink.found.truncate(found);
         }
+        false
     }
 
-    /// Cuts the curves by the lines.
+    /// Cuts the curves by the lines; `false` if some span stays undecided.
     fn cut<const N: usize, M>(
         &mut self,
         map: &mut M,
-        Curves {
-            curves, singular, skin, ..
-        }: &Curves,
+        Curves { curves, skin, .. }: &Curves,
         tolerance: f64,
         lattice: &Lattice,
         accept: f64,
         sink: &mut Collector<N, M::Seen>,
-    ) where
+    ) -> bool
+    where
         M: Placed<N>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
-        for open in singular {
-            let bounds: [Interval; N] = std::array::from_fn(|k| open.bounds[k]);
-            let reason = match open.cause {
-                Cause::Smallest => Reason::Smallest,
-                _ => Reason::Budget,
-            };
-            let mark = map.mark();
-            let cell = map.place(&widened(&bounds, 1e-12));
-            if let Some(values) = map.values(&cell) {
-                leave(lattice, values[1], bounds, reason, sink);
-            }
-            map.release(mark);
-        }
         // With a skin, curves run on beyond the domain: at most this far.
         let region = Interval::new(-2.0 * skin, 1.0 + 2.0 * skin);
         let mut cutting = Cutting {
@@ -134,35 +122,14 @@ impl Slicer {
                         let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
                         Interval::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
                     });
-                    cutting.span(&from, &to, within, DEPTH);
+                    if !cutting.span(&from, &to, within, DEPTH) {
+                        return false;
+                    }
                 }
                 from = Some(to);
             }
         }
-    }
-}
-
-fn widened<const N: usize>(bounds: &[Interval; N], by: f64) -> [Interval; N] {
-    bounds.map(|side| Interval::new(side.lo - by, side.hi + by))
-}
-
-/// Hands out the lines with `y` in the range as open.
-fn leave<const N: usize, S>(
-    lattice: &Lattice,
-    y: Interval,
-    bounds: [Interval; N],
-    reason: Reason,
-    sink: &mut Collector<N, S>,
-) {
-    let Some((first, last)) = lattice.numbers(1, y) else {
-        return;
-    };
-    for j in first..=last {
-        sink.undecided(Undecided {
-            target: lattice.grid.index(lattice.i[0], j),
-            bounds,
-            reason,
-        });
+        true
     }
 }
 
@@ -203,8 +170,8 @@ where
         Vertex { x, y }
     }
 
-    /// Cuts the curve from `p` to `q`, which lies in the box `within`.
-    fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) {
+    /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
+    fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) -> bool {
         self.slicer.boxes += 1;
         let mark = self.map.mark();
         let cell = self.map.place(&within);
@@ -212,29 +179,25 @@ where
         let lines = self
             .map
             .values(&cell)
-            .and_then(|values| Some((values[1], self.lattice.numbers(1, values[1])?)));
-        let Some((reach, (first, last))) = lines else {
+            .and_then(|values| self.lattice.numbers(1, values[1]));
+        let Some((first, last)) = lines else {
             self.map.release(mark);
-            return;
+            return true;
         };
         let jacobian = self.map.jacobian(&cell);
         self.map.release(mark);
         if regular(&within, &jacobian) {
             self.slicer.regular += 1;
-            self.cross(p, q, &within, [first, last]);
-            return;
+            return self.cross(p, q, &within, [first, last]);
         }
         let halves = (depth > 0).then(|| self.halves(p, q, &within, &jacobian)).flatten();
-        let Some((middle, parts)) = halves else {
-            leave(self.lattice, reach, within, Reason::Smallest, self.sink);
-            return;
-        };
-        self.span(p, &middle, parts[0], depth - 1);
-        self.span(&middle, q, parts[1], depth - 1);
+        halves.is_some_and(|(middle, parts)| {
+            self.span(p, &middle, parts[0], depth - 1) && self.span(&middle, q, parts[1], depth - 1)
+        })
     }
 
     /// The crossings of a span along which `Y` is monotone.
-    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) {
+    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) -> bool {
         let mut from = *p;
         let forward = p.y < q.y;
         for n in 0..=last - first {
@@ -244,27 +207,22 @@ where
                 continue;
             }
             let target = self.lattice.grid.index(self.lattice.i[0], j);
-            match self.root(&from, q, y, within) {
-                Some((x, base, sample, orientation)) => {
-                    from = Vertex { x, y };
-                    // Beyond the domain another patch, or another segment, has the curve.
-                    if x.iter().all(|x| (0.0..=1.0).contains(x)) {
-                        self.sink.found(Preimage {
-                            target,
-                            x,
-                            from: base,
-                            seen: sample.seen,
-                            orientation,
-                        });
-                    }
-                }
-                None => self.sink.undecided(Undecided {
+            let Some((x, base, sample, orientation)) = self.root(&from, q, y, within) else {
+                return false;
+            };
+            from = Vertex { x, y };
+            // Beyond the domain another patch, or another segment, has the curve.
+            if x.iter().all(|x| (0.0..=1.0).contains(x)) {
+                self.sink.found(Preimage {
                     target,
-                    bounds: *within,
-                    reason: Reason::Smallest,
-                }),
+                    x,
+                    from: base,
+                    seen: sample.seen,
+                    orientation,
+                });
             }
         }
+        true
     }
 
     /// The point of the span where `Y = y`, by Newton's method from between `p` and `q`; with the last point evaluated.

@@ -200,8 +200,12 @@ fn all_methods_on_all_named_sweeps() {
     let check = |(name, case): &(String, Case)| -> Result<Tally, String> {
         let grid = case.grid();
         let tally = judge(case, Method::Charts).map_err(|error| format!("{name}: {error}"))?;
-        let [charts, lines] = [Method::Charts, Method::Lines].map(|method| swept(case, &case.poses, &grid, method));
-        same_volume(case, &grid, &charts?, &lines?).map_err(|error| format!("{name}: charts and lines: {error}"))?;
+        let charts = swept(case, &case.poses, &grid, Method::Charts)?;
+        for method in [Method::Lines, Method::Planes, Method::Surface] {
+            swept(case, &case.poses, &grid, method)
+                .and_then(|other| same_volume(case, &grid, &charts, &other))
+                .map_err(|error| format!("{name}: charts and {method}: {error}"))?;
+        }
         Ok(tally)
     };
     let results: Vec<Result<Tally, String>> = cases.par_iter().map(check).collect();

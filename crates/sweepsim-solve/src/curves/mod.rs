@@ -168,7 +168,7 @@ impl CurveSolver {
         }
         self.points.options = SolveOptions {
             smallest: 1e-8,
-            boxes: 20_000,
+            boxes: self.options.boxes.min(20_000),
             unresolved: 64,
             ..SolveOptions::default()
         };

@@ -88,6 +88,8 @@ impl Search<'_> {
         let n = self.system.layout.n;
         let face = self.system.on_face(cell, axis, upper);
         self.points.run(&face, &mut ());
+        // Boxes of faces count, else searches that find nothing certain on any face would have no end.
+        self.statistics.boxes += self.points.statistics.boxes;
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
         let place = |s: &Row, outward: f64| -> Row {
             let mut x = [0.0; MAX_UNKNOWNS];
@@ -312,6 +314,10 @@ impl Search<'_> {
                     };
                     if !(at > lo && at < hi) || crossings.iter().any(near) {
                         continue;
+                    }
+                    if self.statistics.boxes >= self.options.boxes {
+                        self.leave(cell, crossings, Cause::Boxes);
+                        return None;
                     }
                     let mut upper = cell.clone();
                     layout.split(&mut upper, lower, axis, at);
