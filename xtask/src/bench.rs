@@ -62,32 +62,37 @@ pub fn programs() -> Result<(), String> {
     Ok(())
 }
 
-/// The paper's Table 1, seconds: ball end, (cells, Sweep1, Sweep2). Algorithm 3 is its fastest, Algorithm 4 is what `lines` does.
-const PAPER: [(Method, usize, [f64; 2]); 4] = [
+/// The paper's Table 1, seconds, of the ball end: (method, cells, Sweep1 and Sweep2). Beside charts stands its fastest, Algorithm 3.
+const PAPER: [(Method, usize, [f64; 2]); 8] = [
     (Method::Charts, 200, [0.35, 0.63]),
     (Method::Charts, 500, [0.75, 1.20]),
+    (Method::Planes, 200, [0.35, 0.63]),
+    (Method::Planes, 500, [0.75, 1.20]),
+    (Method::Surface, 200, [10.30, 13.50]),
+    (Method::Surface, 500, [10.30, 13.90]),
     (Method::Lines, 200, [5.27, 22.40]),
     (Method::Lines, 500, [35.40, 134.50]),
 ];
 
 fn table1_here() -> Result<(), String> {
     let (radius, length) = (5.0, 30.0);
+    let form = Job::read(&workspace::root().join("fixtures/jobs/railing.ron")).map_err(|error| error.to_string())?;
+    let form = form.tools.into_values().next().ok_or("railing.ron has no tool")?;
     let tools = [
-        ("ball", Tool::ball(radius, length).map_err(|error| error.to_string())?),
-        ("flat", Tool::flat(radius, length).map_err(|error| error.to_string())?),
+        ("ball", radius, Tool::ball(radius, length).map_err(|error| error.to_string())?),
+        ("flat", radius, Tool::flat(radius, length).map_err(|error| error.to_string())?),
+        ("form", reach(&form), form),
     ];
-    println!(
-        "One thread. The paper: ball, 4.2 GHz; its Algorithm 3 beside charts (its fastest), its Algorithm 4 beside lines."
-    );
+    println!("One thread. The paper (ball, 4.2 GHz): its Algorithm 3 beside charts and planes, 1 beside surface, 4 beside lines.");
     println!(
         "{:<6} {:<8} {:<8} {:>6} {:>12} {:>12} {:>8}",
         "tool", "motion", "method", "cells", "ms", "paper, ms", "ratio"
     );
-    for (name, tool) in &tools {
+    for (name, radius, tool) in &tools {
         for (method, cells, seconds) in PAPER {
             for (which, paper) in seconds.into_iter().enumerate() {
                 let path = path(which)?;
-                let (min, max) = bounds(&path, radius, length);
+                let (min, max) = bounds(&path, *radius, length);
                 let grid = Grid::new(min, max, [cells; 2]).map_err(|error| error.to_string())?;
                 let options = Options::new(1e-6).method(method);
                 let best = shortest(|| {
@@ -107,6 +112,18 @@ fn table1_here() -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// The largest distance of a tool's control points from its axis.
+fn reach(tool: &Tool) -> f64 {
+    let points = tool.patches().iter().flat_map(|patch| {
+        let weights = patch.weight.coefficients();
+        (0..weights.len()).map(move |i| {
+            let coordinate = |k: usize| patch.position[k].coefficients()[i] / weights[i];
+            coordinate(0).hypot(coordinate(1))
+        })
+    });
+    points.fold(0.0, f64::max)
 }
 
 /// Sweep1: a translation with the axis 15° about `y`. Sweep2: the same line, the axis from −25° to 25° about `x`.

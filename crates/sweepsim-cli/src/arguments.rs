@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
-use sweepsim::Method;
+use sweepsim::{Boundary, Method};
 
 /// Exact swept volumes of milling tools, and the simulation of NC programs with them.
 ///
@@ -40,8 +40,11 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub only: Vec<Output>,
     /// How crossings are found: all methods give the same dexels.
-    #[arg(long, default_value_t = Method::Charts, value_parser = ["charts", "lines"].map_method())]
+    #[arg(long, default_value_t = Method::Charts, value_parser = parsed::<Method, 4>(["charts", "planes", "lines", "surface"]))]
     pub method: Method,
+    /// How crossings become intervals: `paper` is for comparison only, it errs where a sweep overlaps itself.
+    #[arg(long, default_value_t = Boundary::Coverage, value_parser = parsed::<Boundary, 2>(["coverage", "paper"]))]
+    pub boundary: Boundary,
     /// Another number of dexels than the job's, like 300x200.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
@@ -72,18 +75,15 @@ pub(crate) enum Output {
     Report,
 }
 
-/// Lets clap list the names of the methods.
-trait MapMethod {
-    fn map_method(self) -> clap::builder::ValueParser;
-}
-
-impl<const N: usize> MapMethod for [&'static str; N] {
-    fn map_method(self) -> clap::builder::ValueParser {
-        use clap::builder::TypedValueParser;
-        clap::builder::PossibleValuesParser::new(self)
-            .try_map(|name| name.parse::<Method>())
-            .into()
-    }
+/// Reads one of some names, which clap then lists.
+fn parsed<T, const N: usize>(names: [&'static str; N]) -> clap::builder::ValueParser
+where
+    T: std::str::FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
+{
+    use clap::builder::TypedValueParser;
+    clap::builder::PossibleValuesParser::new(names)
+        .try_map(|name| name.parse::<T>())
+        .into()
 }
 
 fn cells(text: &str) -> Result<[usize; 2], String> {

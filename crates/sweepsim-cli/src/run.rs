@@ -12,7 +12,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-use sweepsim::{Cut, Monitor, Options, Statistics, SweepError, simulate, sweep_all};
+use sweepsim::{Boundary, Cut, Monitor, Options, Statistics, SweepError, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
 use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_csv, write_ply};
 
@@ -139,7 +139,9 @@ fn compute(
             path: &path.path,
         })
         .collect();
-    let sweeping = Options::new(job.tolerance).method(options.method);
+    let sweeping = Options::new(job.tolerance)
+        .method(options.method)
+        .boundary(options.boundary);
     let failed = |error: SweepError| match error {
         SweepError::Cancelled => {
             progress.finish();
@@ -203,6 +205,10 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
         .iter()
         .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
         .collect();
+    if options.boundary == Boundary::Paper {
+        let note = "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
+        report.notes.push(note.to_owned());
+    }
 }
 
 /// Writes dexels, mesh and picture.

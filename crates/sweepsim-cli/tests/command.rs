@@ -160,17 +160,19 @@ fn the_bytes_do_not_depend_on_the_threads() {
 fn the_methods_agree() {
     let place = Place::new(JOB);
     let mut tables: Vec<Vec<Vec<f64>>> = Vec::new();
-    for method in ["charts", "lines"] {
+    for method in ["charts", "planes", "lines", "surface"] {
         let output = place.run("simulate", &["--quiet", "--only", "dexels", "--method", method]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let table = fs::read_to_string(place.path("out/dexels.csv")).unwrap();
         let row = |row: &str| row.split(',').map(|cell| cell.parse().unwrap()).collect();
         tables.push(table.lines().skip(1).map(row).collect());
     }
-    assert_eq!(tables[0].len(), tables[1].len());
-    for (a, b) in tables[0].iter().zip(&tables[1]) {
-        assert_eq!(a[..2], b[..2]);
-        assert!(a.iter().zip(b).all(|(x, y)| (x - y).abs() <= 2e-6), "{a:?} {b:?}");
+    for other in &tables[1..] {
+        assert_eq!(tables[0].len(), other.len());
+        for (a, b) in tables[0].iter().zip(other) {
+            assert_eq!(a[..2], b[..2]);
+            assert!(a.iter().zip(b).all(|(x, y)| (x - y).abs() <= 2e-6), "{a:?} {b:?}");
+        }
     }
 }
 

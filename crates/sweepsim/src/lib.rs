@@ -28,6 +28,7 @@
 //! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
 //! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
 
+mod boundary;
 mod crossings;
 mod element;
 mod envelope;
@@ -42,5 +43,6 @@ mod sweep;
 pub mod systems;
 mod time;
 
+pub use boundary::{Boundary, UnknownBoundary};
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, sweep};

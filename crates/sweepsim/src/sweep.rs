@@ -1,5 +1,6 @@
 //! The sweep of a path: crossings of all dexel lines, chunk by chunk, counted to intervals, audited, and repaired.
 
+use crate::boundary::{self, Boundary};
 use crate::crossings::{Cutter, Forms, Harvest, How, Numbered, Search, Workspace};
 use crate::envelope::Size;
 use crate::generic::{self, Part};
@@ -66,6 +67,8 @@ pub struct Options {
     pub tolerance: f64,
     /// How crossings are found.
     pub method: Method,
+    /// How they become intervals.
+    pub boundary: Boundary,
     /// What [`Source::path`](sweepsim_dexel::Source) says.
     pub path_number: u16,
 }
@@ -75,6 +78,7 @@ impl Default for Options {
         Self {
             tolerance: 1e-6,
             method: Method::Charts,
+            boundary: Boundary::Coverage,
             path_number: 0,
         }
     }
@@ -94,6 +98,13 @@ impl Options {
     #[must_use]
     pub fn method(mut self, method: Method) -> Self {
         self.method = method;
+        self
+    }
+
+    /// Chooses the boundary operator.
+    #[must_use]
+    pub fn boundary(mut self, boundary: Boundary) -> Self {
+        self.boundary = boundary;
         self
     }
 
@@ -238,6 +249,7 @@ pub fn sweep(
         grid,
         tolerance,
         method: options.method,
+        boundary: options.boundary,
         path: options.path_number,
         size: Size {
             spacing: grid.spacing(),
@@ -254,13 +266,18 @@ pub fn sweep(
         ..Statistics::default()
     };
     let mut failed: Vec<Unresolved> = Vec::new();
-    for (number, chunk) in parts.chunks(CHUNK).enumerate() {
+    // The paper takes each move by itself.
+    let length = match options.boundary {
+        Boundary::Coverage => CHUNK,
+        Boundary::Paper => 1,
+    };
+    for (number, chunk) in parts.chunks(length).enumerate() {
         let harvest = job.harvest(chunk)?;
         statistics.crossings += harvest.crossings.len() as u64;
         statistics.boxes += harvest.statistics.boxes;
         statistics.charts += harvest.statistics.charts;
         job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;
-        monitor.advance((number * CHUNK + chunk.len()).min(parts.len()), parts.len());
+        monitor.advance((number * length + chunk.len()).min(parts.len()), parts.len());
     }
     statistics.covered = volume.covered();
     failed.sort_by_key(|u| (u.i, u.j));
@@ -276,6 +293,7 @@ struct Job<'a> {
     grid: &'a Grid,
     tolerance: f64,
     method: Method,
+    boundary: Boundary,
     path: u16,
     size: Size,
     accept: f64,
@@ -409,7 +427,7 @@ impl Job<'_> {
         let groups: Vec<&[Numbered]> = crossings.chunk_by(|a, b| a.0 == b.0).collect();
         let counted: Vec<(u32, Result<Vec<Interval>, AuditFailure>)> = groups
             .par_iter()
-            .map(|group| (group[0].0, intervals(group, generic::same(self.tolerance))))
+            .map(|group| (group[0].0, self.intervals(group)))
             .collect();
         let mut wrong = Vec::new();
         for (line, result) in counted {
@@ -459,7 +477,7 @@ impl Job<'_> {
                 };
                 continue;
             }
-            match intervals(&harvest.crossings, generic::same(self.tolerance)) {
+            match self.intervals(&harvest.crossings) {
                 Ok(intervals) => return Ok(intervals),
                 Err(failure) => {
                     reason = format!(
@@ -471,12 +489,17 @@ impl Job<'_> {
         }
         Err(reason)
     }
-}
 
-/// The intervals of one line; crossings within `same` are at one height.
-fn intervals(group: &[Numbered], same: f64) -> Result<Vec<Interval>, AuditFailure> {
-    let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
-    let mut intervals = Vec::new();
-    cover(&mut crossings, same, &mut intervals)?;
-    Ok(intervals)
+    /// The intervals of one line.
+    fn intervals(&self, group: &[Numbered]) -> Result<Vec<Interval>, AuditFailure> {
+        let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
+        match self.boundary {
+            Boundary::Coverage => {
+                let mut intervals = Vec::new();
+                cover(&mut crossings, generic::same(self.tolerance), &mut intervals)?;
+                Ok(intervals)
+            }
+            Boundary::Paper => Ok(boundary::by_normals(&mut crossings)),
+        }
+    }
 }
