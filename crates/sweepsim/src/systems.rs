@@ -43,6 +43,16 @@ impl Plane {
         }
     }
 
+    /// Two directions of length one in the plane, at right angles; with the normal they are right-handed. The first is horizontal, the second goes
+    /// up, where the plane does: of `x = const` these are `y` and `z`.
+    #[must_use]
+    pub fn frame(&self) -> [[f64; 3]; 2] {
+        let normal = Vector3::from(self.normal).normalize();
+        let across = Vector3::z().cross(&normal);
+        let across = across.try_normalize(1e-12).unwrap_or_else(Vector3::x);
+        [across.into(), normal.cross(&across).into()]
+    }
+
     /// The plane `z = at`.
     #[must_use]
     pub fn z(at: f64) -> Self {
