@@ -11,6 +11,7 @@ mod page;
 pub mod picture;
 mod progress;
 mod run;
+mod section;
 mod words;
 
 use arguments::{Arguments, Command};
@@ -24,6 +25,7 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Simulate(options) => run::run(run::Task::Simulate, &options),
         Command::Sweep(options) => run::run(run::Task::Sweep, &options),
+        Command::Section(options) => section::run(&options),
         Command::Inspect { file } => inspect::inspect(&file).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|failure| {
