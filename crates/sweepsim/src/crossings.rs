@@ -7,7 +7,7 @@ use crate::lattice::Lattice;
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::{Crossing, Source};
-use sweepsim_motion::{Segment, Tool};
+use sweepsim_motion::{End, Segment, Tool};
 use sweepsim_solve::{ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, Undecided};
 
 /// A tool, prepared.
@@ -112,11 +112,12 @@ struct Placed {
 }
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
-pub(crate) fn twist(segment: &Segment, turn: &Matrix3<f64>) -> Side {
+pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
     let back = turn.transpose();
+    let [spin, travel] = segment.velocity(end);
     Side::Moving(Twist {
-        spin: (back * segment.spin()).into(),
-        travel: (back * segment.travel()).into(),
+        spin: (back * spin).into(),
+        travel: (back * travel).into(),
     })
 }
 
@@ -143,7 +144,7 @@ impl Search<'_> {
         let source = |t: f64| Source {
             path: self.path,
             segment: *number,
-            t: start + share * t as f32,
+            t: start + share * segment.time(t) as f32,
         };
         let mut times = Times::new(segment);
         self.faces(&mut times, &source, space, harvest);
@@ -151,12 +152,12 @@ impl Search<'_> {
         let turn = segment.start();
         let before = at
             .checked_sub(1)
-            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, &turn));
+            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
         let placed = Placed {
             turn,
             tip: segment.tips()[0],
             before,
-            after: twist(segment, &turn),
+            after: twist(segment, End::Start, &turn),
             source: source(0.0),
         };
         self.joint(&placed, space, harvest);
@@ -165,7 +166,7 @@ impl Search<'_> {
             let placed = Placed {
                 turn,
                 tip: segment.tips()[1],
-                before: twist(segment, &turn),
+                before: twist(segment, End::Finish, &turn),
                 after: Side::Beyond(true),
                 source: source(1.0),
             };
@@ -178,14 +179,17 @@ impl Search<'_> {
 
     /// Whether any line passes near the segment.
     fn reaches(&self, segment: &Segment) -> bool {
-        let [a, b] = segment.tips();
+        let (points, weights) = segment.points();
+        let place = |k: usize, n: usize| points[n][k] / weights[n];
         let window = [self.lattice.i, self.lattice.j];
         (0..2).all(|k| {
             let grid = self.lattice.grid;
             let at = |n: usize| if k == 0 { grid.x(n) } else { grid.y(n) };
             let margin =
                 self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
-            a[k].min(b[k]) - margin <= at(window[k][1]) && a[k].max(b[k]) + margin >= at(window[k][0])
+            let coordinates = || (0..points.len()).map(|n| place(k, n));
+            let (low, high) = (coordinates().fold(f64::INFINITY, f64::min), coordinates().fold(f64::NEG_INFINITY, f64::max));
+            low - margin <= at(window[k][1]) && high + margin >= at(window[k][0])
         })
     }
 

@@ -211,19 +211,17 @@ pub fn sweep(
         return Err(SweepError::Tolerance(tolerance));
     }
     let cutter = Cutter::new(tool);
-    let size = path
-        .poses()
-        .iter()
-        .flat_map(|pose| <[f64; 3]>::from(pose.tip()))
-        .chain(grid.min())
+    let size = grid
+        .min()
+        .into_iter()
         .chain(grid.max())
         .map(f64::abs)
-        .fold(cutter.reach, f64::max);
+        .fold(cutter.reach.max(path.size()), f64::max);
     let least = 2e4 * f64::EPSILON * size;
     if tolerance < least {
         return Err(SweepError::TooFine { tolerance, size, least });
     }
-    let parts = generic::parts(path.poses(), tool.profile().is_some(), tolerance);
+    let parts = generic::parts(path, tool.is_revolved(), cutter.reach, tolerance);
     let job = Job {
         cutter: &cutter,
         grid,
@@ -241,7 +239,7 @@ pub fn sweep(
     };
     let mut volume = Dexels::empty(*grid);
     let mut statistics = Statistics {
-        moves: path.poses().len().saturating_sub(1),
+        moves: path.moves(),
         ..Statistics::default()
     };
     let mut failed: Vec<Unresolved> = Vec::new();
