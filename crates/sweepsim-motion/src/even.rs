@@ -124,7 +124,9 @@ impl Turns {
                 let turns = product(&left, &right, |a, b| a * b);
                 let weights = product(&weights_z, &weights_x, |a, b| a * b);
                 // Ω = innerᵀ (κ_z Rₓᵀ z / w_z + κ_x x): its factor is w_z w_x.
-                let spins = product(&[1.0], &turns_x, |_, turn| inner.tr_mul(&(turn.tr_mul(&Vector3::z()) * kappa_z)));
+                let spins = product(&[1.0], &turns_x, |_, turn| {
+                    inner.tr_mul(&(turn.tr_mul(&Vector3::z()) * kappa_z))
+                });
                 let own = inner.tr_mul(&tilting) * kappa_x;
                 let spins = spins.iter().zip(&weights_z).map(|(spin, w)| spin + own * *w).collect();
                 (turns, weights, spins)
@@ -172,7 +174,11 @@ impl Tip {
         match self {
             Self::Straight([from, to]) => {
                 let at = |time: f64| if time == 1.0 { *to } else { from + way * time };
-                let points = if slope == 1.0 { vec![at(begin), at(end)] } else { times.map(at).to_vec() };
+                let points = if slope == 1.0 {
+                    vec![at(begin), at(end)]
+                } else {
+                    times.map(at).to_vec()
+                };
                 (points, Vec::new())
             }
             Self::Arc(arc, from, _) => {
@@ -208,26 +214,11 @@ fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
     turned + tip.straight().norm() / m as f64 * quintic_part(tau)
 }
 
-/// Directions that differ by less (the sine) are the same.
-const PARALLEL: f64 = 1e-14;
-
 /// The parts of a move at constant speed, of equal shares of its time. No point within `reach` of the tip is off by more than
 /// `limit` at any time; no part turns by more than 90°.
-///
-/// A tool that is `symmetric` about its axis, and goes round an axis parallel to it, may as well turn with it: then the whole motion is one
-/// turn (or screw), which the tool sees as standing still.
-pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, symmetric: bool, reach: f64, limit: f64) -> Vec<Segment> {
+pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, reach: f64, limit: f64) -> Vec<Segment> {
     let tip = Tip::new(from, to, &way.course);
-    let mut turns = Turns::new(from, to, &way.turning);
-    if let (true, Tip::Arc(arc, ..), Turns::None(start)) = (symmetric, &tip, &turns)
-        && arc.normal().cross(&start.column(2)).norm() <= PARALLEL
-    {
-        turns = Turns::One {
-            start: *start,
-            k: arc.normal().into_inner(),
-            angle: arc.angle(),
-        };
-    }
+    let turns = Turns::new(from, to, &way.turning);
     let [first, second] = turns.angles();
     let largest = first.max(second).max(tip.angle());
     let least = (largest / FRAC_PI_2 - 1e-12).ceil().max(1.0) as usize;
@@ -247,7 +238,11 @@ pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, symmetric: bool, reac
         }
     }
     let tau = (0.25 * largest / count as f64).tan();
-    let slope = if tau < NO_TURN { 1.0 } else { tau / ((1.0 + tau * tau) * tau.atan()) };
+    let slope = if tau < NO_TURN {
+        1.0
+    } else {
+        tau / ((1.0 + tau * tau) * tau.atan())
+    };
     let clock = if tau < NO_TURN { 0.0 } else { tau };
     let part = |n: usize| {
         if let (Tip::Straight(ends), Turns::One { start, k, angle }) = (&tip, &turns)

@@ -114,7 +114,7 @@ impl Path {
     /// let poses = vec![Pose::new([0.0; 3], [0.3, 0.0, 1.0])?, Pose::new([9.0, 0.0, 0.0], [0.0, 0.3, 1.0])?];
     /// let path = Path::with_law(poses, Law::Rotary(RotaryTable::Ac))?;
     /// // The tilt is the same at both ends, and so on the way: a quarter turn of the table.
-    /// let parts = path.segments(0, true, 50.0, 1e-4);
+    /// let parts = path.segments(0, 50.0, 1e-4);
     /// let (turn, _) = parts[0].at(0.5);
     /// assert!((turn[(2, 2)] - 1.0 / 1.09_f64.sqrt()).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -245,12 +245,12 @@ impl Path {
     /// The motions that make move `index`, of equal shares of its time.
     ///
     /// Moves by SLERP and motions of one's own are exact; others are, for a tool that reaches no farther than `reach` from its tip, within
-    /// `deviation` (a length) of what their law says, at every time. A tool that is `symmetric` about its axis may be turned about it.
+    /// `deviation` (a length) of what their law says, at every time.
     ///
     /// # Panics
     /// When there is no such move.
     #[must_use]
-    pub fn segments(&self, index: usize, symmetric: bool, reach: f64, deviation: f64) -> Vec<Segment> {
+    pub fn segments(&self, index: usize, reach: f64, deviation: f64) -> Vec<Segment> {
         let (from, to) = (&self.poses[index], &self.poses[index + 1]);
         let way = match &self.ways {
             Ways::Slerp => return Segment::between(from, to),
@@ -260,7 +260,7 @@ impl Path {
         if *way == Move::default() {
             return Segment::between(from, to);
         }
-        even::segments(from, to, way, symmetric, reach, deviation)
+        even::segments(from, to, way, reach, deviation)
     }
 
     /// A bound of the size of all coordinates of tips.
@@ -271,11 +271,16 @@ impl Path {
         match &self.ways {
             Ways::Slerp => ends,
             Ways::Motion(motion) => motion.size().max(ends),
-            Ways::Each(moves) => moves.iter().zip(&self.poses).fold(ends, |size, (way, from)| match way.course {
-                Course::Straight => size,
-                // A circle, the rise, and what the rise is measured from.
-                Course::Arc(arc) => size.max(arc.turned(from.tip(), 0.0).norm() + 2.0 * arc.radius_vector(from.tip()).norm() + 2.0 * ends),
-            }),
+            Ways::Each(moves) => moves
+                .iter()
+                .zip(&self.poses)
+                .fold(ends, |size, (way, from)| match way.course {
+                    Course::Straight => size,
+                    // A circle, the rise, and what the rise is measured from.
+                    Course::Arc(arc) => size.max(
+                        arc.turned(from.tip(), 0.0).norm() + 2.0 * arc.radius_vector(from.tip()).norm() + 2.0 * ends,
+                    ),
+                }),
         }
     }
 }

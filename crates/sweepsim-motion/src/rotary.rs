@@ -115,7 +115,11 @@ impl RotaryTable {
             [nearest(tilt, near[0]), c]
         });
         let way = |angles: &[f64; 2]| (angles[0] - near[0]).abs() + (angles[1] - near[1]).abs();
-        if way(&both[1]) < way(&both[0]) { both[1] } else { both[0] }
+        if way(&both[1]) < way(&both[0]) {
+            both[1]
+        } else {
+            both[0]
+        }
     }
 
     /// Whether the angles point along `axis`, to within the rounding of either.
@@ -166,7 +170,10 @@ mod tests {
                 assert!((table.orientation(angles) * Vector3::z() - axis).norm() < 1e-15);
                 let near = [angles[0] + 3.0, angles[1] - 20.0];
                 let back = table.angles(axis.into(), near);
-                assert!((back[0] - angles[0]).abs() < 1e-12 && (back[1] - angles[1]).abs() < 1e-11, "{back:?} {angles:?}");
+                assert!(
+                    (back[0] - angles[0]).abs() < 1e-12 && (back[1] - angles[1]).abs() < 1e-11,
+                    "{back:?} {angles:?}"
+                );
             }
             assert_eq!(table.angles([0.0, 0.0, 2.0], [5.0, 77.0]), [0.0, 77.0]);
         }

@@ -36,9 +36,7 @@ pub struct SplineMotion {
 #[non_exhaustive]
 pub enum MotionError {
     /// A spline is not a curve of the right dimension.
-    #[error(
-        "the {what} is a spline of {variables} variables and {dimension} coordinates: expected 1 and {expected}"
-    )]
+    #[error("the {what} is a spline of {variables} variables and {dimension} coordinates: expected 1 and {expected}")]
     Curve {
         /// `"orientation"` or `"tip"`.
         what: &'static str,
@@ -236,7 +234,11 @@ fn of_quaternions(stretch: &Stretch) -> Result<Turning, MotionError> {
         let (u, v) = (Vector3::new(p[1], p[2], p[3]), Vector3::new(q[1], q[2], q[3]));
         (v * p[0] - u * q[0] - u.cross(&v)) * 2.0
     };
-    let spins = if count == 1 { vec![Vector3::zeros()] } else { wronskian(count - 1, vector) };
+    let spins = if count == 1 {
+        vec![Vector3::zeros()]
+    } else {
+        wronskian(count - 1, vector)
+    };
     Ok(Some((turns, weights, spins)))
 }
 
@@ -344,7 +346,12 @@ impl SplineMotion {
     /// [`MotionError`]: no curves, different domains, a quaternion that vanishes, a jump.
     pub fn from_quaternions(orientation: &BSpline, tip: &RationalSpline) -> Result<Self, MotionError> {
         let stretches = stretches(orientation, 4, tip)?;
-        Self::of(stretches, JOINED, |stretch, _| of_quaternions(stretch), |at| MotionError::NoOrientation { at })
+        Self::of(
+            stretches,
+            JOINED,
+            |stretch, _| of_quaternions(stretch),
+            |at| MotionError::NoOrientation { at },
+        )
     }
 
     /// The motion whose orientation is the matrix `orientation(t)` (rows one after another, tool coordinates to space) and whose tip is
@@ -363,7 +370,9 @@ impl SplineMotion {
         }
         let stretches = stretches(orientation.homogeneous(), 9, tip)?;
         let turning = |stretch: &Stretch, last| of_matrices(stretch, tolerance, last);
-        Self::of(stretches, tolerance.max(JOINED), turning, |at| MotionError::NoOrientation { at })
+        Self::of(stretches, tolerance.max(JOINED), turning, |at| {
+            MotionError::NoOrientation { at }
+        })
     }
 
     fn of(
@@ -450,7 +459,11 @@ impl SplineMotion {
     pub(crate) fn size(&self) -> f64 {
         let of = |segment: &Segment| {
             let (points, weights) = segment.points();
-            points.iter().zip(&weights).map(|(point, w)| point.amax() / w).fold(0.0, f64::max)
+            points
+                .iter()
+                .zip(&weights)
+                .map(|(point, w)| point.amax() / w)
+                .fold(0.0, f64::max)
         };
         self.segments.iter().map(of).fold(0.0, f64::max)
     }

@@ -188,7 +188,10 @@ impl Search<'_> {
             let margin =
                 self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
             let coordinates = || (0..points.len()).map(|n| place(k, n));
-            let (low, high) = (coordinates().fold(f64::INFINITY, f64::min), coordinates().fold(f64::NEG_INFINITY, f64::max));
+            let (low, high) = (
+                coordinates().fold(f64::INFINITY, f64::min),
+                coordinates().fold(f64::NEG_INFINITY, f64::max),
+            );
             low - margin <= at(window[k][1]) && high + margin >= at(window[k][0])
         })
     }

@@ -126,10 +126,20 @@ fn range(channel: &Channel, r: usize) -> (f64, f64) {
 impl CurveTimes {
     pub fn new(segment: &Segment) -> Self {
         let matrices = |turns: &[Matrix3<f64>], weights: &[f64]| {
-            Channel::new(turns.iter().map(Matrix3::as_slice).zip(weights.iter().copied().map(Some)))
+            Channel::new(
+                turns
+                    .iter()
+                    .map(Matrix3::as_slice)
+                    .zip(weights.iter().copied().map(Some)),
+            )
         };
         let vectors = |points: &[Vector3<f64>], weights: &[f64]| {
-            Channel::new(points.iter().map(Vector3::as_slice).zip(weights.iter().copied().map(Some)))
+            Channel::new(
+                points
+                    .iter()
+                    .map(Vector3::as_slice)
+                    .zip(weights.iter().copied().map(Some)),
+            )
         };
         let bare = |vectors: &[Vector3<f64>]| Channel::new(vectors.iter().map(|v| (v.as_slice(), None)));
         let (turn_rate, tip, tip_rate) = (segment.turn_rate(), segment.points(), segment.tip_rate());
@@ -147,8 +157,8 @@ impl CurveTimes {
         let mut times = Self {
             joint,
             nodes: Vec::with_capacity(32),
-            // The twist is made by products of a few forms, and cut: its rounding is some times that of an arc's.
-            sizes: [4.0 * size(&spins), 4.0 * size(&travels)],
+
+            sizes: [size(&spins), size(&travels)],
         };
         times.nodes.push(node(0.0, 1.0, channels, joint));
         times
@@ -241,7 +251,9 @@ impl CurveTimes {
 
 /// Component `r` of vectors over their weights.
 fn values(channel: &Channel, r: usize) -> Vec<f64> {
-    (0..channel.len()).map(|i| channel.row(i)[r] / channel.row(i)[3]).collect()
+    (0..channel.len())
+        .map(|i| channel.row(i)[r] / channel.row(i)[3])
+        .collect()
 }
 
 fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {

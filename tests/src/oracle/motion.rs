@@ -279,7 +279,11 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
         let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
         let cross = o0.cross(&o1);
         let angle = cross.norm().atan2(o0.dot(&o1));
-        let ahead = if angle > 0.0 { cross.normalize().cross(&o0) } else { Vector3::zeros() };
+        let ahead = if angle > 0.0 {
+            cross.normalize().cross(&o0)
+        } else {
+            Vector3::zeros()
+        };
         turn_speed = angle;
         axis = Shared::new(move |t| o0 * (angle * t).cos() + ahead * (angle * t).sin());
     }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Law, Move, Path, Pose, RotaryTable, SplineMotion, TipArc, Tool, Turning};
+use sweepsim_motion::{Course, Law, Move, Path, Pose, RotaryTable, SplineMotion, TipArc, Tool, Turning};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 use sweepsim_tests::oracle::{Motion, Place, Placement};
 
@@ -78,10 +78,19 @@ fn bezier(name: &str, quaternions: &[[f64; 4]], tips: &[[f64; 3]], weights: &[f6
     let place: Place = Arc::new(move |t| {
         let (n, m) = (quaternions.len() - 1, tips.len() - 1);
         let sum: Quaternion<f64> = (0..=n)
-            .map(|i| Quaternion::new(quaternions[i][0], quaternions[i][1], quaternions[i][2], quaternions[i][3]) * bernstein(n, i, t))
+            .map(|i| {
+                Quaternion::new(
+                    quaternions[i][0],
+                    quaternions[i][1],
+                    quaternions[i][2],
+                    quaternions[i][3],
+                ) * bernstein(n, i, t)
+            })
             .fold(Quaternion::new(0.0, 0.0, 0.0, 0.0), |a, b| a + b);
         let weight: f64 = (0..=m).map(|i| weights[i] * bernstein(m, i, t)).sum();
-        let tip: Vector3<f64> = (0..=m).map(|i| Vector3::from(tips[i]) * (weights[i] * bernstein(m, i, t))).sum();
+        let tip: Vector3<f64> = (0..=m)
+            .map(|i| Vector3::from(tips[i]) * (weights[i] * bernstein(m, i, t)))
+            .sum();
         Placement {
             tip: tip / weight,
             axis: UnitQuaternion::from_quaternion(sum) * Vector3::z(),
@@ -104,36 +113,131 @@ fn bezier(name: &str, quaternions: &[[f64; 4]], tips: &[[f64; 3]], weights: &[f6
 
 fn motions() -> Vec<Named> {
     let o = [0.0; 3];
-    let wide = || vec![pose([-3.0, -1.0, 0.0], lean(25.0, 90.0)), pose([3.0, 1.5, 1.0], lean(25.0, -90.0))];
-    let around = |angle: f64, tilt: f64| pose([1.5 * angle.cos(), 1.5 * angle.sin(), 0.0], lean(tilt, angle.to_degrees()));
+    let wide = || {
+        vec![
+            pose([-3.0, -1.0, 0.0], lean(25.0, 90.0)),
+            pose([3.0, 1.5, 1.0], lean(25.0, -90.0)),
+        ]
+    };
+    let around = |angle: f64, tilt: f64| {
+        pose(
+            [1.5 * angle.cos(), 1.5 * angle.sin(), 0.0],
+            lean(tilt, angle.to_degrees()),
+        )
+    };
     vec![
         with_law("constant speed, 50 degrees", wide(), Law::ConstantSpeed),
         with_law(
             "constant speed, 170 degrees",
-            vec![pose([-1.0, 0.0, 0.0], lean(80.0, 10.0)), pose([1.0, 0.5, 0.3], lean(90.0, 190.0))],
+            vec![
+                pose([-1.0, 0.0, 0.0], lean(80.0, 10.0)),
+                pose([1.0, 0.5, 0.3], lean(90.0, 190.0)),
+            ],
             Law::ConstantSpeed,
         ),
-        with_law("constant speed in place", vec![pose(o, UP), pose(o, lean(70.0, 20.0))], Law::ConstantSpeed),
+        with_law(
+            "constant speed in place",
+            vec![pose(o, UP), pose(o, lean(70.0, 20.0))],
+            Law::ConstantSpeed,
+        ),
         with_law(
             "constant speed, three moves",
-            vec![pose(o, UP), pose([2.0, 0.0, 0.5], lean(30.0, 0.0)), pose([2.0, 0.0, 0.5], lean(30.0, 0.0)), pose([3.0, 2.0, 0.0], lean(40.0, 90.0))],
+            vec![
+                pose(o, UP),
+                pose([2.0, 0.0, 0.5], lean(30.0, 0.0)),
+                pose([2.0, 0.0, 0.5], lean(30.0, 0.0)),
+                pose([3.0, 2.0, 0.0], lean(40.0, 90.0)),
+            ],
             Law::ConstantSpeed,
         ),
         with_law("rotary axes through poses, A/C", wide(), Law::Rotary(RotaryTable::Ac)),
-        rotary("both rotary axes", RotaryTable::Ac, &[([-2.0, 0.0, 0.0], [20.0, -40.0]), ([2.0, 1.0, 0.5], [35.0, 50.0])]),
-        rotary("both rotary axes, B/C", RotaryTable::Bc, &[([-2.0, 0.0, 0.0], [-10.0, 0.0]), ([2.0, 1.0, 0.5], [30.0, 80.0])]),
-        rotary("tilting alone", RotaryTable::Ac, &[([-2.0, 0.0, 0.0], [-30.0, 25.0]), ([2.0, 1.0, 0.5], [40.0, 25.0])]),
-        rotary("a whole turn of the table", RotaryTable::Ac, &[([-1.0, 0.0, 0.0], [30.0, 0.0]), ([1.0, 0.0, 0.0], [30.0, 360.0])]),
-        rotary("a turn of the table in place", RotaryTable::Bc, &[(o, [35.0, 0.0]), (o, [35.0, -200.0])]),
-        rotary("a turn about the tool's own axis", RotaryTable::Ac, &[(o, [0.0, 0.0]), ([1.0, 0.0, 0.2], [0.0, 90.0])]),
-        rotary("both rotary axes, almost not", RotaryTable::Ac, &[([-2.0, 0.0, 0.0], [20.0, 10.0]), ([2.0, 1.0, 0.5], [20.0 + 1e-7, 10.0 - 1e-6])]),
-        arc("level quarter circle", pose([1.7, 0.0, 0.0], UP), pose([0.0, 1.7, 0.0], UP), o, UP, 1),
-        arc("level full circle", pose([1.7, 0.0, 0.0], UP), pose([1.7, 0.0, 0.0], UP), o, UP, 1),
-        arc("full circle smaller than the tool", pose([0.5, 0.0, 0.0], UP), pose([0.5, 0.0, 0.0], UP), o, UP, -1),
+        rotary(
+            "both rotary axes",
+            RotaryTable::Ac,
+            &[([-2.0, 0.0, 0.0], [20.0, -40.0]), ([2.0, 1.0, 0.5], [35.0, 50.0])],
+        ),
+        rotary(
+            "both rotary axes, B/C",
+            RotaryTable::Bc,
+            &[([-2.0, 0.0, 0.0], [-10.0, 0.0]), ([2.0, 1.0, 0.5], [30.0, 80.0])],
+        ),
+        rotary(
+            "tilting alone",
+            RotaryTable::Ac,
+            &[([-2.0, 0.0, 0.0], [-30.0, 25.0]), ([2.0, 1.0, 0.5], [40.0, 25.0])],
+        ),
+        rotary(
+            "a whole turn of the table",
+            RotaryTable::Ac,
+            &[([-1.0, 0.0, 0.0], [30.0, 0.0]), ([1.0, 0.0, 0.0], [30.0, 360.0])],
+        ),
+        rotary(
+            "a turn of the table in place",
+            RotaryTable::Bc,
+            &[(o, [35.0, 0.0]), (o, [35.0, -200.0])],
+        ),
+        rotary(
+            "a turn about the tool's own axis",
+            RotaryTable::Ac,
+            &[(o, [0.0, 0.0]), ([1.0, 0.0, 0.2], [0.0, 90.0])],
+        ),
+        rotary(
+            "both rotary axes, almost not",
+            RotaryTable::Ac,
+            &[
+                ([-2.0, 0.0, 0.0], [20.0, 10.0]),
+                ([2.0, 1.0, 0.5], [20.0 + 1e-7, 10.0 - 1e-6]),
+            ],
+        ),
+        arc(
+            "level quarter circle",
+            pose([1.7, 0.0, 0.0], UP),
+            pose([0.0, 1.7, 0.0], UP),
+            o,
+            UP,
+            1,
+        ),
+        arc(
+            "level full circle",
+            pose([1.7, 0.0, 0.0], UP),
+            pose([1.7, 0.0, 0.0], UP),
+            o,
+            UP,
+            1,
+        ),
+        arc(
+            "full circle smaller than the tool",
+            pose([0.5, 0.0, 0.0], UP),
+            pose([0.5, 0.0, 0.0], UP),
+            o,
+            UP,
+            -1,
+        ),
         arc("helix", pose([1.5, 0.0, 0.0], UP), pose([-1.5, 0.0, 1.0], UP), o, UP, 2),
-        arc("upright circle", pose([-2.0, 0.0, 0.0], lean(15.0, 45.0)), pose([2.0, 0.0, 0.0], lean(15.0, 45.0)), o, [0.0, 1.0, 0.0], 1),
-        arc("arc with the axis turning", around(0.0, 20.0), around(2.0, 30.0), o, UP, 1),
-        arc("helix with the axis turning", around(0.0, 20.0), pose([0.0, 1.5, 0.8], lean(35.0, 200.0)), o, UP, -1),
+        arc(
+            "upright circle",
+            pose([-2.0, 0.0, 0.0], lean(15.0, 45.0)),
+            pose([2.0, 0.0, 0.0], lean(15.0, 45.0)),
+            o,
+            [0.0, 1.0, 0.0],
+            1,
+        ),
+        arc(
+            "arc with the axis turning",
+            around(0.0, 20.0),
+            around(2.0, 30.0),
+            o,
+            UP,
+            1,
+        ),
+        arc(
+            "helix with the axis turning",
+            around(0.0, 20.0),
+            pose([0.0, 1.5, 0.8], lean(35.0, 200.0)),
+            o,
+            UP,
+            -1,
+        ),
         arc(
             "spiral: two radii",
             pose([1.7, 0.0, 0.0], UP),
@@ -153,12 +257,33 @@ fn motions() -> Vec<Named> {
         ),
         named(
             "line, arc, line",
-            vec![pose([-3.0, -1.0, 0.0], UP), pose([0.0, -1.0, 0.0], UP), pose([0.0, 1.0, 0.0], UP), pose([-3.0, 1.0, 0.0], UP)],
+            vec![
+                pose([-3.2, -1.0, 0.0], UP),
+                pose([0.0, -1.0, 0.0], UP),
+                pose([0.0, 1.0, 0.0], UP),
+                pose([-3.0, 1.0, 0.0], UP),
+            ],
             vec![
                 Move::default(),
                 Move::arc(TipArc::between([0.0, -1.0, 0.0], [0.0, 1.0, 0.0], o, UP, 1).expect("an arc")),
                 Move::default(),
             ],
+        ),
+        // The table turns with the arc: the tool stands still relative to the arc's centre.
+        named(
+            "arc with the table in step",
+            vec![
+                pose([0.0, 1.7, 0.0], RotaryTable::Ac.axis([-25.0, 0.0])),
+                pose([1.7, 0.0, 0.0], RotaryTable::Ac.axis([-25.0, 90.0])),
+            ],
+            vec![Move {
+                course: Course::Arc(TipArc::between([0.0, 1.7, 0.0], [1.7, 0.0, 0.0], o, UP, -1).expect("an arc")),
+                turning: Turning::Rotary {
+                    table: RotaryTable::Ac,
+                    from: [-25.0, 0.0],
+                    to: [-25.0, 90.0],
+                },
+            }],
         ),
         bezier(
             "spline motion, quadratic",
@@ -168,7 +293,12 @@ fn motions() -> Vec<Named> {
         ),
         bezier(
             "spline motion, cubic and rational",
-            &[[1.0, 0.1, 0.0, 0.0], [1.2, 0.2, 0.2, -0.3], [0.8, -0.2, 0.1, 0.1], [1.0, 0.0, 0.2, 0.5]],
+            &[
+                [1.0, 0.1, 0.0, 0.0],
+                [1.2, 0.2, 0.2, -0.3],
+                [0.8, -0.2, 0.1, 0.1],
+                [1.0, 0.0, 0.2, 0.5],
+            ],
             &[[-2.0, 0.0, 0.0], [-1.0, 1.5, 0.5], [1.0, -1.0, 0.5], [2.0, 0.0, 0.0]],
             &[1.0, 0.8, 1.2, 1.0],
         ),
@@ -190,7 +320,11 @@ fn motions() -> Vec<Named> {
 /// Every third grid has lines in walls of the tool at its first pose, and through its axis.
 fn grid(number: usize, path: &Path) -> Grid {
     let tip = path.poses()[0].tip();
-    let (middle, half) = if number.is_multiple_of(3) { ([tip.x, tip.y], 4.5) } else { ([0.11, -0.07], 4.4) };
+    let (middle, half) = if number.is_multiple_of(3) {
+        ([tip.x, tip.y], 4.5)
+    } else {
+        ([0.11, -0.07], 4.4)
+    };
     let corner = |sign: f64| middle.map(|c| c + sign * half);
     Grid::new(corner(-1.0), corner(1.0), [9, 9]).expect("a grid")
 }
@@ -198,14 +332,10 @@ fn grid(number: usize, path: &Path) -> Grid {
 fn judged(name: &str, tool: &Tool, named: &Named, grid: &Grid) -> Result<Tally, String> {
     let told = |error: String| format!("{name}: {}: {error}", named.name);
     let profile = tool.profile().expect("a solid of revolution");
-    let begin = std::time::Instant::now();
     let charts = swept_along(tool, &named.path, grid, Method::Charts).map_err(told)?;
-    let a = begin.elapsed().as_secs_f64();
     let tally = judge_sweep(&charts, profile, &named.motion, grid, Method::Charts).map_err(told)?;
-    let b = begin.elapsed().as_secs_f64();
     let lines = swept_along(tool, &named.path, grid, Method::Lines).map_err(told)?;
     same_sweeps(profile, &named.motion, grid, &charts, &lines).map_err(|e| told(format!("charts and lines: {e}")))?;
-    if a > 0.5 || b > 8.0 { eprintln!("{name}: {}: {a} {b} {}", named.name, begin.elapsed().as_secs_f64()); }
     Ok(tally)
 }
 
@@ -218,11 +348,20 @@ fn all_tools_along_all_motions() {
     assert!(cases.len() >= 200, "{}", cases.len());
     let check = |&(t, m): &(usize, usize)| judged(tools[t].0, &tools[t].1, &motions[m], &grid(t + m, &motions[m].path));
     let results: Vec<Result<Tally, String>> = cases.par_iter().map(check).collect();
-    let errors: Vec<String> = results.iter().filter_map(|result| result.as_ref().err().cloned()).collect();
+    let errors: Vec<String> = results
+        .iter()
+        .filter_map(|result| result.as_ref().err().cloned())
+        .collect();
     let covered: usize = results.iter().flatten().map(|tally| tally.covered).sum();
     let repaired: usize = results.iter().flatten().map(|tally| tally.repaired).sum();
     println!("{} sweeps, {covered} covered lines, {repaired} repaired", cases.len());
-    assert!(errors.is_empty(), "{} of {}:\n{}", errors.len(), cases.len(), errors.join("\n"));
+    assert!(
+        errors.is_empty(),
+        "{} of {}:\n{}",
+        errors.len(),
+        cases.len(),
+        errors.join("\n")
+    );
     assert!(covered > 10 * cases.len(), "the grids must meet the tools: {covered}");
     assert!(repaired * 100 <= covered, "too many repairs: {repaired}");
 }
@@ -237,7 +376,11 @@ fn the_laws_agree_where_they_must() {
     let slerp = Path::new(poses.clone()).expect("a path");
     let grid = grid(1, &slerp);
     let one = swept_along(tool, &slerp, &grid, Method::Charts).expect("a sweep");
-    for law in [Law::ConstantSpeed, Law::Rotary(RotaryTable::Ac), Law::Rotary(RotaryTable::Bc)] {
+    for law in [
+        Law::ConstantSpeed,
+        Law::Rotary(RotaryTable::Ac),
+        Law::Rotary(RotaryTable::Bc),
+    ] {
         let path = Path::with_law(poses.clone(), law).expect("a path");
         let other = swept_along(tool, &path, &grid, Method::Charts).expect("a sweep");
         let tally = same_sweeps(profile, &motion, &grid, &one, &other).expect("the same");
@@ -249,7 +392,10 @@ fn the_laws_agree_where_they_must() {
 #[test]
 fn a_spline_motion_of_an_exact_slerp_gives_the_same_dexels() {
     let half = 0.35_f64;
-    let (from, to) = ([1.0, 0.0, 0.0, 0.0], [half.cos(), 0.6 * half.sin(), 0.0, 0.8 * half.sin()]);
+    let (from, to) = (
+        [1.0, 0.0, 0.0, 0.0],
+        [half.cos(), 0.6 * half.sin(), 0.0, 0.8 * half.sin()],
+    );
     let tips = [[-2.0, -1.0, 0.0], [2.0, 1.0, 1.0]];
     let turn = BSpline::new(vec![bezier_knots(1)], 4, [from, to].concat()).expect("a curve");
     let tip = RationalSpline::new(vec![bezier_knots(1)], 3, &tips.concat(), &[1.0; 2]).expect("a curve");
@@ -279,7 +425,10 @@ fn a_spline_motion_of_an_exact_slerp_gives_the_same_dexels() {
                 let (i, j) = grid.place(index);
                 let ends = |sweep: &sweepsim::Sweep| -> Vec<f64> {
                     let intervals = sweep.volume.intervals(i, j).to_vec();
-                    intervals.iter().flat_map(|interval| [interval.lower.z, interval.upper.z]).collect()
+                    intervals
+                        .iter()
+                        .flat_map(|interval| [interval.lower.z, interval.upper.z])
+                        .collect()
                 };
                 let (a, b) = (ends(&expected), ends(&found));
                 assert_eq!(a.len(), b.len(), "{name} ({i}, {j})");
@@ -297,8 +446,22 @@ fn a_spline_motion_of_an_exact_slerp_gives_the_same_dexels() {
 #[test]
 fn more_turns_sweep_the_same() {
     let (_, tool) = &tools()[0];
-    let circle = arc("circle", pose([1.5, 0.0, 0.0], UP), pose([1.5, 0.0, 0.0], UP), [0.0; 3], UP, 3);
-    let once = arc("circle", pose([1.5, 0.0, 0.0], UP), pose([1.5, 0.0, 0.0], UP), [0.0; 3], UP, 1);
+    let circle = arc(
+        "circle",
+        pose([1.5, 0.0, 0.0], UP),
+        pose([1.5, 0.0, 0.0], UP),
+        [0.0; 3],
+        UP,
+        3,
+    );
+    let once = arc(
+        "circle",
+        pose([1.5, 0.0, 0.0], UP),
+        pose([1.5, 0.0, 0.0], UP),
+        [0.0; 3],
+        UP,
+        1,
+    );
     let grid = grid(1, &once.path);
     let sweep = |named: &Named| swept_along(tool, &named.path, &grid, Method::Charts).expect("a sweep");
     let profile = tool.profile().expect("a solid of revolution");
