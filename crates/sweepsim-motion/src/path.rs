@@ -157,7 +157,8 @@ impl Path {
                 poses: poses.len(),
             });
         }
-        Self::checked(poses, Ways::Each(moves))
+        let plain = moves.iter().all(|way| *way == Move::default());
+        Self::checked(poses, if plain { Ways::Slerp } else { Ways::Each(moves) })
     }
 
     /// The path along a motion of one's own: a move for each piece between its knots.
