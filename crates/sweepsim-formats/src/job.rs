@@ -53,7 +53,12 @@ impl Units {
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
 ///
-/// A path of a program takes further `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
+/// A path may say how the tool turns between poses: `law: Slerp | ConstantSpeed | Rotary(AC) | Rotary(BC)`. Poses of tools that are not
+/// symmetric about their axis may have a third direction, where the tool's x points: `((tip), (axis), (side))`. Instead of `poses` there may be
+/// `moves: [Start(pose), Line(pose), Arc(to: pose, centre: (x, y, z), turn: Ccw), …]` with arcs and helices of the tip (further `normal`,
+/// default `(0, 0, 1)`, and `turns`, default 1).
+///
+/// A path of a program takes further `arcs: Chords | Exact` (default: chords), `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
 /// use) and `tip_control: true` (the coordinates are the tip in the part's frame without a word in the program); see
 /// [`gcode::Options`](crate::gcode::Options).
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::Tool;
+use sweepsim_motion::{Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
 use crate::job::{Job, Limits, Target, Units};
@@ -259,30 +259,44 @@ impl Reader<'_> {
         if let Some(number) = raw.tool {
             has_tool(number).map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
         }
+        let law = raw.law.unwrap_or(raw::Law::Slerp);
+        let table = |table: raw::Table| match table {
+            raw::Table::Ac => RotaryTable::Ac,
+            raw::Table::Bc => RotaryTable::Bc,
+        };
+        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+            let tool = raw.tool.ok_or_else(|| {
+                let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
+                self.error(problem, &steps(&[]))
+            })?;
+            let path = made.map_err(|(problem, place)| {
+                let mut path = steps(&[field.into()]);
+                let rest = place
+                    .iter()
+                    .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]);
+                path.extend(rest);
+                self.error(problem, &path)
+            })?;
+            Ok(vec![JobPath {
+                tool,
+                rapid: vec![false; path.moves()],
+                path,
+                source: format!("path {index} of the job"),
+                lines: Vec::new(),
+                notes: Vec::new(),
+            }])
+        };
+        let own_law = match law {
+            raw::Law::Slerp => Law::Slerp,
+            raw::Law::ConstantSpeed => Law::ConstantSpeed,
+            raw::Law::Rotary(axes) => Law::Rotary(table(axes)),
+        };
         match (&raw.poses, &raw.file) {
-            (Some(poses), None) => {
-                let tool = raw.tool.ok_or_else(|| {
-                    let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
-                    self.error(problem, &steps(&[]))
-                })?;
-                let path = paths::of_poses(poses, self.unit).map_err(|(problem, place)| {
-                    let mut path = steps(&["poses".into()]);
-                    path.extend(
-                        place
-                            .iter()
-                            .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]),
-                    );
-                    self.error(problem, &path)
-                })?;
-                Ok(vec![JobPath {
-                    tool,
-                    rapid: vec![false; path.moves()],
-                    path,
-                    source: format!("path {index} of the job"),
-                    lines: Vec::new(),
-                    notes: Vec::new(),
-                }])
+            _ if raw.moves.is_some() && (raw.poses.is_some() || raw.file.is_some()) => {
+                let problem = Problem::syntax("`moves` and `poses` or `file` in one path: expected one of them");
+                Err(self.error(problem, &steps(&["moves".into()])))
             }
+            (Some(poses), None) => inline(paths::of_poses(poses, own_law, self.unit), "poses"),
             (None, Some(name)) => {
                 let arc_tolerance = match raw.arc_tolerance {
                     None => ARC_TOLERANCE * tolerance,
@@ -296,10 +310,16 @@ impl Reader<'_> {
                     unit: self.unit,
                     program: gcode::Options {
                         arc_tolerance,
-                        table: raw.table.map(|table| match table {
-                            raw::Table::Ac => gcode::RotaryTable::Ac,
-                            raw::Table::Bc => gcode::RotaryTable::Bc,
-                        }),
+                        table: match law {
+                            raw::Law::Rotary(axes) => Some(table(axes)),
+                            _ => raw.table.map(table),
+                        },
+                        law: match law {
+                            raw::Law::Slerp => gcode::AxisLaw::Slerp,
+                            raw::Law::ConstantSpeed => gcode::AxisLaw::ConstantSpeed,
+                            raw::Law::Rotary(_) => gcode::AxisLaw::Rotary,
+                        },
+                        exact_arcs: matches!(raw.arcs, Some(raw::Arcs::Exact)),
                         tip_control: raw.tip_control.unwrap_or(false),
                         ..gcode::Options::default()
                     },
@@ -307,16 +327,19 @@ impl Reader<'_> {
                 let file = paths::beside(self.file, name);
                 let read = paths::read_path_file(&file, &options);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
-                paths::of_program(program, &file, name, raw.tool, has_tool)
+                paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
                 Err(self.error(problem, &steps(&["file".into()])))
             }
-            (None, None) => {
-                let problem = Problem::syntax("this path has no poses: expected `poses` or `file`");
-                Err(self.error(problem, &steps(&[])))
-            }
+            (None, None) => match &raw.moves {
+                Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
+                None => {
+                    let problem = Problem::syntax("this path has no poses: expected `poses`, `moves` or `file`");
+                    Err(self.error(problem, &steps(&[])))
+                }
+            },
         }
     }
 }

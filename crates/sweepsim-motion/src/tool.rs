@@ -140,6 +140,12 @@ impl Tool {
         self.profile.as_ref()
     }
 
+    /// Whether the tool is symmetric about its axis.
+    #[must_use]
+    pub fn is_revolved(&self) -> bool {
+        self.profile.is_some()
+    }
+
     /// The smooth patches of the boundary.
     #[must_use]
     pub fn patches(&self) -> &[Patch] {

@@ -28,8 +28,10 @@
 //! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
 //! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
 
+mod arc_time;
 mod boundary;
 mod crossings;
+mod curve_time;
 mod element;
 mod envelope;
 mod form;

@@ -4,7 +4,7 @@ use crate::element::Element;
 use crate::generic::Part;
 use crate::time::Times;
 use nalgebra::Vector3;
-use sweepsim_motion::{Segment, Tool};
+use sweepsim_motion::{End, Segment, Tool};
 
 /// What a piece of a swept volume's boundary comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -77,8 +77,8 @@ impl<'a> Moving<'a> {
                 let before = self
                     .at
                     .checked_sub(1)
-                    .map_or(1.0, |k| condition(&self.parts[k].segment, self.part().segment.start(), &field));
-                let after = condition(&self.part().segment, self.part().segment.start(), &field);
+                    .map_or(1.0, |k| condition(&self.parts[k].segment, End::Finish, self.part().segment.start(), &field));
+                let after = condition(&self.part().segment, End::Start, self.part().segment.start(), &field);
                 Seen {
                     point,
                     sides: Some([before, after]),
@@ -86,7 +86,7 @@ impl<'a> Moving<'a> {
             }
             Piece::Last(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 1.0);
-                let before = condition(&self.part().segment, self.part().segment.end(), &field);
+                let before = condition(&self.part().segment, End::Finish, self.part().segment.end(), &field);
                 Seen {
                     point,
                     sides: Some([before, -1.0]),
@@ -98,7 +98,7 @@ impl<'a> Moving<'a> {
     /// A time of the part as one of its move.
     fn time(&self, t: f64) -> f64 {
         let part = self.part();
-        f64::from(part.start) + f64::from(part.share) * t
+        f64::from(part.start) + f64::from(part.share) * part.segment.time(t)
     }
 
     /// The point, and normal and moment in the tool.
@@ -124,10 +124,9 @@ impl<'a> Moving<'a> {
     fn on_edge(&self, k: usize, r: f64, t: f64) -> Seen {
         let point = self.rims[k].rim(r);
         let moment = self.times.at(t);
-        let spin = Vector3::from(self.times.spin);
         let [a, b] = [0, 1].map(|side| {
             let field = &point.fields[side];
-            spin.dot(&field.moment[0]) + moment.travel.dot(&field.normal[0])
+            moment.own_spin.dot(&field.moment[0]) + moment.travel.dot(&field.normal[0])
         });
         // The envelope's normal lies in the fan of the two faces, where g = 0.
         let [n, m] = [0, 1].map(|side| moment.turn * point.fields[side].normal[0]);
@@ -158,15 +157,19 @@ impl<'a> Moving<'a> {
     /// No point of a tool with this reach moves faster, per unit of `t`.
     pub fn speed(&self, reach: f64) -> f64 {
         let segment = &self.part().segment;
-        let slowest = segment.weights().iter().fold(f64::INFINITY, |m, w| m.min(*w));
-        segment.travel().norm() + segment.spin().norm() / slowest * reach
+        let (tips, tip_weights) = segment.tip_rate();
+        let (turns, turn_weights) = segment.turn_rate();
+        let tip = tips.iter().zip(&tip_weights).map(|(rate, w)| rate.norm() / w);
+        let turn = turns.iter().zip(&turn_weights).map(|(rate, w)| rate.norm() / w);
+        tip.fold(0.0, f64::max) + turn.fold(0.0, f64::max) * reach
     }
 }
 
 /// `g` of a normal and moment in the tool, under the motion at a placement.
-fn condition(segment: &Segment, turn: nalgebra::Matrix3<f64>, [normal, moment]: &[Vector3<f64>; 2]) -> f64 {
+fn condition(segment: &Segment, end: End, turn: nalgebra::Matrix3<f64>, [normal, moment]: &[Vector3<f64>; 2]) -> f64 {
     let back = turn.transpose();
-    (back * segment.spin()).dot(moment) + (back * segment.travel()).dot(normal)
+    let [spin, travel] = segment.velocity(end);
+    (back * spin).dot(moment) + (back * travel).dot(normal)
 }
 
 fn unit(v: Vector3<f64>) -> [f64; 3] {

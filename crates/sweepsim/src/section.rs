@@ -154,8 +154,10 @@ pub(crate) fn outer(
 fn reaches(part: &Part, plane: &Plane, reach: f64) -> bool {
     let normal = Vector3::from(plane.normal);
     let margin = reach * normal.norm();
-    let [a, b] = part.segment.tips().map(|tip| tip.dot(&normal) - plane.offset);
-    a.min(b) <= margin && a.max(b) >= -margin
+    let (points, weights) = part.segment.points();
+    let heights = points.iter().zip(&weights).map(|(p, w)| p.dot(&normal) / w - plane.offset);
+    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
+    low <= margin && high >= -margin
 }
 
 type Found = (Vec<SectionCurve>, Vec<(usize, Piece, u32)>);

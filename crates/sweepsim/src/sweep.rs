@@ -231,7 +231,7 @@ pub fn sweep(
     let parts = &plan.parts;
     let mut volume = Dexels::empty(*grid);
     let mut statistics = Statistics {
-        moves: path.poses().len().saturating_sub(1),
+        moves: path.moves(),
         ..Statistics::default()
     };
     let mut failed: Vec<Unresolved> = Vec::new();
@@ -322,19 +322,13 @@ impl Plan {
             return Err(SweepError::Tolerance(tolerance));
         }
         let cutter = Cutter::new(tool);
-        let size = path
-            .poses()
-            .iter()
-            .flat_map(|pose| <[f64; 3]>::from(pose.tip()))
-            .chain(extent)
-            .map(f64::abs)
-            .fold(cutter.reach, f64::max);
+        let size = extent.map(f64::abs).fold(cutter.reach.max(path.size()), f64::max);
         let least = 2e4 * f64::EPSILON * size;
         if tolerance < least {
             return Err(SweepError::TooFine { tolerance, size, least });
         }
         Ok(Self {
-            parts: generic::parts(path.poses(), tool.profile().is_some(), tolerance),
+            parts: generic::parts(path, tool.is_revolved(), cutter.reach, tolerance),
             // The square of the last step, times lengths of the tool's size, is a small part of the tolerance.
             accept: (1e-3 * tolerance / size).sqrt().clamp(1e-9, 1e-5),
             cutter,

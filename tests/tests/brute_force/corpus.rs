@@ -22,7 +22,7 @@ fn profile(segments: Vec<ProfileSegment>) -> Tool {
 }
 
 /// One tool of each kind, of radius about 2.
-fn tools() -> Vec<(&'static str, Tool)> {
+pub fn tools() -> Vec<(&'static str, Tool)> {
     let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
     let dovetail = profile(vec![line(2.0, 0.0), line(1.0, 3.0), line(1.0, 9.0), line(0.0, 9.0)]);
     let taper = profile(vec![
@@ -57,7 +57,7 @@ fn tools() -> Vec<(&'static str, Tool)> {
     ]
 }
 
-fn lean(degrees: f64, towards: f64) -> [f64; 3] {
+pub fn lean(degrees: f64, towards: f64) -> [f64; 3] {
     let ((sin, cos), (s, c)) = (degrees.to_radians().sin_cos(), towards.to_radians().sin_cos());
     [sin * c, sin * s, cos]
 }

@@ -15,3 +15,4 @@ mod degenerate;
 mod generic;
 mod judge;
 mod metamorphic;
+mod motions;
