@@ -132,7 +132,7 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
     }
     // Error ≤ direct + rest · error, entry by entry: from the bound for all, a few rounds to one for each.
     let mut errors = [all; MAX_UNKNOWNS];
-    for _ in 0..6 {
+    for _ in 0..60 {
         let mut better = direct;
         for i in 0..n {
             for j in 0..n {
@@ -140,7 +140,11 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             }
             better[i] *= 1.0 + 16.0 * EPSILON;
         }
+        let done = (0..n).all(|i| better[i] > 0.9 * errors[i]);
         errors = better;
+        if done {
+            break;
+        }
     }
     let mut found = Found {
         point: [0.0; MAX_UNKNOWNS],
