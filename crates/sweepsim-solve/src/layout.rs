@@ -331,7 +331,8 @@ impl Layout {
         let (mut constant, mut radius) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
         for e in 0..self.m {
             let slopes: f64 = slope[e][..self.n].iter().map(|s| s.abs()).sum();
-            let rounding = EPSILON * (self.n + 8) as f64 * (cell.scale[e] + slopes);
+            // Slopes' shares round, their sum does, and the difference.
+            let rounding = EPSILON * (2 * self.n + 8) as f64 * (cell.scale[e] + slopes);
             constant[e] = 0.5 * (lo[e] + hi[e]);
             radius[e] = 0.5 * (hi[e] - lo[e]) + rounding + cell.noise[e] + self.remainder[e];
         }
