@@ -138,6 +138,22 @@ impl Layout {
         (lo, hi)
     }
 
+    /// Whether an equation has a variable.
+    pub(crate) fn depends(&self, equation: usize, variable: usize) -> bool {
+        let own = self.parts.iter().filter(|p| p.equation == equation);
+        own.into_iter().any(|p| p.axis(variable).is_some())
+    }
+
+    /// Whether an equation is zero on the whole domain, up to its noise.
+    pub(crate) fn nothing(&self, equation: usize) -> bool {
+        let own = self.parts.iter().filter(|p| p.equation == equation);
+        let size: f64 = own
+            .map(|p| tensor::range(p.of(&self.first)))
+            .map(|(l, h)| tensor::greater(l.abs(), h.abs()))
+            .sum();
+        size <= 8.0 * (self.first_noise[equation] + self.remainder[equation])
+    }
+
     /// Restricts along one variable; the new ends may lie outside the old ones.
     pub(crate) fn restrict(&self, cell: &mut Cell, variable: usize, lo: f64, hi: f64) {
         let (old_lo, old_hi) = (cell.lo[variable], cell.hi[variable]);
@@ -215,7 +231,8 @@ impl Layout {
         cell.lo[variable] = at;
     }
 
-    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Only inside the domain.
+    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Cells may leave the domain a little: restriction to
+    /// `[−a, 1 + b]` makes errors of degree `d` at most `((1 + 2a)(1 + 2b))ᵈ` times as large.
     ///
     /// Parts of one equation may be large where their sum is small: constants move to the first part, so that what is rounded is small.
     pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
@@ -243,13 +260,21 @@ impl Layout {
                 *x = d.add(shift).hi;
             }
         }
-        cell.noise = self.first_noise;
+        let beyond = (0..self.n).fold(1.0, |g: f64, j| {
+            g.max((1.0 + 2.0 * (-cell.lo[j]).max(0.0)) * (1.0 + 2.0 * (cell.hi[j] - 1.0).max(0.0)))
+        });
+        let growth = if beyond > 1.0 {
+            beyond.powi(self.degrees as i32)
+        } else {
+            1.0
+        };
+        cell.noise = self.first_noise.map(|e| e * growth);
         self.ranges(cell);
         for part in &self.parts {
             let e = part.equation;
             let steps: usize = part.axes.iter().map(|a| a.degree).sum();
             // Coefficients are normalised to at most 2 at first; the rounding to single precision is local.
-            cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 + EPSILON * cell.scale[e];
+            cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 * growth + EPSILON * cell.scale[e];
         }
     }
 

@@ -106,6 +106,14 @@ const LEAST_SIDE: f64 = 4e-15;
 const CUT: f64 = 0.492;
 /// Noise above this part of an equation's size makes its coefficients worth computing anew.
 const NOISY: f64 = 1.5e-8;
+/// Where an equation vanishes up to noise because a side that it depends on is below this part of another, the other is split all the same: the cell may
+/// hold several simple roots.
+const SQUEEZED: f64 = 1.0 / 64.0;
+/// Before a cell stays open, certificates are tried on boxes of so many times its width, each so many times as wide as the one before.
+const WIDER: f64 = 16.0;
+const WIDER_TRIES: u32 = 6;
+/// Where so many cells were tried in vain, the rest is not: a continuum of solutions.
+const WIDER_FAILURES: u32 = 64;
 
 #[expect(clippy::large_enum_variant, reason = "made once an attempt, and taken apart at once")]
 enum Verdict {
@@ -143,6 +151,7 @@ pub struct PointSolver {
     buffer: Vec<f64>,
     doubles: Vec<Double>,
     ranges: Vec<(f64, f64)>,
+    failures: u32,
     pub(crate) found: Vec<Found>,
     pub(crate) open: Vec<Open>,
     pub(crate) statistics: SolveStatistics,
@@ -175,20 +184,7 @@ impl PointSolver {
         if !(1e-14..=1.0).contains(&self.options.smallest) {
             return Err(SolveError::Smallest);
         }
-        self.statistics = SolveStatistics::default();
-        self.found.clear();
-        self.open.clear();
-        let root = system.root();
-        self.search(system, root, observer);
-        self.identify(n);
-        // An open box inside a box where a found root is the only one holds nothing else.
-        let found = &self.found;
-        self.open.retain(|o| {
-            !found
-                .iter()
-                .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
-        });
-        unite(&mut self.open, n);
+        self.run(system, observer);
         self.found.sort_by(|a, b| {
             let ends = a.point[..n].iter().zip(&b.point[..n]);
             ends.map(|(x, y)| x.total_cmp(y))
@@ -232,6 +228,7 @@ impl PointSolver {
     fn search(&mut self, system: &System, root: Cell, observer: &mut dyn Observer) {
         let layout = &system.layout;
         let mut watch = Watch::new(&self.options);
+        self.failures = 0;
         self.stack.clear();
         self.depths.clear();
         push(&mut self.stack, &root, layout);
@@ -337,9 +334,13 @@ impl PointSolver {
             let size = totals.0[i].abs().max(totals.1[i].abs());
             size <= 2.5 * (self.cell.noise[i] + layout.remainder[i]) + 64.0 * EPSILON * self.cell.scale[i]
         };
+        let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
+        let thin = |j: usize| width(j) < SQUEEZED * width(widest);
+        let squeezed = !(0..n).all(vanishing)
+            && (0..n).all(|i| !vanishing(i) || ((0..n).any(|j| thin(j) && layout.depends(i, j)) && !layout.nothing(i)));
         let cause = if (0..n).all(|j| width(j) <= self.options.smallest) {
             Some(Cause::Smallest)
-        } else if (0..n).any(vanishing) {
+        } else if (0..n).any(vanishing) && !squeezed {
             Some(Cause::Vanishing)
         } else if depth >= self.options.depth {
             Some(Cause::Depth)
@@ -347,15 +348,17 @@ impl PointSolver {
             None
         };
         if let Some(cause) = cause {
-            self.leave(cause);
-            return Fate::Unresolved;
+            return self.settle_or_leave(system, cause);
         }
-        let axis = self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k));
+        let axis = if (0..n).any(vanishing) {
+            widest
+        } else {
+            self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k))
+        };
         let (lo, hi) = (self.cell.lo[axis], self.cell.hi[axis]);
         let at = lo + CUT * (hi - lo);
         if !(at > lo && at < hi) {
-            self.leave(Cause::Smallest);
-            return Fate::Unresolved;
+            return self.settle_or_leave(system, Cause::Smallest);
         }
         layout.split(&mut self.cell, &mut self.lower, axis, at);
         push(&mut self.stack, &self.cell, layout);
@@ -461,20 +464,51 @@ impl PointSolver {
             }
             layout.restrict(trial, j, lo, hi);
         }
-        let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
-            return Verdict::Unclear;
-        };
-        let (mut found, mut straddles, mut boundary) = (unique, false, false);
-        for j in 0..n {
-            if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
-                return Verdict::Elsewhere;
-            }
-            straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
-            boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+        match unique_root(layout, trial, &mut self.buffer) {
+            Some(unique) => placed(system, cell, unique),
+            None => Verdict::Unclear,
         }
-        found.straddles = straddles;
-        found.boundary = boundary;
-        Verdict::Root(found)
+    }
+
+    /// The last resort for a cell that is about to stay open: a certificate on a larger box around it. Reductions may have made the
+    /// cell so small that noise hides its slopes, though the root is simple.
+    fn settle_or_leave(&mut self, system: &System, cause: Cause) -> Fate {
+        let layout = &system.layout;
+        let n = layout.n;
+        let limit = if system.bounded() { 0.0 } else { BEYOND };
+        let cell = &self.cell;
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max(cell.hi[j] - cell.lo[j]));
+        let useful = cause != Cause::Depth && self.failures < WIDER_FAILURES;
+        let mut reach = widest;
+        for _ in 0..if useful { WIDER_TRIES } else { 0 } {
+            reach *= WIDER;
+            if reach > 0.5 {
+                break;
+            }
+            let trial = &mut self.trial;
+            trial.c.resize(layout.len, 0.0);
+            for j in 0..n {
+                trial.lo[j] = (cell.lo[j] - reach).max(-limit);
+                trial.hi[j] = (cell.hi[j] + reach).min(1.0 + limit);
+            }
+            layout.refresh(trial, &mut self.doubles);
+            self.statistics.refreshed += 1;
+            self.statistics.attempts += 1;
+            let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
+                continue;
+            };
+            match placed(system, cell, unique) {
+                Verdict::Root(found) => {
+                    self.found.push(found);
+                    return Fate::Certified;
+                }
+                Verdict::Elsewhere => return Fate::Elsewhere,
+                Verdict::Unclear => {}
+            }
+        }
+        self.failures += u32::from(useful);
+        self.leave(cause);
+        Fate::Unresolved
     }
 
     /// Drops roots that were found from several boxes: only one whose enclosure leaves its box can have been.
@@ -511,6 +545,19 @@ impl PointSolver {
         }
         self.found = kept;
     }
+}
+
+/// Where the only root of a box around the cell lies.
+fn placed(system: &System, cell: &Cell, unique: Found) -> Verdict {
+    let mut found = unique;
+    for j in 0..system.layout.n {
+        if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
+            return Verdict::Elsewhere;
+        }
+        found.straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
+        found.boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+    }
+    Verdict::Root(found)
 }
 
 pub(crate) fn open_box(system: &System, open: &Open) -> Unresolved {

@@ -50,7 +50,13 @@ fn clusters_of_simple_roots_are_told_apart() {
         let roots = [0.5 - spacing, 0.5, 0.5 + spacing];
         let forms = [0, 1].map(|axis| product(&roots, axis, 2).bernstein(&unit(2)));
         let found = solve(&System::new(&unit(2), &forms).unwrap());
-        assert_eq!((found.roots.len(), found.unresolved.len()), (9, 0), "{spacing} {:?} {:?}", found.unresolved, found.statistics);
+        assert_eq!(
+            (found.roots.len(), found.unresolved.len()),
+            (9, 0),
+            "{spacing} {:?} {:?}",
+            found.unresolved,
+            found.statistics
+        );
     }
 }
 
