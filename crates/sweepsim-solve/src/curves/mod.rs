@@ -181,6 +181,7 @@ impl CurveSolver {
             pieces: Vec::new(),
             open: Vec::new(),
             statistics: SolveStatistics::default(),
+            ranges: Vec::new(),
         };
         let (root, first, skin) = search.boundary();
         search.run(root, first, observer);

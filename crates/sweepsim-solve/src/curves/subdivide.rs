@@ -36,6 +36,8 @@ pub(super) struct OpenCell {
 const SKINS: [f64; 4] = [0.0, 1.0e-7, 2.3e-6, 4.1e-5];
 /// Where cells are cut, in order of preference.
 const CUTS: [f64; 9] = [0.492, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
+/// No side shrinks below this part at once.
+const SHRINK: f64 = 1.0 / 32.0;
 /// A cut keeps so far, in sides of the cell, from known crossings, if it can.
 const CLEAR: f64 = 0.01;
 
@@ -48,6 +50,7 @@ pub(super) struct Search<'a> {
     pub pieces: Vec<Piece>,
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,
+    pub ranges: Vec<(f64, f64)>,
 }
 
 impl Search<'_> {
@@ -173,8 +176,62 @@ impl Search<'_> {
         });
     }
 
-    /// Settles the cell, or says across which axis to split it.
+    /// Settles the cell, or shrinks it to where the curve is and says across which axis to split it.
     fn settle(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
+        loop {
+            let result = self.judge(cell, crossings);
+            if result.is_ok() {
+                return result;
+            }
+            match self.shrink(cell, crossings) {
+                None => return Ok(Fate::Projection),
+                Some(true) => self.statistics.reductions += 1,
+                Some(false) => return result,
+            }
+        }
+    }
+
+    /// Shrinks the cell to the part where, by the equations' projections, the curve is; `false` if that is not worth it, `None` if the curve
+    /// misses the cell. With some slack: the curve does not meet the new faces, so the crossings stay what they are.
+    fn shrink(&mut self, cell: &mut Cell, crossings: &[usize]) -> Option<bool> {
+        let layout = &self.system.layout;
+        let n = layout.n;
+        let totals = layout.ranges(cell);
+        layout.part_ranges(cell, &mut self.ranges);
+        let mut window = [(0.0, 1.0); MAX_UNKNOWNS];
+        for j in 0..n {
+            layout.project(cell, &self.ranges, &totals, j, &mut window[j]);
+            if window[j].0 > window[j].1 {
+                // With crossings this cannot be, but for their enclosures' width.
+                return if crossings.is_empty() { None } else { Some(false) };
+            }
+        }
+        let width = |cell: &Cell, j: usize| cell.hi[j] - cell.lo[j];
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max((window[j].1 - window[j].0) * width(cell, j)));
+        let mut worth = false;
+        for j in 0..n {
+            let (lo, hi) = (cell.lo[j], cell.hi[j]);
+            let side = hi - lo;
+            let least = SHRINK.max(0.1 * widest / side).max(0.5 * self.options.smallest / side);
+            let middle = 0.5 * (window[j].0 + window[j].1);
+            let half = (0.55 * (window[j].1 - window[j].0)).max(0.5 * least);
+            let (mut new_lo, mut new_hi) = (lo + (middle - half) * side, lo + (middle + half) * side);
+            for c in crossings {
+                let c = &self.crossings[*c];
+                new_lo = new_lo.min(c.lo[j] - 0.01 * side);
+                new_hi = new_hi.max(c.hi[j] + 0.01 * side);
+            }
+            (new_lo, new_hi) = (new_lo.max(lo), new_hi.min(hi));
+            if new_hi - new_lo < 0.75 * side && new_lo < new_hi {
+                worth = true;
+                layout.restrict(cell, j, new_lo, new_hi);
+            }
+        }
+        Some(worth)
+    }
+
+    /// Settles the cell as it is, or says across which axis to split it.
+    fn judge(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
         let layout = &self.system.layout;
         let (n, m) = (layout.n, layout.m);
         let mut totals = layout.ranges(cell);
