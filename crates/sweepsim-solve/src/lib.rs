@@ -21,6 +21,8 @@ mod interval;
 mod layout;
 mod matrix;
 mod mesh;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod part;
 mod picture;
 mod pieces;

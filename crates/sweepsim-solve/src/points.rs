@@ -143,9 +143,9 @@ enum Verdict {
 pub struct PointSolver {
     /// Limits.
     pub options: SolveOptions,
-    stack: Vec<f64>,
-    depths: Vec<u32>,
-    cell: Cell,
+    pub(crate) stack: Vec<f64>,
+    pub(crate) depths: Vec<u32>,
+    pub(crate) cell: Cell,
     trial: Cell,
     lower: Cell,
     buffer: Vec<f64>,
@@ -173,6 +173,13 @@ impl PointSolver {
     ///
     /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
     pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Points, SolveError> {
+        self.check(system)?;
+        self.run(system, observer);
+        Ok(self.points(system))
+    }
+
+    /// Whether the system and the limits can be meant.
+    pub(crate) fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if m != n {
             return Err(SolveError::Equations {
@@ -184,7 +191,12 @@ impl PointSolver {
         if !(1e-14..=1.0).contains(&self.options.smallest) {
             return Err(SolveError::Smallest);
         }
-        self.run(system, observer);
+        Ok(())
+    }
+
+    /// What was found, in the domain's coordinates.
+    pub(crate) fn points(&mut self, system: &System) -> Points {
+        let n = system.layout.n;
         self.found.sort_by(|a, b| {
             let ends = a.point[..n].iter().zip(&b.point[..n]);
             ends.map(|(x, y)| x.total_cmp(y))
@@ -198,21 +210,33 @@ impl PointSolver {
             orientation: f.orientation,
             place: if f.boundary { Place::Boundary } else { Place::Inside },
         };
-        Ok(Points {
+        Points {
             roots: self.found.iter().map(root).collect(),
             unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
             statistics: self.statistics,
-        })
+        }
     }
 
     /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
     pub(crate) fn run(&mut self, system: &System, observer: &mut dyn Observer) {
-        let n = system.layout.n;
+        self.restart();
+        let root = system.root();
+        self.search(system, &root, 0, observer);
+        self.finish(system.layout.n);
+    }
+
+    /// Forgets what was found.
+    pub(crate) fn restart(&mut self) {
         self.statistics = SolveStatistics::default();
         self.found.clear();
         self.open.clear();
-        let root = system.root();
-        self.search(system, root, observer);
+        self.stack.clear();
+        self.depths.clear();
+        self.failures = 0;
+    }
+
+    /// Counts roots once, and unites open boxes.
+    pub(crate) fn finish(&mut self, n: usize) {
         self.identify(n);
         // An open box inside a box where a found root is the only one holds nothing else.
         let found = &self.found;
@@ -224,15 +248,12 @@ impl PointSolver {
         unite(&mut self.open, n);
     }
 
-    /// The depth-first search from one cell; adds to `found` and `open`.
-    fn search(&mut self, system: &System, root: Cell, observer: &mut dyn Observer) {
+    /// The depth-first search from one cell at some depth; adds to `found` and `open`.
+    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, observer: &mut dyn Observer) {
         let layout = &system.layout;
         let mut watch = Watch::new(&self.options);
-        self.failures = 0;
-        self.stack.clear();
-        self.depths.clear();
-        push(&mut self.stack, &root, layout);
-        self.depths.push(0);
+        push(&mut self.stack, first, layout);
+        self.depths.push(depth);
         while let Some(depth) = self.depths.pop() {
             pop(&mut self.stack, &mut self.cell, layout);
             let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
@@ -244,10 +265,7 @@ impl PointSolver {
                 }
                 break;
             }
-            self.statistics.boxes += 1;
-            self.statistics.depth = self.statistics.depth.max(depth);
-            let fate = self.treat(system, depth);
-            self.statistics.count(fate);
+            let fate = self.visit(system, depth);
             if observer.traces() {
                 // Where the cell was split, `cell` is the upper part by now and `lower` the other.
                 let lo = if fate == Fate::Split {
@@ -260,8 +278,17 @@ impl PointSolver {
         }
     }
 
+    /// Treats the current cell, and counts.
+    pub(crate) fn visit(&mut self, system: &System, depth: u32) -> Fate {
+        self.statistics.boxes += 1;
+        self.statistics.depth = self.statistics.depth.max(depth);
+        let fate = self.treat(system, depth);
+        self.statistics.count(fate);
+        fate
+    }
+
     /// Leaves the current cell open.
-    fn leave(&mut self, cause: Cause) {
+    pub(crate) fn leave(&mut self, cause: Cause) {
         self.open.push(Open {
             lo: self.cell.lo,
             hi: self.cell.hi,

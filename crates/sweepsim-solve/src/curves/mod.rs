@@ -114,7 +114,8 @@ impl Curves {
 pub struct CurveSolver {
     /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a cell counts as singular; 1e-9 by default here.
     pub options: SolveOptions,
-    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units.
+    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; besides what the rounding
+    /// errors (and stated errors) of the coefficients move the curve by.
     pub tolerance: f64,
     points: PointSolver,
 }
