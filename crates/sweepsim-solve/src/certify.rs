@@ -71,11 +71,12 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             rest[i][j] = f64::abs(middle) + radius + 32.0 * EPSILON * size;
             row += rest[i][j];
         }
+        // Row by row, since `max` would drop the NaN of an unbounded derivative.
+        let contracts = row < 0.999;
+        if !contracts {
+            return None;
+        }
         contraction = contraction.max(row);
-    }
-    let contracts = contraction < 0.999;
-    if !contracts {
-        return None;
     }
     // Newton's method inside the cell; the last point's error is bounded whatever it is.
     let mut s = [0.0; MAX_UNKNOWNS];
@@ -123,6 +124,9 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             error += k[i][e].abs() * (layout.value_error(cell, e) + 16.0 * EPSILON * f64::abs(value[e]));
         }
         direct[i] = f64::abs(sum) + error;
+        if !direct[i].is_finite() {
+            return None;
+        }
         largest = largest.max(direct[i]);
     }
     let all = largest / (1.0 - contraction) * (1.0 + 8.0 * EPSILON);

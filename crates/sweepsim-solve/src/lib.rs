@@ -17,6 +17,7 @@ mod certify;
 mod charts;
 mod curves;
 mod double;
+mod expression;
 mod interval;
 mod layout;
 mod matrix;
@@ -27,6 +28,7 @@ mod part;
 mod picture;
 mod pieces;
 mod points;
+mod program;
 mod search;
 mod separate;
 mod surface;
@@ -37,6 +39,7 @@ pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };
 pub use curves::{Curve, CurvePoint, CurveSolver, Curves, End, Singular};
+pub use expression::{Expression, MAX_FORMS};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;
 pub use matrix::MAX_UNKNOWNS;

@@ -307,11 +307,7 @@ impl PointSolver {
             if excluded(&totals, n) {
                 return Fate::Sign;
             }
-            let noisy = (0..n).any(|i| {
-                let size = totals.0[i].abs().max(totals.1[i].abs());
-                self.cell.noise[i] > NOISY * size && self.cell.noise[i] > 4.0 * layout.first_noise[i]
-            });
-            if noisy && within_domain(&self.cell, n) {
+            if layout.noisy(&self.cell, &totals, NOISY) && within_domain(&self.cell, n) {
                 layout.refresh(&mut self.cell, &mut self.doubles);
                 self.statistics.refreshed += 1;
                 totals = layout.ranges(&mut self.cell);
@@ -332,7 +328,8 @@ impl PointSolver {
                     }
                 }
                 let largest = half[..n].iter().fold(0.0, |m: f64, h| m.max(*h));
-                if largest <= threshold {
+                let bounded = half[..n].iter().all(|h| h.is_finite());
+                if bounded && largest <= threshold {
                     threshold = AGAIN * largest;
                     match self.certify(system, &centre, &half) {
                         Verdict::Root(found) => {
@@ -357,10 +354,7 @@ impl PointSolver {
             self.statistics.reductions += 1;
         };
         let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
-        let vanishing = |i: usize| {
-            let size = totals.0[i].abs().max(totals.1[i].abs());
-            size <= 2.5 * (self.cell.noise[i] + layout.remainder[i]) + 64.0 * EPSILON * self.cell.scale[i]
-        };
+        let vanishing = |i: usize| layout.vanishes(&self.cell, &totals, i);
         let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
         let thin = |j: usize| width(j) < SQUEEZED * width(widest);
         let squeezed = !(0..n).all(vanishing)
@@ -454,8 +448,9 @@ impl PointSolver {
                         }
                     }
                     None => {
-                        if self.cell.scale[k] > 0.0 {
-                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / self.cell.scale[k];
+                        let size = layout.size(&self.cell, k);
+                        if size > 0.0 {
+                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / size;
                         }
                     }
                 }
@@ -608,7 +603,7 @@ pub(crate) fn excluded(totals: &(Row, Row), m: usize) -> bool {
 }
 
 pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
-    let (n, m) = (layout.n, layout.m);
+    let (n, m) = (layout.n, layout.rows());
     stack.extend_from_slice(&cell.lo[..n]);
     stack.extend_from_slice(&cell.hi[..n]);
     stack.extend_from_slice(&cell.noise[..m]);
@@ -617,7 +612,7 @@ pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
 }
 
 pub(crate) fn pop(stack: &mut Vec<f64>, cell: &mut Cell, layout: &Layout) {
-    let (n, m) = (layout.n, layout.m);
+    let (n, m) = (layout.n, layout.rows());
     let size = 2 * n + 2 * m + layout.len;
     let start = stack.len() - size;
     let record = &stack[start..];

@@ -103,6 +103,7 @@ pub(crate) fn tube(layout: &Layout, cell: &Cell, mean: &Square, graph: &Graph) -
     let (m, over) = (layout.m, graph.over);
     let affine = layout.affine(cell, *mean);
     let k = &graph.inverse;
+    let mean = &affine.slope;
     let others = without(mean, over, m);
     let (mut centre, mut slope, mut half) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
     let mut noise = [0.0; MAX_UNKNOWNS];

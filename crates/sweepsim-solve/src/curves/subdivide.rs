@@ -238,11 +238,7 @@ impl Search<'_> {
         if crossings.is_empty() && excluded(&totals, m) {
             return Ok(Fate::Sign);
         }
-        let noisy = (0..m).any(|e| {
-            let size = totals.0[e].abs().max(totals.1[e].abs());
-            cell.noise[e] > 1e-7 * size && cell.noise[e] > 4.0 * layout.first_noise[e]
-        });
-        if noisy && within_domain(cell, n) {
+        if layout.noisy(cell, &totals, 1e-7) && within_domain(cell, n) {
             layout.refresh(cell, self.tracer.doubles());
             self.statistics.refreshed += 1;
             totals = layout.ranges(cell);
@@ -314,7 +310,7 @@ impl Search<'_> {
         for e in 0..m {
             let slope = (0..n)
                 .fold(0.0, |s: f64, j| s.max(mean[e][j].abs()))
-                .max(1e-3 * cell.scale[e]);
+                .max(1e-3 * layout.size(cell, e));
             for j in 0..n {
                 if slope > 0.0 {
                     weight[j] += (slopes.hi[e][j] - slopes.lo[e][j]) / slope;
