@@ -38,7 +38,7 @@ mod tensor;
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };
-pub use curves::{Curve, CurvePoint, CurveSolver, Curves, End, Singular};
+pub use curves::{Curve, CurvePiece, CurvePoint, CurveSolver, Curves, End, Singular};
 pub use expression::{Expression, MAX_FORMS};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;

@@ -125,7 +125,14 @@ impl Search<'_> {
         clean
     }
 
-    pub(super) fn run(&mut self, root: Cell, first: Vec<usize>, observer: &mut dyn Observer) {
+    /// The search. After each cell, `hand` may take what pieces there are.
+    pub(super) fn run(
+        &mut self,
+        root: Cell,
+        first: Vec<usize>,
+        observer: &mut dyn Observer,
+        hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<Piece>),
+    ) {
         let layout = &self.system.layout;
         let mut watch = Watch::new(&self.options);
         let mut stack = Vec::new();
@@ -161,6 +168,7 @@ impl Search<'_> {
                 },
             };
             self.statistics.count(fate);
+            hand(&self.tracer, &mut self.pieces);
             if observer.traces() {
                 observer.visited(&self.system.outward(&lo, &hi), depth, fate);
             }
