@@ -23,6 +23,7 @@ use crate::matrix::MAX_UNKNOWNS;
 use crate::points::{PointSolver, SolveError};
 use crate::search::{Cause, Observer, SolveOptions, SolveStatistics};
 use crate::{Interval, System};
+use std::time::Instant;
 use subdivide::Search;
 use trace::Tracer;
 
@@ -159,7 +160,7 @@ impl CurveSolver {
     pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Curves, SolveError> {
         self.check(system)?;
         let mut search = self.search(system);
-        let (root, first, skin) = search.boundary();
+        let (root, first, skin) = search.boundary(observer);
         search.run(root, first, observer, &mut |_, _| {});
         Ok(search.assemble(skin))
     }
@@ -205,6 +206,7 @@ impl CurveSolver {
             open: Vec::new(),
             statistics: SolveStatistics::default(),
             ranges: Vec::new(),
+            deadline: self.options.time.and_then(|t| Instant::now().checked_add(t)),
         }
     }
 
@@ -258,7 +260,7 @@ impl CurveSolver {
     ) -> Result<Curves, SolveError> {
         self.check(system)?;
         let mut search = self.search(system);
-        let (root, first, skin) = search.boundary();
+        let (root, first, skin) = search.boundary(observer);
         search.run(root, first, observer, &mut |tracer, pieces| {
             for piece in pieces.drain(..) {
                 visit(CurvePiece {

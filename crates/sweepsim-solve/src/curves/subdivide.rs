@@ -7,6 +7,7 @@ use crate::layout::{Cell, EPSILON};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use crate::points::{PointSolver, excluded, pop, push, within_domain};
 use crate::search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Watch};
+use std::time::Instant;
 
 /// A crossing of a face, in inner coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,15 @@ const SHRINK: f64 = 1.0 / 32.0;
 /// A cut keeps so far, in sides of the cell, from known crossings, if it can.
 const CLEAR: f64 = 0.01;
 
+/// Passes on only whether to proceed: searches on faces are no boxes of their own.
+struct Faces<'a>(&'a mut dyn Observer);
+
+impl Observer for Faces<'_> {
+    fn proceed(&mut self, statistics: &SolveStatistics) -> bool {
+        self.0.proceed(statistics)
+    }
+}
+
 pub(super) struct Search<'a> {
     pub system: &'a System,
     pub options: SolveOptions,
@@ -51,11 +61,12 @@ pub(super) struct Search<'a> {
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,
     pub ranges: Vec<(f64, f64)>,
+    pub deadline: Option<Instant>,
 }
 
 impl Search<'_> {
     /// The root cell, its crossings, and the skin that it took.
-    pub(super) fn boundary(&mut self) -> (Cell, Vec<usize>, f64) {
+    pub(super) fn boundary(&mut self, observer: &mut dyn Observer) -> (Cell, Vec<usize>, f64) {
         let layout = &self.system.layout;
         let n = layout.n;
         let tries = if self.system.bounded() { 1 } else { SKINS.len() };
@@ -75,7 +86,7 @@ impl Search<'_> {
             let mut stuck = Vec::new();
             for j in 0..n {
                 for upper in [false, true] {
-                    clean &= self.cross(&root, j, upper, true, &mut stuck);
+                    clean &= self.cross(&root, j, upper, true, &mut stuck, observer);
                 }
             }
             if clean || number + 1 == tries {
@@ -87,10 +98,19 @@ impl Search<'_> {
     }
 
     /// Adds the crossings of a face of the cell; `false`, with what is open, if some could not be certified or lie on the face's edge.
-    fn cross(&mut self, cell: &Cell, axis: usize, upper: bool, outer: bool, stuck: &mut Vec<OpenCell>) -> bool {
+    fn cross(
+        &mut self,
+        cell: &Cell,
+        axis: usize,
+        upper: bool,
+        outer: bool,
+        stuck: &mut Vec<OpenCell>,
+        observer: &mut dyn Observer,
+    ) -> bool {
         let n = self.system.layout.n;
         let face = self.system.on_face(cell, axis, upper);
-        self.points.run(&face, &mut ());
+        self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
+        self.points.run(&face, &mut Faces(observer));
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
         let place = |s: &Row, outward: f64| -> Row {
             let mut x = [0.0; MAX_UNKNOWNS];
@@ -156,7 +176,7 @@ impl Search<'_> {
             let (lo, hi) = (cell.lo, cell.hi);
             let fate = match self.settle(&mut cell, &crossings) {
                 Ok(fate) => fate,
-                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings) {
+                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, observer) {
                     Some((below, above)) => {
                         push(&mut stack, &cell, layout);
                         frames.push((depth + 1, above));
@@ -344,6 +364,7 @@ impl Search<'_> {
         axis: usize,
         depth: u32,
         crossings: Vec<usize>,
+        observer: &mut dyn Observer,
     ) -> Option<(Vec<usize>, Vec<usize>)> {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -379,7 +400,7 @@ impl Search<'_> {
                     let mut stuck = Vec::new();
                     let mut face_cell = upper.clone();
                     layout.ranges(&mut face_cell);
-                    if !self.cross(&face_cell, axis, false, false, &mut stuck) {
+                    if !self.cross(&face_cell, axis, false, false, &mut stuck, observer) {
                         self.crossings.truncate(before);
                         continue;
                     }
