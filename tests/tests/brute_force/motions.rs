@@ -334,8 +334,11 @@ fn judged(name: &str, tool: &Tool, named: &Named, grid: &Grid) -> Result<Tally, 
     let profile = tool.profile().expect("a solid of revolution");
     let charts = swept_along(tool, &named.path, grid, Method::Charts).map_err(told)?;
     let tally = judge_sweep(&charts, profile, &named.motion, grid, Method::Charts).map_err(told)?;
-    let lines = swept_along(tool, &named.path, grid, Method::Lines).map_err(told)?;
-    same_sweeps(profile, &named.motion, grid, &charts, &lines).map_err(|e| told(format!("charts and lines: {e}")))?;
+    for method in [Method::Lines, Method::Planes, Method::Surface] {
+        let other = swept_along(tool, &named.path, grid, method).map_err(told)?;
+        same_sweeps(profile, &named.motion, grid, &charts, &other)
+            .map_err(|e| told(format!("charts and {method}: {e}")))?;
+    }
     Ok(tally)
 }
 

@@ -2,10 +2,11 @@
 //!
 //! Over a part of the cell between two points of the curve, the affine enclosures say that each other variable is an affine function of
 //! the graph's variable, up to `half`. Both ends lie in that tube, so the chord does, and the curve is within `2 half` of it.
-//! Where that is more than the tolerance, the part is halved at a point of the curve.
+//! Where that is more than the tolerance, the part is halved at a point of the curve. What errors of the coefficients add to `half` is not counted:
+//! near singular points it may exceed any tolerance, and halving does not help.
 
 use super::CurvePoint;
-use super::graph::{Graph, minor, tube, without};
+use super::graph::{Graph, Tube, minor, tube, without};
 use super::subdivide::Crossing;
 use crate::System;
 use crate::double::Double;
@@ -86,13 +87,18 @@ impl<'a> Tracer<'a> {
                     Some((inverse, sign)) => Graph { over, inverse, sign },
                     None => break,
                 };
-                let (centre, slope, half) = tube(layout, part, &mean, &local);
+                let Tube {
+                    centre,
+                    slope,
+                    half,
+                    noise,
+                } = tube(layout, part, &mean, &local);
                 let mut square = 0.0;
                 let mut shrunk = false;
                 let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
                 for (place, j) in (0..n).filter(|j| *j != over).enumerate() {
                     let side = part.hi[j] - part.lo[j];
-                    let error = 2.0 * half[place] * side * self.system.domain_width(j);
+                    let error = 2.0 * (half[place] - noise[place]).max(0.0) * side * self.system.domain_width(j);
                     square += error * error;
                     let reach = 0.5 * slope[place].abs() + half[place];
                     let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
