@@ -12,7 +12,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-use sweepsim::{Boundary, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all};
+use sweepsim::{
+    Boundary, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all,
+};
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
 use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_csv, write_ply};
 
@@ -215,7 +217,8 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
         .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
         .collect();
     if options.boundary == Boundary::Paper {
-        let note = "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
+        let note =
+            "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
         report.notes.push(note.to_owned());
     }
 }
@@ -279,9 +282,9 @@ fn write_envelope(job: &Job, outputs: &mut Outputs, progress: &Progress, report:
         outputs.write(name, |file| write_ply(&mesh, file))?;
     }
     for (path, piece, number) in surfaces.open.iter().take(NAMED) {
-        report
-            .notes
-            .push(format!("envelope.ply lacks parts of {piece:?} of move {number} of path {path}"));
+        report.notes.push(format!(
+            "envelope.ply lacks parts of {piece:?} of move {number} of path {path}"
+        ));
     }
     Ok(())
 }

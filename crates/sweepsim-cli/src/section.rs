@@ -1,6 +1,6 @@
 //! `section`: the curves in which a plane cuts what a job's tools sweep.
 
-use crate::arguments::{SectionOptions, Output};
+use crate::arguments::{Output, SectionOptions};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
@@ -42,7 +42,11 @@ pub(crate) fn run(options: &SectionOptions) -> Result<ExitCode, Failure> {
     if !options.quiet {
         crate::print(&summary(&found, &outputs))?;
     }
-    Ok(if found.open.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(3) })
+    Ok(if found.open.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(3)
+    })
 }
 
 /// What a piece is called in `section.csv`.
@@ -131,7 +135,17 @@ mod tests {
             offset: 4.0,
         };
         assert_eq!(plane("1,0,2=4"), Ok(slanted));
-        for bad in ["", "x", "x=", "w=1", "1,2=3", "0,0,0=1", "1,2,3,4=5", "x=NaN", "inf,0,0=1"] {
+        for bad in [
+            "",
+            "x",
+            "x=",
+            "w=1",
+            "1,2=3",
+            "0,0,0=1",
+            "1,2,3,4=5",
+            "x=NaN",
+            "inf,0,0=1",
+        ] {
             assert!(plane(bad).is_err(), "{bad}");
         }
     }

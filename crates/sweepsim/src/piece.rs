@@ -74,10 +74,9 @@ impl<'a> Moving<'a> {
             Piece::Edge(k) => self.on_edge(k, x[0], x[1]),
             Piece::Placed(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 0.0);
-                let before = self
-                    .at
-                    .checked_sub(1)
-                    .map_or(1.0, |k| condition(&self.parts[k].segment, End::Finish, self.part().segment.start(), &field));
+                let before = self.at.checked_sub(1).map_or(1.0, |k| {
+                    condition(&self.parts[k].segment, End::Finish, self.part().segment.start(), &field)
+                });
                 let after = condition(&self.part().segment, End::Start, self.part().segment.start(), &field);
                 Seen {
                     point,
@@ -131,7 +130,10 @@ impl<'a> Moving<'a> {
         // The envelope's normal lies in the fan of the two faces, where g = 0.
         let [n, m] = [0, 1].map(|side| moment.turn * point.fields[side].normal[0]);
         let (n, m) = (n / n.norm(), m / m.norm());
-        let (p, q) = (a.abs() / point.fields[0].normal[0].norm(), b.abs() / point.fields[1].normal[0].norm());
+        let (p, q) = (
+            a.abs() / point.fields[0].normal[0].norm(),
+            b.abs() / point.fields[1].normal[0].norm(),
+        );
         Seen {
             point: PiecePoint {
                 position: (moment.turn * point.position + moment.tip).into(),

@@ -155,7 +155,10 @@ fn reaches(part: &Part, plane: &Plane, reach: f64) -> bool {
     let normal = Vector3::from(plane.normal);
     let margin = reach * normal.norm();
     let (points, weights) = part.segment.points();
-    let heights = points.iter().zip(&weights).map(|(p, w)| p.dot(&normal) / w - plane.offset);
+    let heights = points
+        .iter()
+        .zip(&weights)
+        .map(|(p, w)| p.dot(&normal) / w - plane.offset);
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
     low <= margin && high >= -margin
 }
@@ -173,7 +176,10 @@ fn of_part(
     let segment = &parts[at].segment;
     let speed = moving.speed(cutter.reach);
     // No parameter moves a point by more than this: a patch's side by its control polygon's longest leg times the degree.
-    let fastest = tool.patches().iter().map(|patch| stretch(&patch.position, &patch.weight));
+    let fastest = tool
+        .patches()
+        .iter()
+        .map(|patch| stretch(&patch.position, &patch.weight));
     let fastest = fastest.chain(tool.edges().iter().map(|edge| stretch(&edge.position, &edge.weight)));
     let fastest = fastest.fold(speed, f64::max).max(f64::MIN_POSITIVE);
     let options = SolveOptions {
@@ -213,12 +219,7 @@ fn of_part(
     (curves, open)
 }
 
-fn system(
-    piece: Piece,
-    tool: &Tool,
-    segment: &sweepsim_motion::Segment,
-    plane: &Plane,
-) -> Result<System, SystemError> {
+fn system(piece: Piece, tool: &Tool, segment: &sweepsim_motion::Segment, plane: &Plane) -> Result<System, SystemError> {
     let [first, last] = segment.tips();
     match piece {
         Piece::Patch(k) => PatchMotion::new(&tool.patches()[k], segment).section(plane),
@@ -265,7 +266,9 @@ fn kept(moving: &Moving, piece: Piece, points: &[&[f64]]) -> Vec<Vec<PiecePoint>
 pub(crate) fn stretch(position: &[sweepsim_spline::Bernstein; 3], weight: &sweepsim_spline::Bernstein) -> f64 {
     let weights = weight.coefficients();
     let point = |i: usize| Vector3::from([0, 1, 2].map(|k| position[k].coefficients()[i] / weights[i]));
-    let (least, most) = weights.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
+    let (least, most) = weights
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
     let degrees = weight.degrees();
     let mut fastest = 0.0_f64;
     let mut stride = 1;

@@ -125,10 +125,11 @@ fn of_part(
                     ..SurfaceSolver::new(0.1).options
                 };
                 let flatness = (chord / fastest).clamp(1e-6, 0.05);
-                let surface = PatchMotion::new(patch, segment)
-                    .envelope()
-                    .ok()
-                    .and_then(|system| SurfaceSolver::with_options(flatness, options).solve(&system, &mut ()).ok());
+                let surface = PatchMotion::new(patch, segment).envelope().ok().and_then(|system| {
+                    SurfaceSolver::with_options(flatness, options)
+                        .solve(&system, &mut ())
+                        .ok()
+                });
                 let Some(surface) = surface else {
                     all.open.push((cut, piece, parts[at].number));
                     continue;
@@ -220,7 +221,11 @@ fn by_grid(moving: &Moving, piece: Piece, chord: f64) -> (Vec<PiecePoint>, Vec<[
                     }
                     if inside[a] != inside[b] {
                         polygon.push(mesh.cut(a, b, || {
-                            let (mut from, mut to) = if inside[a] { (corner(a), corner(b)) } else { (corner(b), corner(a)) };
+                            let (mut from, mut to) = if inside[a] {
+                                (corner(a), corner(b))
+                            } else {
+                                (corner(b), corner(a))
+                            };
                             for _ in 0..40 {
                                 let middle = [0, 1].map(|k| 0.5 * (from[k] + to[k]));
                                 if belongs(&middle) {
@@ -257,7 +262,10 @@ impl Clipped {
 
     fn cut(&mut self, a: usize, b: usize, point: impl FnOnce() -> PiecePoint) -> u32 {
         let vertices = &mut self.vertices;
-        *self.cuts.entry((a.min(b), a.max(b))).or_insert_with(|| push(vertices, point()))
+        *self
+            .cuts
+            .entry((a.min(b), a.max(b)))
+            .or_insert_with(|| push(vertices, point()))
     }
 }
 

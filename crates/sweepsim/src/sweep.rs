@@ -287,7 +287,11 @@ pub fn probe(
         // A grid of one line: the spacing only tells the search what is small.
         let grid = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]).ok()?;
         let job = plan.job(tool, &grid, options, monitor);
-        let mut own = space.lock().ok()?.pop().unwrap_or_else(|| Workspace::new(&plan.cutter, plan.accept));
+        let mut own = space
+            .lock()
+            .ok()?
+            .pop()
+            .unwrap_or_else(|| Workspace::new(&plan.cutter, plan.accept));
         let mut volume = Dexels::empty(grid);
         let mut established = true;
         for chunk in plan.parts.chunks(CHUNK) {
@@ -316,7 +320,12 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// `extent`: coordinates of the lines.
-    pub fn new(tool: &Tool, path: &Path, extent: impl Iterator<Item = f64>, options: &Options) -> Result<Self, SweepError> {
+    pub fn new(
+        tool: &Tool,
+        path: &Path,
+        extent: impl Iterator<Item = f64>,
+        options: &Options,
+    ) -> Result<Self, SweepError> {
         let tolerance = options.tolerance;
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(SweepError::Tolerance(tolerance));

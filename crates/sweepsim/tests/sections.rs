@@ -77,13 +77,27 @@ fn a_plane_of_any_direction() {
         normal: [1.0, 1.0, 1.0],
         offset: 30.0,
     };
-    let found = section(&[Cut { tool: &tool, path: &path }], &plane, 1e-3, &Options::new(1e-6), &()).unwrap();
+    let found = section(
+        &[Cut {
+            tool: &tool,
+            path: &path,
+        }],
+        &plane,
+        1e-3,
+        &Options::new(1e-6),
+        &(),
+    )
+    .unwrap();
     let mut count = 0;
     for curve in &found.curves {
         for point in &curve.points {
             let [a, b, c] = point.position;
             // Ends of cut-off curves lie on chords.
-            let off = if matches!(curve.piece, sweepsim::Piece::Patch(_)) { 1e-9 } else { 2e-3 };
+            let off = if matches!(curve.piece, sweepsim::Piece::Patch(_)) {
+                1e-9
+            } else {
+                2e-3
+            };
             assert!((a + b + c - 30.0).abs() < off);
             // Below the ball's equator it is a sphere.
             let centre = [20.0 * point.t, 20.0 * point.t, 20.0 * point.t];
