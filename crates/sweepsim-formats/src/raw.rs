@@ -17,6 +17,8 @@ pub(crate) struct Job {
     pub grid: Grid,
     pub stock: Stock,
     pub tools: BTreeMap<u32, Tool>,
+    #[serde(default)]
+    pub bodies: BTreeMap<u32, Vec<Body>>,
     pub paths: Vec<Path>,
     #[serde(default)]
     pub target: Option<Target>,
@@ -86,11 +88,40 @@ pub(crate) enum Tool {
         b: f64,
         h: f64,
     },
+    Lollipop {
+        radius: f64,
+        neck: f64,
+        length: f64,
+    },
+    Dovetail {
+        radius: f64,
+        angle: f64,
+        height: f64,
+        neck: f64,
+        length: f64,
+    },
+    Barrel {
+        radius: f64,
+        flank: f64,
+        height: f64,
+        length: f64,
+    },
+    Lens {
+        radius: f64,
+        bottom: f64,
+        length: f64,
+    },
     Profile {
         start: [f64; 2],
         segments: Vec<Segment>,
     },
     Surface(String),
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) enum Body {
+    Shank(Tool),
+    Holder(Tool),
 }
 
 #[derive(Debug, Deserialize)]

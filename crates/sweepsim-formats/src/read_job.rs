@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::{Law, Path, RotaryTable, Tool};
+use sweepsim_motion::{Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
 use crate::job::{Job, Limits, Target, Units};
@@ -81,17 +81,26 @@ impl Reader<'_> {
         let mut tools = BTreeMap::new();
         for (&number, tool) in &raw.tools {
             let steps = vec!["tools".into(), Step::Key(number.to_string())];
-            let made = match tool {
-                raw::Tool::Surface(name) => {
-                    let file = paths::beside(self.file, name);
-                    self.named(surface_tool::read(&file, self.unit), &file, "tool", &steps)?
-                }
-                tool => tools::tool(number, tool, self.unit).map_err(|fault| {
-                    let steps: Vec<Step> = steps.into_iter().chain(fault.field).collect();
-                    self.error(fault.problem, &steps)
-                })?,
-            };
+            let made = self.tool(number, tool, &steps)?;
             tools.insert(number, made);
+        }
+        let mut bodies = BTreeMap::new();
+        for (&number, list) in &raw.bodies {
+            let steps = |index: usize| vec!["bodies".into(), Step::Key(number.to_string()), Step::Item(index)];
+            if !tools.contains_key(&number) {
+                let known = tools.keys().copied().collect();
+                return Err(self.error(Problem::NoSuchTool { number, known }, &steps(0)[..2]));
+            }
+            let mut made = Vec::with_capacity(list.len());
+            for (index, body) in list.iter().enumerate() {
+                let (kind, solid) = match body {
+                    raw::Body::Shank(solid) => (BodyKind::Shank, solid),
+                    raw::Body::Holder(solid) => (BodyKind::Holder, solid),
+                };
+                let solid = self.tool(number, solid, &steps(index))?;
+                made.push(Body { kind, solid });
+            }
+            bodies.insert(number, made);
         }
         let mut paths = Vec::new();
         for (index, path) in raw.paths.iter().enumerate() {
@@ -130,10 +139,25 @@ impl Reader<'_> {
             grid,
             stock,
             tools,
+            bodies,
             paths,
             target,
             limits,
         })
+    }
+
+    /// The solid of tool `number`, or of a body that moves with it.
+    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<Tool, FormatError> {
+        match raw {
+            raw::Tool::Surface(name) => {
+                let file = paths::beside(self.file, name);
+                self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)
+            }
+            tool => tools::tool(number, tool, self.unit).map_err(|fault| {
+                let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
+                self.error(fault.problem, &steps)
+            }),
+        }
     }
 
     fn grid(&self, raw: &raw::Grid) -> Result<Grid, FormatError> {

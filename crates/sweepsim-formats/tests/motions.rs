@@ -132,3 +132,59 @@ fn programs_as_machines_run_them() {
         assert!(matches!(way.course, Course::Arc(arc) if arc.normal().as_slice() == normal && arc.angle() > 0.0));
     }
 }
+
+#[test]
+fn tools_by_name_and_their_holders() {
+    let with = |tools: &str| {
+        let text = format!(
+            "Job(units: Inch, grid: Grid(min: (0, 0), max: (20, 10), cells: (20, 10)), stock: Block(min: (0, 0, 0), max: (20, 10, 5)),\n\
+             {tools},\n paths: [Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1))])])"
+        );
+        Job::parse(&text, FilePath::new("part.ron"))
+    };
+    let job = with(
+        "tools: { 1: Lollipop(radius: 2, neck: 1, length: 9), 2: Dovetail(radius: 3, angle: 60, height: 2, neck: 1, length: 9),\n\
+         3: Barrel(radius: 2, flank: 20, height: 6, length: 9), 4: Lens(radius: 2, bottom: 6, length: 9) },\n\
+         bodies: { 1: [Shank(Flat(radius: 1, length: 12)), Holder(Profile(start: (0, 12), segments: [Line((5, 12)), Line((5, 20)), Line((0, 20))]))] }",
+    )
+    .unwrap();
+    let tops: Vec<f64> = job.tools.values().map(|tool| tool.reach() / 25.4).collect();
+    assert!(tops.iter().all(|reach| (9.0..9.5).contains(reach)), "{tops:?}");
+    let holder = &job.bodies[&1][1];
+    assert_eq!(holder.kind, sweepsim_motion::BodyKind::Holder);
+    assert_eq!(holder.solid.profile().unwrap().start(), [0.0, 12.0 * 25.4]);
+    let wrong = |tools: &str, place: &str, word: &str| {
+        let error = with(tools).unwrap_err().to_string();
+        assert!(error.starts_with(place) && error.contains(word), "{error}");
+    };
+    wrong(
+        "tools: { 1: Lollipop(radius: 2,\nneck: 3, length: 9) }",
+        "part.ron:3:",
+        "neck is 3,",
+    );
+    wrong(
+        "tools: { 1: Dovetail(radius: 3,\nangle: 95, height: 2, neck: 1, length: 9) }",
+        "part.ron:3:",
+        "angle is 95,",
+    );
+    wrong(
+        "tools: { 1: Barrel(radius: 2,\nflank: 2, height: 6, length: 9) }",
+        "part.ron:3:",
+        "half the height",
+    );
+    wrong(
+        "tools: { 1: Lens(radius: 2,\nbottom: 1, length: 9) }",
+        "part.ron:3:",
+        "greater than the radius",
+    );
+    wrong(
+        "tools: { 1: Flat(radius: 2, length: 9) },\nbodies: { 2: [Holder(Flat(radius: 1, length: 2))] }",
+        "part.ron:3:",
+        "2",
+    );
+    wrong(
+        "tools: { 1: Flat(radius: 2, length: 9) },\nbodies: { 1: [Holder(Flat(radius: 1,\nlength: -2))] }",
+        "part.ron:4:",
+        "length",
+    );
+}

@@ -6,7 +6,7 @@ use crate::judge::{TOLERANCE, Tally, judge, same_volume, swept};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::{Boundary, Method, Options, sweep};
-use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Apt, Path, Pose, Profile, ProfileSegment, Tool, Turn};
 use sweepsim_tests::tools::{drill, lollipop, scaled_concave};
 
 /// Where a tool's tip is and where its axis points.
@@ -19,6 +19,21 @@ const SMALL: [f64; 6] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15];
 
 fn profile(segments: Vec<ProfileSegment>) -> Tool {
     Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"))
+}
+
+/// A seven-parameter cutter: d, r, e, f, a, b, h.
+fn apt([d, r, e, f, a, b, h]: [f64; 7]) -> Tool {
+    Tool::apt(&Apt { d, r, e, f, a, b, h }).expect("a cutter").0
+}
+
+/// A point of 8°, a side of 3°, and a corner of radius 0.4 that touches both lines.
+fn rounded_taper() -> Tool {
+    let (a, b, r, e) = (8.0_f64, 3.0_f64, 0.4, 1.3);
+    let ((sin_a, cos_a), (sin_b, cos_b)) = (a.to_radians().sin_cos(), b.to_radians().sin_cos());
+    // The centre's distances from the bottom line and from the side line are both r.
+    let f = (r + e * sin_a) / cos_a;
+    let d = 2.0 * (r + e * cos_b - f * sin_b) / (cos_b - sin_a / cos_a * sin_b);
+    apt([d, r, e, f, a, b, 7.0])
 }
 
 /// One tool of each kind, of radius about 2.
@@ -54,6 +69,9 @@ pub fn tools() -> Vec<(&'static str, Tool)> {
         ("dovetail", dovetail),
         ("taper", taper),
         ("barrel", barrel),
+        ("lens", Tool::lens(2.0, 5.0, 7.0).expect("a lens")),
+        ("hollow end", apt([4.0, 0.0, 0.0, 0.0, -12.0, 4.0, 6.0])),
+        ("rounded taper with a point", rounded_taper()),
     ]
 }
 
@@ -273,8 +291,9 @@ fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
     for (name, from, start, to, end) in moves {
         let case = Case {
             cutter: Cutter {
+                name: "finned".to_owned(),
                 tool: finned.clone(),
-                label: "finned".to_owned(),
+                radius: 2.0,
             },
             poses: vec![
                 Pose::new(from, start).expect("a pose"),

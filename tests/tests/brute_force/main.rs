@@ -16,3 +16,4 @@ mod generic;
 mod judge;
 mod metamorphic;
 mod motions;
+mod relations;

@@ -15,13 +15,13 @@ use sweepsim_tests::oracle::{Motion, Place, Placement};
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A path, and the same as the oracle knows it.
-struct Named {
-    name: String,
-    path: Path,
-    motion: Motion,
+pub struct Named {
+    pub name: String,
+    pub path: Path,
+    pub motion: Motion,
 }
 
-fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+pub fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
 }
 
@@ -111,7 +111,7 @@ fn bezier(name: &str, quaternions: &[[f64; 4]], tips: &[[f64; 3]], weights: &[f6
     }
 }
 
-fn motions() -> Vec<Named> {
+pub fn motions() -> Vec<Named> {
     let o = [0.0; 3];
     let wide = || {
         vec![
@@ -318,7 +318,7 @@ fn motions() -> Vec<Named> {
 }
 
 /// Every third grid has lines in walls of the tool at its first pose, and through its axis.
-fn grid(number: usize, path: &Path) -> Grid {
+pub fn grid(number: usize, path: &Path) -> Grid {
     let tip = path.poses()[0].tip();
     let (middle, half) = if number.is_multiple_of(3) {
         ([tip.x, tip.y], 4.5)
