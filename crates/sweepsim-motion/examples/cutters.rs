@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         h: 40.0,
     };
     let taper = Apt {
-        d: 6.0,
+        d: 5.832_662_348,
         r: 1.0,
         e: 2.0,
         f: 1.0,
@@ -40,7 +40,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             tool.reach()
         );
     }
-    let (_, warnings) = Tool::apt(&taper)?;
-    warnings.iter().for_each(|warning| println!("APT taper: {warning}"));
+    // A barrel: its flank of radius 20 cuts the bottom plane.
+    let barrel = Apt {
+        d: 12.0,
+        r: 20.0,
+        e: -14.0,
+        f: 10.0,
+        a: 0.0,
+        b: 0.0,
+        h: 40.0,
+    };
+    for warning in Tool::apt(&barrel)?.1 {
+        println!("APT barrel: {warning}");
+    }
     Ok(())
 }

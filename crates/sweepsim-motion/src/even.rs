@@ -23,6 +23,9 @@ use std::f64::consts::FRAC_PI_2;
 /// Turns by less are none.
 const NO_TURN: f64 = 1e-15;
 
+/// No move is divided into many more parts than this, however small the deviation that is asked for.
+const MOST: usize = 1 << 20;
+
 /// The way of the tip over the whole move.
 enum Tip {
     Straight([Vector3<f64>; 2]),
@@ -225,7 +228,7 @@ pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, reach: f64, limit: f6
     let good = |m: usize| deviation(&tip, &turns, reach, m) <= limit;
     // The deviation falls with the number of parts: double, then bisect.
     let (mut bad, mut count) = (least - 1, least);
-    while !good(count) {
+    while !good(count) && count < MOST {
         bad = count;
         count *= 2;
     }

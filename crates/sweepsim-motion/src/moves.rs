@@ -75,7 +75,7 @@ pub enum ArcError {
     #[error("({}, {}, {}) is no direction for the normal of the arc's plane", .0[0], .0[1], .0[2])]
     Normal([f64; 3]),
     /// The angle is zero, or absurd.
-    #[error("the arc turns by {0} radians: expected other than 0, and at most a million either way")]
+    #[error("the arc turns by {0} radians: expected other than 0, and at most 100000 either way")]
     Angle(f64),
     /// An end lies on the axis.
     #[error("the arc has no radius: its ends are {from} and {to} away from its axis")]
@@ -111,7 +111,7 @@ impl TipArc {
         if largest == 0.0 {
             return Err(ArcError::Normal(normal));
         }
-        if angle == 0.0 || angle.abs() > 1e6 {
+        if angle == 0.0 || angle.abs() > 1e5 {
             return Err(ArcError::Angle(angle));
         }
         Ok(Self {

@@ -246,7 +246,7 @@ impl Path {
     /// The motions that make move `index`, of equal shares of its time.
     ///
     /// Moves by SLERP and motions of one's own are exact; others are, for a tool that reaches no farther than `reach` from its tip, within
-    /// `deviation` (a length) of what their law says, at every time.
+    /// `deviation` (a length) of what their law says, at every time: as far as a million parts suffice.
     ///
     /// # Panics
     /// When there is no such move.
