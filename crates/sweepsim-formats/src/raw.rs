@@ -133,8 +133,14 @@ pub(crate) enum Segment {
         centre: [f64; 2],
         turn: Turn,
     },
-    #[expect(dead_code, reason = "named, but not understood yet")]
-    Spline(ron::Value),
+    Spline {
+        degree: usize,
+        points: Vec<[f64; 2]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+        #[serde(default)]
+        weights: Option<Vec<f64>>,
+    },
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

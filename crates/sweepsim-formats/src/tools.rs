@@ -1,6 +1,6 @@
 //! The tools of a job.
 
-use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
 
 use crate::error::Problem;
 use crate::raw;
@@ -64,7 +64,7 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             length,
         } => Tool::barrel(radius * unit, flank * unit, height * unit, length * unit),
         raw::Tool::Lens { radius, bottom, length } => Tool::lens(radius * unit, bottom * unit, length * unit),
-        raw::Tool::Profile { start, ref segments } => profile(start, segments, unit)?,
+        raw::Tool::Profile { start, ref segments } => profile(start, segments, unit),
         raw::Tool::Surface(ref name) => {
             return Err(Fault {
                 problem: Problem::syntax(format!("the surfaces of {name} are read from their file")),
@@ -81,6 +81,11 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             | ProfileError::NoLength { segment }
             | ProfileError::NoArc { segment, .. }
             | ProfileError::SelfCrossing { second: segment, .. } => vec!["segments".into(), Step::Item(segment)],
+            ProfileError::Spline { segment, fault } => {
+                let mut place = vec!["segments".into(), Step::Item(segment)];
+                place.extend(in_spline(&fault));
+                place
+            }
             ProfileError::Open { .. } | ProfileError::UpsideDown { .. } => last(raw),
             _ => vec![],
         };
@@ -92,6 +97,21 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             field,
         }
     })
+}
+
+/// The field of a spline that a fault is about.
+fn in_spline(fault: &SplineFault) -> Vec<Step> {
+    match *fault {
+        SplineFault::Degree { .. } => vec!["degree".into()],
+        SplineFault::Points { .. } => vec!["points".into()],
+        SplineFault::Start { .. } => vec!["points".into(), Step::Item(0)],
+        SplineFault::Weights { .. } => vec!["weights".into()],
+        SplineFault::Weight { index, .. } => vec!["weights".into(), Step::Item(index)],
+        SplineFault::KnotCount { .. } | SplineFault::Knots(_) | SplineFault::Clamped | SplineFault::Jump { .. } => {
+            vec!["knots".into()]
+        }
+        _ => vec![],
+    }
 }
 
 /// The last segment of a profile.
@@ -112,14 +132,27 @@ fn unscaled(error: ProfileError, unit: f64) -> ProfileError {
             value: if what == "angle" { value } else { value / unit },
             expected,
         },
+        ProfileError::Spline { segment, fault } => ProfileError::Spline {
+            segment,
+            fault: match fault {
+                SplineFault::Start { found, expected } => SplineFault::Start {
+                    found: found.map(|c| c / unit),
+                    expected: expected.map(|c| c / unit),
+                },
+                SplineFault::Stops { near } => SplineFault::Stops {
+                    near: near.map(|c| c / unit),
+                },
+                other => other,
+            },
+        },
         other => other,
     }
 }
 
-fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Result<Tool, ProfileError>, Fault> {
+fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Tool, ProfileError> {
     let scaled = |point: [f64; 2]| point.map(|c| c * unit);
     let mut made = Vec::with_capacity(segments.len());
-    for (index, segment) in segments.iter().enumerate() {
+    for segment in segments {
         made.push(match *segment {
             raw::Segment::Line(to) => ProfileSegment::Line { to: scaled(to) },
             raw::Segment::Arc { to, centre, turn } => ProfileSegment::Arc {
@@ -130,13 +163,18 @@ fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Resu
                     raw::Turn::Ccw => Turn::Ccw,
                 },
             },
-            raw::Segment::Spline(_) => {
-                return Err(Fault {
-                    problem: Problem::unsupported("spline segments of a profile are", "expected Line or Arc"),
-                    field: vec!["segments".into(), Step::Item(index)],
-                });
-            }
+            raw::Segment::Spline {
+                degree,
+                ref points,
+                ref knots,
+                ref weights,
+            } => ProfileSegment::Spline {
+                degree,
+                knots: knots.clone(),
+                points: points.iter().copied().map(scaled).collect(),
+                weights: weights.clone(),
+            },
         });
     }
-    Ok(Profile::new(scaled(start), made).map(Tool::from_profile))
+    Profile::new(scaled(start), made).map(Tool::from_profile)
 }

@@ -176,6 +176,23 @@ fn one_message_with_its_place() {
         ),
         (
             tool,
+            profile(
+                "Line((2, 0)), Spline(degree: 2, points: [(2, 0), (3, 4), (2, 9)], weights: Some([1, 0, 1])), Line((0, 9))",
+            ),
+            "job.ron:7:121: tool 1: profile segment 1: weight 1 of the spline is 0",
+        ),
+        (
+            tool,
+            profile("Line((2, 0)), Spline(degree: 2, points: [(1, 0), (3, 4), (2, 9)]), Line((0, 9))"),
+            "job.ron:7:87: tool 1: profile segment 1: the spline begins at (1, 0), but the profile is at (2, 0)",
+        ),
+        (
+            tool,
+            profile("Line((2, 0)), Spline(degree: 3, points: [(2, 0), (3, 4), (2, 9)]), Line((0, 9))"),
+            "job.ron:7:86: tool 1: profile segment 1: the spline has 3 points, but its degree needs at least 4",
+        ),
+        (
+            tool,
             profile("Arc(to: (2, 3), centre: (0, 2), turn: Ccw), Line((0, 9))"),
             "job.ron:7:46: tool 1: profile segment 0 is no arc",
         ),

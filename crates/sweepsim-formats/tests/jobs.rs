@@ -30,6 +30,9 @@ Job(
         4: Apt(d: 10.0, r: 1.0, e: 4.0, f: 1.0, a: 0.0, b: 0.0, h: 30.0),
         5: Profile(start: (0.0, 0.0), segments: [
                Line((2.0, 0.0)), Line((2.0, 2.0)), Arc(to: (8.0, 8.0), centre: (8.0, 2.0), turn: Cw), Line((8.0, 30.0)), Line((0.0, 30.0)) ]),
+        6: Profile(start: (0.0, 0.0), segments: [
+               Spline(degree: 3, points: [(0, 0), (3, 0), (5, 2), (4, 6), (6, 9)], knots: Some([0, 0, 0, 0, 1, 2, 2, 2, 2])),
+               Spline(degree: 2, points: [(6, 9), (8, 9), (8, 11)], weights: Some([1.0, 0.7071067811865476, 1.0])), Line((8, 30)), Line((0, 30)) ]),
     },
     paths: [
         Path(tool: 4, poses: [ ((-20.0, -10.0, 0.0), (0.0, 0.0, 1.0)), ((20.0, 10.0, 8.0), (0.1, 0.0, 1.0)) ]),
@@ -52,7 +55,7 @@ Job(
             ..
         }
     ));
-    assert_eq!(job.tools.len(), 5);
+    assert_eq!(job.tools.len(), 6);
     // The path of the table divides where its tool changes.
     let tools: Vec<u32> = job.paths.iter().map(|path| path.tool).collect();
     assert_eq!(tools, [4, 1, 2, 2]);
