@@ -79,11 +79,21 @@ fn table1_here() -> Result<(), String> {
     let form = Job::read(&workspace::root().join("fixtures/jobs/railing.ron")).map_err(|error| error.to_string())?;
     let form = form.tools.into_values().next().ok_or("railing.ron has no tool")?;
     let tools = [
-        ("ball", radius, Tool::ball(radius, length).map_err(|error| error.to_string())?),
-        ("flat", radius, Tool::flat(radius, length).map_err(|error| error.to_string())?),
+        (
+            "ball",
+            radius,
+            Tool::ball(radius, length).map_err(|error| error.to_string())?,
+        ),
+        (
+            "flat",
+            radius,
+            Tool::flat(radius, length).map_err(|error| error.to_string())?,
+        ),
         ("form", reach(&form), form),
     ];
-    println!("One thread. The paper (ball, 4.2 GHz): its Algorithm 3 beside charts and planes, 1 beside surface, 4 beside lines.");
+    println!(
+        "One thread. The paper (ball, 4.2 GHz): its Algorithm 3 beside charts and planes, 1 beside surface, 4 beside lines."
+    );
     println!(
         "{:<6} {:<8} {:<8} {:>6} {:>12} {:>12} {:>8}",
         "tool", "motion", "method", "cells", "ms", "paper, ms", "ratio"

@@ -4,6 +4,8 @@
 //! ([`sweepsim`], `sweepsim_dexel`, `sweepsim_formats`, `sweepsim_motion`).
 
 mod arguments;
+mod compare;
+mod convert;
 mod failure;
 mod inspect;
 mod outputs;
@@ -11,6 +13,7 @@ mod page;
 pub mod picture;
 mod progress;
 mod run;
+mod solid;
 mod words;
 
 use arguments::{Arguments, Command};
@@ -25,6 +28,8 @@ pub fn main() -> ExitCode {
         Command::Simulate(options) => run::run(run::Task::Simulate, &options),
         Command::Sweep(options) => run::run(run::Task::Sweep, &options),
         Command::Inspect { file } => inspect::inspect(&file).map(|()| ExitCode::SUCCESS),
+        Command::Convert(options) => convert::convert(&options).map(|()| ExitCode::SUCCESS),
+        Command::Compare(options) => compare::compare(&options).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|failure| {
         anstream::eprintln!("{failure}");

@@ -4,8 +4,8 @@ use crate::arguments::{Output, RunOptions};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::page::{self, Page};
-use crate::picture;
 use crate::progress::Progress;
+use crate::solid;
 use crate::words;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -14,10 +14,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{Boundary, Cut, Monitor, Options, Statistics, SweepError, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
-use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_csv, write_ply};
+use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
 
-/// Width and height of `part.png`.
-const PICTURE: [usize; 2] = [1600, 1200];
 /// How many unresolved dexels the summary names.
 const NAMED: usize = 10;
 
@@ -65,7 +63,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         let outcome = compute(task, &job, options, &progress, &mut report)?;
         progress.check()?;
         describe(&mut report, &job, options, &outcome);
-        write(&job, &outcome, &mut outputs, &progress, &mut report)?;
+        write(options, &outcome, &mut outputs, &progress, &mut report)?;
         Ok(outcome)
     });
     progress.finish();
@@ -108,7 +106,7 @@ fn phase<T>(report: &mut Report, name: &str, work: impl FnOnce() -> T) -> T {
 }
 
 /// A job's name as that of a folder: no name leads out of `out/`.
-fn folder_name(name: &str) -> PathBuf {
+pub(crate) fn folder_name(name: &str) -> PathBuf {
     let safe: String = name
         .chars()
         .map(|c| {
@@ -206,14 +204,15 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
         .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
         .collect();
     if options.boundary == Boundary::Paper {
-        let note = "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
+        let note =
+            "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
         report.notes.push(note.to_owned());
     }
 }
 
 /// Writes dexels, mesh and picture.
 fn write(
-    job: &Job,
+    options: &RunOptions,
     outcome: &Outcome,
     outputs: &mut Outputs,
     progress: &Progress,
@@ -223,6 +222,12 @@ fn write(
         progress.phase("dexels");
         phase(report, "dexels", || {
             outputs.write("dexels.csv", |file| write_dexels_csv(&outcome.dexels, file))
+        })?;
+    }
+    if outputs.wants(Output::Binary) {
+        progress.phase("dexels");
+        phase(report, "dexels", || {
+            outputs.write("part.dexels", |file| write_dexels_binary(&outcome.dexels, file))
         })?;
     }
     if !outputs.wants(Output::Mesh) && !outputs.wants(Output::Picture) {
@@ -239,9 +244,7 @@ fn write(
     if outputs.wants(Output::Picture) {
         progress.phase("picture");
         phase(report, "picture", || {
-            let image = picture::render(&mesh, PICTURE);
-            let png = picture::png(&image)
-                .map_err(|error| Failure::message(format!("{}: cannot make the picture: {error}", job.name)))?;
+            let png = solid::picture(&options.view, &mesh, None)?;
             outputs.write("part.png", |file| file.write_all(&png))
         })?;
     }
