@@ -142,6 +142,7 @@ fn odd_views_do_no_harm() {
         opening: 1e9,
         margin: -1.0,
         size: [1, 300],
+        ..View::default()
     };
     assert_eq!(view.render(&mesh).rgb.len(), 900);
     // From the other side the part is still seen.

@@ -81,7 +81,9 @@ pub use numbers::shortest;
 pub use paths::{JobPath, PathOptions, read_path_file};
 pub use ply::{read_ply, write_ply};
 pub use program::{Note, Program, ProgramPose};
-pub use report::{Collision, Deviation, DexelCounts, Report, UnresolvedDexel};
+pub use report::{
+    Collision, ComparisonReport, Deviation, DexelCounts, Furthest, HistogramBar, Report, UnresolvedDexel,
+};
 pub use stl::{parse_stl, read_stl, write_stl};
 pub use threemf::{read_3mf, write_3mf};
 pub use vtk::{read_vtp, write_dexels_vtu, write_vtp};
