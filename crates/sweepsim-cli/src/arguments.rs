@@ -3,6 +3,7 @@
 use crate::picture::{Section, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
+use sweepsim::systems::Plane;
 use sweepsim::{Boundary, Method};
 
 /// Exact swept volumes of milling tools, and the simulation of NC programs with them.
@@ -21,6 +22,8 @@ pub(crate) enum Command {
     Simulate(RunOptions),
     /// The volume that the tools of a job sweep, without the stock: the same outputs.
     Sweep(RunOptions),
+    /// The curves in which a plane cuts what the tools of a job sweep: a drawing and a table of points.
+    Section(SectionOptions),
     /// Says what is in a job, path, mesh or dexel file, and what was ignored in it.
     Inspect {
         /// A job (.ron), path (.csv .nc .ngc …), mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz).
@@ -71,6 +74,28 @@ pub(crate) struct RunOptions {
     /// The report on standard output, in place of the summary.
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SectionOptions {
+    /// The job, a .ron file.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub job: PathBuf,
+    /// The plane: x=3.5, y=…, z=…, or a,b,c=d for a x + b y + c z = d, in millimetres.
+    #[arg(long, value_name = "PLANE", value_parser = crate::section::plane)]
+    pub plane: Plane,
+    /// How far the polylines may be off the curves, in millimetres.
+    #[arg(long, value_name = "MM", default_value_t = 0.01, value_parser = tolerance)]
+    pub chord: f64,
+    /// Where the outputs go [default: out/NAME].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Another tolerance than the job's, in millimetres.
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+    /// No progress and no summary.
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 #[derive(Debug, Args)]
@@ -156,7 +181,7 @@ pub(crate) struct ViewOptions {
 pub(crate) enum Output {
     /// dexels.csv
     Dexels,
-    /// part.ply
+    /// part.ply; of `sweep --method surface` also envelope.ply and envelope-outer.ply
     Mesh,
     /// part.png
     Picture,

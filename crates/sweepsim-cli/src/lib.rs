@@ -13,6 +13,7 @@ mod page;
 pub mod picture;
 mod progress;
 mod run;
+mod section;
 mod solid;
 mod words;
 
@@ -27,6 +28,7 @@ pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Simulate(options) => run::run(run::Task::Simulate, &options),
         Command::Sweep(options) => run::run(run::Task::Sweep, &options),
+        Command::Section(options) => section::run(&options),
         Command::Inspect { file } => inspect::inspect(&file).map(|()| ExitCode::SUCCESS),
         Command::Convert(options) => convert::convert(&options).map(|()| ExitCode::SUCCESS),
         Command::Compare(options) => compare::compare(&options).map(|()| ExitCode::SUCCESS),

@@ -12,10 +12,14 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-use sweepsim::{Boundary, Cut, Monitor, Options, Statistics, SweepError, simulate, sweep_all};
+use sweepsim::{
+    Boundary, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all,
+};
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
 use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
 
+/// How far the triangles of envelope.ply may be off, in millimetres.
+const CHORD: f64 = 0.02;
 /// How many unresolved dexels the summary names.
 const NAMED: usize = 10;
 
@@ -64,6 +68,9 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         progress.check()?;
         describe(&mut report, &job, options, &outcome);
         write(options, &outcome, &mut outputs, &progress, &mut report)?;
+        if task == Task::Sweep && options.method == Method::Surface && outputs.wants(Output::Mesh) {
+            write_envelope(&job, &mut outputs, &progress, &mut report)?;
+        }
         Ok(outcome)
     });
     progress.finish();
@@ -121,6 +128,17 @@ pub(crate) fn folder_name(name: &str) -> PathBuf {
     PathBuf::from(if safe.is_empty() { "job" } else { safe })
 }
 
+/// The tools of a job and where they go.
+pub(crate) fn cuts_of(job: &Job) -> Vec<Cut<'_>> {
+    job.paths
+        .iter()
+        .map(|path| Cut {
+            tool: &job.tools[&path.tool],
+            path: &path.path,
+        })
+        .collect()
+}
+
 fn compute(
     task: Task,
     job: &Job,
@@ -129,14 +147,7 @@ fn compute(
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
     let file = options.job.display();
-    let cuts: Vec<Cut> = job
-        .paths
-        .iter()
-        .map(|path| Cut {
-            tool: &job.tools[&path.tool],
-            path: &path.path,
-        })
-        .collect();
+    let cuts = cuts_of(job);
     let sweeping = Options::new(job.tolerance)
         .method(options.method)
         .boundary(options.boundary);
@@ -247,6 +258,35 @@ fn write(
             let png = solid::picture(&options.view, &mesh, None)?;
             outputs.write("part.png", |file| file.write_all(&png))
         })?;
+    }
+    Ok(())
+}
+
+/// Writes the envelope itself: all of it, and what of it bounds the swept volume.
+fn write_envelope(job: &Job, outputs: &mut Outputs, progress: &Progress, report: &mut Report) -> Result<(), Failure> {
+    progress.phase("envelope");
+    let options = Options::new(job.tolerance);
+    let made = phase(report, "envelope", || {
+        envelope_surfaces(&cuts_of(job), CHORD, &options, progress as &dyn Monitor)
+    });
+    let surfaces = made.map_err(|error| match error {
+        SweepError::Cancelled => Failure::Interrupted,
+        error => Failure::message(format!("{}: {error}", job.name)),
+    })?;
+    for (name, trimmed) in [("envelope.ply", false), ("envelope-outer.ply", true)] {
+        let (points, triangles) = surfaces.triangles(trimmed);
+        let mesh = Mesh {
+            vertices: points.iter().map(|point| point.position).collect(),
+            normals: points.iter().map(|point| point.normal.map(|x| x as f32)).collect(),
+            cut: vec![true; points.len()],
+            triangles,
+        };
+        outputs.write(name, |file| write_ply(&mesh, file))?;
+    }
+    for (path, piece, number) in surfaces.open.iter().take(NAMED) {
+        report.notes.push(format!(
+            "envelope.ply lacks parts of {piece:?} of move {number} of path {path}"
+        ));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use sweepsim_motion::Pose;
+use sweepsim_motion::{Move, Pose};
 
 use crate::error::{FormatError, Problem};
 use crate::numbers::shortest;
@@ -198,6 +198,7 @@ impl Row<'_> {
             joined: last.is_some_and(|last| last.tool == tool),
             tool,
             feed,
+            way: Move::default(),
         })
     }
 }

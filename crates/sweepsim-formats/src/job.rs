@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path as FilePath, PathBuf};
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::Tool;
+use sweepsim_motion::{Body, Tool};
 
 use crate::error::FormatError;
 use crate::paths::JobPath;
@@ -54,7 +54,16 @@ impl Units {
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
 ///
-/// A path of a program takes further `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
+/// Further tools are `Lollipop(radius:, neck:, length:)`, `Dovetail(radius:, angle:, height:, neck:, length:)`,
+/// `Barrel(radius:, flank:, height:, length:)`, `Lens(radius:, bottom:, length:)` and `Surface("file.ron")`. What moves with tools and removes nothing is said
+/// by `bodies: { 1: [Shank(tool), Holder(tool)] }`: solids like tools, in the frame of tool 1.
+///
+/// A path may say how the tool turns between poses: `law: Slerp | ConstantSpeed | Rotary(AC) | Rotary(BC)`. Poses of tools that are not
+/// symmetric about their axis may have a third direction, where the tool's x points: `((tip), (axis), (side))`. Instead of `poses` there may be
+/// `moves: [Start(pose), Line(pose), Arc(to: pose, centre: (x, y, z), turn: Ccw), …]` with arcs and helices of the tip (further `normal`,
+/// default `(0, 0, 1)`, and `turns`, default 1).
+///
+/// A path of a program takes further `arcs: Chords | Exact` (default: chords), `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
 /// use) and `tip_control: true` (the coordinates are the tip in the part's frame without a word in the program); see
 /// [`gcode::Options`](crate::gcode::Options).
 #[derive(Clone, Debug)]
@@ -71,6 +80,8 @@ pub struct Job {
     pub stock: Stock,
     /// The tools by number.
     pub tools: BTreeMap<u32, Tool>,
+    /// What moves with the tools and must touch nothing: shanks and holders, by the tools' numbers, in the frame of the tool.
+    pub bodies: BTreeMap<u32, Vec<Body>>,
     /// The paths, in the order of cutting.
     pub paths: Vec<JobPath>,
     /// What is to come out.

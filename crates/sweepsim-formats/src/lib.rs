@@ -38,7 +38,6 @@
 //! What is wrong with a file is a [`FormatError`]: one message with file, line, column, and what was expected. Files are
 //! written whole or not at all ([`AtomicFile`]). No input makes a reader panic.
 
-mod apt;
 mod atomic;
 mod checksum;
 pub mod csv;

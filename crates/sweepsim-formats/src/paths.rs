@@ -2,11 +2,11 @@
 
 use std::path::{Path as FilePath, PathBuf};
 
-use sweepsim_motion::{Path, PathError, Pose};
+use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
 
 use crate::error::{FormatError, Problem};
 use crate::program::{Note, Program, ProgramPose};
-use crate::{csv, gcode, text};
+use crate::{csv, gcode, raw, text};
 
 /// A path of a job, with its tool. A path file gives several of them when its path breaks or its tool changes.
 #[derive(Clone, Debug)]
@@ -79,12 +79,13 @@ pub fn read_path_file(file: &FilePath, options: &PathOptions) -> Result<Program,
     .map_err(|error| error.in_file(file))
 }
 
-/// The paths of a program. `tool` is that of the job for all of it; without it the program's numbers hold.
+/// The paths of a program, the tool turning by `law` where the program does not say how. `tool` is that of the job for all of it; without it the program's numbers hold.
 pub(crate) fn of_program(
     mut program: Program,
     file: &FilePath,
     shown: &str,
     tool: Option<u32>,
+    law: Law,
     has_tool: impl Fn(u32) -> Result<(), Problem>,
 ) -> Result<Vec<JobPath>, FormatError> {
     let at = |problem: Problem, line: usize| {
@@ -114,9 +115,19 @@ pub(crate) fn of_program(
             }
         };
         has_tool(number).map_err(|problem| at(problem, first.line))?;
-        let path = Path::new(section.iter().map(|pose| pose.pose).collect()).map_err(|error| {
+        let poses = section.iter().map(|pose| pose.pose).collect();
+        let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
+        // Tables say nothing of how the tool turns.
+        let path = if moves.iter().all(|way| *way == Move::default()) {
+            Path::with_law(poses, law)
+        } else {
+            Path::with_moves(poses, moves)
+        };
+        let path = path.map_err(|error| {
             let line = match error {
-                PathError::OppositeAxes { index } => section.get(index + 1).map_or(first.line, |pose| pose.line),
+                PathError::OppositeAxes { index } | PathError::Rotary { index } => {
+                    section.get(index + 1).map_or(first.line, |pose| pose.line)
+                }
                 _ => first.line,
             };
             at(Problem::Path(error), line)
@@ -141,26 +152,90 @@ fn second_tool(program: &Program) -> Option<&ProgramPose> {
         .find(|pose| pose.tool.is_some_and(|tool| tool != first))
 }
 
-/// What is wrong with inline poses: the problem, and which pose and part of it (0: tip, 1: axis).
+/// What is wrong with inline poses: the problem, and which pose and part of it (0: tip, 1: axis, 2: side).
 pub(crate) type PoseFault = (Problem, Option<(usize, usize)>);
 
-/// The path through poses of the job itself.
-pub(crate) fn of_poses(raw: &[([f64; 3], [f64; 3])], unit: f64) -> Result<Path, PoseFault> {
-    let mut poses = Vec::with_capacity(raw.len());
-    for (index, &(tip, axis)) in raw.iter().enumerate() {
-        let pose = Pose::new(tip.map(|c| c * unit), axis).map_err(|error| {
-            let part = usize::from(tip.iter().all(|c| (c * unit).is_finite()));
-            (Problem::Pose(error), Some((index, part)))
-        })?;
-        poses.push(pose);
-    }
-    Path::new(poses).map_err(|error| {
-        let place = match error {
-            PathError::OppositeAxes { index } => Some((index + 1, 1)),
-            _ => None,
+fn pose(raw: &raw::Pose, unit: f64) -> Result<Pose, (Problem, usize)> {
+    let raw::Pose(tip, axis, side) = *raw;
+    let placed = tip.map(|c| c * unit);
+    let made = match side {
+        None => Pose::new(placed, axis),
+        Some(side) => Pose::with_side(placed, axis, side),
+    };
+    made.map_err(|error| {
+        let part = match error {
+            PoseError::TipNotFinite(_) => 0,
+            PoseError::SideWithoutDirection(_) => 2,
+            _ => 1,
         };
-        (Problem::Path(error), place)
+        (Problem::Pose(error), part)
     })
+}
+
+/// The path through poses of the job itself.
+pub(crate) fn of_poses(raw: &[raw::Pose], law: Law, unit: f64) -> Result<Path, PoseFault> {
+    let mut poses = Vec::with_capacity(raw.len());
+    for (index, raw) in raw.iter().enumerate() {
+        poses.push(pose(raw, unit).map_err(|(problem, part)| (problem, Some((index, part))))?);
+    }
+    Path::with_law(poses, law).map_err(path_fault)
+}
+
+fn path_fault(error: PathError) -> PoseFault {
+    let place = match error {
+        PathError::OppositeAxes { index } => Some((index + 1, 1)),
+        _ => None,
+    };
+    (Problem::Path(error), place)
+}
+
+/// The path along moves of the job itself.
+pub(crate) fn of_moves(raw: &[raw::Move], law: Law, unit: f64) -> Result<Path, PoseFault> {
+    let mut poses: Vec<Pose> = Vec::with_capacity(raw.len());
+    let mut arcs = Vec::new();
+    for (index, raw) in raw.iter().enumerate() {
+        let fault = |problem: Problem| (problem, Some((index, 0)));
+        let (to, arc) = match raw {
+            raw::Move::Start(to) | raw::Move::Line(to) => (to, None),
+            raw::Move::Arc {
+                to,
+                centre,
+                normal,
+                turn,
+                turns,
+            } => (to, Some((centre.map(|c| c * unit), *normal, *turn, *turns))),
+        };
+        if matches!(raw, raw::Move::Start(_)) != (index == 0) {
+            let message = "expected `Start(..)` as the first of the moves, and nowhere else";
+            return Err(fault(Problem::syntax(message)));
+        }
+        let to = pose(to, unit).map_err(|(problem, part)| (problem, Some((index, part))))?;
+        if let (Some((centre, normal, turn, turns)), Some(from)) = (arc, poses.last()) {
+            let signed = match (turns, turn) {
+                (1..=10_000, raw::Turn::Ccw) => i32::from(turns),
+                (1..=10_000, raw::Turn::Cw) => -i32::from(turns),
+                _ => return Err(fault(Problem::value("`turns` of an arc", turns, "from 1 to 10000"))),
+            };
+            let arc = TipArc::between(from.tip().into(), to.tip().into(), centre, normal, signed);
+            arcs.push((
+                index - 1,
+                arc.map_err(|error| fault(Problem::syntax(error.to_string())))?,
+            ));
+        }
+        poses.push(to);
+    }
+    let plain = Path::with_law(poses.clone(), law).map_err(path_fault)?;
+    let mut moves: Vec<Move> = (0..plain.moves()).map(|index| plain.way(index)).collect();
+    for (index, arc) in arcs {
+        moves[index] = Move {
+            course: Course::Arc(arc),
+            turning: match moves[index].turning {
+                Turning::Slerp => Turning::Even,
+                other => other,
+            },
+        };
+    }
+    Path::with_moves(poses, moves).map_err(path_fault)
 }
 
 /// `file` as named in `job`: relative to the folder of the job.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use sweepsim_motion::Pose;
+use sweepsim_motion::{Move, Pose};
 
 /// A pose of a program.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +20,8 @@ pub struct ProgramPose {
     pub tool: Option<u32>,
     /// The feed on the way here as the program gives it, where it does.
     pub feed: Option<f64>,
+    /// How the tool comes here from the pose before, where it does.
+    pub way: Move,
 }
 
 /// Something in a file that was left out or decided for the reader.

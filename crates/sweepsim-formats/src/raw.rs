@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -16,6 +17,8 @@ pub(crate) struct Job {
     pub grid: Grid,
     pub stock: Stock,
     pub tools: BTreeMap<u32, Tool>,
+    #[serde(default)]
+    pub bodies: BTreeMap<u32, Vec<Body>>,
     pub paths: Vec<Path>,
     #[serde(default)]
     pub target: Option<Target>,
@@ -93,11 +96,40 @@ pub(crate) enum Tool {
         b: f64,
         h: f64,
     },
+    Lollipop {
+        radius: f64,
+        neck: f64,
+        length: f64,
+    },
+    Dovetail {
+        radius: f64,
+        angle: f64,
+        height: f64,
+        neck: f64,
+        length: f64,
+    },
+    Barrel {
+        radius: f64,
+        flank: f64,
+        height: f64,
+        length: f64,
+    },
+    Lens {
+        radius: f64,
+        bottom: f64,
+        length: f64,
+    },
     Profile {
         start: [f64; 2],
         segments: Vec<Segment>,
     },
     Surface(String),
+}
+
+#[derive(Debug, Deserialize)]
+pub(crate) enum Body {
+    Shank(Tool),
+    Holder(Tool),
 }
 
 #[derive(Debug, Deserialize)]
@@ -125,7 +157,13 @@ pub(crate) struct Path {
     #[serde(default)]
     pub tool: Option<u32>,
     #[serde(default)]
-    pub poses: Option<Vec<([f64; 3], [f64; 3])>>,
+    pub poses: Option<Vec<Pose>>,
+    #[serde(default)]
+    pub moves: Option<Vec<Move>>,
+    #[serde(default)]
+    pub law: Option<Law>,
+    #[serde(default)]
+    pub arcs: Option<Arcs>,
     #[serde(default)]
     pub file: Option<String>,
     #[serde(default)]
@@ -134,6 +172,65 @@ pub(crate) struct Path {
     pub table: Option<Table>,
     #[serde(default)]
     pub tip_control: Option<bool>,
+}
+
+/// Tip, axis, and where the tool's x points: two or three triples in parentheses.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pose(pub [f64; 3], pub [f64; 3], pub Option<[f64; 3]>);
+
+impl<'de> Deserialize<'de> for Pose {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Triples;
+        impl<'de> Visitor<'de> for Triples {
+            type Value = Pose;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+                f.write_str("a pose ((tip), (axis)) or ((tip), (axis), (side)), each of three numbers")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Pose, A::Error> {
+                let mut next = |at: usize| -> Result<[f64; 3], A::Error> {
+                    list.next_element()?.ok_or_else(|| A::Error::invalid_length(at, &Self))
+                };
+                let (tip, axis) = (next(0)?, next(1)?);
+                Ok(Pose(tip, axis, list.next_element()?))
+            }
+        }
+        deserializer.deserialize_tuple(3, Triples)
+    }
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Move {
+    Start(Pose),
+    Line(Pose),
+    Arc {
+        to: Pose,
+        centre: [f64; 3],
+        #[serde(default = "z_axis")]
+        normal: [f64; 3],
+        turn: Turn,
+        #[serde(default = "one")]
+        turns: u16,
+    },
+}
+
+fn one() -> u16 {
+    1
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) enum Law {
+    Slerp,
+    ConstantSpeed,
+    Rotary(Table),
+}
+
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub(crate) enum Arcs {
+    Chords,
+    Exact,
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]

@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::Tool;
+use sweepsim_motion::{Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
 use crate::files::{MeshFormat, read_dexels_file, read_mesh_file};
@@ -83,17 +83,26 @@ impl Reader<'_> {
         let mut tools = BTreeMap::new();
         for (&number, tool) in &raw.tools {
             let steps = vec!["tools".into(), Step::Key(number.to_string())];
-            let made = match tool {
-                raw::Tool::Surface(name) => {
-                    let file = paths::beside(self.file, name);
-                    self.named(surface_tool::read(&file, self.unit), &file, "tool", &steps)?
-                }
-                tool => tools::tool(number, tool, self.unit).map_err(|fault| {
-                    let steps: Vec<Step> = steps.into_iter().chain(fault.field).collect();
-                    self.error(fault.problem, &steps)
-                })?,
-            };
+            let made = self.tool(number, tool, &steps)?;
             tools.insert(number, made);
+        }
+        let mut bodies = BTreeMap::new();
+        for (&number, list) in &raw.bodies {
+            let steps = |index: usize| vec!["bodies".into(), Step::Key(number.to_string()), Step::Item(index)];
+            if !tools.contains_key(&number) {
+                let known = tools.keys().copied().collect();
+                return Err(self.error(Problem::NoSuchTool { number, known }, &steps(0)[..2]));
+            }
+            let mut made = Vec::with_capacity(list.len());
+            for (index, body) in list.iter().enumerate() {
+                let (kind, solid) = match body {
+                    raw::Body::Shank(solid) => (BodyKind::Shank, solid),
+                    raw::Body::Holder(solid) => (BodyKind::Holder, solid),
+                };
+                let solid = self.tool(number, solid, &steps(index))?;
+                made.push(Body { kind, solid });
+            }
+            bodies.insert(number, made);
         }
         let mut paths = Vec::new();
         for (index, path) in raw.paths.iter().enumerate() {
@@ -132,10 +141,25 @@ impl Reader<'_> {
             grid,
             stock,
             tools,
+            bodies,
             paths,
             target,
             limits,
         })
+    }
+
+    /// The solid of tool `number`, or of a body that moves with it.
+    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<Tool, FormatError> {
+        match raw {
+            raw::Tool::Surface(name) => {
+                let file = paths::beside(self.file, name);
+                self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)
+            }
+            tool => tools::tool(number, tool, self.unit).map_err(|fault| {
+                let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
+                self.error(fault.problem, &steps)
+            }),
+        }
     }
 
     fn grid(&self, raw: &raw::Grid) -> Result<Grid, FormatError> {
@@ -310,30 +334,44 @@ impl Reader<'_> {
         if let Some(number) = raw.tool {
             has_tool(number).map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
         }
+        let law = raw.law.unwrap_or(raw::Law::Slerp);
+        let table = |table: raw::Table| match table {
+            raw::Table::Ac => RotaryTable::Ac,
+            raw::Table::Bc => RotaryTable::Bc,
+        };
+        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+            let tool = raw.tool.ok_or_else(|| {
+                let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
+                self.error(problem, &steps(&[]))
+            })?;
+            let path = made.map_err(|(problem, place)| {
+                let mut path = steps(&[field.into()]);
+                let rest = place
+                    .iter()
+                    .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]);
+                path.extend(rest);
+                self.error(problem, &path)
+            })?;
+            Ok(vec![JobPath {
+                tool,
+                rapid: vec![false; path.moves()],
+                path,
+                source: format!("path {index} of the job"),
+                lines: Vec::new(),
+                notes: Vec::new(),
+            }])
+        };
+        let own_law = match law {
+            raw::Law::Slerp => Law::Slerp,
+            raw::Law::ConstantSpeed => Law::ConstantSpeed,
+            raw::Law::Rotary(axes) => Law::Rotary(table(axes)),
+        };
         match (&raw.poses, &raw.file) {
-            (Some(poses), None) => {
-                let tool = raw.tool.ok_or_else(|| {
-                    let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
-                    self.error(problem, &steps(&[]))
-                })?;
-                let path = paths::of_poses(poses, self.unit).map_err(|(problem, place)| {
-                    let mut path = steps(&["poses".into()]);
-                    path.extend(
-                        place
-                            .iter()
-                            .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]),
-                    );
-                    self.error(problem, &path)
-                })?;
-                Ok(vec![JobPath {
-                    tool,
-                    rapid: vec![false; path.moves()],
-                    path,
-                    source: format!("path {index} of the job"),
-                    lines: Vec::new(),
-                    notes: Vec::new(),
-                }])
+            _ if raw.moves.is_some() && (raw.poses.is_some() || raw.file.is_some()) => {
+                let problem = Problem::syntax("`moves` and `poses` or `file` in one path: expected one of them");
+                Err(self.error(problem, &steps(&["moves".into()])))
             }
+            (Some(poses), None) => inline(paths::of_poses(poses, own_law, self.unit), "poses"),
             (None, Some(name)) => {
                 let arc_tolerance = match raw.arc_tolerance {
                     None => ARC_TOLERANCE * tolerance,
@@ -347,10 +385,16 @@ impl Reader<'_> {
                     unit: self.unit,
                     program: gcode::Options {
                         arc_tolerance,
-                        table: raw.table.map(|table| match table {
-                            raw::Table::Ac => gcode::RotaryTable::Ac,
-                            raw::Table::Bc => gcode::RotaryTable::Bc,
-                        }),
+                        table: match law {
+                            raw::Law::Rotary(axes) => Some(table(axes)),
+                            _ => raw.table.map(table),
+                        },
+                        law: match law {
+                            raw::Law::Slerp => gcode::AxisLaw::Slerp,
+                            raw::Law::ConstantSpeed => gcode::AxisLaw::ConstantSpeed,
+                            raw::Law::Rotary(_) => gcode::AxisLaw::Rotary,
+                        },
+                        exact_arcs: matches!(raw.arcs, Some(raw::Arcs::Exact)),
                         tip_control: raw.tip_control.unwrap_or(false),
                         ..gcode::Options::default()
                     },
@@ -358,16 +402,19 @@ impl Reader<'_> {
                 let file = paths::beside(self.file, name);
                 let read = paths::read_path_file(&file, &options);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
-                paths::of_program(program, &file, name, raw.tool, has_tool)
+                paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
                 Err(self.error(problem, &steps(&["file".into()])))
             }
-            (None, None) => {
-                let problem = Problem::syntax("this path has no poses: expected `poses` or `file`");
-                Err(self.error(problem, &steps(&[])))
-            }
+            (None, None) => match &raw.moves {
+                Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
+                None => {
+                    let problem = Problem::syntax("this path has no poses: expected `poses`, `moves` or `file`");
+                    Err(self.error(problem, &steps(&[])))
+                }
+            },
         }
     }
 }

@@ -1,8 +1,7 @@
 //! The tools of a job.
 
-use sweepsim_motion::{Profile, ProfileError, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, Tool, Turn};
 
-use crate::apt::Apt;
 use crate::error::Problem;
 use crate::raw;
 
@@ -33,18 +32,38 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
         raw::Tool::Bull { radius, corner, length } => Tool::bull(radius * unit, corner * unit, length * unit),
         raw::Tool::Apt { d, r, e, f, a, b, h } => {
             let [d, r, e, f, h] = [d, r, e, f, h].map(|length| length * unit);
-            return match (Apt { d, r, e, f, a, b, h }).profile() {
-                Ok(profile) => Ok(Tool::from_profile(profile)),
-                Err((parameter, problem)) => Err(Fault {
-                    problem,
-                    field: if parameter.is_empty() {
-                        vec![]
-                    } else {
-                        vec![parameter.into()]
-                    },
-                }),
-            };
+            return Tool::apt(&Apt { d, r, e, f, a, b, h })
+                .map(|(tool, _)| tool)
+                .map_err(|error| {
+                    let (problem, field) = match error {
+                        AptError::Parameter { name, value, expected } => (
+                            Problem::value(format!("`{name}` of the APT cutter"), value, expected),
+                            Some(name),
+                        ),
+                        AptError::Misses { .. } => (Problem::syntax(error.to_string()), Some("r")),
+                        _ => (Problem::syntax(error.to_string()), None),
+                    };
+                    Fault {
+                        problem,
+                        field: field.into_iter().map(Step::from).collect(),
+                    }
+                });
         }
+        raw::Tool::Lollipop { radius, neck, length } => Tool::lollipop(radius * unit, neck * unit, length * unit),
+        raw::Tool::Dovetail {
+            radius,
+            angle,
+            height,
+            neck,
+            length,
+        } => Tool::dovetail(radius * unit, angle, height * unit, neck * unit, length * unit),
+        raw::Tool::Barrel {
+            radius,
+            flank,
+            height,
+            length,
+        } => Tool::barrel(radius * unit, flank * unit, height * unit, length * unit),
+        raw::Tool::Lens { radius, bottom, length } => Tool::lens(radius * unit, bottom * unit, length * unit),
         raw::Tool::Profile { start, ref segments } => profile(start, segments, unit)?,
         raw::Tool::Surface(ref name) => {
             return Err(Fault {
@@ -90,7 +109,7 @@ fn unscaled(error: ProfileError, unit: f64) -> ProfileError {
     match error {
         ProfileError::Measure { what, value, expected } => ProfileError::Measure {
             what,
-            value: value / unit,
+            value: if what == "angle" { value } else { value / unit },
             expected,
         },
         other => other,

@@ -28,6 +28,7 @@ fn pose() -> impl Strategy<Value = ProgramPose> {
         joined: true,
         tool,
         feed,
+        way: sweepsim_motion::Move::default(),
     })
 }
 

@@ -1,7 +1,10 @@
 //! A tool path: the poses that a tool goes through, one after another.
 
-use crate::Pose;
-use crate::segment::turn_between;
+use crate::even;
+use crate::moves::{Course, Law, Move, Turning};
+use crate::pose::Pose;
+use crate::segment::{Segment, turn_between};
+use crate::spline_motion::SplineMotion;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use thiserror::Error;
@@ -10,10 +13,10 @@ use thiserror::Error;
 /// the plane in which the axis turns is not determined.
 const OPPOSITE: f64 = 1e-9;
 
-/// A sequence of at least one [`Pose`]; each consecutive pair is a move: straight tip, SLERP of the axis, or of the
-/// whole orientation where the poses say it.
+/// A sequence of at least one [`Pose`], and for each consecutive pair how the tool goes from the one to the other: with
+/// [`Path::new`] straight, with SLERP of the axis (or of the whole orientation where the poses say it).
 ///
-/// Invariant: the axes of consecutive poses are not opposite, so that every move is determined.
+/// Invariant: every move is determined: the axes of consecutive poses are not opposite where the axis goes the shortest way.
 ///
 /// ```
 /// use sweepsim_motion::{Path, PathError, Pose};
@@ -27,6 +30,14 @@ const OPPOSITE: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
     poses: Vec<Pose>,
+    ways: Ways,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Ways {
+    Slerp,
+    Each(Vec<Move>),
+    Motion(Box<SplineMotion>),
 }
 
 /// Why poses are no path.
@@ -53,6 +64,24 @@ pub enum PathError {
         /// The second of the two poses, counted from 0.
         index: usize,
     },
+    /// There are as many moves as poses, or fewer or more.
+    #[error("{moves} moves do not join {poses} poses: expected one less than poses")]
+    Count {
+        /// The number of moves.
+        moves: usize,
+        /// The number of poses.
+        poses: usize,
+    },
+    /// The angles of a machine's rotary axes are not finite, absurd, or do not point along the axis of a pose, or the pose says otherwise how
+    /// the tool is turned about its axis.
+    #[error(
+        "move {index} (counted from 0): the angles of the rotary axes are not those of the poses that it joins: expected angles within a million degrees that point along \
+         the axes, and poses of tip and axis alone"
+    )]
+    Rotary {
+        /// The move, counted from 0.
+        index: usize,
+    },
     /// The tool would have to turn by half a turn: which way is not said.
     #[error(
         "between poses {index} and {} (counted from 0) the tool makes half a turn: put a pose between them that says which way",
@@ -65,13 +94,83 @@ pub enum PathError {
 }
 
 impl Path {
-    /// The path through `poses`.
+    /// The path through `poses`, straight and by SLERP.
     ///
     /// # Errors
     /// [`PathError::Empty`] without a pose; [`PathError::OppositeAxes`] when two consecutive axes are within 1e-9 rad
     /// of opposite, [`PathError::HalfTurn`] when two orientations are so near to half a turn apart; [`PathError::Mixed`] when only some
     /// poses say how the tool is turned about its axis.
     pub fn new(poses: Vec<Pose>) -> Result<Self, PathError> {
+        Self::checked(poses, Ways::Slerp)
+    }
+
+    /// The path through `poses`, straight, the tool turning by `law`. Rotary axes start at the angles nearest to 0.
+    ///
+    /// # Errors
+    /// As [`Path::new`]; rotary axes may turn any way, but poses must be tip and axis alone.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Law, Path, Pose, RotaryTable};
+    /// let poses = vec![Pose::new([0.0; 3], [0.3, 0.0, 1.0])?, Pose::new([9.0, 0.0, 0.0], [0.0, 0.3, 1.0])?];
+    /// let path = Path::with_law(poses, Law::Rotary(RotaryTable::Ac))?;
+    /// // The tilt is the same at both ends, and so on the way: a quarter turn of the table.
+    /// let parts = path.segments(0, 50.0, 1e-4);
+    /// let (turn, _) = parts[0].at(0.5);
+    /// assert!((turn[(2, 2)] - 1.0 / 1.09_f64.sqrt()).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_law(poses: Vec<Pose>, law: Law) -> Result<Self, PathError> {
+        let count = poses.len().saturating_sub(1);
+        let ways = match law {
+            Law::Slerp => Ways::Slerp,
+            Law::ConstantSpeed => Ways::Each(vec![Move::straight(Turning::Even); count]),
+            Law::Rotary(table) => {
+                let mut last = [0.0; 2];
+                let angles: Vec<[f64; 2]> = poses
+                    .iter()
+                    .map(|pose| {
+                        last = table.angles(pose.axis().into_inner().into(), last);
+                        last
+                    })
+                    .collect();
+                let way = |pair: &[[f64; 2]]| {
+                    Move::straight(Turning::Rotary {
+                        table,
+                        from: pair[0],
+                        to: pair[1],
+                    })
+                };
+                Ways::Each(angles.windows(2).map(way).collect())
+            }
+        };
+        Self::checked(poses, ways)
+    }
+
+    /// The path through `poses` by one move between each two.
+    ///
+    /// # Errors
+    /// As [`Path::new`], and [`PathError::Count`], [`PathError::Rotary`].
+    pub fn with_moves(poses: Vec<Pose>, moves: Vec<Move>) -> Result<Self, PathError> {
+        if moves.len() + 1 != poses.len() && !(poses.is_empty() && moves.is_empty()) {
+            return Err(PathError::Count {
+                moves: moves.len(),
+                poses: poses.len(),
+            });
+        }
+        let plain = moves.iter().all(|way| *way == Move::default());
+        Self::checked(poses, if plain { Ways::Slerp } else { Ways::Each(moves) })
+    }
+
+    /// The path along a motion of one's own: a move for each piece between its knots.
+    #[must_use]
+    pub fn along(motion: SplineMotion) -> Self {
+        Self {
+            poses: motion.poses(),
+            ways: Ways::Motion(Box::new(motion)),
+        }
+    }
+
+    fn checked(poses: Vec<Pose>, ways: Ways) -> Result<Self, PathError> {
         if poses.is_empty() {
             return Err(PathError::Empty);
         }
@@ -81,21 +180,29 @@ impl Path {
         {
             return Err(PathError::Mixed { index: index + 1 });
         }
-        let half_turn =
-            |pair: &[Pose]| turn_between(&pair[0], &pair[1]).is_some_and(|(_, angle)| PI - angle <= OPPOSITE);
-        if let Some(index) = poses.windows(2).position(half_turn) {
-            return Err(PathError::HalfTurn { index });
-        }
-        // Of opposite unit vectors the sum is as long as the angle that is missing to half a turn. Poses with all of an
-        // orientation turn about another axis, which is determined.
-        let opposite = |pair: &[Pose]| {
+        let path = Self { poses, ways };
+        for (index, pair) in path.poses.windows(2).enumerate() {
+            if let Turning::Rotary { table, from, to } = path.way(index).turning {
+                let good = |pose: &Pose, angles: [f64; 2]| {
+                    let finite = angles.iter().all(|angle| angle.abs() <= 1e6);
+                    finite && pose.side().is_none() && table.points_along(angles, pose.axis())
+                };
+                if !good(&pair[0], from) || !good(&pair[1], to) {
+                    return Err(PathError::Rotary { index });
+                }
+                continue;
+            }
+            if turn_between(&pair[0], &pair[1]).is_some_and(|(_, angle)| PI - angle <= OPPOSITE) {
+                return Err(PathError::HalfTurn { index });
+            }
+            // Of opposite unit vectors the sum is as long as the angle that is missing to half a turn. Poses with all of an
+            // orientation turn about another axis, which is determined.
             let sum: Vector3<f64> = pair[0].axis().into_inner() + pair[1].axis().into_inner();
-            pair[0].side().is_none() && sum.norm() <= OPPOSITE
-        };
-        match poses.windows(2).position(opposite) {
-            Some(index) => Err(PathError::OppositeAxes { index }),
-            None => Ok(Self { poses }),
+            if pair[0].side().is_none() && sum.norm() <= OPPOSITE {
+                return Err(PathError::OppositeAxes { index });
+            }
         }
+        Ok(path)
     }
 
     /// The poses, at least one.
@@ -108,5 +215,73 @@ impl Path {
     #[must_use]
     pub fn moves(&self) -> usize {
         self.poses.len() - 1
+    }
+
+    /// How the tool goes from pose `index` to the next; along a [motion](Path::along) the move that would join the poses by SLERP.
+    #[must_use]
+    pub fn way(&self, index: usize) -> Move {
+        match &self.ways {
+            Ways::Each(moves) => moves.get(index).copied().unwrap_or_default(),
+            Ways::Slerp | Ways::Motion(_) => Move::default(),
+        }
+    }
+
+    /// Whether move `index` does not move the tool at all.
+    #[must_use]
+    pub fn rests(&self, from: usize, to: usize) -> bool {
+        match &self.ways {
+            Ways::Slerp => self.poses[from] == self.poses[to],
+            Ways::Motion(_) => false,
+            Ways::Each(moves) => {
+                let still = |way: &Move| match (way.course, way.turning) {
+                    (Course::Arc(_), _) => false,
+                    (_, Turning::Rotary { from, to, .. }) => from == to,
+                    _ => true,
+                };
+                self.poses[from] == self.poses[to] && moves[from..to].iter().all(still)
+            }
+        }
+    }
+
+    /// The motions that make move `index`, of equal shares of its time.
+    ///
+    /// Moves by SLERP and motions of one's own are exact; others are, for a tool that reaches no farther than `reach` from its tip, within
+    /// `deviation` (a length) of what their law says, at every time: as far as a million parts suffice.
+    ///
+    /// # Panics
+    /// When there is no such move.
+    #[must_use]
+    pub fn segments(&self, index: usize, reach: f64, deviation: f64) -> Vec<Segment> {
+        let (from, to) = (&self.poses[index], &self.poses[index + 1]);
+        let way = match &self.ways {
+            Ways::Slerp => return Segment::between(from, to),
+            Ways::Motion(motion) => return vec![motion.segment(index).clone()],
+            Ways::Each(moves) => &moves[index],
+        };
+        if *way == Move::default() {
+            return Segment::between(from, to);
+        }
+        even::segments(from, to, way, reach, deviation)
+    }
+
+    /// A bound of the size of all coordinates of tips.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let poses = self.poses.iter().flat_map(|pose| <[f64; 3]>::from(pose.tip()));
+        let ends = poses.map(f64::abs).fold(0.0, f64::max);
+        match &self.ways {
+            Ways::Slerp => ends,
+            Ways::Motion(motion) => motion.size().max(ends),
+            Ways::Each(moves) => moves
+                .iter()
+                .zip(&self.poses)
+                .fold(ends, |size, (way, from)| match way.course {
+                    Course::Straight => size,
+                    // A circle, the rise, and what the rise is measured from.
+                    Course::Arc(arc) => size.max(
+                        arc.turned(from.tip(), 0.0).norm() + 2.0 * arc.radius_vector(from.tip()).norm() + 2.0 * ends,
+                    ),
+                }),
+        }
     }
 }

@@ -1,8 +1,10 @@
 //! Tools and their boundary.
 
+use crate::apt::{Apt, AptError, AptWarning};
 use crate::boundary::{self, Edge, Patch};
 use crate::freeform::{self, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
+use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
 
 /// A milling tool: a solid with an exact B-spline boundary. Its origin is the tip, its `+z` runs along the axis to the holder.
@@ -84,6 +86,124 @@ impl Tool {
         Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
     }
 
+    /// A lollipop: a ball of `radius` on a thinner neck of radius `neck`, `length` from the tip to the top.
+    ///
+    /// # Errors
+    /// [`ProfileError::Measure`] unless `0 < neck < radius` and the top is above the ball's joint with the neck.
+    pub fn lollipop(radius: f64, neck: f64, length: f64) -> Result<Self, ProfileError> {
+        check("radius", radius, radius > 0.0, "positive")?;
+        check(
+            "neck",
+            neck,
+            neck > 0.0 && neck < radius,
+            "positive and less than the radius",
+        )?;
+        let joint = radius + ((radius - neck) * (radius + neck)).sqrt();
+        check(
+            "length",
+            length,
+            length > joint,
+            "greater than the height of the joint of ball and neck",
+        )?;
+        let segments = vec![
+            ProfileSegment::Arc {
+                to: [neck, joint],
+                centre: [0.0, radius],
+                turn: Turn::Ccw,
+            },
+            ProfileSegment::Line { to: [neck, length] },
+            ProfileSegment::Line { to: [0.0, length] },
+        ];
+        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
+    }
+
+    /// A dovetail cutter: widest at its flat bottom, of `radius` there, with flanks that lean inwards at `angle` degrees above the horizontal up to
+    /// `height`, then a neck of radius `neck`.
+    ///
+    /// # Errors
+    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no thicker than the flanks leave it.
+    pub fn dovetail(radius: f64, angle: f64, height: f64, neck: f64, length: f64) -> Result<Self, ProfileError> {
+        check("radius", radius, radius > 0.0, "positive")?;
+        check("angle", angle, angle > 0.0 && angle < 90.0, "between 0 and 90 degrees")?;
+        check("height", height, height > 0.0, "positive")?;
+        let top = radius - height / angle.to_radians().tan();
+        check(
+            "neck",
+            neck,
+            neck > 0.0 && neck <= top,
+            "positive and no more than the flanks leave at their top",
+        )?;
+        check("length", length, length > height, "greater than the height")?;
+        let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
+        let mut segments = vec![line(radius, 0.0), line(top, height)];
+        if neck < top {
+            segments.push(line(neck, height));
+        }
+        segments.extend([line(neck, length), line(0.0, length)]);
+        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
+    }
+
+    /// A barrel cutter: its flank is an arc of radius `flank`, from the flat bottom up to `height`, widest in the middle, of `radius` there. Above it the
+    /// shank is as thick as the bottom.
+    ///
+    /// # Errors
+    /// [`ProfileError::Measure`] unless all are positive, the arc is less than half a circle and leaves a bottom, and `length` is above `height`.
+    pub fn barrel(radius: f64, flank: f64, height: f64, length: f64) -> Result<Self, ProfileError> {
+        check("radius", radius, radius > 0.0, "positive")?;
+        check("height", height, height > 0.0, "positive")?;
+        check("flank", flank, 2.0 * flank > height, "more than half the height")?;
+        let half = 0.5 * height;
+        let bottom = radius - flank + ((flank - half) * (flank + half)).sqrt();
+        check(
+            "flank",
+            flank,
+            bottom > 0.0,
+            "so large that the arc ends outside of the axis",
+        )?;
+        check("length", length, length > height, "greater than the height")?;
+        let segments = vec![
+            ProfileSegment::Line { to: [bottom, 0.0] },
+            ProfileSegment::Arc {
+                to: [bottom, height],
+                centre: [radius - flank, half],
+                turn: Turn::Ccw,
+            },
+            ProfileSegment::Line { to: [bottom, length] },
+            ProfileSegment::Line { to: [0.0, length] },
+        ];
+        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
+    }
+
+    /// A lens cutter: a bottom that is part of a ball of radius `bottom`, with a sharp rim of `radius`, and a shank above it.
+    ///
+    /// # Errors
+    /// [`ProfileError::Measure`] unless `0 < radius < bottom` and `length` is above the rim.
+    pub fn lens(radius: f64, bottom: f64, length: f64) -> Result<Self, ProfileError> {
+        check("radius", radius, radius > 0.0, "positive")?;
+        check("bottom", bottom, bottom > radius, "greater than the radius")?;
+        let rim = bottom - ((bottom - radius) * (bottom + radius)).sqrt();
+        check("length", length, length > rim, "greater than the height of the rim")?;
+        let segments = vec![
+            ProfileSegment::Arc {
+                to: [radius, rim],
+                centre: [0.0, bottom],
+                turn: Turn::Ccw,
+            },
+            ProfileSegment::Line { to: [radius, length] },
+            ProfileSegment::Line { to: [0.0, length] },
+        ];
+        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
+    }
+
+    /// The seven-parameter cutter of APT, and what is odd about it.
+    ///
+    /// # Errors
+    /// [`AptError`]: as [`Apt::profile`].
+    pub fn apt(parameters: &Apt) -> Result<(Self, Vec<AptWarning>), AptError> {
+        let (profile, warnings) = parameters.profile()?;
+        Ok((Self::from_profile(profile), warnings))
+    }
+
     /// The solid of revolution of a profile.
     #[must_use]
     pub fn from_profile(profile: Profile) -> Self {
@@ -138,6 +258,23 @@ impl Tool {
     #[must_use]
     pub fn profile(&self) -> Option<&Profile> {
         self.profile.as_ref()
+    }
+
+    /// No point of the tool is farther from its tip.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        let control = |patch: &Patch| {
+            let weights = patch.weight.coefficients();
+            let point = |i: usize| Vector3::from([0, 1, 2].map(|k| patch.position[k].coefficients()[i] / weights[i]));
+            (0..weights.len()).map(|i| point(i).norm()).fold(0.0, f64::max)
+        };
+        self.patches.iter().map(control).fold(0.0, f64::max)
+    }
+
+    /// Whether the tool is symmetric about its axis.
+    #[must_use]
+    pub fn is_revolved(&self) -> bool {
+        self.profile.is_some()
     }
 
     /// The smooth patches of the boundary.

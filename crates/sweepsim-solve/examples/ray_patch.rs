@@ -1,37 +1,44 @@
-//! Where does a ray meet a bicubic patch? Two planes through the ray make two equations in the patch's two parameters.
+//! Where does a ray meet a bicubic B-spline patch? Two planes through the ray make two equations in the patch's two parameters.
 //!
 //! `cargo run -p sweepsim-solve --example ray_patch`
 
-use sweepsim_solve::{Interval, PointSolver, System};
-use sweepsim_spline::Bernstein;
+use sweepsim_solve::{Pieces, PointSolver};
+use sweepsim_spline::{BSpline, KnotVector};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // A wavy patch over the unit square.
-    let coordinate = |f: fn(f64, f64) -> f64| Bernstein::from_fn(&[3, 3], |i| f(i[0] as f64 / 3.0, i[1] as f64 / 3.0));
-    let patch = [
-        coordinate(|u, _| u)?,
-        coordinate(|_, v| v)?,
-        coordinate(|u, v| 4.0 * (u - 0.5) * (u - 0.2) * (u - 0.9) * 6.0 + 0.3 * v)?,
+    // A wavy patch over the unit square: 7 × 7 control points, 4 × 4 polynomial pieces.
+    let knots = [
+        KnotVector::uniform(3, 4, 0.0, 1.0)?,
+        KnotVector::uniform(3, 4, 0.0, 1.0)?,
     ];
-    // The ray (0, 0.4, 0.1) + s (1, 0.1, 0.05), as two planes: n · (p − origin) = 0.
+    let control: Vec<[f64; 3]> = knots[1]
+        .greville()
+        .iter()
+        .flat_map(|v| {
+            let row = |u: &f64| [*u, *v, 0.4 * (9.0 * u).sin() + 0.3 * v];
+            knots[0].greville().iter().map(row).collect::<Vec<_>>()
+        })
+        .collect();
+    let patch = BSpline::new(knots.to_vec(), 3, control.as_flattened().to_vec())?;
+    let spline = |values: Vec<f64>| BSpline::new(knots.to_vec(), 1, values);
+    // The ray (0, 0.4, 0.1) + s (1, 0.1, 0.05), as two planes: n · (p − origin) = 0. A plane's equation is a spline whose coefficients are
+    // the control points' values.
     let origin = [0.0, 0.4, 0.1];
     let normals = [[-0.1, 1.0, 0.0], [-0.05, 0.0, 1.0]];
     let planes = normals.map(|n| {
-        (0..3).fold(Bernstein::constant(2, 0.0), |sum, k| {
-            let part = patch[k].sub(&Bernstein::constant(2, origin[k])).scale(n[k]);
-            sum.add(&part)
-        })
+        let value = |p: &[f64; 3]| (0..3).map(|k| n[k] * (p[k] - origin[k])).sum();
+        spline(control.iter().map(value).collect())
     });
-    let system = System::new(&[Interval::new(0.0, 1.0); 2], &planes)?;
-    let points = PointSolver::default().solve(&system, &mut ())?;
+    let [first, second] = planes;
+    let points = PointSolver::default().solve_pieces(&Pieces::new(&[first?, second?])?, &mut ())?;
     for root in &points.roots {
-        let hit: Vec<f64> = patch.iter().map(|c| c.evaluate(&root.point)).collect();
         println!(
-            "(u, v) = {:?} at {hit:?}, crossing {}",
+            "(u, v) = {:?} at {:?}, crossing {}",
             root.point,
+            patch.evaluate(&root.point),
             if root.orientation > 0 { "out" } else { "in" }
         );
     }
-    assert!(points.unresolved.is_empty());
+    assert!(!points.roots.is_empty() && points.unresolved.is_empty());
     Ok(())
 }

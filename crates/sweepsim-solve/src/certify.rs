@@ -71,11 +71,12 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             rest[i][j] = f64::abs(middle) + radius + 32.0 * EPSILON * size;
             row += rest[i][j];
         }
+        // Row by row, since `max` would drop the NaN of an unbounded derivative.
+        let contracts = row < 0.999;
+        if !contracts {
+            return None;
+        }
         contraction = contraction.max(row);
-    }
-    let contracts = contraction < 0.999;
-    if !contracts {
-        return None;
     }
     // Newton's method inside the cell; the last point's error is bounded whatever it is.
     let mut s = [0.0; MAX_UNKNOWNS];
@@ -123,6 +124,9 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             error += k[i][e].abs() * (layout.value_error(cell, e) + 16.0 * EPSILON * f64::abs(value[e]));
         }
         direct[i] = f64::abs(sum) + error;
+        if !direct[i].is_finite() {
+            return None;
+        }
         largest = largest.max(direct[i]);
     }
     let all = largest / (1.0 - contraction) * (1.0 + 8.0 * EPSILON);
@@ -132,7 +136,7 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
     }
     // Error ≤ direct + rest · error, entry by entry: from the bound for all, a few rounds to one for each.
     let mut errors = [all; MAX_UNKNOWNS];
-    for _ in 0..6 {
+    for _ in 0..60 {
         let mut better = direct;
         for i in 0..n {
             for j in 0..n {
@@ -140,7 +144,11 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             }
             better[i] *= 1.0 + 16.0 * EPSILON;
         }
+        let done = (0..n).all(|i| better[i] > 0.9 * errors[i]);
         errors = better;
+        if done {
+            break;
+        }
     }
     let mut found = Found {
         point: [0.0; MAX_UNKNOWNS],

@@ -66,7 +66,7 @@ impl Double {
     }
 }
 
-/// Restricts along one axis to `[lo, hi] ⊂ [0, 1]`, in place.
+/// Restricts along one axis to `[lo, hi]`, which lies in `[0, 1]` or leaves it a little, in place.
 pub(crate) fn restrict(c: &mut [Double], degree: usize, inner: usize, lo: f64, hi: f64) {
     if degree == 0 {
         return;

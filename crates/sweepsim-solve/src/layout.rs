@@ -11,6 +11,7 @@
 use crate::double::{self, Double};
 use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO};
 use crate::part::{evaluate_part, hull_zeros, rest_range};
+use crate::program::{AffineForm, Doubt, Jet, Model, Program, Range, Value};
 use crate::tensor;
 use smallvec::SmallVec;
 
@@ -29,9 +30,10 @@ pub(crate) struct Axis {
     pub inner: usize,
 }
 
-/// One summand of an equation.
+/// One summand of an equation (or of a leaf of one).
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
+    /// The row that it belongs to: an equation, or where equations are combined from leaves, a leaf.
     pub equation: usize,
     pub offset: usize,
     pub len: usize,
@@ -74,6 +76,8 @@ pub(crate) struct Layout {
     pub first_noise: Row,
     /// What each equation was multiplied by: a power of two.
     pub factor: Row,
+    /// How rows make equations; absent where each row is one.
+    pub program: Option<Program>,
 }
 
 /// A box with the coefficients of all equations over it.
@@ -105,6 +109,11 @@ pub(crate) struct Slopes {
 }
 
 impl Layout {
+    /// Equations, or leaves of which these are combined: what has coefficients, noise, remainder.
+    pub(crate) fn rows(&self) -> usize {
+        self.program.as_ref().map_or(self.m, |p| p.leaves)
+    }
+
     /// A cell that holds the first coefficients.
     pub(crate) fn root(&self) -> Cell {
         let mut cell = Cell {
@@ -129,13 +138,98 @@ impl Layout {
             hi[e] += h;
             cell.scale[e] += tensor::greater(l.abs(), h.abs());
         }
-        for e in 0..self.m {
+        for e in 0..self.rows() {
             // Sums of a few parts: a rounding each.
             let pad = cell.noise[e] + self.remainder[e] + 4.0 * EPSILON * cell.scale[e];
             lo[e] -= pad;
             hi[e] += pad;
         }
+        match &self.program {
+            Some(program) => self.combined_ranges(program, cell, &(lo, hi)),
+            None => (lo, hi),
+        }
+    }
+
+    /// The equations' ranges by those of their leaves, and by their affine enclosures.
+    fn combined_ranges(&self, program: &Program, cell: &Cell, rows: &(Row, Row)) -> (Row, Row) {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        let affine = self.affine(cell, ZERO);
+        for e in 0..self.m {
+            let range = program.run(e, |row| Range {
+                lo: rows.0[row],
+                hi: rows.1[row],
+            });
+            let slopes: f64 = affine.slope[e].iter().map(|s| s.abs()).sum();
+            let size = affine.constant[e].abs() + slopes;
+            let reach = (0.5 * slopes + affine.radius[e]) * (1.0 + 16.0 * EPSILON) + 4.0 * EPSILON * size;
+            lo[e] = range.lo.max(affine.constant[e] - reach);
+            hi[e] = range.hi.min(affine.constant[e] + reach);
+        }
         (lo, hi)
+    }
+
+    /// Whether some row's coefficients are mostly noise, and might be less so if computed anew.
+    pub(crate) fn noisy(&self, cell: &Cell, totals: &(Row, Row), share: f64) -> bool {
+        (0..self.rows()).any(|e| {
+            let size = match self.program {
+                Some(_) => cell.scale[e],
+                None => totals.0[e].abs().max(totals.1[e].abs()),
+            };
+            cell.noise[e] > share * size && cell.noise[e] > 4.0 * self.first_noise[e]
+        })
+    }
+
+    /// Whether an equation is zero on the cell, up to noise.
+    pub(crate) fn vanishes(&self, cell: &Cell, totals: &(Row, Row), equation: usize) -> bool {
+        let size = totals.0[equation].abs().max(totals.1[equation].abs());
+        match self.program {
+            Some(_) => size.is_finite() && size <= 2.5 * self.value_error(cell, equation),
+            None => {
+                let error = cell.noise[equation] + self.remainder[equation];
+                size <= 2.5 * error + 64.0 * EPSILON * cell.scale[equation]
+            }
+        }
+    }
+
+    /// A bound of an equation's size on the cell (if it is finite).
+    pub(crate) fn size(&self, cell: &Cell, equation: usize) -> f64 {
+        match &self.program {
+            Some(program) => program
+                .run(equation, |row| Range {
+                    lo: -cell.scale[row],
+                    hi: cell.scale[row],
+                })
+                .magnitude(),
+            None => cell.scale[equation],
+        }
+    }
+
+    /// Whether an equation has a variable.
+    pub(crate) fn depends(&self, equation: usize, variable: usize) -> bool {
+        let has = |row: usize| {
+            let mut own = self.parts.iter().filter(|p| p.equation == row);
+            own.any(|p| p.axis(variable).is_some())
+        };
+        match &self.program {
+            Some(program) => program.any(equation, has),
+            None => has(equation),
+        }
+    }
+
+    /// Whether an equation is zero on the whole domain, up to its noise.
+    pub(crate) fn nothing(&self, equation: usize) -> bool {
+        let zero = |row: usize| {
+            let own = self.parts.iter().filter(|p| p.equation == row);
+            let size: f64 = own
+                .map(|p| tensor::range(p.of(&self.first)))
+                .map(|(l, h)| tensor::greater(l.abs(), h.abs()))
+                .sum();
+            size <= 8.0 * (self.first_noise[row] + self.remainder[row])
+        };
+        match &self.program {
+            Some(program) => program.any(equation, zero),
+            None => zero(equation),
+        }
     }
 
     /// Restricts along one variable; the new ends may lie outside the old ones.
@@ -185,7 +279,7 @@ impl Layout {
             cell.noise[e] = (cell.noise[e] + added) * growth;
             grown[e] = tensor::greater(grown[e], growth);
         }
-        for e in 0..self.m {
+        for e in 0..self.rows() {
             cell.scale[e] *= grown[e];
         }
         cell.lo[variable] = lo;
@@ -215,7 +309,8 @@ impl Layout {
         cell.lo[variable] = at;
     }
 
-    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Only inside the domain.
+    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Cells may leave the domain a little: restriction to
+    /// `[−a, 1 + b]` makes errors of degree `d` at most `((1 + 2a)(1 + 2b))ᵈ` times as large.
     ///
     /// Parts of one equation may be large where their sum is small: constants move to the first part, so that what is rounded is small.
     pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
@@ -243,13 +338,21 @@ impl Layout {
                 *x = d.add(shift).hi;
             }
         }
-        cell.noise = self.first_noise;
+        let beyond = (0..self.n).fold(1.0, |g: f64, j| {
+            g.max((1.0 + 2.0 * (-cell.lo[j]).max(0.0)) * (1.0 + 2.0 * (cell.hi[j] - 1.0).max(0.0)))
+        });
+        let growth = if beyond > 1.0 {
+            beyond.powi(self.degrees as i32)
+        } else {
+            1.0
+        };
+        cell.noise = self.first_noise.map(|e| e * growth);
         self.ranges(cell);
         for part in &self.parts {
             let e = part.equation;
             let steps: usize = part.axes.iter().map(|a| a.degree).sum();
             // Coefficients are normalised to at most 2 at first; the rounding to single precision is local.
-            cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 + EPSILON * cell.scale[e];
+            cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 * growth + EPSILON * cell.scale[e];
         }
     }
 
@@ -262,15 +365,19 @@ impl Layout {
             n: self.n - 1,
             m: self.m,
             degrees: self.degrees,
+            program: self.program.clone(),
             ..Layout::default()
         };
         let mut factor = [1.0; MAX_UNKNOWNS];
-        for e in 0..self.m {
+        for e in 0..self.rows() {
             if cell.scale[e] > 0.0 {
                 factor[e] = 2f64.powi(-(cell.scale[e].log2().floor().clamp(-900.0, 900.0) as i32));
             }
             face.first_noise[e] = cell.noise[e] * factor[e];
             face.remainder[e] = self.remainder[e] * factor[e];
+            if let Some(program) = &mut face.program {
+                program.scale[e] /= factor[e];
+            }
             let widest = (0..self.n).fold(0.0, |m: f64, j| m.max(cell.hi[j] - cell.lo[j]));
             face.slope_remainder[e] = self.slope_remainder[e] * factor[e] * widest * (1.0 + 4.0 * EPSILON);
         }
@@ -310,6 +417,25 @@ impl Layout {
 
     /// The mean of each derivative over the cell (not rigorous; what uses it bounds the rest).
     pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
+        let rows = self.mean_row_slopes(c);
+        let Some(program) = &self.program else { return rows };
+        let mut means = [0.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            let values = part.of(c);
+            means[part.equation] += values.iter().sum::<f64>() / values.len() as f64;
+        }
+        let mut slope = ZERO;
+        for (e, row) in slope.iter_mut().enumerate().take(self.m) {
+            let leaf = |r: usize| Value {
+                value: means[r],
+                gradient: rows[r],
+            };
+            *row = program.run(e, leaf).gradient;
+        }
+        slope
+    }
+
+    fn mean_row_slopes(&self, c: &[f64]) -> Square {
         let mut slope = ZERO;
         for part in &self.parts {
             let values = part.of(c);
@@ -320,8 +446,29 @@ impl Layout {
         slope
     }
 
-    /// An affine enclosure of each equation with the given slopes.
+    /// An affine enclosure of each equation, with the given slopes unless equations are combined of leaves.
     pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
+        let Some(program) = &self.program else {
+            return self.affine_rows(cell, slope);
+        };
+        let rows = self.affine_rows(cell, self.mean_row_slopes(&cell.c));
+        let mut affine = Affine {
+            constant: [0.0; MAX_UNKNOWNS],
+            slope: ZERO,
+            radius: [0.0; MAX_UNKNOWNS],
+        };
+        for e in 0..self.m {
+            let form = program.run(e, |r| AffineForm {
+                constant: rows.constant[r],
+                slope: rows.slope[r],
+                radius: rows.radius[r],
+            });
+            (affine.constant[e], affine.slope[e], affine.radius[e]) = (form.constant, form.slope, form.radius);
+        }
+        affine
+    }
+
+    fn affine_rows(&self, cell: &Cell, slope: Square) -> Affine {
         let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
         for part in &self.parts {
             let (l, h) = rest_range(part, part.of(&cell.c), &slope[part.equation]);
@@ -329,9 +476,10 @@ impl Layout {
             hi[part.equation] += h;
         }
         let (mut constant, mut radius) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
-        for e in 0..self.m {
+        for e in 0..self.rows() {
             let slopes: f64 = slope[e][..self.n].iter().map(|s| s.abs()).sum();
-            let rounding = EPSILON * (self.n + 8) as f64 * (cell.scale[e] + slopes);
+            // Slopes' shares round, their sum does, and the difference.
+            let rounding = EPSILON * (2 * self.n + 8) as f64 * (cell.scale[e] + slopes);
             constant[e] = 0.5 * (lo[e] + hi[e]);
             radius[e] = 0.5 * (hi[e] - lo[e]) + rounding + cell.noise[e] + self.remainder[e];
         }
@@ -355,7 +503,7 @@ impl Layout {
                 hi[e][axis.variable] = h + pad;
             }
         }
-        for e in 0..self.m {
+        for e in 0..self.rows() {
             if self.slope_remainder[e] > 0.0 {
                 for j in 0..self.n {
                     let pad = self.slope_remainder[e] * (cell.hi[j] - cell.lo[j]) * (1.0 + 4.0 * EPSILON);
@@ -364,7 +512,40 @@ impl Layout {
                 }
             }
         }
+        let Some(program) = &self.program else {
+            return Slopes { lo, hi };
+        };
+        let rows = Slopes { lo, hi };
+        for e in 0..self.m {
+            let jet = program.run(e, |r| Jet {
+                value: self.row_range(cell, r),
+                slopes: std::array::from_fn(|j| Range {
+                    lo: rows.lo[r][j],
+                    hi: rows.hi[r][j],
+                }),
+            });
+            for j in 0..self.n {
+                (lo[e][j], hi[e][j]) = (jet.slopes[j].lo, jet.slopes[j].hi);
+            }
+        }
         Slopes { lo, hi }
+    }
+
+    /// The range of one row.
+    fn row_range(&self, cell: &Cell, row: usize) -> Range {
+        let mut range = Range::constant(0.0);
+        let mut size = 0.0;
+        for part in self.parts.iter().filter(|p| p.equation == row) {
+            let (l, h) = tensor::range(part.of(&cell.c));
+            range.lo += l;
+            range.hi += h;
+            size += tensor::greater(l.abs(), h.abs());
+        }
+        let pad = cell.noise[row] + self.remainder[row] + 4.0 * EPSILON * size;
+        Range {
+            lo: range.lo - pad,
+            hi: range.hi + pad,
+        }
     }
 
     /// Value and derivatives of each equation at `s` (in coordinates in which the cell is `[0,1]ⁿ`), without error bounds.
@@ -378,13 +559,35 @@ impl Layout {
                 jacobian[part.equation][axis.variable] += g;
             }
         }
+        let Some(program) = &self.program else {
+            return (value, jacobian);
+        };
+        let (rows, slopes) = (value, jacobian);
+        for e in 0..self.m {
+            let leaf = |r: usize| Value {
+                value: rows[r],
+                gradient: slopes[r],
+            };
+            let whole = program.run(e, leaf);
+            (value[e], jacobian[e]) = (whole.value, whole.gradient);
+        }
         (value, jacobian)
     }
 
     /// What [`evaluate`](Self::evaluate)'s values can be wrong by, for `s` within `[0,1]ⁿ`.
     pub(crate) fn value_error(&self, cell: &Cell, equation: usize) -> f64 {
         let steps = (4 * self.degrees + 8 * self.n + 8) as f64;
-        cell.noise[equation] + self.remainder[equation] + EPSILON * steps * cell.scale[equation]
+        let own = |row: usize| cell.noise[row] + self.remainder[row] + EPSILON * steps * cell.scale[row];
+        match &self.program {
+            Some(program) => {
+                let leaf = |row: usize| Doubt {
+                    range: self.row_range(cell, row),
+                    error: own(row),
+                };
+                program.run(equation, leaf).error
+            }
+            None => own(equation),
+        }
     }
 
     /// Where along `variable` an equation can vanish, by the convex hulls of its slabs' ranges: calls `found` with each
@@ -397,6 +600,10 @@ impl Layout {
         variable: usize,
         window: &mut (f64, f64),
     ) {
+        if self.program.is_some() {
+            // Hulls of leaves do not make hulls of products.
+            return;
+        }
         let (mut low, mut high) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
         for (part, own) in self.parts.iter().zip(part_ranges) {
             let Some(axis) = part.axis(variable) else { continue };

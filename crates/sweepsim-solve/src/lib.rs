@@ -17,14 +17,18 @@ mod certify;
 mod charts;
 mod curves;
 mod double;
+mod expression;
 mod interval;
 mod layout;
 mod matrix;
 mod mesh;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod part;
 mod picture;
 mod pieces;
 mod points;
+mod program;
 mod search;
 mod separate;
 mod surface;
@@ -34,7 +38,8 @@ mod tensor;
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };
-pub use curves::{Curve, CurvePoint, CurveSolver, Curves, End, Singular};
+pub use curves::{Curve, CurvePiece, CurvePoint, CurveSolver, Curves, End, Singular};
+pub use expression::{Expression, MAX_FORMS};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;
 pub use matrix::MAX_UNKNOWNS;

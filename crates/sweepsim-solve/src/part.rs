@@ -1,40 +1,54 @@
 //! What can be read off one part: its range less an affine function, where hulls meet zero, value and gradient.
 
-use crate::layout::{EPSILON, MAX_DEGREE, Part};
+use crate::layout::{Axis, EPSILON, MAX_DEGREE, Part};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use crate::tensor;
 
 /// Range of `c − Σ slope (I/d − ½)`: the part less an affine function, by coefficients (affine functions have their values
 /// at `I/d` as coefficients).
 pub(crate) fn rest_range(part: &Part, c: &[f64], slope: &Row) -> (f64, f64) {
-    let Some(first) = part.axes.first() else {
-        return (c[0], c[0]);
-    };
+    match part.axes.first() {
+        None => (c[0], c[0]),
+        Some(first) if first.degree < 4 => rest_range_in::<4>(part, *first, c, slope),
+        Some(first) if first.degree < 8 => rest_range_in::<8>(part, *first, c, slope),
+        Some(first) => rest_range_in::<{ MAX_DEGREE + 1 }>(part, *first, c, slope),
+    }
+}
+
+/// The same, with room for `N` coefficients along the fastest axis.
+fn rest_range_in<const N: usize>(part: &Part, first: Axis, c: &[f64], slope: &Row) -> (f64, f64) {
     let count = first.degree + 1;
-    let (mut low, mut high) = ([f64::INFINITY; MAX_DEGREE + 1], [f64::NEG_INFINITY; MAX_DEGREE + 1]);
-    let mut index = [0usize; MAX_UNKNOWNS];
+    let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
+    let mut index = [0.0; MAX_UNKNOWNS];
+    let mut step = [0.0; MAX_UNKNOWNS];
+    let mut start = 0.0;
     let others = &part.axes[1..];
+    for (axis, step) in others.iter().zip(&mut step) {
+        *step = slope[axis.variable] / axis.degree as f64;
+        start -= 0.5 * slope[axis.variable];
+    }
     for row in c.chunks_exact(count) {
-        let mut base = 0.0;
-        for (axis, i) in others.iter().zip(index) {
-            base += slope[axis.variable] * (i as f64 / axis.degree as f64 - 0.5);
+        let mut base = start;
+        for (step, i) in step.iter().zip(&index[..others.len()]) {
+            base += step * i;
         }
         for ((l, h), x) in low[..count].iter_mut().zip(&mut high[..count]).zip(row) {
             let rest = *x - base;
             *l = tensor::lesser(*l, rest);
             *h = tensor::greater(*h, rest);
         }
-        for (axis, i) in others.iter().zip(index.iter_mut()) {
-            *i += 1;
-            if *i <= axis.degree {
+        for (axis, i) in others.iter().zip(&mut index) {
+            *i += 1.0;
+            if *i <= axis.degree as f64 {
                 break;
             }
-            *i = 0;
+            *i = 0.0;
         }
     }
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    let step = slope[first.variable] / first.degree as f64;
     for i in 0..count {
-        let shift = slope[first.variable] * (i as f64 / first.degree as f64 - 0.5);
+        let shift = step * i as f64 - 0.5 * slope[first.variable];
         lo = tensor::lesser(lo, low[i] - shift);
         hi = tensor::greater(hi, high[i] - shift);
     }

@@ -106,6 +106,14 @@ const LEAST_SIDE: f64 = 4e-15;
 const CUT: f64 = 0.492;
 /// Noise above this part of an equation's size makes its coefficients worth computing anew.
 const NOISY: f64 = 1.5e-8;
+/// Where an equation vanishes up to noise because a side that it depends on is below this part of another, the other is split all the same: the cell may
+/// hold several simple roots.
+const SQUEEZED: f64 = 1.0 / 64.0;
+/// Before a cell stays open, certificates are tried on boxes of so many times its width, each so many times as wide as the one before.
+const WIDER: f64 = 16.0;
+const WIDER_TRIES: u32 = 6;
+/// Where so many cells were tried in vain, the rest is not: a continuum of solutions.
+const WIDER_FAILURES: u32 = 64;
 
 #[expect(clippy::large_enum_variant, reason = "made once an attempt, and taken apart at once")]
 enum Verdict {
@@ -135,14 +143,15 @@ enum Verdict {
 pub struct PointSolver {
     /// Limits.
     pub options: SolveOptions,
-    stack: Vec<f64>,
-    depths: Vec<u32>,
-    cell: Cell,
+    pub(crate) stack: Vec<f64>,
+    pub(crate) depths: Vec<u32>,
+    pub(crate) cell: Cell,
     trial: Cell,
     lower: Cell,
     buffer: Vec<f64>,
     doubles: Vec<Double>,
     ranges: Vec<(f64, f64)>,
+    failures: u32,
     pub(crate) found: Vec<Found>,
     pub(crate) open: Vec<Open>,
     pub(crate) statistics: SolveStatistics,
@@ -164,6 +173,13 @@ impl PointSolver {
     ///
     /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
     pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Points, SolveError> {
+        self.check(system)?;
+        self.run(system, observer);
+        Ok(self.points(system))
+    }
+
+    /// Whether the system and the limits can be meant.
+    pub(crate) fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if m != n {
             return Err(SolveError::Equations {
@@ -175,20 +191,12 @@ impl PointSolver {
         if !(1e-14..=1.0).contains(&self.options.smallest) {
             return Err(SolveError::Smallest);
         }
-        self.statistics = SolveStatistics::default();
-        self.found.clear();
-        self.open.clear();
-        let root = system.root();
-        self.search(system, root, observer);
-        self.identify(n);
-        // An open box inside a box where a found root is the only one holds nothing else.
-        let found = &self.found;
-        self.open.retain(|o| {
-            !found
-                .iter()
-                .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
-        });
-        unite(&mut self.open, n);
+        Ok(())
+    }
+
+    /// What was found, in the domain's coordinates.
+    pub(crate) fn points(&mut self, system: &System) -> Points {
+        let n = system.layout.n;
         self.found.sort_by(|a, b| {
             let ends = a.point[..n].iter().zip(&b.point[..n]);
             ends.map(|(x, y)| x.total_cmp(y))
@@ -202,21 +210,33 @@ impl PointSolver {
             orientation: f.orientation,
             place: if f.boundary { Place::Boundary } else { Place::Inside },
         };
-        Ok(Points {
+        Points {
             roots: self.found.iter().map(root).collect(),
             unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
             statistics: self.statistics,
-        })
+        }
     }
 
     /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
     pub(crate) fn run(&mut self, system: &System, observer: &mut dyn Observer) {
-        let n = system.layout.n;
+        self.restart();
+        let root = system.root();
+        self.search(system, &root, 0, observer);
+        self.finish(system.layout.n);
+    }
+
+    /// Forgets what was found.
+    pub(crate) fn restart(&mut self) {
         self.statistics = SolveStatistics::default();
         self.found.clear();
         self.open.clear();
-        let root = system.root();
-        self.search(system, root, observer);
+        self.stack.clear();
+        self.depths.clear();
+        self.failures = 0;
+    }
+
+    /// Counts roots once, and unites open boxes.
+    pub(crate) fn finish(&mut self, n: usize) {
         self.identify(n);
         // An open box inside a box where a found root is the only one holds nothing else.
         let found = &self.found;
@@ -228,14 +248,12 @@ impl PointSolver {
         unite(&mut self.open, n);
     }
 
-    /// The depth-first search from one cell; adds to `found` and `open`.
-    fn search(&mut self, system: &System, root: Cell, observer: &mut dyn Observer) {
+    /// The depth-first search from one cell at some depth; adds to `found` and `open`.
+    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, observer: &mut dyn Observer) {
         let layout = &system.layout;
         let mut watch = Watch::new(&self.options);
-        self.stack.clear();
-        self.depths.clear();
-        push(&mut self.stack, &root, layout);
-        self.depths.push(0);
+        push(&mut self.stack, first, layout);
+        self.depths.push(depth);
         while let Some(depth) = self.depths.pop() {
             pop(&mut self.stack, &mut self.cell, layout);
             let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
@@ -247,10 +265,7 @@ impl PointSolver {
                 }
                 break;
             }
-            self.statistics.boxes += 1;
-            self.statistics.depth = self.statistics.depth.max(depth);
-            let fate = self.treat(system, depth);
-            self.statistics.count(fate);
+            let fate = self.visit(system, depth);
             if observer.traces() {
                 // Where the cell was split, `cell` is the upper part by now and `lower` the other.
                 let lo = if fate == Fate::Split {
@@ -263,8 +278,17 @@ impl PointSolver {
         }
     }
 
+    /// Treats the current cell, and counts.
+    pub(crate) fn visit(&mut self, system: &System, depth: u32) -> Fate {
+        self.statistics.boxes += 1;
+        self.statistics.depth = self.statistics.depth.max(depth);
+        let fate = self.treat(system, depth);
+        self.statistics.count(fate);
+        fate
+    }
+
     /// Leaves the current cell open.
-    fn leave(&mut self, cause: Cause) {
+    pub(crate) fn leave(&mut self, cause: Cause) {
         self.open.push(Open {
             lo: self.cell.lo,
             hi: self.cell.hi,
@@ -283,11 +307,7 @@ impl PointSolver {
             if excluded(&totals, n) {
                 return Fate::Sign;
             }
-            let noisy = (0..n).any(|i| {
-                let size = totals.0[i].abs().max(totals.1[i].abs());
-                self.cell.noise[i] > NOISY * size && self.cell.noise[i] > 4.0 * layout.first_noise[i]
-            });
-            if noisy && within_domain(&self.cell, n) {
+            if layout.noisy(&self.cell, &totals, NOISY) && within_domain(&self.cell, n) {
                 layout.refresh(&mut self.cell, &mut self.doubles);
                 self.statistics.refreshed += 1;
                 totals = layout.ranges(&mut self.cell);
@@ -308,7 +328,8 @@ impl PointSolver {
                     }
                 }
                 let largest = half[..n].iter().fold(0.0, |m: f64, h| m.max(*h));
-                if largest <= threshold {
+                let bounded = half[..n].iter().all(|h| h.is_finite());
+                if bounded && largest <= threshold {
                     threshold = AGAIN * largest;
                     match self.certify(system, &centre, &half) {
                         Verdict::Root(found) => {
@@ -333,13 +354,14 @@ impl PointSolver {
             self.statistics.reductions += 1;
         };
         let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
-        let vanishing = |i: usize| {
-            let size = totals.0[i].abs().max(totals.1[i].abs());
-            size <= 2.5 * (self.cell.noise[i] + layout.remainder[i]) + 64.0 * EPSILON * self.cell.scale[i]
-        };
+        let vanishing = |i: usize| layout.vanishes(&self.cell, &totals, i);
+        let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
+        let thin = |j: usize| width(j) < SQUEEZED * width(widest);
+        let squeezed = !(0..n).all(vanishing)
+            && (0..n).all(|i| !vanishing(i) || ((0..n).any(|j| thin(j) && layout.depends(i, j)) && !layout.nothing(i)));
         let cause = if (0..n).all(|j| width(j) <= self.options.smallest) {
             Some(Cause::Smallest)
-        } else if (0..n).any(vanishing) {
+        } else if (0..n).any(vanishing) && !squeezed {
             Some(Cause::Vanishing)
         } else if depth >= self.options.depth {
             Some(Cause::Depth)
@@ -347,15 +369,17 @@ impl PointSolver {
             None
         };
         if let Some(cause) = cause {
-            self.leave(cause);
-            return Fate::Unresolved;
+            return self.settle_or_leave(system, cause);
         }
-        let axis = self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k));
+        let axis = if (0..n).any(vanishing) {
+            widest
+        } else {
+            self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k))
+        };
         let (lo, hi) = (self.cell.lo[axis], self.cell.hi[axis]);
         let at = lo + CUT * (hi - lo);
         if !(at > lo && at < hi) {
-            self.leave(Cause::Smallest);
-            return Fate::Unresolved;
+            return self.settle_or_leave(system, Cause::Smallest);
         }
         layout.split(&mut self.cell, &mut self.lower, axis, at);
         push(&mut self.stack, &self.cell, layout);
@@ -424,8 +448,9 @@ impl PointSolver {
                         }
                     }
                     None => {
-                        if self.cell.scale[k] > 0.0 {
-                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / self.cell.scale[k];
+                        let size = layout.size(&self.cell, k);
+                        if size > 0.0 {
+                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / size;
                         }
                     }
                 }
@@ -461,20 +486,51 @@ impl PointSolver {
             }
             layout.restrict(trial, j, lo, hi);
         }
-        let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
-            return Verdict::Unclear;
-        };
-        let (mut found, mut straddles, mut boundary) = (unique, false, false);
-        for j in 0..n {
-            if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
-                return Verdict::Elsewhere;
-            }
-            straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
-            boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+        match unique_root(layout, trial, &mut self.buffer) {
+            Some(unique) => placed(system, cell, unique),
+            None => Verdict::Unclear,
         }
-        found.straddles = straddles;
-        found.boundary = boundary;
-        Verdict::Root(found)
+    }
+
+    /// The last resort for a cell that is about to stay open: a certificate on a larger box around it. Reductions may have made the
+    /// cell so small that noise hides its slopes, though the root is simple.
+    fn settle_or_leave(&mut self, system: &System, cause: Cause) -> Fate {
+        let layout = &system.layout;
+        let n = layout.n;
+        let limit = if system.bounded() { 0.0 } else { BEYOND };
+        let cell = &self.cell;
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max(cell.hi[j] - cell.lo[j]));
+        let useful = cause != Cause::Depth && self.failures < WIDER_FAILURES;
+        let mut reach = widest;
+        for _ in 0..if useful { WIDER_TRIES } else { 0 } {
+            reach *= WIDER;
+            if reach > 0.5 {
+                break;
+            }
+            let trial = &mut self.trial;
+            trial.c.resize(layout.len, 0.0);
+            for j in 0..n {
+                trial.lo[j] = (cell.lo[j] - reach).max(-limit);
+                trial.hi[j] = (cell.hi[j] + reach).min(1.0 + limit);
+            }
+            layout.refresh(trial, &mut self.doubles);
+            self.statistics.refreshed += 1;
+            self.statistics.attempts += 1;
+            let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
+                continue;
+            };
+            match placed(system, cell, unique) {
+                Verdict::Root(found) => {
+                    self.found.push(found);
+                    return Fate::Certified;
+                }
+                Verdict::Elsewhere => return Fate::Elsewhere,
+                Verdict::Unclear => {}
+            }
+        }
+        self.failures += u32::from(useful);
+        self.leave(cause);
+        Fate::Unresolved
     }
 
     /// Drops roots that were found from several boxes: only one whose enclosure leaves its box can have been.
@@ -513,6 +569,19 @@ impl PointSolver {
     }
 }
 
+/// Where the only root of a box around the cell lies.
+fn placed(system: &System, cell: &Cell, unique: Found) -> Verdict {
+    let mut found = unique;
+    for j in 0..system.layout.n {
+        if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
+            return Verdict::Elsewhere;
+        }
+        found.straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
+        found.boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+    }
+    Verdict::Root(found)
+}
+
 pub(crate) fn open_box(system: &System, open: &Open) -> Unresolved {
     Unresolved {
         bounds: system.outward(&open.lo, &open.hi),
@@ -534,7 +603,7 @@ pub(crate) fn excluded(totals: &(Row, Row), m: usize) -> bool {
 }
 
 pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
-    let (n, m) = (layout.n, layout.m);
+    let (n, m) = (layout.n, layout.rows());
     stack.extend_from_slice(&cell.lo[..n]);
     stack.extend_from_slice(&cell.hi[..n]);
     stack.extend_from_slice(&cell.noise[..m]);
@@ -543,7 +612,7 @@ pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
 }
 
 pub(crate) fn pop(stack: &mut Vec<f64>, cell: &mut Cell, layout: &Layout) {
-    let (n, m) = (layout.n, layout.m);
+    let (n, m) = (layout.n, layout.rows());
     let size = 2 * n + 2 * m + layout.len;
     let start = stack.len() - size;
     let record = &stack[start..];

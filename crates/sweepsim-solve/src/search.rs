@@ -190,7 +190,7 @@ pub(crate) struct Watch {
 impl Watch {
     pub(crate) fn new(options: &SolveOptions) -> Self {
         Self {
-            deadline: options.time.map(|t| Instant::now() + t),
+            deadline: options.time.and_then(|t| Instant::now().checked_add(t)),
             ticks: 0,
         }
     }

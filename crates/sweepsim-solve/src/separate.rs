@@ -6,8 +6,8 @@ use crate::system::{Equation, MAX_SYSTEM, SystemError};
 use smallvec::SmallVec;
 use sweepsim_spline::Bernstein;
 
-/// Adds an equation's parts, normalised by a power of two.
-pub(crate) fn add(layout: &mut Layout, equation: usize, given: &Equation) -> Result<(), SystemError> {
+/// Adds the parts of an equation, or of a leaf of it, as a row, normalised by a power of two.
+pub(crate) fn add(layout: &mut Layout, row: usize, equation: usize, given: &Equation) -> Result<(), SystemError> {
     let n = layout.n;
     let not_finite = SystemError::NotFinite { equation };
     if given.terms.is_empty() {
@@ -52,7 +52,7 @@ pub(crate) fn add(layout: &mut Layout, equation: usize, given: &Equation) -> Res
     };
     let (half, rest) = (2f64.powi(exponent / 2), 2f64.powi(exponent - exponent / 2));
     let scaled = |x: f64| x * half * rest;
-    layout.factor[equation] = scaled(1.0);
+    layout.factor[row] = scaled(1.0);
     let mut noise = 0.0;
     let mut remainder = scaled(given.remainder);
     let mut slope_remainder = scaled(given.slope_remainder);
@@ -69,13 +69,13 @@ pub(crate) fn add(layout: &mut Layout, equation: usize, given: &Equation) -> Res
         remainder += residual;
         slope_remainder += 2.0 * top * residual;
         for (degrees, block) in separated.blocks {
-            push(layout, equation, &degrees, &block);
+            push(layout, row, &degrees, &block);
         }
     }
     // `push` may add to these. Underflow in the scaling: below any normal number's rounding.
-    layout.first_noise[equation] += noise + 1e-290;
-    layout.remainder[equation] += remainder;
-    layout.slope_remainder[equation] = slope_remainder;
+    layout.first_noise[row] += noise + 1e-290;
+    layout.remainder[row] += remainder;
+    layout.slope_remainder[row] = slope_remainder;
     layout.degrees = layout.degrees.max(degrees);
     Ok(())
 }

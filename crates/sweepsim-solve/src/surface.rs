@@ -300,7 +300,7 @@ impl Search<'_> {
             let fate = if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
                 Fate::Sign
             } else {
-                if cell.noise[0] > 1e-7 * totals.0[0].abs().max(totals.1[0].abs()) && self.statistics.depth > 0 {
+                if self.nodes[number].level > 0 && layout.noisy(&cell, &totals, 1e-7) {
                     layout.refresh(&mut cell, &mut self.doubles);
                     self.statistics.refreshed += 1;
                     totals = layout.ranges(&mut cell);
@@ -387,8 +387,8 @@ impl Search<'_> {
     /// Whether the surface in the cell lies in a slab within the tolerance.
     fn flat(&self, cell: &Cell) -> bool {
         let layout = &self.system.layout;
-        let slope = layout.mean_slopes(&cell.c);
-        let affine = layout.affine(cell, slope);
+        let affine = layout.affine(cell, layout.mean_slopes(&cell.c));
+        let slope = &affine.slope;
         let length = (0..3)
             .map(|j| (slope[0][j] / ((cell.hi[j] - cell.lo[j]) * self.system.domain_width(j))).powi(2))
             .sum::<f64>()

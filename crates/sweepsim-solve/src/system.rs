@@ -1,6 +1,7 @@
 //! Systems of equations in Bernstein form over a box, checked once and brought into the solvers' inner form.
 
 use crate::Interval;
+use crate::expression::{Expression, Rows};
 use crate::layout::{Cell, EPSILON, Layout};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use smallvec::SmallVec;
@@ -19,6 +20,8 @@ pub struct Equation {
     pub(crate) terms: Vec<Bernstein>,
     pub(crate) remainder: f64,
     pub(crate) slope_remainder: f64,
+    /// Instead of terms: a combination of equations.
+    pub(crate) expression: Option<Expression>,
 }
 
 impl Equation {
@@ -29,6 +32,7 @@ impl Equation {
             terms,
             remainder: 0.0,
             slope_remainder: 0.0,
+            expression: None,
         }
     }
 
@@ -137,6 +141,12 @@ pub enum SystemError {
         /// The equation.
         equation: usize,
     },
+    /// An expression's forms are more than [`MAX_FORMS`](crate::MAX_FORMS) together with those of the equations before it, or it is nested too deeply.
+    #[error("equation {equation} is an expression of too many forms")]
+    TooManyForms {
+        /// The equation.
+        equation: usize,
+    },
     /// A degree is above [`MAX_DEGREE`](crate::MAX_DEGREE), or there are more than [`MAX_SYSTEM`] coefficients.
     #[error("equation {equation} is too large: degree {degree}, {coefficients} coefficients in all so far")]
     TooLarge {
@@ -182,19 +192,19 @@ impl System {
             }
         }
         let mut layout = Layout { n, ..Layout::default() };
-        let mut bounded = false;
+        let mut rows = Rows::default();
         for (equation, given) in equations.into_iter().enumerate() {
             let given: Equation = given.into();
-            bounded |= given.remainder > 0.0;
             if equation >= n {
                 return Err(SystemError::TooManyEquations {
                     equations: equation + 1,
                     variables: n,
                 });
             }
-            crate::separate::add(&mut layout, equation, &given)?;
+            rows.add(&mut layout, equation, &given)?;
             layout.m = equation + 1;
         }
+        let bounded = rows.finish(&mut layout);
         if layout.m == 0 {
             return Err(SystemError::NoEquations);
         }

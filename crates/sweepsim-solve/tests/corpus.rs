@@ -115,9 +115,6 @@ fn check(stored: &Stored) -> (String, Option<String>) {
     (row, wrong)
 }
 
-/// Systems that take seconds: run by `cargo test --release -- --ignored`.
-const SLOW: &[&str] = &[];
-
 fn run(choose: impl Fn(&Stored) -> bool) {
     let Some(systems) = all() else { return };
     println!(
@@ -138,11 +135,5 @@ fn run(choose: impl Fn(&Stored) -> bool) {
 #[test]
 fn stored_systems_have_their_known_roots() {
     let only = std::env::var("SYSTEM").ok();
-    run(|s| !SLOW.contains(&s.name.as_str()) && only.as_ref().is_none_or(|o| *o == s.name));
-}
-
-#[test]
-#[ignore = "takes minutes"]
-fn slow_stored_systems_have_their_known_roots() {
-    run(|s| SLOW.contains(&s.name.as_str()));
+    run(|s| only.as_ref().is_none_or(|o| *o == s.name));
 }

@@ -247,6 +247,44 @@ fn symmetries_change_no_topology() {
 }
 
 #[test]
+fn pieces_handed_over_join_to_the_same_curves() {
+    let mut random = Random(9);
+    let mut pieces_in_all = 0;
+    for number in 0..30 {
+        let form = Bernstein::from_fn(&[4, 3], |_| random.unit()).unwrap();
+        let system = System::new(&unit(2), [&form]).unwrap();
+        let whole = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let mut pieces = Vec::new();
+        let rest = solver(1e-3)
+            .for_each_piece(&system, &mut (), |p| pieces.push(p))
+            .unwrap();
+        assert!(rest.curves.is_empty() && rest.singular.is_empty(), "{number}");
+        pieces_in_all += pieces.len();
+        // Each number is the end of one piece and the start of at most one other; both have it at the same place.
+        let mut ends = std::collections::BTreeMap::new();
+        for p in &pieces {
+            ends.entry(p.ends[0]).or_insert([None, None])[0] = Some(&p.points[0].point);
+            ends.entry(p.ends[1]).or_insert([None, None])[1] = p.points.last().map(|q| &q.point);
+        }
+        let free = ends.values().filter(|e| e.contains(&None)).count();
+        assert_eq!(free, 2 * whole.arcs().count(), "{number}");
+        for pair in ends.values() {
+            if let [Some(a), Some(b)] = pair {
+                assert_eq!(a, b, "{number}");
+            }
+        }
+        let vertices: usize = pieces.iter().map(|p| p.points.len() - 1).sum();
+        let kept: usize = whole
+            .curves
+            .iter()
+            .map(|c| c.points.len() - usize::from(c.ends.is_some()))
+            .sum();
+        assert_eq!(vertices, kept, "{number}");
+    }
+    assert!(pieces_in_all > 60, "{pieces_in_all}");
+}
+
+#[test]
 fn loops_are_found_however_small() {
     // (x − a)² + (y − b)² = r²
     for exponent in 1..=7 {

@@ -10,7 +10,7 @@ use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
 use crate::time::Times;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
-use sweepsim_motion::{Segment, Tool};
+use sweepsim_motion::{End, Segment, Tool};
 use sweepsim_solve::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions, SurfaceSolver, System,
     SystemError, Undecided,
@@ -165,11 +165,12 @@ struct Placement {
 }
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
-pub(crate) fn twist(segment: &Segment, turn: &Matrix3<f64>) -> Side {
+pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
     let back = turn.transpose();
+    let [spin, travel] = segment.velocity(end);
     Side::Moving(Twist {
-        spin: (back * segment.spin()).into(),
-        travel: (back * segment.travel()).into(),
+        spin: (back * spin).into(),
+        travel: (back * travel).into(),
     })
 }
 
@@ -198,7 +199,7 @@ impl Search<'_> {
         let source = |t: f64| Source {
             path: self.path,
             segment: *number,
-            t: start + share * t as f32,
+            t: start + share * segment.time(t) as f32,
         };
         let mut times = Times::new(segment);
         let forms = match self.how {
@@ -211,12 +212,12 @@ impl Search<'_> {
         let turn = segment.start();
         let before = at
             .checked_sub(1)
-            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, &turn));
+            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
         let placed = Placement {
             turn,
             tip: segment.tips()[0],
             before,
-            after: twist(segment, &turn),
+            after: twist(segment, End::Start, &turn),
             source: source(0.0),
             end: 0,
         };
@@ -226,7 +227,7 @@ impl Search<'_> {
             let placed = Placement {
                 turn,
                 tip: segment.tips()[1],
-                before: twist(segment, &turn),
+                before: twist(segment, End::Finish, &turn),
                 after: Side::Beyond(true),
                 source: source(1.0),
                 end: 1,
@@ -241,14 +242,20 @@ impl Search<'_> {
 
     /// Whether any line passes near the segment.
     fn reaches(&self, segment: &Segment) -> bool {
-        let [a, b] = segment.tips();
+        let (points, weights) = segment.points();
+        let place = |k: usize, n: usize| points[n][k] / weights[n];
         let window = [self.lattice.i, self.lattice.j];
         (0..2).all(|k| {
             let grid = self.lattice.grid;
             let at = |n: usize| if k == 0 { grid.x(n) } else { grid.y(n) };
             let margin =
                 self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lattice.shift[k].abs();
-            a[k].min(b[k]) - margin <= at(window[k][1]) && a[k].max(b[k]) + margin >= at(window[k][0])
+            let coordinates = || (0..points.len()).map(|n| place(k, n));
+            let (low, high) = (
+                coordinates().fold(f64::INFINITY, f64::min),
+                coordinates().fold(f64::NEG_INFINITY, f64::max),
+            );
+            low - margin <= at(window[k][1]) && high + margin >= at(window[k][0])
         })
     }
 

@@ -7,8 +7,9 @@
 //! | [`Joint`] | caps and kinks | `u, v` | `X, Y` | `−sign N_z · ([g₊ < 0] − [g₋ < 0])` |
 //!
 //! `X = ⟨row of A(t), F(u, v)⟩ + b(t)` is bounded by the dot products of control rows and control points, which are its
-//! control values (coefficient over weight); likewise its derivatives. `g = ⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩` is polynomial of
-//! degree 2 in `t`, and of the degree of `N` in `(u, v)`. `g = 0` counts as `g ≥ 0` everywhere.
+//! control values (coefficient over weight); likewise its derivatives. `g = ⟨Ω, M⟩ + ⟨Aᵀb′, N⟩`, times a positive factor, is
+//! polynomial in `t` (of degree 2 for an arc: `⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩`), and of the degree of `N` in `(u, v)`. `g = 0` counts as `g ≥ 0`
+//! everywhere.
 
 use crate::element::{Cells, Element, Triples};
 use crate::point::FacePoint;
@@ -32,9 +33,32 @@ fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
     (lo, hi)
 }
 
-/// Range of `⟨constant, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all rows and coefficients.
-fn envelope(constant: &[f64; 3], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
+/// Range of `⟨row, point⟩ + offset` over all rows with their offsets, and all points.
+fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Triples) -> (f64, f64) {
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (row, offset) in rows.iter().zip(offsets) {
+        for i in 0..points.len() {
+            let value = points.dot(row, i) + offset;
+            lo = if value < lo { value } else { lo };
+            hi = if value > hi { value } else { hi };
+        }
+    }
+    (lo, hi)
+}
+
+/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; one spin alone goes with all rows.
+fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    let [constant] = spins else {
+        for i in 0..n.len() {
+            for (spin, row) in spins.iter().zip(rows) {
+                let value = m.dot(spin, i) + n.dot(row, i);
+                lo = if value < lo { value } else { lo };
+                hi = if value > hi { value } else { hi };
+            }
+        }
+        return (lo, hi);
+    };
     for i in 0..n.len() {
         let fixed = m.dot(constant, i);
         for row in rows {
@@ -120,8 +144,8 @@ pub(crate) const ROOT: Brick = (0, 0);
 
 /// A bound of `|g|`, and so of its rounding.
 fn envelope_size(element: &Element, times: &Times) -> f64 {
-    let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
-    sum(&times.spin) * element.largest_moment + sum(&times.velocity.into()) * element.largest_normal
+    let [spin, travel] = times.sizes();
+    spin * element.largest_moment + travel * element.largest_normal
 }
 
 impl ChartMap<3> for Face<'_> {
@@ -135,7 +159,8 @@ impl ChartMap<3> for Face<'_> {
 
     fn values(&mut self, cell: &Brick) -> Option<[Interval; 3]> {
         let field = self.cells.field(self.element, cell.0, 0);
-        let g = envelope(&self.times.spin, self.times.travel(cell.1), &field);
+        let (spins, travels) = self.times.twist(cell.1);
+        let g = envelope(spins, travels, &field);
         let error = ROUNDING * envelope_size(self.element, self.times);
         if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
             return None;
@@ -153,15 +178,21 @@ impl ChartMap<3> for Face<'_> {
                 jacobian[r][axis] = interval(products(self.times.rows(cell.1, r), &slope));
             }
             let slopes = self.cells.field_slope(cell.0, 0, axis);
-            jacobian[2][axis] = interval(envelope(&self.times.spin, self.times.travel(cell.1), &slopes));
+            let (spins, travels) = self.times.twist(cell.1);
+            jacobian[2][axis] = interval(envelope(spins, travels, &slopes));
         }
         let turning = turning(self.element, self.cells, self.times, *cell);
         for r in 0..2 {
             jacobian[r][2] = turning[r];
         }
-        if self.times.count > 1 {
-            let [normals, _] = self.cells.field(self.element, cell.0, 0);
-            jacobian[2][2] = interval(products(self.times.travel_slope(cell.1), &normals));
+        let (spins, travels) = self.times.twist_slope(cell.1);
+        if !travels.is_empty() {
+            let field = self.cells.field(self.element, cell.0, 0);
+            jacobian[2][2] = interval(if spins.is_empty() {
+                products(travels, &field[0])
+            } else {
+                envelope(spins, travels, &field)
+            });
         }
         jacobian
     }
@@ -177,7 +208,7 @@ impl ChartMap<3> for Face<'_> {
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnFace> {
         let point = self.element.face([x[0], x[1]]);
         let moment = self.times.at(x[2]);
-        let spin = Vector3::from(self.times.spin);
+        let spin = moment.own_spin;
         // The motion as the patch's own frame sees it.
         let (turn, tip, spin, travel, travel_slope) = match self.element.frame() {
             None => (moment.turn, moment.tip, spin, moment.travel, moment.travel_slope),
@@ -186,15 +217,25 @@ impl ChartMap<3> for Face<'_> {
                 moment.tip + moment.turn * shift,
                 own.tr_mul(&spin),
                 own.tr_mul(&(moment.travel + spin.cross(shift))),
-                own.tr_mul(&moment.travel_slope),
+                own.tr_mul(&match moment.own_spin_slope {
+                    None => moment.travel_slope,
+                    Some(slope) => moment.travel_slope + slope.cross(shift),
+                }),
             ),
         };
+        let spin_slope = moment.own_spin_slope.map(|slope| match self.element.frame() {
+            None => slope,
+            Some((own, _)) => own.tr_mul(&slope),
+        });
         let place = turn * point.position + tip;
         let slopes = [turn * point.slopes[0], turn * point.slopes[1]];
-        let moving = moment.spin.cross(&(place - moment.tip)) + self.times.velocity;
+        let moving = moment.spin.cross(&(place - moment.tip)) + moment.velocity;
         let field = &point.field;
         let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
-        let g_t = travel_slope.dot(&field.normal[0]);
+        let mut g_t = travel_slope.dot(&field.normal[0]);
+        if let Some(slope) = spin_slope {
+            g_t += slope.dot(&field.moment[0]);
+        }
         Sample {
             value: [place.x, place.y, g(0)],
             jacobian: [
@@ -231,19 +272,27 @@ impl ChartMap<3> for Face<'_> {
 fn plane_values(element: &Element, cells: &Cells, times: &Times, (cell, piece): Brick, size: &Size) -> [Interval; 2] {
     let position = cells.position(element, cell);
     [0, 1].map(|r| {
+        if let Some([offsets, _]) = times.offsets(piece, r) {
+            let (lo, hi) = shifted_products(times.rows(piece, r), offsets, &position);
+            return Interval::new(lo - size.slack, hi + size.slack);
+        }
         let (lo, hi) = products(times.rows(piece, r), &position);
         let (a, b) = times.tip(piece, r);
         Interval::new(lo + a - size.slack, hi + b + size.slack)
     })
 }
 
-/// Ranges of `∂X/∂t` and `∂Y/∂t`: `b′ + (κ/w) k × A F`.
+/// Ranges of `∂X/∂t` and `∂Y/∂t`: `b′ + A′ F`.
 fn turning(element: &Element, cells: &Cells, times: &Times, (cell, piece): Brick) -> [Interval; 2] {
     let position = cells.position(element, cell);
     [0, 1].map(|r| {
         let (rows, pace) = times.spin_rows(piece, r);
+        if let Some([_, offsets]) = times.offsets(piece, r) {
+            return interval(shifted_products(rows, offsets, &position));
+        }
         let (lo, hi) = scaled(products(rows, &position), pace);
-        Interval::new(lo + times.velocity[r], hi + times.velocity[r])
+        let (slowest, fastest) = times.velocity(piece, r);
+        Interval::new(lo + slowest, hi + fastest)
     })
 }
 
@@ -281,7 +330,8 @@ impl ChartMap<2> for Rim<'_> {
         let error = ROUNDING * envelope_size(self.element, self.times);
         let [a, b] = [0, 1].map(|side| {
             let field = self.cells.field(self.element, cell.0, side);
-            negative(envelope(&self.times.spin, self.times.travel(cell.1), &field), error)
+            let (spins, travels) = self.times.twist(cell.1);
+            negative(envelope(spins, travels, &field), error)
         });
         if a.is_some() && a == b {
             return None;
@@ -306,16 +356,20 @@ impl ChartMap<2> for Rim<'_> {
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnRim> {
         let point = self.element.rim(x[0]);
         let moment = self.times.at(x[1]);
-        let spin = Vector3::from(self.times.spin);
+        let spin = moment.own_spin;
         let place = moment.turn * point.position + moment.tip;
         let slope = moment.turn * point.slope;
-        let moving = moment.spin.cross(&(place - moment.tip)) + self.times.velocity;
+        let moving = moment.spin.cross(&(place - moment.tip)) + moment.velocity;
         let side = |k: usize| {
             let field = &point.fields[k];
             let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
+            let mut g_t = moment.travel_slope.dot(&field.normal[0]);
+            if let Some(slope) = moment.own_spin_slope {
+                g_t += slope.dot(&field.moment[0]);
+            }
             Near {
                 value: g(0),
-                slope: [g(1), moment.travel_slope.dot(&field.normal[0])],
+                slope: [g(1), g_t],
             }
         };
         Sample {
@@ -363,7 +417,7 @@ impl Side {
             Self::Moving(twist) => {
                 let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
                 let size = sum(&twist.spin) * element.largest_moment + sum(&twist.travel) * element.largest_normal;
-                negative(envelope(&twist.spin, &[twist.travel], field), ROUNDING * size)
+                negative(envelope(&[twist.spin], &[twist.travel], field), ROUNDING * size)
             }
         }
     }

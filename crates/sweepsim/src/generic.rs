@@ -8,10 +8,12 @@
 //! *same* generic vector, the sign of `g` on a patch that it decides is the same for all moves, and no kink arises.
 
 use nalgebra::Vector3;
-use sweepsim_motion::{Pose, Segment};
+use sweepsim_motion::{Path, Segment};
 
 /// Tips move by at most this part of the tolerance.
 const TIPS: f64 = 1e-2;
+/// Motions follow their law to within this part of the tolerance.
+const LAW: f64 = 5e-2;
 /// Lines move by this part of the tolerance.
 const LINES: f64 = 1e-3;
 /// Crossings of a line within this part of the tolerance are one height.
@@ -48,29 +50,37 @@ pub(crate) struct Part {
     pub share: f32,
 }
 
-/// The motions from pose to pose, tips displaced. Moves that do not move are left out.
+/// The motions along a path, tips displaced. Moves that do not move are left out.
 ///
 /// A tool that is not `symmetric` about its axis is carried along without turning about it, where the poses do not say how it turns.
-pub(crate) fn parts(poses: &[Pose], symmetric: bool, tolerance: f64) -> Vec<Part> {
+/// Motions that are not exact are within [`LAW`] of the tolerance for a tool of this `reach`.
+pub(crate) fn parts(path: &Path, symmetric: bool, reach: f64, tolerance: f64) -> Vec<Part> {
+    let poses = path.poses();
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| {
         let part = (k % PERIOD) as f64 / PERIOD as f64;
-        poses[k].tip() + direction() * (TIPS * tolerance * part)
+        direction() * (TIPS * tolerance * part)
     };
     let mut parts: Vec<Part> = Vec::with_capacity(poses.len());
-    let mut put = |number: usize, from: &Pose, to: &Pose, ends: [Vector3<f64>; 2]| {
-        let segments = Segment::between(from, to);
+    let mut put = |number: usize, segments: Vec<Segment>, tips: [Vector3<f64>; 2], by: [Vector3<f64>; 2]| {
         let share = 1.0 / segments.len() as f64;
+        let ends = [tips[0] + by[0], tips[1] + by[1]];
         let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 * share);
         let last = segments.len() - 1;
+        let arcs = segments.iter().all(Segment::is_arc);
         for (n, segment) in segments.into_iter().enumerate() {
-            let tips = [at(n), if n == last { ends[1] } else { at(n + 1) }];
             let segment = match parts.last() {
                 Some(Part { segment: before, .. }) if carried => segment.after(before),
                 _ => segment,
             };
+            let segment = if arcs {
+                segment.with_tips([at(n), if n == last { ends[1] } else { at(n + 1) }])
+            } else {
+                let mix = |n: usize| by[0] + (by[1] - by[0]) * (n as f64 * share);
+                segment.displaced([mix(n), if n == last { by[1] } else { mix(n + 1) }])
+            };
             parts.push(Part {
-                segment: segment.with_tips(tips),
+                segment,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
@@ -79,8 +89,10 @@ pub(crate) fn parts(poses: &[Pose], symmetric: bool, tolerance: f64) -> Vec<Part
     };
     let mut from = 0;
     for to in 1..poses.len() {
-        if poses[from] != poses[to] {
-            put(to - 1, &poses[from], &poses[to], [displaced(from), displaced(to)]);
+        if !path.rests(from, to) {
+            let segments = path.segments(to - 1, reach, LAW * tolerance);
+            let tips = [poses[from].tip(), poses[to].tip()];
+            put(to - 1, segments, tips, [displaced(from), displaced(to)]);
             from = to;
         }
     }
@@ -88,8 +100,9 @@ pub(crate) fn parts(poses: &[Pose], symmetric: bool, tolerance: f64) -> Vec<Part
         && let Some(pose) = poses.first()
     {
         // A tool that stands still: sweep it along the displacement.
-        let tip = displaced(0);
-        put(0, pose, pose, [tip, tip + direction() * (TIPS * tolerance)]);
+        let by = displaced(0);
+        let still = [by, by + direction() * (TIPS * tolerance)];
+        put(0, Segment::between(pose, pose), [pose.tip(); 2], still);
     }
     parts
 }

@@ -28,21 +28,35 @@
 //! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
 //! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
 
+mod arc_time;
 mod boundary;
 mod crossings;
+mod curve_time;
 mod element;
 mod envelope;
 mod form;
 mod generic;
 mod lattice;
+mod piece;
 mod placed;
 mod planes;
 mod point;
+mod section;
+mod section_svg;
 mod simulate;
+mod surfaces;
 mod sweep;
 pub mod systems;
 mod time;
 
 pub use boundary::{Boundary, UnknownBoundary};
+pub use piece::{Piece, PiecePoint};
+pub use section::{Section, SectionCurve, section};
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
-pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, sweep};
+pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};
+pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, probe, sweep};
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

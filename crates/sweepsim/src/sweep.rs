@@ -225,44 +225,13 @@ pub fn sweep(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Sweep, SweepError> {
-    let tolerance = options.tolerance;
-    if !(tolerance > 0.0 && tolerance.is_finite()) {
-        return Err(SweepError::Tolerance(tolerance));
-    }
-    let cutter = Cutter::new(tool);
-    let size = path
-        .poses()
-        .iter()
-        .flat_map(|pose| <[f64; 3]>::from(pose.tip()))
-        .chain(grid.min())
-        .chain(grid.max())
-        .map(f64::abs)
-        .fold(cutter.reach, f64::max);
-    let least = 2e4 * f64::EPSILON * size;
-    if tolerance < least {
-        return Err(SweepError::TooFine { tolerance, size, least });
-    }
-    let parts = generic::parts(path.poses(), tool.profile().is_some(), tolerance);
-    let job = Job {
-        tool,
-        cutter: &cutter,
-        grid,
-        tolerance,
-        method: options.method,
-        boundary: options.boundary,
-        path: options.path_number,
-        size: Size {
-            spacing: grid.spacing(),
-            slack: 64.0 * f64::EPSILON * size,
-        },
-        // The square of the last step, times lengths of the tool's size, is a small part of the tolerance.
-        accept: (1e-3 * tolerance / size).sqrt().clamp(1e-9, 1e-5),
-        spaces: Mutex::new(Vec::new()),
-        monitor,
-    };
+    let extent = grid.min().into_iter().chain(grid.max());
+    let plan = Plan::new(tool, path, extent, options)?;
+    let job = plan.job(tool, grid, options, monitor);
+    let parts = &plan.parts;
     let mut volume = Dexels::empty(*grid);
     let mut statistics = Statistics {
-        moves: path.poses().len().saturating_sub(1),
+        moves: path.moves(),
         ..Statistics::default()
     };
     let mut failed: Vec<Unresolved> = Vec::new();
@@ -284,6 +253,116 @@ pub fn sweep(
     failed.dedup_by_key(|u| (u.i, u.j));
     statistics.unresolved = failed;
     Ok(Sweep { volume, statistics })
+}
+
+/// The intervals of the volume that `tool` sweeps along `path` on any lines along `z`, given by their `x` and `y`; `None` for a line
+/// that could not be established.
+///
+/// # Errors
+/// [`SweepError`]: cancelled, or a tolerance that is none.
+///
+/// ```
+/// use sweepsim::{Options, probe};
+/// use sweepsim_motion::{Path, Pose, Tool};
+///
+/// let up = [0.0, 0.0, 1.0];
+/// let path = Path::new(vec![Pose::new([0.0; 3], up)?, Pose::new([10.0, 0.0, 0.0], up)?])?;
+/// let found = probe(&Tool::ball(2.0, 30.0)?, &path, &[[5.0, 0.0], [5.0, 3.0]], &Options::default(), &())?;
+/// let Some(groove) = &found[0] else { unreachable!() };
+/// assert!(groove.len() == 1 && groove[0].lower.z.abs() < 1e-6);
+/// assert_eq!(found[1].as_ref().map(Vec::len), Some(0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn probe(
+    tool: &Tool,
+    path: &Path,
+    lines: &[[f64; 2]],
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Vec<Option<Vec<Interval>>>, SweepError> {
+    let plan = Plan::new(tool, path, lines.iter().flatten().copied(), options)?;
+    let space = Mutex::new(Vec::new());
+    let half = 0.01 * plan.cutter.reach;
+    let one = |[x, y]: &[f64; 2]| -> Option<Vec<Interval>> {
+        // A grid of one line: the spacing only tells the search what is small.
+        let grid = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]).ok()?;
+        let job = plan.job(tool, &grid, options, monitor);
+        let mut own = space
+            .lock()
+            .ok()?
+            .pop()
+            .unwrap_or_else(|| Workspace::new(&plan.cutter, plan.accept));
+        let mut volume = Dexels::empty(grid);
+        let mut established = true;
+        for chunk in plan.parts.chunks(CHUNK) {
+            match job.repair(chunk, 0, 0, &mut own) {
+                Ok(intervals) => volume.unite(0, &intervals),
+                Err(_) => established = false,
+            }
+        }
+        space.lock().ok()?.push(own);
+        established.then(|| volume.at(0).to_vec())
+    };
+    let found = lines.par_iter().map(one).collect();
+    if monitor.cancelled() {
+        return Err(SweepError::Cancelled);
+    }
+    Ok(found)
+}
+
+/// A tool and a path, prepared for any lines.
+pub(crate) struct Plan {
+    pub cutter: Cutter,
+    pub parts: Vec<Part>,
+    size: f64,
+    accept: f64,
+}
+
+impl Plan {
+    /// `extent`: coordinates of the lines.
+    pub fn new(
+        tool: &Tool,
+        path: &Path,
+        extent: impl Iterator<Item = f64>,
+        options: &Options,
+    ) -> Result<Self, SweepError> {
+        let tolerance = options.tolerance;
+        if !(tolerance > 0.0 && tolerance.is_finite()) {
+            return Err(SweepError::Tolerance(tolerance));
+        }
+        let cutter = Cutter::new(tool);
+        let size = extent.map(f64::abs).fold(cutter.reach.max(path.size()), f64::max);
+        let least = 2e4 * f64::EPSILON * size;
+        if tolerance < least {
+            return Err(SweepError::TooFine { tolerance, size, least });
+        }
+        Ok(Self {
+            parts: generic::parts(path, tool.is_revolved(), cutter.reach, tolerance),
+            // The square of the last step, times lengths of the tool's size, is a small part of the tolerance.
+            accept: (1e-3 * tolerance / size).sqrt().clamp(1e-9, 1e-5),
+            cutter,
+            size,
+        })
+    }
+
+    fn job<'a>(&'a self, tool: &'a Tool, grid: &'a Grid, options: &Options, monitor: &'a dyn Monitor) -> Job<'a> {
+        Job {
+            tool,
+            cutter: &self.cutter,
+            grid,
+            tolerance: options.tolerance,
+            method: options.method,
+            boundary: options.boundary,
+            path: options.path_number,
+            size: Size {
+                spacing: grid.spacing(),
+                slack: 64.0 * f64::EPSILON * self.size,
+            },
+            accept: self.accept,
+            spaces: Mutex::new(Vec::new()),
+            monitor,
+        }
+    }
 }
 
 /// What all chunks of a sweep share.
@@ -441,7 +520,7 @@ impl Job<'_> {
         wrong.dedup();
         let repaired: Vec<Result<Vec<Interval>, String>> = wrong
             .par_iter()
-            .map(|line| self.with_space(|space| self.repair(chunk, *line, space)))
+            .map(|line| self.with_space(|space| self.repair(chunk, *line, 1, space)))
             .collect();
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
@@ -461,10 +540,10 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Solves one line again, moved elsewhere within the tolerance, until its audit closes.
-    fn repair(&self, chunk: &[Part], line: u32, space: &mut Workspace) -> Result<Vec<Interval>, String> {
+    /// Solves one line, from the given attempt on each time moved elsewhere within the tolerance, until its audit closes.
+    fn repair(&self, chunk: &[Part], line: u32, first: usize, space: &mut Workspace) -> Result<Vec<Interval>, String> {
         let mut reason = String::new();
-        for attempt in 1..=ATTEMPTS {
+        for attempt in first..=ATTEMPTS {
             if self.monitor.cancelled() {
                 break;
             }

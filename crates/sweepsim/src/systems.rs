@@ -43,6 +43,16 @@ impl Plane {
         }
     }
 
+    /// Two directions of length one in the plane, at right angles; with the normal they are right-handed. The first is horizontal, the second goes
+    /// up, where the plane does: of `x = const` these are `y` and `z`.
+    #[must_use]
+    pub fn frame(&self) -> [[f64; 3]; 2] {
+        let normal = Vector3::from(self.normal).normalize();
+        let across = Vector3::z().cross(&normal);
+        let across = across.try_normalize(1e-12).unwrap_or_else(Vector3::x);
+        [across.into(), normal.cross(&across).into()]
+    }
+
     /// The plane `z = at`.
     #[must_use]
     pub fn z(at: f64) -> Self {
@@ -75,14 +85,13 @@ impl Place {
 /// The motion's forms in `t`.
 struct Motion {
     turns: Vec<Matrix3<f64>>,
+    /// Of the turns, times what makes their weight that of the tip.
+    factor: Option<Bernstein>,
     weight: Bernstein,
-    /// `b w`.
+    /// `b`, over the weight.
     tips: [Bernstein; 3],
-    spin: Vector3<f64>,
-    travel: Vec<Vector3<f64>>,
-    /// Sizes, for the rounding of what is computed here.
-    spin_error: f64,
-    travel_error: f64,
+    spins: Vec<Vector3<f64>>,
+    travels: Vec<Vector3<f64>>,
 }
 
 /// A form in one variable.
@@ -93,22 +102,26 @@ fn in_time(coefficients: Vec<f64>, error: f64) -> Bernstein {
 
 impl Motion {
     fn new(segment: &Segment) -> Self {
-        let weight = in_time(segment.weights().to_vec(), 0.0);
-        let [start, end] = segment.tips();
-        let tips = [0, 1, 2].map(|k| in_time(vec![start[k], end[k]], 0.0).mul(&weight));
-        let velocity = segment.travel();
-        let travel: Vec<Vector3<f64>> = segment.turns().iter().map(|m| m.transpose() * velocity).collect();
-        let spin = segment.start().transpose() * segment.spin();
-        // Products of three terms: at most four roundings of the sum of their sizes.
-        let rounding = |v: &Vector3<f64>| 8.0 * f64::EPSILON * v.iter().map(|x| x.abs()).sum::<f64>();
+        let own = in_time(segment.weights().to_vec(), 0.0);
+        let (points, weights) = segment.points();
+        let points = [0, 1, 2].map(|k| in_time(points.iter().map(|p| p[k]).collect(), 0.0));
+        let (factor, tips, weight) = if weights == segment.weights() {
+            (None, points, own)
+        } else if weights.iter().all(|w| *w == 1.0) {
+            (None, points.map(|point| point.mul(&own)), own)
+        } else {
+            let weights = in_time(weights, 0.0);
+            let both = own.mul(&weights);
+            (Some(weights), points.map(|point| point.mul(&own)), both)
+        };
+        let (spins, travels) = segment.twist();
         Self {
             turns: segment.turns().to_vec(),
+            factor,
             weight,
             tips,
-            spin,
-            spin_error: rounding(&segment.spin()),
-            travel_error: rounding(&velocity),
-            travel,
+            spins,
+            travels,
         }
     }
 
@@ -117,6 +130,7 @@ impl Motion {
         let numerators = [0, 1, 2].map(|r| {
             (0..3).fold(omega.tensor_product(&self.tips[r]), |sum, k| {
                 let entry = in_time(self.turns.iter().map(|m| m[(r, k)]).collect(), 0.0);
+                let entry = self.factor.as_ref().map_or(entry.clone(), |factor| entry.mul(factor));
                 sum.add(&position[k].tensor_product(&entry))
             })
         });
@@ -126,21 +140,23 @@ impl Motion {
         }
     }
 
-    /// `w g` of a field of normals.
+    /// `g` of a field of normals, times a positive function of `t`.
     fn envelope(&self, field: &NormalField) -> Bernstein {
-        let travelling = (0..3).map(|k| {
-            let entry = in_time(self.travel.iter().map(|v| v[k]).collect(), self.travel_error);
-            field.normal[k].tensor_product(&entry)
-        });
-        let spinning = (0..3).map(|k| {
-            let entry = in_time(vec![self.spin[k]], self.spin_error);
-            field.moment[k].tensor_product(&entry)
-        });
-        let mut sum: Option<Bernstein> = None;
-        for form in travelling.chain(spinning.filter(|_| self.spin != Vector3::zeros())) {
-            sum = Some(sum.map_or_else(|| form.clone(), |s| s.add(&form)));
+        // Products of three terms: at most four roundings of the sum of their sizes.
+        let rounding = |list: &[Vector3<f64>]| {
+            let size = |v: &Vector3<f64>| v.iter().map(|x| x.abs()).sum::<f64>();
+            8.0 * f64::EPSILON * list.iter().map(size).fold(0.0, f64::max)
+        };
+        let along = |list: &[Vector3<f64>], forms: &[Bernstein; 3]| {
+            let error = rounding(list);
+            let term = |k: usize| forms[k].tensor_product(&in_time(list.iter().map(|v| v[k]).collect(), error));
+            term(0).add(&term(1)).add(&term(2))
+        };
+        let travelling = along(&self.travels, &field.normal);
+        if self.spins.iter().all(|spin| *spin == Vector3::zeros()) {
+            return travelling;
         }
-        sum.expect("three products of the travel")
+        travelling.add(&along(&self.spins, &field.moment))
     }
 }
 

@@ -1,219 +1,18 @@
 //! A segment's motion cut into pieces of `t`, in the form the envelope systems need.
 
-use crate::element::CUT;
+use crate::arc_time::ArcTimes;
+use crate::curve_time::CurveTimes;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
 
-type Rows = [[f64; 3]; 3];
-
-/// A piece of the motion: rows of `A(t)` over its weight, per Bernstein coefficient in `t`.
-#[derive(Clone, Debug)]
-struct Node {
-    lower: f64,
-    upper: f64,
-    parts: u32,
-    turns: [Matrix3<f64>; 3],
-    weights: [f64; 3],
-    /// Control rows of `A` for X and for Y.
-    rows: [Rows; 2],
-    /// Control rows of `[κk]× A` for X and for Y.
-    spin_rows: [Rows; 2],
-    /// Coefficients of `Âᵀ b′`, and of its derivative in `t`.
-    travel: Rows,
-    travel_slope: [[f64; 3]; 2],
-    /// Range of `1/w`.
-    pace: (f64, f64),
-}
+/// Vectors as rows of coefficients.
+pub(crate) type Rows<'a> = &'a [[f64; 3]];
 
 /// The pieces of one segment, made on demand.
 #[derive(Clone, Debug)]
-pub(crate) struct Times {
-    nodes: Vec<Node>,
-    /// Coefficients in `t`: 1 or 3.
-    pub count: usize,
-    /// `κ A₀ᵀ k`.
-    pub spin: [f64; 3],
-    pub tips: [Vector3<f64>; 2],
-    pub velocity: Vector3<f64>,
-    /// `κ k`.
-    pace: Vector3<f64>,
-}
-
-impl Times {
-    pub fn new(segment: &Segment) -> Self {
-        let count = segment.turns().len();
-        let mut turns = [Matrix3::zeros(); 3];
-        let mut weights = [1.0; 3];
-        turns[..count].copy_from_slice(segment.turns());
-        weights[..count].copy_from_slice(segment.weights());
-        let mut times = Self {
-            nodes: Vec::with_capacity(64),
-            count,
-            spin: (segment.start().transpose() * segment.spin()).into(),
-            tips: *segment.tips(),
-            velocity: segment.travel(),
-            pace: segment.spin(),
-        };
-        let root = times.node(0.0, 1.0, turns, weights);
-        times.nodes.push(root);
-        times
-    }
-
-    /// A piece of its own, over any interval; it is kept until it is [released](Self::release).
-    pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
-        let root = &self.nodes[0];
-        let (mut turns, mut weights) = (root.turns, root.weights);
-        if self.count == 3 {
-            // Values of the blossoms at (lower, lower), (lower, upper), (upper, upper).
-            for (i, [a, b]) in [[lower, lower], [lower, upper], [upper, upper]].into_iter().enumerate() {
-                let mix = [(1.0 - a) * (1.0 - b), (1.0 - a) * b + a * (1.0 - b), a * b];
-                turns[i] = root.turns[0] * mix[0] + root.turns[1] * mix[1] + root.turns[2] * mix[2];
-                weights[i] = root.weights[0] * mix[0] + root.weights[1] * mix[1] + root.weights[2] * mix[2];
-            }
-        }
-        let node = self.node(lower, upper, turns, weights);
-        self.nodes.push(node);
-        self.nodes.len() as u32 - 1
-    }
-
-    /// How many pieces there are, to release those that come after.
-    pub fn mark(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// Forgets the pieces made since the mark: placed ones, and what they were split into.
-    pub fn release(&mut self, mark: usize) {
-        self.nodes.truncate(mark);
-    }
-
-    fn node(&self, lower: f64, upper: f64, turns: [Matrix3<f64>; 3], weights: [f64; 3]) -> Node {
-        let row = |m: &Matrix3<f64>, r: usize| [m[(r, 0)], m[(r, 1)], m[(r, 2)]];
-        let mut node = Node {
-            lower,
-            upper,
-            parts: u32::MAX,
-            turns,
-            weights,
-            rows: [[[0.0; 3]; 3]; 2],
-            spin_rows: [[[0.0; 3]; 3]; 2],
-            travel: [[0.0; 3]; 3],
-            travel_slope: [[0.0; 3]; 2],
-            pace: (f64::INFINITY, 0.0),
-        };
-        for i in 0..self.count {
-            let turn = turns[i] / weights[i];
-            let spin = self.pace.cross_matrix() * turn;
-            for r in 0..2 {
-                node.rows[r][i] = row(&turn, r);
-                node.spin_rows[r][i] = row(&spin, r);
-            }
-            node.travel[i] = (turns[i].transpose() * self.velocity).into();
-            node.pace.0 = node.pace.0.min(1.0 / weights[i]);
-            node.pace.1 = node.pace.1.max(1.0 / weights[i]);
-        }
-        for i in 1..self.count {
-            for k in 0..3 {
-                node.travel_slope[i - 1][k] = 2.0 * (node.travel[i][k] - node.travel[i - 1][k]) / (upper - lower);
-            }
-        }
-        node
-    }
-
-    pub fn bounds(&self, piece: u32) -> (f64, f64) {
-        let node = &self.nodes[piece as usize];
-        (node.lower, node.upper)
-    }
-
-    pub fn split(&mut self, piece: u32) -> [u32; 2] {
-        let node = &self.nodes[piece as usize];
-        if node.parts != u32::MAX {
-            return [node.parts, node.parts + 1];
-        }
-        let (mut turns, mut weights) = ([node.turns, node.turns], [node.weights, node.weights]);
-        if self.count == 3 {
-            let (t, w) = (node.turns, node.weights);
-            let mix = |a: Matrix3<f64>, b: Matrix3<f64>| a + (b - a) * CUT;
-            let blend = |a: f64, b: f64| a + (b - a) * CUT;
-            let (t0, t1, w0, w1) = (mix(t[0], t[1]), mix(t[1], t[2]), blend(w[0], w[1]), blend(w[1], w[2]));
-            let (middle, weight) = (mix(t0, t1), blend(w0, w1));
-            turns = [[t[0], t0, middle], [middle, t1, t[2]]];
-            weights = [[w[0], w0, weight], [weight, w1, w[2]]];
-        }
-        let (lower, upper) = (node.lower, node.upper);
-        let at = lower + CUT * (upper - lower);
-        let parts = [
-            self.node(lower, at, turns[0], weights[0]),
-            self.node(at, upper, turns[1], weights[1]),
-        ];
-        let first = self.nodes.len() as u32;
-        self.nodes.extend(parts);
-        self.nodes[piece as usize].parts = first;
-        [first, first + 1]
-    }
-
-    /// Control rows of the coordinate `r` (0: X, 1: Y) of `A`.
-    pub fn rows(&self, piece: u32, r: usize) -> &[[f64; 3]] {
-        &self.nodes[piece as usize].rows[r][..self.count]
-    }
-
-    /// Control rows of the coordinate `r` of `[κk]× A`, and the range of `1/w` they are still to be multiplied by.
-    pub fn spin_rows(&self, piece: u32, r: usize) -> (&[[f64; 3]], (f64, f64)) {
-        let node = &self.nodes[piece as usize];
-        (&node.spin_rows[r][..self.count], node.pace)
-    }
-
-    /// Coefficients of `Âᵀ b′`.
-    pub fn travel(&self, piece: u32) -> &[[f64; 3]] {
-        &self.nodes[piece as usize].travel[..self.count]
-    }
-
-    /// Coefficients of the derivative of `Âᵀ b′`.
-    pub fn travel_slope(&self, piece: u32) -> &[[f64; 3]] {
-        &self.nodes[piece as usize].travel_slope[..self.count - 1]
-    }
-
-    /// The range of the coordinate `r` of the tip.
-    pub fn tip(&self, piece: u32, r: usize) -> (f64, f64) {
-        let node = &self.nodes[piece as usize];
-        let at = |t: f64| self.tips[0][r] + t * self.velocity[r];
-        let (a, b) = (at(node.lower), at(node.upper));
-        (a.min(b), a.max(b))
-    }
-
-    /// The motion at `t`.
-    pub fn at(&self, t: f64) -> Moment {
-        let root = &self.nodes[0];
-        let tip = self.tips[0] + self.velocity * t;
-        if self.count == 1 {
-            let travel = Vector3::from(root.travel[0]);
-            return Moment {
-                turn: root.turns[0],
-                tip,
-                travel,
-                travel_slope: Vector3::zeros(),
-                spin: Vector3::zeros(),
-            };
-        }
-        let s = 1.0 - t;
-        let (b, d) = ([s * s, 2.0 * s * t, t * t], [-2.0 * s, 2.0 * (s - t), 2.0 * t]);
-        let mut weight = 0.0;
-        let mut turn = Matrix3::zeros();
-        let (mut travel, mut slope) = (Vector3::zeros(), Vector3::zeros());
-        for i in 0..3 {
-            weight += b[i] * root.weights[i];
-            turn += root.turns[i] * b[i];
-            travel += Vector3::from(root.travel[i]) * b[i];
-            slope += Vector3::from(root.travel[i]) * d[i];
-        }
-        let turn = turn / weight;
-        Moment {
-            turn,
-            tip,
-            travel,
-            travel_slope: slope,
-            spin: self.pace / weight,
-        }
-    }
+pub(crate) enum Times {
+    Arc(ArcTimes),
+    Curve(CurveTimes),
 }
 
 /// The motion at one time.
@@ -223,10 +22,138 @@ pub(crate) struct Moment {
     pub turn: Matrix3<f64>,
     /// `b`.
     pub tip: Vector3<f64>,
-    /// `w Aᵀ b′`.
+    /// The angular velocity, in space.
+    pub spin: Vector3<f64>,
+    /// `b′`.
+    pub velocity: Vector3<f64>,
+    /// The angular velocity as the tool sees it, times a positive factor.
+    pub own_spin: Vector3<f64>,
+    /// Its derivative, where it changes.
+    pub own_spin_slope: Option<Vector3<f64>>,
+    /// `Aᵀ b′`, times the same factor.
     pub travel: Vector3<f64>,
     /// Its derivative.
     pub travel_slope: Vector3<f64>,
-    /// The angular velocity, in space.
-    pub spin: Vector3<f64>,
+}
+
+impl Times {
+    pub fn new(segment: &Segment) -> Self {
+        if segment.is_arc() {
+            Self::Arc(ArcTimes::new(segment))
+        } else {
+            Self::Curve(CurveTimes::new(segment))
+        }
+    }
+
+    /// A piece of its own, over any interval; it is kept until it is [released](Self::release).
+    pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
+        match self {
+            Self::Arc(times) => times.place(lower, upper),
+            Self::Curve(times) => times.place(lower, upper),
+        }
+    }
+
+    /// How many pieces there are, to release those that come after.
+    pub fn mark(&self) -> usize {
+        match self {
+            Self::Arc(times) => times.mark(),
+            Self::Curve(times) => times.mark(),
+        }
+    }
+
+    /// Forgets the pieces made since the mark: placed ones, and what they were split into.
+    pub fn release(&mut self, mark: usize) {
+        match self {
+            Self::Arc(times) => times.release(mark),
+            Self::Curve(times) => times.release(mark),
+        }
+    }
+
+    pub fn bounds(&self, piece: u32) -> (f64, f64) {
+        match self {
+            Self::Arc(times) => times.bounds(piece),
+            Self::Curve(times) => times.bounds(piece),
+        }
+    }
+
+    pub fn split(&mut self, piece: u32) -> [u32; 2] {
+        match self {
+            Self::Arc(times) => times.split(piece),
+            Self::Curve(times) => times.split(piece),
+        }
+    }
+
+    /// Control rows of the coordinate `r` (0: X, 1: Y) of `A`.
+    pub fn rows(&self, piece: u32, r: usize) -> Rows<'_> {
+        match self {
+            Self::Arc(times) => times.rows(piece, r),
+            Self::Curve(times) => times.rows(piece, r),
+        }
+    }
+
+    /// Control rows of the coordinate `r` of `A′`, and a range of what they are still to be multiplied by.
+    pub fn spin_rows(&self, piece: u32, r: usize) -> (Rows<'_>, (f64, f64)) {
+        match self {
+            Self::Arc(times) => times.spin_rows(piece, r),
+            Self::Curve(times) => (times.spin_rows(piece, r), (1.0, 1.0)),
+        }
+    }
+
+    /// Coefficients of the angular velocity as the tool sees it (one alone when it is constant) and of `Aᵀ b′`, times a common
+    /// positive factor.
+    pub fn twist(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
+        match self {
+            Self::Arc(times) => (&times.spin, times.travel(piece)),
+            Self::Curve(times) => times.twist(piece),
+        }
+    }
+
+    /// Coefficients of the derivatives of both: none of the first when it is constant, none of either when both are.
+    pub fn twist_slope(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
+        match self {
+            Self::Arc(times) => (&[], times.travel_slope(piece)),
+            Self::Curve(times) => times.twist_slope(piece),
+        }
+    }
+
+    /// Bounds of the sums of the absolute values of the components of both.
+    pub fn sizes(&self) -> [f64; 2] {
+        let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
+        match self {
+            Self::Arc(times) => [sum(&times.spin[0]), sum(&times.velocity.into())],
+            Self::Curve(times) => times.sizes(),
+        }
+    }
+
+    /// The range of the coordinate `r` of the tip.
+    pub fn tip(&self, piece: u32, r: usize) -> (f64, f64) {
+        match self {
+            Self::Arc(times) => times.tip(piece, r),
+            Self::Curve(times) => times.tip(piece, r),
+        }
+    }
+
+    /// The range of the coordinate `r` of the tip's velocity.
+    pub fn velocity(&self, piece: u32, r: usize) -> (f64, f64) {
+        match self {
+            Self::Arc(times) => (times.velocity[r], times.velocity[r]),
+            Self::Curve(times) => times.velocity(piece, r),
+        }
+    }
+
+    /// Control values of the coordinate `r` of `b` and of `b′`, one for each row of `A` and of `A′`, where they have the same weights.
+    pub fn offsets(&self, piece: u32, r: usize) -> Option<[&[f64]; 2]> {
+        match self {
+            Self::Arc(_) => None,
+            Self::Curve(times) => times.offsets(piece, r),
+        }
+    }
+
+    /// The motion at `t`.
+    pub fn at(&self, t: f64) -> Moment {
+        match self {
+            Self::Arc(times) => times.at(t),
+            Self::Curve(times) => times.at(t),
+        }
+    }
 }

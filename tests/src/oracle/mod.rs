@@ -36,7 +36,7 @@ mod union;
 pub use agreement::{Disagreement, Verdict, compare};
 pub use chord::chords;
 pub use depth::{Depth, Nearest};
-pub use motion::{Arc, Motion, Placement};
+pub use motion::{Arc, Motion, Place, Placement};
 pub use outline::Outline;
 pub use roots::{Polynomial, roots_between};
 pub use union::{Sampling, Span, SweptLine, swept_line};

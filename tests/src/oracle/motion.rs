@@ -3,10 +3,13 @@
 //! `tip(t) = (1−t) p₀ + t p₁`; the axis turns about `k = o₀ × o₁ / |o₀ × o₁|` by `α(t)` with `cos α = c/w`, `sin α = s/w`, where in
 //! Bernstein form of degree 2 `w = (1, cos θ/2, 1)`, `c = (1, cos θ/2, cos θ)`, `s = (0, sin θ/2, sin θ)`.
 //! A turn `θ` of more than 90° is two such arcs of `θ/2`, one for each half of the time.
+//!
+//! Moves of other laws are written as functions of time with sines and cosines: that is their definition.
 
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::FRAC_PI_2;
-use sweepsim_motion::Pose;
+use std::sync::Arc as Shared;
+use sweepsim_motion::{Course, Move, Pose, Turning};
 
 /// A placed tool: its tip and its unit axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,18 +20,41 @@ pub struct Placement {
     pub axis: Vector3<f64>,
 }
 
-/// A part of a move in which the axis turns by at most 90° along one rational arc.
-#[derive(Clone, Debug)]
+/// A part of a move: one that turns by at most 90° along one rational arc, or any function of time.
+#[derive(Clone)]
 pub struct Arc {
     /// Which move of the path it belongs to, from 0.
     pub segment: usize,
     /// The part of the move's time `[0, 1]` that it takes.
     pub time: [f64; 2],
-    tips: [Vector3<f64>; 2],
-    /// The axis at the start, and the direction a quarter turn ahead of it.
-    axis: Vector3<f64>,
-    ahead: Vector3<f64>,
-    angle: f64,
+    way: Way,
+}
+
+#[derive(Clone)]
+enum Way {
+    Rational {
+        tips: [Vector3<f64>; 2],
+        /// The axis at the start, and the direction a quarter turn ahead of it.
+        axis: Vector3<f64>,
+        ahead: Vector3<f64>,
+        angle: f64,
+    },
+    /// A function of the move's time, with bounds of the speed of the tip and of the axis.
+    Free {
+        place: Place,
+        tip_speed: f64,
+        turn_speed: f64,
+    },
+}
+
+/// A placement as a function of a move's time.
+pub type Place = Shared<dyn Fn(f64) -> Placement + Send + Sync>;
+
+impl std::fmt::Debug for Arc {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (from, to) = (self.at(0.0), self.at(1.0));
+        write!(f, "move {} in {:?}: {from:?} to {to:?}", self.segment, self.time)
+    }
 }
 
 /// `(1−t)² a + 2t(1−t) b + t² c`.
@@ -41,32 +67,59 @@ impl Arc {
     /// The placement at `t` in `[0, 1]` of this arc.
     #[must_use]
     pub fn at(&self, t: f64) -> Placement {
-        let (half, full) = (0.5 * self.angle, self.angle);
-        let w = quadratic([1.0, half.cos(), 1.0], t);
-        let c = quadratic([1.0, half.cos(), full.cos()], t);
-        let s = quadratic([0.0, half.sin(), full.sin()], t);
-        Placement {
-            tip: self.tips[0] * (1.0 - t) + self.tips[1] * t,
-            axis: self.axis * (c / w) + self.ahead * (s / w),
+        match &self.way {
+            Way::Rational {
+                tips,
+                axis,
+                ahead,
+                angle,
+            } => {
+                let (half, full) = (0.5 * angle, *angle);
+                let w = quadratic([1.0, half.cos(), 1.0], t);
+                let c = quadratic([1.0, half.cos(), full.cos()], t);
+                let s = quadratic([0.0, half.sin(), full.sin()], t);
+                Placement {
+                    tip: tips[0] * (1.0 - t) + tips[1] * t,
+                    axis: axis * (c / w) + ahead * (s / w),
+                }
+            }
+            Way::Free { place, .. } => place(self.time_at(t)),
         }
     }
 
     /// A bound of how fast a point `p` at rest moves as seen from the tool, per unit of this arc's own time.
     ///
     /// The tip's speed is constant. The angular speed is `α′ = 2 sin(θ/2)/w ≤ 4 sin(θ/2)/(1 + cos(θ/2))` since `w` is least at
-    /// `t = 1/2`, and the lever `|p − tip|` is convex in `t`, so largest at an end.
+    /// `t = 1/2`, and the lever `|p − tip|` is convex in `t`, so largest at an end. Of a function of time the tip gets no farther from its
+    /// start than its speed says.
     #[must_use]
     pub fn speed_bound(&self, p: &Vector3<f64>) -> f64 {
-        let half = 0.5 * self.angle;
-        let turning = 4.0 * half.sin() / (1.0 + half.cos());
-        let lever = (p - self.tips[0]).norm().max((p - self.tips[1]).norm());
-        (self.tips[1] - self.tips[0]).norm() + turning * lever
+        match &self.way {
+            Way::Rational { tips, angle, .. } => {
+                let half = 0.5 * angle;
+                let turning = 4.0 * half.sin() / (1.0 + half.cos());
+                let lever = (p - tips[0]).norm().max((p - tips[1]).norm());
+                (tips[1] - tips[0]).norm() + turning * lever
+            }
+            Way::Free {
+                tip_speed, turn_speed, ..
+            } => {
+                let share = self.time[1] - self.time[0];
+                let lever = (p - self.at(0.0).tip).norm() + tip_speed * share;
+                share * (tip_speed + turn_speed * lever)
+            }
+        }
     }
 
     /// Whether the tool rests during it.
     #[must_use]
     pub fn rests(&self) -> bool {
-        self.tips[0] == self.tips[1] && self.angle == 0.0
+        match &self.way {
+            Way::Rational { tips, angle, .. } => tips[0] == tips[1] && *angle == 0.0,
+            Way::Free {
+                tip_speed, turn_speed, ..
+            } => *tip_speed == 0.0 && *turn_speed == 0.0,
+        }
     }
 
     /// The move's time at `t` of this arc.
@@ -76,7 +129,7 @@ impl Arc {
     }
 }
 
-/// A polyline of poses as a motion.
+/// A path as a motion.
 #[derive(Clone, Debug)]
 pub struct Motion {
     arcs: Vec<Arc>,
@@ -95,6 +148,34 @@ impl Motion {
         let mut arcs = Vec::new();
         for (segment, pair) in pairs.windows(2).enumerate() {
             add_move(segment, &pair[0], &pair[1], &mut arcs);
+        }
+        Self { arcs }
+    }
+
+    /// The motion through `poses` by `moves`, one between each two.
+    ///
+    /// # Panics
+    /// When there are not as many as that.
+    #[must_use]
+    pub fn of_moves(poses: &[Pose], moves: &[Move]) -> Self {
+        assert_eq!(poses.len(), moves.len() + 1, "a move between each two poses");
+        let mut arcs = Vec::new();
+        for (segment, (pair, way)) in poses.windows(2).zip(moves).enumerate() {
+            if *way == Move::default() {
+                add_move(segment, &pair[0], &pair[1], &mut arcs);
+            } else {
+                add_even(segment, &pair[0], &pair[1], way, &mut arcs);
+            }
+        }
+        Self { arcs }
+    }
+
+    /// The motion whose move `k` is `places[k]`, each with bounds of the speed of the tip and of the axis.
+    #[must_use]
+    pub fn of_functions(places: Vec<(Place, f64, f64)>) -> Self {
+        let mut arcs = Vec::new();
+        for (segment, (place, tip_speed, turn_speed)) in places.into_iter().enumerate() {
+            add_free(segment, &place, tip_speed, turn_speed, 4, &mut arcs);
         }
         Self { arcs }
     }
@@ -137,15 +218,82 @@ fn add_move(segment: usize, from: &Pose, to: &Pose, arcs: &mut Vec<Arc>) {
     for i in 0..parts {
         let time = [f64::from(i) / f64::from(parts), f64::from(i + 1) / f64::from(parts)];
         let turned = f64::from(i) * part;
-        arcs.push(Arc {
-            segment,
-            time,
+        let way = Way::Rational {
             tips: [p0 * (1.0 - time[0]) + p1 * time[0], p0 * (1.0 - time[1]) + p1 * time[1]],
             axis: o0 * turned.cos() + ahead * turned.sin(),
             ahead: ahead * turned.cos() - o0 * turned.sin(),
             angle: part,
-        });
+        };
+        arcs.push(Arc { segment, time, way });
     }
+}
+
+fn add_free(segment: usize, place: &Place, tip_speed: f64, turn_speed: f64, parts: u32, arcs: &mut Vec<Arc>) {
+    for i in 0..parts {
+        let time = [f64::from(i) / f64::from(parts), f64::from(i + 1) / f64::from(parts)];
+        let place = place.clone();
+        let way = Way::Free {
+            place,
+            tip_speed,
+            turn_speed,
+        };
+        arcs.push(Arc { segment, time, way });
+    }
+}
+
+/// A move at constant speed: the definition, in sines and cosines.
+fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<Arc>) {
+    let (p0, p1) = (from.tip(), to.tip());
+    let tip: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
+    let (tip_speed, round);
+    match way.course {
+        Course::Straight => {
+            (tip_speed, round) = ((p1 - p0).norm(), 0.0);
+            tip = Shared::new(move |t| p0 + (p1 - p0) * t);
+        }
+        Course::Arc(arc) => {
+            let (centre, normal, angle) = (arc.centre(), arc.normal(), arc.angle());
+            let turned = move |t: f64| centre + Rotation3::from_axis_angle(&normal, angle * t) * (p0 - centre);
+            let missing = p1 - turned(1.0);
+            round = angle.abs();
+            tip_speed = round * (p0 - centre).cross(&normal).norm() + missing.norm();
+            tip = Shared::new(move |t| turned(t) + missing * t);
+        }
+    }
+    let axis: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
+    let turn_speed;
+    if let Turning::Rotary { table, from, to } = way.turning {
+        turn_speed = (to[0] - from[0]).abs().to_radians() + (to[1] - from[1]).abs().to_radians();
+        axis = Shared::new(move |t| {
+            let [tilt, c] = [0, 1].map(|k| (from[k] + (to[k] - from[k]) * t).to_radians());
+            match table {
+                sweepsim_motion::RotaryTable::Ac => {
+                    Vector3::new(c.sin() * tilt.sin(), c.cos() * tilt.sin(), tilt.cos())
+                }
+                sweepsim_motion::RotaryTable::Bc => {
+                    Vector3::new(-c.cos() * tilt.sin(), c.sin() * tilt.sin(), tilt.cos())
+                }
+            }
+        });
+    } else {
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let cross = o0.cross(&o1);
+        let angle = cross.norm().atan2(o0.dot(&o1));
+        let ahead = if angle > 0.0 {
+            cross.normalize().cross(&o0)
+        } else {
+            Vector3::zeros()
+        };
+        turn_speed = angle;
+        axis = Shared::new(move |t| o0 * (angle * t).cos() + ahead * (angle * t).sin());
+    }
+    let place: Place = Shared::new(move |t| Placement {
+        tip: tip(t),
+        axis: axis(t),
+    });
+    // Eight parts a turn.
+    let parts = (8.0 * turn_speed.max(round) / std::f64::consts::TAU).ceil().max(1.0);
+    add_free(segment, &place, tip_speed, turn_speed, parts as u32, arcs);
 }
 
 #[cfg(test)]

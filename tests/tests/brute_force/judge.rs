@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim::{Method, Options, Sweep, sweep};
 use sweepsim_dexel::{End, Grid, Interval};
-use sweepsim_motion::{Path, Pose};
+use sweepsim_motion::{Path, Pose, Profile, Tool};
 use sweepsim_tests::oracle::{Depth, Motion, Outline, Sampling, Span, SweptLine, Verdict, compare, swept_line};
 
 /// The default tolerance of a sweep.
@@ -78,8 +78,13 @@ pub fn for_all(
 /// The sweep, which must leave nothing unresolved.
 pub fn swept(case: &Case, poses: &[Pose], grid: &Grid, method: Method) -> Result<Sweep, String> {
     let path = Path::new(poses.to_vec()).map_err(|error| error.to_string())?;
+    swept_along(&case.cutter.tool, &path, grid, method)
+}
+
+/// The sweep along any path, which must leave nothing unresolved.
+pub fn swept_along(tool: &Tool, path: &Path, grid: &Grid, method: Method) -> Result<Sweep, String> {
     let options = Options::new(TOLERANCE).method(method);
-    let sweep = sweep(&case.cutter.tool, &path, grid, &options, &()).map_err(|error| error.to_string())?;
+    let sweep = sweep(tool, path, grid, &options, &()).map_err(|error| error.to_string())?;
     if let Some(unresolved) = sweep.statistics.unresolved.first() {
         return Err(format!(
             "{method}: {} unresolved, the first {unresolved:?}",
@@ -93,17 +98,28 @@ pub fn swept(case: &Case, poses: &[Pose], grid: &Grid, method: Method) -> Result
 pub fn judge(case: &Case, method: Method) -> Result<Tally, String> {
     let grid = case.grid();
     let sweep = swept(case, &case.poses, &grid, method)?;
-    let outline = Outline::new(case.cutter.tool.profile().expect("a solid of revolution"));
-    let motion = Motion::new(&case.poses);
-    let depth = Depth::new(&outline, &motion);
+    let profile = case.cutter.tool.profile().expect("a solid of revolution");
+    judge_sweep(&sweep, profile, &Motion::new(&case.poses), &grid, method)
+}
+
+/// Judges all lines of a sweep.
+pub fn judge_sweep(
+    sweep: &Sweep,
+    profile: &Profile,
+    motion: &Motion,
+    grid: &Grid,
+    method: Method,
+) -> Result<Tally, String> {
+    let outline = Outline::new(profile);
+    let depth = Depth::new(&outline, motion);
     let judged: Result<Vec<Tally>, String> = (0..grid.len())
         .into_par_iter()
         .map(|index| {
             let (i, j) = grid.place(index);
             let place = [grid.x(i), grid.y(j)];
             let intervals = &sweep.volume.intervals(i, j).to_vec();
-            let mut tally = judge_line(intervals, &outline, &motion, place, DENSITY)
-                .and_then(|tally| judge_ends(intervals, &depth, &motion, place, (7 * i + 3 * j) % 11 == 0, tally))
+            let mut tally = judge_line(intervals, &outline, motion, place, DENSITY)
+                .and_then(|tally| judge_ends(intervals, &depth, motion, place, (7 * i + 3 * j) % 11 == 0, tally))
                 .map_err(|what| format!("{method}: dexel ({i}, {j}) at {place:?}: {what}"))?;
             tally.lines = 1;
             Ok(tally)
@@ -237,9 +253,20 @@ fn judge_source(end: &End, depth: &Depth<'_>, motion: &Motion, [x, y]: [f64; 2])
 
 /// Two sweeps of what is the same volume must agree within both their tolerances; `case` says which volume.
 pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Result<Tally, String> {
-    let outline = Outline::new(case.cutter.tool.profile().expect("a solid of revolution"));
-    let motion = Motion::new(&case.poses);
-    let depth = Depth::new(&outline, &motion);
+    let profile = case.cutter.tool.profile().expect("a solid of revolution");
+    same_sweeps(profile, &Motion::new(&case.poses), grid, one, other)
+}
+
+/// As [`same_volume`], for the volume of this outline along this motion.
+pub fn same_sweeps(
+    profile: &Profile,
+    motion: &Motion,
+    grid: &Grid,
+    one: &Sweep,
+    other: &Sweep,
+) -> Result<Tally, String> {
+    let outline = Outline::new(profile);
+    let depth = Depth::new(&outline, motion);
     let mut tally = Tally::default();
     for index in 0..grid.len() {
         let (i, j) = grid.place(index);

@@ -15,3 +15,5 @@ mod degenerate;
 mod generic;
 mod judge;
 mod metamorphic;
+mod motions;
+mod relations;

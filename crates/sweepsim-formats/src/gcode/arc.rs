@@ -1,9 +1,11 @@
-//! Circles and helices of G2/G3, divided into chords.
+//! Circles and helices of G2/G3, exact or divided into chords.
 //!
 //! Words: *u, v* are the axes of the plane so that a counter-clockwise (G3) turn goes from u to v, *w* is the third one:
 //! G17 XY Z, G18 ZX Y, G19 YZ X.
 
 use std::f64::consts::TAU;
+
+use sweepsim_motion::{ArcError, TipArc};
 
 /// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
 pub(crate) type Plane = [usize; 3];
@@ -108,6 +110,17 @@ impl Arc {
             start[v] + 0.5 * chord[1] + side * height * chord[0],
         ];
         Self::about((start, end), plane, centre, counter_clockwise, turns)
+    }
+
+    /// The arc as one move of the tip.
+    pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
+        let [u, v, w] = self.plane;
+        let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
+        centre[u] = self.centre[0];
+        centre[v] = self.centre[1];
+        centre[w] = self.start[w];
+        normal[w] = 1.0;
+        TipArc::new(centre, normal, self.sweep)
     }
 
     /// How many chords stay within `tolerance` (mm) of the arc.

@@ -2,10 +2,10 @@
 //!
 //! Coordinates are millimetres and degrees in the frame of the first work offset; `None` where the program has not said them.
 
-use sweepsim_motion::Pose;
+use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
 
-use super::Options;
-use super::rotary::{self, RotaryTable};
+use super::rotary;
+use super::{AxisLaw, Options};
 use crate::error::Problem;
 use crate::program::{Notes, Program, ProgramPose};
 
@@ -17,6 +17,14 @@ const MOST_POSES: usize = 20_000_000;
 pub(crate) struct Target {
     pub xyz: [f64; 3],
     pub abc: [f64; 3],
+}
+
+/// The angles `[tilt, C]` of a table.
+fn angles(table: RotaryTable, [a, b, c]: [f64; 3]) -> [f64; 2] {
+    match table {
+        RotaryTable::Ac => [a, c],
+        RotaryTable::Bc => [b, c],
+    }
 }
 
 /// The machine.
@@ -32,6 +40,7 @@ pub(crate) struct Machine {
     poses: Vec<ProgramPose>,
     /// Whether the next pose follows from the last one.
     joined: bool,
+    law: AxisLaw,
 }
 
 impl Machine {
@@ -47,6 +56,7 @@ impl Machine {
             table_given: options.table.is_some(),
             poses: Vec::new(),
             joined: false,
+            law: options.law,
         }
     }
 
@@ -89,7 +99,7 @@ impl Machine {
     /// Puts the place where a cutting move starts in front of it, when the path does not come from there already.
     pub fn start_here(&mut self, line: usize) -> Result<(), Problem> {
         if let (false, Some(xyz)) = (self.joined, self.known()) {
-            self.push(Target { xyz, abc: self.abc }, true, line)?;
+            self.push(Target { xyz, abc: self.abc }, Move::default(), true, line)?;
         }
         Ok(())
     }
@@ -97,11 +107,10 @@ impl Machine {
     /// A straight move. Divides it where the axis turns far.
     pub fn line_to(&mut self, target: Target, rapid: bool, line: usize) -> Result<(), Problem> {
         let from = self.abc;
-        if self.joined && target.abc != from {
+        if self.joined && target.abc != from && self.law != AxisLaw::Rotary {
             let table = self.table(target.abc)?;
             let tilt = |abc: [f64; 3]| match table {
-                Some(RotaryTable::Ac) => [abc[0], abc[2]],
-                Some(RotaryTable::Bc) => [abc[1], abc[2]],
+                Some(table) => angles(table, abc),
                 None => [0.0, abc[2]],
             };
             let parts = rotary::parts(tilt(from), tilt(target.abc));
@@ -124,14 +133,45 @@ impl Machine {
                         xyz: mix(start, target.xyz),
                         abc: mix(from, target.abc),
                     };
-                    self.push(between, rapid, line)?;
+                    let way = Move::straight(self.turning(from, between.abc)?);
+                    self.push(between, way, rapid, line)?;
                 }
             }
         }
-        self.push(target, rapid, line)?;
+        let way = Move::straight(self.turning(from, target.abc)?);
+        self.push(target, way, rapid, line)?;
         self.xyz = target.xyz.map(Some);
         self.abc = target.abc;
         Ok(())
+    }
+
+    /// Cuts along an arc to `target`.
+    pub fn arc_to(&mut self, target: Target, arc: TipArc, line: usize) -> Result<(), Problem> {
+        let turning = match self.turning(self.abc, target.abc)? {
+            Turning::Slerp => Turning::Even,
+            other => other,
+        };
+        let way = Move {
+            course: Course::Arc(arc),
+            turning,
+        };
+        self.push(target, way, false, line)?;
+        self.xyz = target.xyz.map(Some);
+        self.abc = target.abc;
+        Ok(())
+    }
+
+    /// How the axis turns between two places of the rotary axes.
+    fn turning(&mut self, from: [f64; 3], to: [f64; 3]) -> Result<Turning, Problem> {
+        Ok(match (self.law, self.table(to)?) {
+            (AxisLaw::ConstantSpeed, _) => Turning::Even,
+            (AxisLaw::Rotary, Some(table)) if from != to => Turning::Rotary {
+                table,
+                from: angles(table, from),
+                to: angles(table, to),
+            },
+            _ => Turning::Slerp,
+        })
     }
 
     /// The rotary table, given or by the letters that have been other than 0.
@@ -165,8 +205,7 @@ impl Machine {
         }
     }
 
-    fn push(&mut self, target: Target, rapid: bool, line: usize) -> Result<(), Problem> {
-        let [a, b, c] = target.abc;
+    fn push(&mut self, target: Target, way: Move, rapid: bool, line: usize) -> Result<(), Problem> {
         if !self.tip_control && target.abc != [0.0; 3] {
             return Err(Problem::value(
                 "a move with the rotary axes turned",
@@ -175,12 +214,12 @@ impl Machine {
             ));
         }
         let axis = match self.table(target.abc)? {
-            Some(RotaryTable::Ac) => rotary::axis(RotaryTable::Ac, [a, c]),
-            Some(RotaryTable::Bc) => rotary::axis(RotaryTable::Bc, [b, c]),
+            Some(table) => table.axis(angles(table, target.abc)),
             None => [0.0, 0.0, 1.0],
         };
         let pose = Pose::new(target.xyz, axis).map_err(Problem::Pose)?;
-        let same = self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
+        let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
+        let same = !moves && self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
         if !same {
             if self.poses.len() >= MOST_POSES {
                 return Err(Problem::value(
@@ -196,6 +235,7 @@ impl Machine {
                 joined: self.joined,
                 tool: self.tool,
                 feed: if rapid { None } else { self.feed },
+                way,
             });
         }
         self.joined = true;

@@ -7,9 +7,9 @@
 //!
 //! Decisions, each made known as a [`Note`](crate::Note):
 //!
-//! - Arcs become chords within [`Options::arc_tolerance`].
-//! - Between two blocks the tip goes straight and the axis by SLERP, whatever the machine's rotary axes do in between.
-//!   Only when the axis turns by more than 90° in one block, poses on the rotary axes' way are put in.
+//! - Arcs become chords within [`Options::arc_tolerance`], or stay arcs and helices with [`Options::exact_arcs`].
+//! - Between two blocks the tip goes straight and the axis as [`Options::law`] says: by default by SLERP, whatever the machine's
+//!   rotary axes do in between. Only when the axis turns by more than 90° in one block, poses on the rotary axes' way are put in.
 //! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there, and begins
 //!   again where all coordinates are known.
 //! - Where a cutting move comes before all of XYZ are known, those that are not are taken as 0.
@@ -27,7 +27,7 @@ mod offsets;
 mod program;
 mod rotary;
 
-pub use rotary::RotaryTable;
+pub use sweepsim_motion::RotaryTable;
 
 use crate::error::FormatError;
 use crate::program::Program;
@@ -43,16 +43,34 @@ pub struct Options {
     pub table: Option<RotaryTable>,
     /// Whether the coordinates are the tip in the part's frame from the start, without a word in the program.
     pub tip_control: bool,
+    /// How the axis turns between two blocks.
+    pub law: AxisLaw,
+    /// Whether arcs stay arcs, and helices helices, instead of chords. The axis then turns evenly along them.
+    pub exact_arcs: bool,
+}
+
+/// How the tool's axis turns between two blocks of a program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AxisLaw {
+    /// In the plane of the two axes, as one rational arc.
+    #[default]
+    Slerp,
+    /// In the plane of the two axes, at constant speed.
+    ConstantSpeed,
+    /// As the machine does under tip control: both rotary axes at constant speed.
+    Rotary,
 }
 
 impl Default for Options {
-    /// Chords within 1 µm, millimetres, table by letters, tip control by the program.
+    /// Chords within 1 µm, millimetres, table by letters, tip control by the program, SLERP.
     fn default() -> Self {
         Self {
             arc_tolerance: 1e-3,
             inch: false,
             table: None,
             tip_control: false,
+            law: AxisLaw::Slerp,
+            exact_arcs: false,
         }
     }
 }

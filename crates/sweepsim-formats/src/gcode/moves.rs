@@ -187,6 +187,10 @@ impl Reader {
             }
         }
         .map_err(Problem::syntax)?;
+        if self.exact_arcs {
+            let exact = arc.exact().map_err(|error| Problem::syntax(error.to_string()))?;
+            return self.machine.arc_to(target, exact, line);
+        }
         let chords = arc.chords(self.arc_tolerance).map_err(Problem::syntax)?;
         self.machine.notes.add(
             line,

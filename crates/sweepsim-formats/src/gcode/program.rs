@@ -28,6 +28,7 @@ pub(super) fn read(text: &str, options: &Options) -> Result<Program, FormatError
         },
         offsets: Offsets::default(),
         arc_tolerance: options.arc_tolerance,
+        exact_arcs: options.exact_arcs,
         selected_tool: None,
         kinematics: options.tip_control,
         length_control: false,
@@ -67,6 +68,7 @@ pub(super) struct Reader {
     pub(super) modes: Modes,
     pub(super) offsets: Offsets,
     pub(super) arc_tolerance: f64,
+    pub(super) exact_arcs: bool,
     /// By a T word, not yet in the spindle.
     pub(super) selected_tool: Option<u32>,
     /// Tip control by the machine's kinematics (M428),

@@ -93,6 +93,15 @@ pub fn cyclohexane() -> Named {
 /// Where a dexel line meets the envelope of a sphere along a cubic path with a turning frame (Eq. 6), in the degrees that a
 /// general surface has: (4,4,8), (2,2,3), (2,2,5).
 pub fn sphere_sweep() -> Named {
+    Named {
+        name: "sphere_sweep_eq6",
+        system: System::new(&unit(3), sphere_sweep_forms()).expect("a valid system"),
+        roots: 0,
+    }
+}
+
+/// The envelope, and two coordinates less the line's.
+fn sphere_sweep_forms() -> [Bernstein; 3] {
     let n = 3;
     let one = Bernstein::constant(n, 1.0);
     // A stereographic patch: (2u, 2v, 1 − u² − v²) / (1 + u² + v²) for u, v in [−1, 1].
@@ -124,15 +133,20 @@ pub fn sphere_sweep() -> Named {
     let envelope = envelope.mul(&weight).mul(&w).mul(&w);
     let x = sphere[0].add(&path[0].sub(&one.scale(1.5)).mul(&weight));
     let y = turned[1].add(&path[1].sub(&one.scale(0.4)).mul(&weight).mul(&w));
-    let forms = [envelope, x, y].map(Bernstein::assumed_exact);
+    [envelope, x, y].map(Bernstein::assumed_exact)
+}
+
+/// Where the same envelope meets a plane (Eq. 4): one arc.
+pub fn sphere_section() -> Named {
+    let [envelope, x, _] = sphere_sweep_forms();
     Named {
-        name: "sphere_sweep_eq6",
-        system: System::new(&unit(3), &forms).expect("a valid system"),
+        name: "sphere_section_eq4",
+        system: System::new(&unit(3), [envelope, x]).expect("a valid system"),
         roots: 0,
     }
 }
 
-/// All of them.
+/// All systems with points as solutions.
 pub fn all() -> Vec<Named> {
     vec![
         sphere_sweep(),

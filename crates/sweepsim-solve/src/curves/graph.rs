@@ -82,19 +82,31 @@ pub(crate) fn graph(
         }
     }
     let graph = Graph { over, inverse: k, sign };
-    let (centre, slope, half) = tube(layout, cell, mean, &graph);
+    let Tube {
+        centre, slope, half, ..
+    } = tube(layout, cell, mean, &graph);
     let misses = (0..m).any(|i| centre[i].abs() > 0.5 + 0.5 * slope[i].abs() + half[i]);
     Some((graph, misses))
 }
 
-/// The curve in the cell lies in a tube: each other variable is `centre + slope z ± half`, `z ∈ [−½, ½]` along the graph's variable, in sides
-/// of the cell from its centre.
-pub(crate) fn tube(layout: &Layout, cell: &Cell, mean: &Square, graph: &Graph) -> (Row, Row, Row) {
+/// What the curve in a cell lies in: each other variable is `centre + slope z ± half`, `z ∈ [−½, ½]` along the graph's variable, in sides of
+/// the cell from its centre.
+pub(crate) struct Tube {
+    pub centre: Row,
+    pub slope: Row,
+    pub half: Row,
+    /// The share of `half` that coefficients' errors are to blame for: no subdivision makes it smaller.
+    pub noise: Row,
+}
+
+pub(crate) fn tube(layout: &Layout, cell: &Cell, mean: &Square, graph: &Graph) -> Tube {
     let (m, over) = (layout.m, graph.over);
     let affine = layout.affine(cell, *mean);
     let k = &graph.inverse;
+    let mean = &affine.slope;
     let others = without(mean, over, m);
     let (mut centre, mut slope, mut half) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+    let mut noise = [0.0; MAX_UNKNOWNS];
     for i in 0..m {
         let mut size = 1.0;
         for e in 0..m {
@@ -102,6 +114,7 @@ pub(crate) fn tube(layout: &Layout, cell: &Cell, mean: &Square, graph: &Graph) -
             slope[i] -= k[i][e] * mean[e][over];
             size += k[i][e].abs() * (affine.constant[e].abs() + mean[e][over].abs());
             half[i] += k[i][e].abs() * affine.radius[e];
+            noise[i] += k[i][e].abs() * layout.value_error(cell, e);
         }
         let mut rest = 0.0;
         for j in 0..m {
@@ -113,6 +126,12 @@ pub(crate) fn tube(layout: &Layout, cell: &Cell, mean: &Square, graph: &Graph) -
             rest += 0.5 * (f64::abs(entry) + 16.0 * EPSILON * entries);
         }
         half[i] = (half[i] + rest) * (1.0 + 32.0 * EPSILON) + 32.0 * EPSILON * size;
+        noise[i] += 64.0 * EPSILON * size;
     }
-    (centre, slope, half)
+    Tube {
+        centre,
+        slope,
+        half,
+        noise,
+    }
 }

@@ -23,6 +23,7 @@ use crate::matrix::MAX_UNKNOWNS;
 use crate::points::{PointSolver, SolveError};
 use crate::search::{Cause, Observer, SolveOptions, SolveStatistics};
 use crate::{Interval, System};
+use std::time::Instant;
 use subdivide::Search;
 use trace::Tracer;
 
@@ -55,6 +56,15 @@ pub struct Curve {
     pub points: Vec<CurvePoint>,
     /// `None` for a loop.
     pub ends: Option<[End; 2]>,
+}
+
+/// A piece of the curve in one box of the subdivision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePiece {
+    /// Numbers of the points where it begins and ends: each is shared with at most one other piece.
+    pub ends: [usize; 2],
+    /// The vertices, both ends among them, in the direction of the curve.
+    pub points: Vec<CurvePoint>,
 }
 
 /// A box where the curve may be singular, or could not be settled.
@@ -114,7 +124,8 @@ impl Curves {
 pub struct CurveSolver {
     /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a cell counts as singular; 1e-9 by default here.
     pub options: SolveOptions,
-    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units.
+    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; besides what the rounding
+    /// errors (and stated errors) of the coefficients move the curve by.
     pub tolerance: f64,
     points: PointSolver,
 }
@@ -147,6 +158,15 @@ impl CurveSolver {
     /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
     /// there is one equation fewer, [`SolveError::Smallest`] for an impossible size or tolerance.
     pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Curves, SolveError> {
+        self.check(system)?;
+        let mut search = self.search(system);
+        let (root, first, skin) = search.boundary(observer);
+        search.run(root, first, observer, &mut |_, _| {});
+        Ok(search.assemble(skin))
+    }
+
+    /// Whether the system and the limits can be meant.
+    fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if n < 2 {
             return Err(SolveError::Variables {
@@ -166,13 +186,17 @@ impl CurveSolver {
         if !possible {
             return Err(SolveError::Smallest);
         }
+        Ok(())
+    }
+
+    fn search<'a>(&'a mut self, system: &'a System) -> Search<'a> {
         self.points.options = SolveOptions {
             smallest: 1e-8,
             boxes: self.options.boxes.min(20_000),
             unresolved: 64,
             ..SolveOptions::default()
         };
-        let mut search = Search {
+        Search {
             system,
             options: self.options.clone(),
             points: &mut self.points,
@@ -181,10 +205,9 @@ impl CurveSolver {
             pieces: Vec::new(),
             open: Vec::new(),
             statistics: SolveStatistics::default(),
-        };
-        let (root, first, skin) = search.boundary();
-        search.run(root, first, observer);
-        Ok(search.assemble(skin))
+            ranges: Vec::new(),
+            deadline: self.options.time.and_then(|t| Instant::now().checked_add(t)),
+        }
     }
 
     /// The same, handing over each component as a call.
@@ -201,5 +224,51 @@ impl CurveSolver {
         let curves = self.solve(system, observer)?;
         curves.curves.iter().for_each(&mut visit);
         Ok(curves.singular)
+    }
+
+    /// The same, handing over each piece as soon as it is found, so that polylines need not be kept. Pieces come in no order; ends of
+    /// the same [`CurvePiece::ends`] number are the same point, so a caller that needs components joins them by these numbers.
+    ///
+    /// The result has no curves, and its singular boxes no branches: only what is open, and the counts. If its
+    /// [`skin`](Curves::skin) is not 0, pieces may leave the region by so much.
+    ///
+    /// ```
+    /// use sweepsim_solve::{CurveSolver, Interval, System};
+    /// use sweepsim_spline::Bernstein;
+    ///
+    /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
+    /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
+    /// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
+    /// let mut length = 0.0;
+    /// let rest = CurveSolver::new(1e-4).for_each_piece(&system, &mut (), |piece| {
+    ///     for p in piece.points.windows(2) {
+    ///         length += (p[0].point[0] - p[1].point[0]).hypot(p[0].point[1] - p[1].point[1]);
+    ///     }
+    /// })?;
+    /// assert!((length - std::f64::consts::PI).abs() < 1e-3 && rest.singular.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    pub fn for_each_piece(
+        &mut self,
+        system: &System,
+        observer: &mut dyn Observer,
+        mut visit: impl FnMut(CurvePiece),
+    ) -> Result<Curves, SolveError> {
+        self.check(system)?;
+        let mut search = self.search(system);
+        let (root, first, skin) = search.boundary(observer);
+        search.run(root, first, observer, &mut |tracer, pieces| {
+            for piece in pieces.drain(..) {
+                visit(CurvePiece {
+                    ends: piece.ends,
+                    points: piece.vertices.iter().map(|v| tracer.outer(v)).collect(),
+                });
+            }
+        });
+        Ok(search.assemble(skin))
     }
 }

@@ -7,6 +7,7 @@ use crate::layout::{Cell, EPSILON};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use crate::points::{PointSolver, excluded, pop, push, within_domain};
 use crate::search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Watch};
+use std::time::Instant;
 
 /// A crossing of a face, in inner coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +37,19 @@ pub(super) struct OpenCell {
 const SKINS: [f64; 4] = [0.0, 1.0e-7, 2.3e-6, 4.1e-5];
 /// Where cells are cut, in order of preference.
 const CUTS: [f64; 9] = [0.492, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
+/// No side shrinks below this part at once.
+const SHRINK: f64 = 1.0 / 32.0;
 /// A cut keeps so far, in sides of the cell, from known crossings, if it can.
 const CLEAR: f64 = 0.01;
+
+/// Passes on only whether to proceed: searches on faces are no boxes of their own.
+struct Faces<'a>(&'a mut dyn Observer);
+
+impl Observer for Faces<'_> {
+    fn proceed(&mut self, statistics: &SolveStatistics) -> bool {
+        self.0.proceed(statistics)
+    }
+}
 
 pub(super) struct Search<'a> {
     pub system: &'a System,
@@ -48,11 +60,13 @@ pub(super) struct Search<'a> {
     pub pieces: Vec<Piece>,
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,
+    pub ranges: Vec<(f64, f64)>,
+    pub deadline: Option<Instant>,
 }
 
 impl Search<'_> {
     /// The root cell, its crossings, and the skin that it took.
-    pub(super) fn boundary(&mut self) -> (Cell, Vec<usize>, f64) {
+    pub(super) fn boundary(&mut self, observer: &mut dyn Observer) -> (Cell, Vec<usize>, f64) {
         let layout = &self.system.layout;
         let n = layout.n;
         let tries = if self.system.bounded() { 1 } else { SKINS.len() };
@@ -72,7 +86,7 @@ impl Search<'_> {
             let mut stuck = Vec::new();
             for j in 0..n {
                 for upper in [false, true] {
-                    clean &= self.cross(&root, j, upper, true, &mut stuck);
+                    clean &= self.cross(&root, j, upper, true, &mut stuck, observer);
                 }
             }
             if clean || number + 1 == tries {
@@ -84,10 +98,19 @@ impl Search<'_> {
     }
 
     /// Adds the crossings of a face of the cell; `false`, with what is open, if some could not be certified or lie on the face's edge.
-    fn cross(&mut self, cell: &Cell, axis: usize, upper: bool, outer: bool, stuck: &mut Vec<OpenCell>) -> bool {
+    fn cross(
+        &mut self,
+        cell: &Cell,
+        axis: usize,
+        upper: bool,
+        outer: bool,
+        stuck: &mut Vec<OpenCell>,
+        observer: &mut dyn Observer,
+    ) -> bool {
         let n = self.system.layout.n;
         let face = self.system.on_face(cell, axis, upper);
-        self.points.run(&face, &mut ());
+        self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
+        self.points.run(&face, &mut Faces(observer));
         // Boxes of faces count, else searches that find nothing certain on any face would have no end.
         self.statistics.boxes += self.points.statistics.boxes;
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
@@ -124,7 +147,14 @@ impl Search<'_> {
         clean
     }
 
-    pub(super) fn run(&mut self, root: Cell, first: Vec<usize>, observer: &mut dyn Observer) {
+    /// The search. After each cell, `hand` may take what pieces there are.
+    pub(super) fn run(
+        &mut self,
+        root: Cell,
+        first: Vec<usize>,
+        observer: &mut dyn Observer,
+        hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<Piece>),
+    ) {
         let layout = &self.system.layout;
         let mut watch = Watch::new(&self.options);
         let mut stack = Vec::new();
@@ -148,7 +178,7 @@ impl Search<'_> {
             let (lo, hi) = (cell.lo, cell.hi);
             let fate = match self.settle(&mut cell, &crossings) {
                 Ok(fate) => fate,
-                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings) {
+                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, observer) {
                     Some((below, above)) => {
                         push(&mut stack, &cell, layout);
                         frames.push((depth + 1, above));
@@ -160,6 +190,7 @@ impl Search<'_> {
                 },
             };
             self.statistics.count(fate);
+            hand(&self.tracer, &mut self.pieces);
             if observer.traces() {
                 observer.visited(&self.system.outward(&lo, &hi), depth, fate);
             }
@@ -175,19 +206,69 @@ impl Search<'_> {
         });
     }
 
-    /// Settles the cell, or says across which axis to split it.
+    /// Settles the cell, or shrinks it to where the curve is and says across which axis to split it.
     fn settle(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
+        loop {
+            let result = self.judge(cell, crossings);
+            if result.is_ok() {
+                return result;
+            }
+            match self.shrink(cell, crossings) {
+                None => return Ok(Fate::Projection),
+                Some(true) => self.statistics.reductions += 1,
+                Some(false) => return result,
+            }
+        }
+    }
+
+    /// Shrinks the cell to the part where, by the equations' projections, the curve is; `false` if that is not worth it, `None` if the curve
+    /// misses the cell. With some slack: the curve does not meet the new faces, so the crossings stay what they are.
+    fn shrink(&mut self, cell: &mut Cell, crossings: &[usize]) -> Option<bool> {
+        let layout = &self.system.layout;
+        let n = layout.n;
+        let totals = layout.ranges(cell);
+        layout.part_ranges(cell, &mut self.ranges);
+        let mut window = [(0.0, 1.0); MAX_UNKNOWNS];
+        for j in 0..n {
+            layout.project(cell, &self.ranges, &totals, j, &mut window[j]);
+            if window[j].0 > window[j].1 {
+                // With crossings this cannot be, but for their enclosures' width.
+                return if crossings.is_empty() { None } else { Some(false) };
+            }
+        }
+        let width = |cell: &Cell, j: usize| cell.hi[j] - cell.lo[j];
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max((window[j].1 - window[j].0) * width(cell, j)));
+        let mut worth = false;
+        for j in 0..n {
+            let (lo, hi) = (cell.lo[j], cell.hi[j]);
+            let side = hi - lo;
+            let least = SHRINK.max(0.1 * widest / side).max(0.5 * self.options.smallest / side);
+            let middle = 0.5 * (window[j].0 + window[j].1);
+            let half = (0.55 * (window[j].1 - window[j].0)).max(0.5 * least);
+            let (mut new_lo, mut new_hi) = (lo + (middle - half) * side, lo + (middle + half) * side);
+            for c in crossings {
+                let c = &self.crossings[*c];
+                new_lo = new_lo.min(c.lo[j] - 0.01 * side);
+                new_hi = new_hi.max(c.hi[j] + 0.01 * side);
+            }
+            (new_lo, new_hi) = (new_lo.max(lo), new_hi.min(hi));
+            if new_hi - new_lo < 0.75 * side && new_lo < new_hi {
+                worth = true;
+                layout.restrict(cell, j, new_lo, new_hi);
+            }
+        }
+        Some(worth)
+    }
+
+    /// Settles the cell as it is, or says across which axis to split it.
+    fn judge(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
         let layout = &self.system.layout;
         let (n, m) = (layout.n, layout.m);
         let mut totals = layout.ranges(cell);
         if crossings.is_empty() && excluded(&totals, m) {
             return Ok(Fate::Sign);
         }
-        let noisy = (0..m).any(|e| {
-            let size = totals.0[e].abs().max(totals.1[e].abs());
-            cell.noise[e] > 1e-7 * size && cell.noise[e] > 4.0 * layout.first_noise[e]
-        });
-        if noisy && within_domain(cell, n) {
+        if layout.noisy(cell, &totals, 1e-7) && within_domain(cell, n) {
             layout.refresh(cell, self.tracer.doubles());
             self.statistics.refreshed += 1;
             totals = layout.ranges(cell);
@@ -259,7 +340,7 @@ impl Search<'_> {
         for e in 0..m {
             let slope = (0..n)
                 .fold(0.0, |s: f64, j| s.max(mean[e][j].abs()))
-                .max(1e-3 * cell.scale[e]);
+                .max(1e-3 * layout.size(cell, e));
             for j in 0..n {
                 if slope > 0.0 {
                     weight[j] += (slopes.hi[e][j] - slopes.lo[e][j]) / slope;
@@ -285,6 +366,7 @@ impl Search<'_> {
         axis: usize,
         depth: u32,
         crossings: Vec<usize>,
+        observer: &mut dyn Observer,
     ) -> Option<(Vec<usize>, Vec<usize>)> {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -324,7 +406,7 @@ impl Search<'_> {
                     let mut stuck = Vec::new();
                     let mut face_cell = upper.clone();
                     layout.ranges(&mut face_cell);
-                    if !self.cross(&face_cell, axis, false, false, &mut stuck) {
+                    if !self.cross(&face_cell, axis, false, false, &mut stuck, observer) {
                         self.crossings.truncate(before);
                         continue;
                     }

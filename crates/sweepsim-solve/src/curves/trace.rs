@@ -2,10 +2,11 @@
 //!
 //! Over a part of the cell between two points of the curve, the affine enclosures say that each other variable is an affine function of
 //! the graph's variable, up to `half`. Both ends lie in that tube, so the chord does, and the curve is within `2 half` of it.
-//! Where that is more than the tolerance, the part is halved at a point of the curve.
+//! Where that is more than the tolerance, the part is halved at a point of the curve. What errors of the coefficients add to `half` is not counted:
+//! near singular points it may exceed any tolerance, and halving does not help.
 
 use super::CurvePoint;
-use super::graph::{Graph, minor, tube, without};
+use super::graph::{Graph, Tube, minor, tube, without};
 use super::subdivide::Crossing;
 use crate::System;
 use crate::double::Double;
@@ -20,13 +21,16 @@ pub(crate) struct Vertex {
 }
 
 /// Halvings above which a piece is given up.
-const DEPTH: u32 = 40;
+const DEPTH: usize = 40;
+/// With the tube thicker than so many tolerances, the part is halved rather than looked at again.
+const HOPELESS: f64 = 16.0;
 
 pub(crate) struct Tracer<'a> {
     system: &'a System,
     tolerance: f64,
     buffer: Vec<f64>,
     doubles: Vec<Double>,
+    parts: Vec<Cell>,
 }
 
 impl<'a> Tracer<'a> {
@@ -36,6 +40,7 @@ impl<'a> Tracer<'a> {
             tolerance,
             buffer: Vec::new(),
             doubles: Vec::new(),
+            parts: Vec::new(),
         }
     }
 
@@ -46,81 +51,94 @@ impl<'a> Tracer<'a> {
     /// The vertices from one end to the other, `ends` being sorted by the graph's variable.
     pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&Crossing; 2]) -> Option<Vec<Vertex>> {
         let mut vertices = vec![self.vertex(cell, graph, &ends[0].point)];
-        let mut part = cell.clone();
-        self.halve(
+        let mut parts = std::mem::take(&mut self.parts);
+        parts.resize_with(DEPTH + 2, Cell::default);
+        parts[0].clone_from(cell);
+        let done = self.halve(
             cell,
-            &mut part,
+            &mut parts,
             graph,
             [ends[0].point, ends[1].point],
-            DEPTH,
+            1,
             &mut vertices,
-        )?;
-        Some(vertices)
+        );
+        self.parts = parts;
+        done.map(|()| vertices)
     }
 
-    /// Adds the vertices after the first end.
+    /// Adds the vertices after the first end. The part of the cell that the curve between the ends lies in is `parts[depth]`, made from the one
+    /// before it.
     fn halve(
         &mut self,
         cell: &Cell,
-        part: &mut Cell,
+        parts: &mut [Cell],
         graph: &Graph,
         ends: [Row; 2],
-        depth: u32,
+        depth: usize,
         out: &mut Vec<Vertex>,
     ) -> Option<()> {
-        let layout = &self.system.layout;
-        let (n, over) = (layout.n, graph.over);
-        let (from, to) = (ends[0][over], ends[1][over]);
-        // The part of the cell between the two points, shrunk to its tube.
-        part.clone_from(cell);
         let close = {
-            let width = to - from;
-            if width > 1e-13 * (cell.hi[over] - cell.lo[over]) && from >= cell.lo[over] && to <= cell.hi[over] {
-                layout.restrict(part, over, from, to);
-            }
-            let mut distance = f64::INFINITY;
-            for _ in 0..4 {
-                layout.ranges(part);
-                let mean = layout.mean_slopes(&part.c);
-                let local = match inverse(&without(&mean, over, layout.m), layout.m) {
-                    Some((inverse, sign)) => Graph { over, inverse, sign },
-                    None => break,
-                };
-                let (centre, slope, half) = tube(layout, part, &mean, &local);
-                let mut square = 0.0;
-                let mut shrunk = false;
-                let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
-                for (place, j) in (0..n).filter(|j| *j != over).enumerate() {
-                    let side = part.hi[j] - part.lo[j];
-                    let error = 2.0 * half[place] * side * self.system.domain_width(j);
-                    square += error * error;
-                    let reach = 0.5 * slope[place].abs() + half[place];
-                    let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
-                    let hi = (part.lo[j] + (0.5 + centre[place] + 1.05 * reach) * side).min(part.hi[j]);
-                    windows[j] = (lo, hi);
-                    shrunk |= hi - lo < 0.8 * side;
-                }
-                distance = f64::sqrt(square);
-                if distance <= self.tolerance || !shrunk {
-                    break;
-                }
-                for j in (0..n).filter(|j| *j != over) {
-                    let (lo, hi) = windows[j];
-                    let side = part.hi[j] - part.lo[j];
-                    if hi - lo > 1e-6 * side && hi - lo < 0.9 * side {
-                        layout.restrict(part, j, lo, hi);
-                    }
-                }
-            }
-            distance <= self.tolerance
+            let (before, after) = parts.split_at_mut(depth);
+            after[0].clone_from(&before[depth - 1]);
+            self.within_tolerance(&mut after[0], graph.over, ends[0][graph.over], ends[1][graph.over])
         };
-        if close || depth == 0 {
+        if close || depth > DEPTH {
             out.push(self.vertex(cell, graph, &ends[1]));
             return close.then_some(());
         }
         let middle = self.between(cell, graph, &ends)?;
-        self.halve(cell, part, graph, [ends[0], middle], depth - 1, out)?;
-        self.halve(cell, part, graph, [middle, ends[1]], depth - 1, out)
+        self.halve(cell, parts, graph, [ends[0], middle], depth + 1, out)?;
+        self.halve(cell, parts, graph, [middle, ends[1]], depth + 1, out)
+    }
+
+    /// Restricts the part to between two values of the graph's variable and to the tube there, and says whether the tube is thin enough.
+    fn within_tolerance(&self, part: &mut Cell, over: usize, from: f64, to: f64) -> bool {
+        let layout = &self.system.layout;
+        let n = layout.n;
+        if to - from > 1e-13 * (part.hi[over] - part.lo[over]) && from >= part.lo[over] && to <= part.hi[over] {
+            layout.restrict(part, over, from, to);
+        }
+        for _ in 0..4 {
+            layout.ranges(part);
+            let mean = layout.mean_slopes(&part.c);
+            let Some((inverse, sign)) = inverse(&without(&mean, over, layout.m), layout.m) else {
+                return false;
+            };
+            let Tube {
+                centre,
+                slope,
+                half,
+                noise,
+            } = tube(layout, part, &mean, &Graph { over, inverse, sign });
+            let mut square = 0.0;
+            let mut shrunk = false;
+            let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
+            for (place, j) in (0..n).filter(|j| *j != over).enumerate() {
+                let side = part.hi[j] - part.lo[j];
+                let error = 2.0 * (half[place] - noise[place]).max(0.0) * side * self.system.domain_width(j);
+                square += error * error;
+                let reach = 0.5 * slope[place].abs() + half[place];
+                let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
+                let hi = (part.lo[j] + (0.5 + centre[place] + 1.05 * reach) * side).min(part.hi[j]);
+                windows[j] = (lo, hi);
+                shrunk |= hi - lo < 0.8 * side;
+            }
+            let distance = f64::sqrt(square);
+            if distance <= self.tolerance || !shrunk {
+                return distance <= self.tolerance;
+            }
+            for j in (0..n).filter(|j| *j != over) {
+                let (lo, hi) = windows[j];
+                let side = part.hi[j] - part.lo[j];
+                if hi - lo > 1e-6 * side && hi - lo < 0.9 * side {
+                    layout.restrict(part, j, lo, hi);
+                }
+            }
+            if distance > HOPELESS * self.tolerance {
+                return false;
+            }
+        }
+        false
     }
 
     /// The curve's point halfway in the graph's variable.

@@ -3,5 +3,6 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 pub mod expression;
+pub mod planted;
 pub mod stored;
 pub mod taylor;

@@ -7,38 +7,94 @@
 //! The outline runs from the tip along the bottom line to the corner, round it, and along the side line to the height. Where the corner's
 //! circle touches a line, it is left or joined there; where it cuts the line (barrels, lenses), at the farther of the two points.
 
-use sweepsim_motion::{Profile, ProfileSegment, Turn};
+use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
+use thiserror::Error;
 
-use crate::error::Problem;
-
-/// The parameters; lengths in millimetres, angles in degrees.
+/// The parameters of the cutter: lengths in one unit, angles in degrees.
+///
+/// ```
+/// use sweepsim_motion::{Apt, Tool};
+/// let drill = Apt { d: 10.0, r: 0.0, e: 5.0, f: 0.0, a: 31.0, b: 0.0, h: 40.0 };
+/// let (tool, warnings) = Tool::apt(&drill)?;
+/// assert!(warnings.is_empty() && tool.profile().is_some_and(|profile| profile.segments().len() == 3));
+/// # Ok::<(), sweepsim_motion::AptError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Apt {
+pub struct Apt {
+    /// Diameter: twice the radius where the bottom line and the side line meet.
     pub d: f64,
+    /// Radius of the corner.
     pub r: f64,
+    /// Distance of the corner's centre from the axis; negative beyond it, for barrels.
     pub e: f64,
+    /// Height of the corner's centre above the tip.
     pub f: f64,
+    /// Angle of the bottom line above the horizontal; negative for a hollow end.
     pub a: f64,
+    /// Angle of the side line outwards from the axis' direction; negative for dovetails.
     pub b: f64,
+    /// Height.
     pub h: f64,
+}
+
+/// Why parameters are no cutter.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum AptError {
+    /// A parameter is out of its range.
+    #[error("`{name}` of the APT cutter is {value}, but must be {expected}")]
+    Parameter {
+        /// Its letter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+    /// The corner's circle and a line have no point in common.
+    #[error("the corner of the APT cutter (r, e, f) does not reach its {line} line: expected it to touch or cut it")]
+    Misses {
+        /// `"bottom"` or `"side"`.
+        line: &'static str,
+    },
+    /// The outline is none.
+    #[error("the APT cutter: {0}")]
+    Profile(ProfileError),
+}
+
+/// What is odd about a cutter.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum AptWarning {
+    /// The corner cuts a line instead of touching it: there is a sharp edge.
+    #[error(
+        "the corner (r, e, f) is not tangent to the {line} line, which passes its centre at {distance}: there is a sharp edge"
+    )]
+    NotTangent {
+        /// `"bottom"` or `"side"`.
+        line: &'static str,
+        /// The distance of the corner's centre from the line.
+        distance: f64,
+    },
 }
 
 /// A circle that misses a line by no more than this part of the cutter's size touches it: parameters have few digits.
 const TOUCHES: f64 = 1e-6;
 
 impl Apt {
-    /// The outline. The error's first part is the parameter that is to blame.
-    pub fn profile(&self) -> Result<Profile, (&'static str, Problem)> {
-        let check = |name: &'static str, value: f64, good: bool, expected: &str| {
+    /// The outline, and what is odd about it.
+    ///
+    /// # Errors
+    /// [`AptError`]: a parameter out of range, a corner that misses a line, an outline that crosses itself.
+    pub fn profile(&self) -> Result<(Profile, Vec<AptWarning>), AptError> {
+        let check = |name: &'static str, value: f64, good: bool, expected: &'static str| {
             if good && value.is_finite() {
                 Ok(())
             } else {
-                Err((
-                    name,
-                    Problem::value(format!("`{name}` of the APT cutter"), value, expected),
-                ))
+                Err(AptError::Parameter { name, value, expected })
             }
         };
+        let mut warnings = Vec::new();
         check("d", self.d, self.d >= 0.0, "0 or greater")?;
         check("r", self.r, self.r >= 0.0, "0 or greater")?;
         check("e", self.e, true, "finite")?;
@@ -69,14 +125,15 @@ impl Apt {
                 radius: self.r,
                 slack: TOUCHES * (self.d + self.r),
             };
-            let missing = |line: &str| {
-                let message = format!(
-                    "the corner of the APT cutter (r, e, f) does not reach its {line} line: expected it to touch or cut it"
-                );
-                ("r", Problem::syntax(message))
-            };
-            let leave = circle.farther(&bottom).ok_or_else(|| missing("bottom"))?;
-            let join = circle.farther(&side).ok_or_else(|| missing("side"))?;
+            let mut ends = [[0.0; 2]; 2];
+            for (end, (line, name)) in ends.iter_mut().zip([(&bottom, "bottom"), (&side, "side")]) {
+                let (point, distance) = circle.farther(line).ok_or(AptError::Misses { line: name })?;
+                *end = point;
+                if (distance - self.r).abs() > circle.slack {
+                    warnings.push(AptWarning::NotTangent { line: name, distance });
+                }
+            }
+            let [leave, join] = ends;
             outline.line(leave);
             outline.arc(join, circle.centre);
         } else {
@@ -85,8 +142,8 @@ impl Apt {
         let top = side.from[0] + (self.h - side.from[1]) * sin_b / cos_b;
         outline.line([top, self.h]);
         outline.line([0.0, self.h]);
-        Profile::new([0.0, 0.0], outline.segments)
-            .map_err(|error| ("", Problem::syntax(format!("the APT cutter: {error}"))))
+        let profile = Profile::new([0.0, 0.0], outline.segments).map_err(AptError::Profile)?;
+        Ok((profile, warnings))
     }
 }
 
@@ -102,8 +159,8 @@ struct Circle {
 }
 
 impl Circle {
-    /// The point where the line touches the circle, or the farther one where it cuts.
-    fn farther(&self, line: &Line) -> Option<[f64; 2]> {
+    /// The point where the line touches the circle, or the farther one where it cuts; and its distance from the centre.
+    fn farther(&self, line: &Line) -> Option<([f64; 2], f64)> {
         let to = [self.centre[0] - line.from[0], self.centre[1] - line.from[1]];
         let [dx, dy] = line.direction;
         let along = to[0] * dx + to[1] * dy;
@@ -115,7 +172,8 @@ impl Circle {
             (self.radius * self.radius - height * height).sqrt()
         };
         let s = along + half;
-        s.is_finite().then(|| [line.from[0] + s * dx, line.from[1] + s * dy])
+        s.is_finite()
+            .then(|| ([line.from[0] + s * dx, line.from[1] + s * dy], height))
     }
 }
 
@@ -169,12 +227,32 @@ mod tests {
 
     #[test]
     fn the_usual_cutters() {
-        let count = |parameters| apt(parameters).profile().unwrap().segments().len();
+        let count = |parameters| {
+            let (profile, warnings) = apt(parameters).profile().unwrap();
+            assert!(warnings.is_empty(), "{warnings:?}");
+            profile.segments().len()
+        };
         assert_eq!(count([10.0, 0.0, 5.0, 0.0, 0.0, 0.0, 30.0]), 3, "flat");
         assert_eq!(count([10.0, 5.0, 0.0, 5.0, 0.0, 0.0, 30.0]), 3, "ball");
         assert_eq!(count([10.0, 1.0, 4.0, 1.0, 0.0, 0.0, 30.0]), 4, "bull");
         assert_eq!(count([10.0, 0.0, 5.0, 0.0, 31.0, 0.0, 30.0]), 3, "drill");
-        assert_eq!(count([12.0, 20.0, -14.0, 10.0, 0.0, 0.0, 40.0]), 4, "barrel");
+        assert_eq!(count([10.0, 0.0, 5.0, 0.0, -10.0, 0.0, 30.0]), 3, "hollow end");
+        assert_eq!(count([10.0, 0.0, 5.0, 0.0, 0.0, -8.0, 30.0]), 3, "dovetail");
+        assert_eq!(count([10.0, 0.0, 5.0, 0.0, 20.0, 6.0, 30.0]), 3, "taper with a point");
+    }
+
+    #[test]
+    fn corners_that_cut_are_sharp_and_said_to_be() {
+        // A barrel: its flank of radius 20 cuts the bottom plane and the side line.
+        let (profile, warnings) = apt([12.0, 20.0, -14.0, 10.0, 0.0, 0.0, 40.0]).profile().unwrap();
+        assert_eq!(profile.segments().len(), 4);
+        assert_eq!(
+            warnings,
+            [AptWarning::NotTangent {
+                line: "bottom",
+                distance: 10.0
+            }]
+        );
     }
 
     #[test]
@@ -182,7 +260,8 @@ mod tests {
         // Radius 2, 5 degrees: the side line touches the ball, and meets the bottom line at rho = d/2.
         let (sin, cos) = 5.0_f64.to_radians().sin_cos();
         let d = 2.0 * (2.0 * cos - (2.0 - 2.0 * sin) * sin / cos);
-        let profile = apt([d, 2.0, 0.0, 2.0, 0.0, 5.0, 30.0]).profile().unwrap();
+        let (profile, warnings) = apt([d, 2.0, 0.0, 2.0, 0.0, 5.0, 30.0]).profile().unwrap();
+        assert!(warnings.is_empty());
         match profile.segments() {
             [ProfileSegment::Arc { to, .. }, ..] => {
                 assert!((to[0] - 2.0 * cos).abs() < 1e-9 && (to[1] - (2.0 - 2.0 * sin)).abs() < 1e-9);
@@ -193,14 +272,19 @@ mod tests {
 
     #[test]
     fn bad_ones_name_the_parameter() {
-        let blame = |parameters| apt(parameters).profile().unwrap_err().0;
+        let blame = |parameters| match apt(parameters).profile().unwrap_err() {
+            AptError::Parameter { name, .. } => name,
+            AptError::Misses { line } => line,
+            AptError::Profile(_) => "profile",
+        };
         assert_eq!(blame([10.0, -1.0, 4.0, 1.0, 0.0, 0.0, 30.0]), "r");
         assert_eq!(blame([10.0, 1.0, 4.0, 1.0, 90.0, 0.0, 30.0]), "a");
         assert_eq!(blame([10.0, 1.0, 4.0, 1.0, 0.0, 0.0, f64::NAN]), "h");
+        assert_eq!(blame([10.0, 1.0, 2.0, 1.0, 0.0, 0.0, 30.0]), "side");
         assert_eq!(
-            blame([10.0, 1.0, 2.0, 1.0, 0.0, 0.0, 30.0]),
-            "r",
-            "does not reach the side"
+            blame([10.0, 0.0, 5.0, 0.0, 0.0, -45.0, 30.0]),
+            "profile",
+            "the side line crosses the axis"
         );
     }
 }

@@ -1,0 +1,278 @@
+//! Moves at constant speed: everything that turns, turns evenly and in step with the tip, to within a stated deviation.
+//!
+//! A move is divided into `m` equal parts of its time; in each, every turn by an angle `θ` is one rational arc in a common parameter
+//! `s`. With `τ = tan(θ/4)` and `x = 2s − 1` the part of the angle that has passed is `½ + ½ f(x)`, `f(x) = atan(τx)/atan τ`.
+//! The *time* of the part is defined by its largest angle, which is therefore exact. What remains is
+//!
+//! - another turn, by a smaller angle `θ′`: off by at most `θ′ e₃`, and a point at the distance `r` from its axis by `r θ′ e₃`, because `f` grows
+//!   with `τ` from `x` on, and `f(x) − x ≤ (τ³/(3 atan τ)) x (1 − x²)`, so `½(f − x) ≤ e₃ = τ³/(9√3 atan τ)`;
+//! - straight ways, which are cubic in `s`: the odd cubic that has the value and the slope of `f` at both ends. Hermite's error is
+//!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a way of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
+//!
+//! Both fall with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
+//! `docs/algorithms/motions.md` has the derivations.
+
+use crate::lists::product;
+use crate::moves::{Course, Move, TipArc, Turning};
+use crate::pose::Pose;
+use crate::rotary::{RotaryTable, turn, unit_axis};
+use crate::segment::{Curve, Segment, frame, rational_turn, turn_between};
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// Turns by less are none.
+const NO_TURN: f64 = 1e-15;
+
+/// No move is divided into many more parts than this, however small the deviation that is asked for.
+const MOST: usize = 1 << 20;
+
+/// The way of the tip over the whole move.
+enum Tip {
+    Straight([Vector3<f64>; 2]),
+    /// An arc from a start, and what is missing at its end.
+    Arc(TipArc, Vector3<f64>, Vector3<f64>),
+}
+
+/// The turn over the whole move.
+enum Turns {
+    None(Matrix3<f64>),
+    One {
+        start: Matrix3<f64>,
+        k: Vector3<f64>,
+        angle: f64,
+    },
+    Two {
+        table: RotaryTable,
+        from: [f64; 2],
+        to: [f64; 2],
+    },
+}
+
+/// `½(f(x) − x)` is at most this.
+fn cubic_part(tau: f64) -> f64 {
+    tau.powi(3) / (9.0 * 3.0_f64.sqrt() * tau.atan())
+}
+
+/// `½ |f(x) − p(x)|`, with `p` the odd cubic, is at most this.
+fn quintic_part(tau: f64) -> f64 {
+    8.0 / (125.0 * 5.0_f64.sqrt()) * tau.powi(5) / tau.atan()
+}
+
+impl Turns {
+    fn new(from: &Pose, to: &Pose, turning: &Turning) -> Self {
+        let one = |start: Matrix3<f64>, k: Vector3<f64>, angle: f64| {
+            if angle.abs() < NO_TURN {
+                Self::None(start)
+            } else {
+                Self::One { start, k, angle }
+            }
+        };
+        if let Turning::Rotary { table, from, to } = *turning {
+            let [tilt, round] = [from[0] - to[0], from[1] - to[1]].map(f64::to_radians);
+            let start = table.orientation(from);
+            if round == 0.0 {
+                // The tilting axis stands where C turned it.
+                let tilting = table.orientation([0.0, from[1]]) * unit_axis(table.tilting());
+                return one(start, tilting, tilt);
+            }
+            if tilt == 0.0 {
+                return one(start, Vector3::z(), round);
+            }
+            return Self::Two { table, from, to };
+        }
+        if let (Some((k, angle)), Some(start)) = (turn_between(from, to), from.orientation()) {
+            return one(start, k.into_inner(), angle);
+        }
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let cross = o0.cross(&o1);
+        let sine = cross.norm();
+        let start = frame(from.axis());
+        if sine < NO_TURN {
+            return Self::None(start);
+        }
+        one(start, cross / sine, sine.atan2(o0.dot(&o1)))
+    }
+
+    /// The angles, unsigned.
+    fn angles(&self) -> [f64; 2] {
+        match self {
+            Self::None(_) => [0.0; 2],
+            Self::One { angle, .. } => [angle.abs(), 0.0],
+            Self::Two { from, to, .. } => [0, 1].map(|k| (to[k] - from[k]).abs().to_radians()),
+        }
+    }
+
+    /// Part `n` of `m`: `Â`, `ŵ`, and the coefficients of `ŵ Ω`.
+    fn part(&self, n: usize, m: usize) -> (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>) {
+        match *self {
+            Self::None(start) => (vec![start], vec![1.0], vec![Vector3::zeros()]),
+            Self::One { start, k, angle } => {
+                let step = angle / m as f64;
+                let start = turn(k, step * n as f64) * start;
+                let (turns, weights, kappa) = rational_turn(k, step);
+                let turns = turns.iter().map(|turn| turn * start).collect();
+                (turns, weights.to_vec(), vec![start.tr_mul(&k) * kappa])
+            }
+            Self::Two { table, from, to } => {
+                // A = R_z(−C) R(−tilt): a turn of the table about z, on a turn about its tilting axis.
+                let part = n as f64 / m as f64;
+                let [tilt, round] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * part);
+                let step = |k: usize| (from[k] - to[k]).to_radians() / m as f64;
+                let (outer, inner) = (table.orientation([0.0, round]), table.orientation([tilt, 0.0]));
+                let tilting = unit_axis(table.tilting());
+                let (turns_z, weights_z, kappa_z) = rational_turn(Vector3::z(), step(1));
+                let (turns_x, weights_x, kappa_x) = rational_turn(tilting, step(0));
+                let left = turns_z.map(|turn| turn * outer);
+                let right = turns_x.map(|turn| turn * inner);
+                let turns = product(&left, &right, |a, b| a * b);
+                let weights = product(&weights_z, &weights_x, |a, b| a * b);
+                // Ω = innerᵀ (κ_z Rₓᵀ z / w_z + κ_x x): its factor is w_z w_x.
+                let spins = product(&[1.0], &turns_x, |_, turn| {
+                    inner.tr_mul(&(turn.tr_mul(&Vector3::z()) * kappa_z))
+                });
+                let own = inner.tr_mul(&tilting) * kappa_x;
+                let spins = spins.iter().zip(&weights_z).map(|(spin, w)| spin + own * *w).collect();
+                (turns, weights, spins)
+            }
+        }
+    }
+}
+
+impl Tip {
+    fn new(from: &Pose, to: &Pose, course: &Course) -> Self {
+        match course {
+            Course::Straight => Self::Straight([from.tip(), to.tip()]),
+            Course::Arc(arc) => Self::Arc(*arc, from.tip(), to.tip() - arc.turned(from.tip(), 1.0)),
+        }
+    }
+
+    fn angle(&self) -> f64 {
+        match self {
+            Self::Straight(_) => 0.0,
+            Self::Arc(arc, ..) => arc.angle().abs(),
+        }
+    }
+
+    fn radius(&self) -> f64 {
+        match self {
+            Self::Straight(_) => 0.0,
+            Self::Arc(arc, from, _) => arc.radius_vector(*from).norm(),
+        }
+    }
+
+    /// The way that is cubic in the parameter.
+    fn straight(&self) -> Vector3<f64> {
+        match self {
+            Self::Straight([from, to]) => to - from,
+            Self::Arc(_, _, missing) => *missing,
+        }
+    }
+
+    /// Part `n` of `m`, where time has the slope `slope` at both ends: numerators and weights.
+    fn part(&self, n: usize, m: usize, slope: f64) -> (Vec<Vector3<f64>>, Vec<f64>) {
+        let (begin, end) = (n as f64 / m as f64, (n + 1) as f64 / m as f64);
+        let way = self.straight();
+        let third = (end - begin) * slope / 3.0;
+        let times = [begin, begin + third, end - third, end];
+        match self {
+            Self::Straight([from, to]) => {
+                let at = |time: f64| if time == 1.0 { *to } else { from + way * time };
+                let points = if slope == 1.0 {
+                    vec![at(begin), at(end)]
+                } else {
+                    times.map(at).to_vec()
+                };
+                (points, Vec::new())
+            }
+            Self::Arc(arc, from, _) => {
+                let start = arc.turned(*from, begin);
+                let out = arc.radius_vector(start);
+                let foot = start - out;
+                let (turns, weights, _) = rational_turn(arc.normal().into_inner(), arc.angle() / m as f64);
+                let circle = [0, 1, 2].map(|i| foot * weights[i] + turns[i] * out);
+                if way.norm() <= 4.0 * f64::EPSILON * (start.norm() + out.norm()) {
+                    return (circle.to_vec(), weights.to_vec());
+                }
+                let rise = product(&weights, &times, |w, time| way * (w * time));
+                let circle = product(&[1.0; 4], &circle, |one, point| point * *one);
+                let points = circle.iter().zip(&rise).map(|(circle, rise)| circle + rise).collect();
+                (points, product(&weights, &[1.0; 4], |w, one| w * one))
+            }
+        }
+    }
+}
+
+/// How far a point within `reach` of the tip may be off, when the move is divided into `m` parts.
+fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
+    let [first, second] = turns.angles().map(|angle| angle / m as f64);
+    let round = tip.angle() / m as f64;
+    let largest = first.max(second).max(round);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let tau = (0.25 * largest).tan();
+    let levers = [(first, reach), (second, reach), (round, tip.radius())];
+    let behind = levers.iter().filter(|(angle, _)| *angle < largest);
+    let turned: f64 = behind.map(|(angle, lever)| angle * lever * cubic_part(tau)).sum();
+    turned + tip.straight().norm() / m as f64 * quintic_part(tau)
+}
+
+/// The parts of a move at constant speed, of equal shares of its time. No point within `reach` of the tip is off by more than
+/// `limit` at any time; no part turns by more than 90°.
+pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, reach: f64, limit: f64) -> Vec<Segment> {
+    let tip = Tip::new(from, to, &way.course);
+    let turns = Turns::new(from, to, &way.turning);
+    let [first, second] = turns.angles();
+    let largest = first.max(second).max(tip.angle());
+    let least = (largest / FRAC_PI_2 - 1e-12).ceil().max(1.0) as usize;
+    let good = |m: usize| deviation(&tip, &turns, reach, m) <= limit;
+    // The deviation falls with the number of parts: double, then bisect.
+    let (mut bad, mut count) = (least - 1, least);
+    while !good(count) && count < MOST {
+        bad = count;
+        count *= 2;
+    }
+    while count - bad > 1 && bad >= least {
+        let middle = bad + (count - bad) / 2;
+        if good(middle) {
+            count = middle;
+        } else {
+            bad = middle;
+        }
+    }
+    let tau = (0.25 * largest / count as f64).tan();
+    let slope = if tau < NO_TURN {
+        1.0
+    } else {
+        tau / ((1.0 + tau * tau) * tau.atan())
+    };
+    let clock = if tau < NO_TURN { 0.0 } else { tau };
+    let part = |n: usize| {
+        if let (Tip::Straight(ends), Turns::One { start, k, angle }) = (&tip, &turns)
+            && ends[0] == ends[1]
+        {
+            // In place an arc is exact.
+            let step = angle / count as f64;
+            let (k, step) = if step < 0.0 { (-k, -step) } else { (*k, step) };
+            return Segment::turning(*ends, turn(k, step * n as f64) * start, k, step).with_clock(clock);
+        }
+        let (points, point_weights) = tip.part(n, count, slope);
+        if let (Turns::None(start), [a, b]) = (&turns, &points[..]) {
+            return Segment::turning([*a, *b], *start, Vector3::z(), 0.0);
+        }
+        let (mut turns, mut weights, spins) = turns.part(n, count);
+        if weights.len() == 3 && point_weights.len() == 6 {
+            // In one degree both are bounded together.
+            turns = product(&turns, &[1.0; 4], |turn, one| turn * *one);
+            weights = product(&weights, &[1.0; 4], |w, one| w * one);
+        }
+        let curve = Curve {
+            points,
+            point_weights,
+            spins,
+            squared: false,
+        };
+        Segment::curve(turns, weights, curve).with_clock(clock)
+    };
+    (0..count).map(part).collect()
+}

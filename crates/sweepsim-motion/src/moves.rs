@@ -1,0 +1,244 @@
+//! How a tool goes from one pose to the next.
+
+use crate::rotary::RotaryTable;
+use nalgebra::{Rotation3, Unit, Vector3};
+use thiserror::Error;
+
+/// How a tool goes from one pose to the next: the way of its tip, and how it turns meanwhile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Move {
+    /// The way of the tip.
+    pub course: Course,
+    /// How the tool turns.
+    pub turning: Turning,
+}
+
+/// The way of the tip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Course {
+    /// A straight line.
+    #[default]
+    Straight,
+    /// A circular arc or a helix, at constant speed.
+    Arc(TipArc),
+}
+
+/// How the tool turns from one pose to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Turning {
+    /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
+    /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).
+    #[default]
+    Slerp,
+    /// The same at constant angular speed: the tip and the angle stay in step.
+    Even,
+    /// Both rotary axes of a machine at constant speed, in step with the tip.
+    Rotary {
+        /// Which axes.
+        table: RotaryTable,
+        /// The angles `[tilt, C]` at the start, in degrees.
+        from: [f64; 2],
+        /// The angles at the end: not reduced, 720° from the start is two turns.
+        to: [f64; 2],
+    },
+}
+
+/// How the tool turns on the moves of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Law {
+    /// [`Turning::Slerp`].
+    #[default]
+    Slerp,
+    /// [`Turning::Even`].
+    ConstantSpeed,
+    /// [`Turning::Rotary`], with the angles that are next to those before.
+    Rotary(RotaryTable),
+}
+
+/// An arc of the tip: about an axis through `centre`. What is missing at its end to the end of the move is added evenly on the way
+/// (the rise of a helix, the small difference of two radii in a program).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TipArc {
+    centre: Vector3<f64>,
+    normal: Unit<Vector3<f64>>,
+    angle: f64,
+}
+
+/// Why there is no such arc.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ArcError {
+    /// A number is not finite.
+    #[error("the arc has a number that is not finite")]
+    NotFinite,
+    /// The normal of its plane has no direction.
+    #[error("({}, {}, {}) is no direction for the normal of the arc's plane", .0[0], .0[1], .0[2])]
+    Normal([f64; 3]),
+    /// The angle is zero, or absurd.
+    #[error("the arc turns by {0} radians: expected other than 0, and at most 100000 either way")]
+    Angle(f64),
+    /// An end lies on the axis.
+    #[error("the arc has no radius: its ends are {from} and {to} away from its axis")]
+    NoRadius {
+        /// Distance of the start from the axis.
+        from: f64,
+        /// Distance of the end.
+        to: f64,
+    },
+    /// The ends lie at different distances.
+    #[error("the arc has two radii: its start is {from} and its end {to} away from its axis, expected the same")]
+    TwoRadii {
+        /// Distance of the start from the axis.
+        from: f64,
+        /// Distance of the end.
+        to: f64,
+    },
+}
+
+/// Two radii of one arc may differ by so much of them.
+const RADII: f64 = 1e-3;
+
+impl TipArc {
+    /// A turn by `angle` (radians, right-handed about `normal`) about the axis through `centre` along `normal` (of any length).
+    ///
+    /// # Errors
+    /// [`ArcError`]: numbers that are not finite, no direction, no angle.
+    pub fn new(centre: [f64; 3], normal: [f64; 3], angle: f64) -> Result<Self, ArcError> {
+        if !centre.iter().chain(&normal).chain([&angle]).all(|c| c.is_finite()) {
+            return Err(ArcError::NotFinite);
+        }
+        let largest = normal.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        if largest == 0.0 {
+            return Err(ArcError::Normal(normal));
+        }
+        if angle == 0.0 || angle.abs() > 1e5 {
+            return Err(ArcError::Angle(angle));
+        }
+        Ok(Self {
+            centre: centre.into(),
+            // Scaling first keeps the square sum from under- and overflow.
+            normal: Unit::new_normalize(Vector3::from(normal) / largest),
+            angle,
+        })
+    }
+
+    /// The arc from `from` to `to` about the axis through `centre` along `normal`: right-handed about it for `turns > 0`, the other way for
+    /// `turns < 0`; with more than one full turn for `|turns| > 1`. Where the ends lie in one direction from the axis, a full turn.
+    ///
+    /// # Errors
+    /// [`ArcError`]: as [`new`](Self::new), and ends that are on the axis or whose distances from it differ by more than a thousandth.
+    ///
+    /// ```
+    /// use sweepsim_motion::TipArc;
+    /// let half = TipArc::between([2.0, 0.0, 0.0], [-2.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0], 1)?;
+    /// assert!((half.angle() - std::f64::consts::PI).abs() < 1e-15);
+    /// # Ok::<(), sweepsim_motion::ArcError>(())
+    /// ```
+    pub fn between(
+        from: [f64; 3],
+        to: [f64; 3],
+        centre: [f64; 3],
+        normal: [f64; 3],
+        turns: i32,
+    ) -> Result<Self, ArcError> {
+        let arc = Self::new(centre, normal, 1.0)?;
+        if !from.iter().chain(&to).all(|c| c.is_finite()) {
+            return Err(ArcError::NotFinite);
+        }
+        let [a, b] = [from, to].map(|end| arc.radius_vector(end.into()));
+        let (ra, rb) = (a.norm(), b.norm());
+        if !(ra > 0.0 && rb > 0.0) {
+            return Err(ArcError::NoRadius { from: ra, to: rb });
+        }
+        if (ra - rb).abs() > RADII * ra.max(rb) {
+            return Err(ArcError::TwoRadii { from: ra, to: rb });
+        }
+        let full = std::f64::consts::TAU;
+        let sign = f64::from(turns.signum());
+        let mut angle = sign * arc.normal.dot(&a.cross(&b)).atan2(a.dot(&b));
+        // The same place within rounding is a full turn.
+        if angle <= 1e-12 {
+            angle += full;
+        }
+        Self::new(centre, normal, sign * (angle + full * (f64::from(turns.abs()) - 1.0)))
+    }
+
+    /// A point of its axis.
+    #[must_use]
+    pub fn centre(&self) -> Vector3<f64> {
+        self.centre
+    }
+
+    /// The direction of its axis.
+    #[must_use]
+    pub fn normal(&self) -> Unit<Vector3<f64>> {
+        self.normal
+    }
+
+    /// The angle, in radians, right-handed about the normal.
+    #[must_use]
+    pub fn angle(&self) -> f64 {
+        self.angle
+    }
+
+    /// The same arc the other way.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            angle: -self.angle,
+            ..*self
+        }
+    }
+
+    /// From the axis to a point.
+    pub(crate) fn radius_vector(&self, point: Vector3<f64>) -> Vector3<f64> {
+        let n = self.normal.into_inner();
+        let from = point - self.centre;
+        from - n * n.dot(&from)
+    }
+
+    /// Where it takes `from` after the part `part` of its angle, without what is missing to the end.
+    pub(crate) fn turned(&self, from: Vector3<f64>, part: f64) -> Vector3<f64> {
+        let turn = Rotation3::from_axis_angle(&self.normal, self.angle * part);
+        self.centre + turn * (from - self.centre)
+    }
+}
+
+impl Move {
+    /// Straight, turning like this.
+    #[must_use]
+    pub fn straight(turning: Turning) -> Self {
+        Self {
+            course: Course::Straight,
+            turning,
+        }
+    }
+
+    /// Along an arc or a helix, the axis turning evenly meanwhile.
+    #[must_use]
+    pub fn arc(arc: TipArc) -> Self {
+        Self {
+            course: Course::Arc(arc),
+            turning: Turning::Even,
+        }
+    }
+
+    /// The move back from its end to its start.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            course: match self.course {
+                Course::Straight => Course::Straight,
+                Course::Arc(arc) => Course::Arc(arc.reversed()),
+            },
+            turning: match self.turning {
+                Turning::Rotary { table, from, to } => Turning::Rotary {
+                    table,
+                    from: to,
+                    to: from,
+                },
+                other => other,
+            },
+        }
+    }
+}

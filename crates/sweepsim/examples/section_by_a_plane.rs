@@ -1,0 +1,31 @@
+//! The section of a sweep by a plane, as an SVG drawing: `cargo run --example section_by_a_plane > section.svg`.
+
+use sweepsim::systems::Plane;
+use sweepsim::{Cut, Options, section};
+use sweepsim_motion::{Path, Pose, Tool};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let tool = Tool::bull(5.0, 1.5, 30.0)?;
+    let path = Path::new(vec![
+        Pose::new([-20.0, -8.0, 4.0], [0.5, 0.1, 1.0])?,
+        Pose::new([0.0, 6.0, 0.0], [0.0, -0.4, 1.0])?,
+        Pose::new([20.0, -4.0, 3.0], [-0.4, 0.0, 1.0])?,
+    ])?;
+    let cut = Cut {
+        tool: &tool,
+        path: &path,
+    };
+    // Any direction will do: this plane leans.
+    let plane = Plane {
+        normal: [0.2, 1.0, 0.0],
+        offset: 1.0,
+    };
+    let section = section(&[cut], &plane, 0.01, &Options::new(1e-6), &())?;
+    print!("{}", section.svg());
+    eprintln!(
+        "{} curves, of which {} parts bound the volume",
+        section.curves.len(),
+        section.outline().len()
+    );
+    Ok(())
+}
