@@ -1,5 +1,6 @@
 //! What users type.
 
+use crate::picture::{Section, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
@@ -25,10 +26,18 @@ pub(crate) enum Command {
     Section(SectionOptions),
     /// Says what is in a job, path, mesh or dexel file, and what was ignored in it.
     Inspect {
-        /// A job (.ron), path (.csv .nc .ngc …), mesh (.stl .ply) or `dexels.csv`.
+        /// A job (.ron), path (.csv .nc .ngc …), mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz).
         #[arg(value_hint = ValueHint::FilePath)]
         file: PathBuf,
     },
+    /// Reads a path, mesh or dexel file and writes it in another format: the extensions say which.
+    ///
+    /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) become each other and pictures (.png); dexels are written
+    /// as .vtu, too. Paths become tables (.csv).
+    Convert(ConvertOptions),
+    /// Says how one part differs from another, each a mesh or dexels: volumes, and distances along the normal, with a picture in
+    /// their colours.
+    Compare(CompareOptions),
 }
 
 #[derive(Debug, Args)]
@@ -57,6 +66,8 @@ pub(crate) struct RunOptions {
     /// How many threads to use [default: one per core]. The result is the same to the bit.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    #[command(flatten)]
+    pub view: ViewOptions,
     /// No progress and no summary.
     #[arg(long)]
     pub quiet: bool,
@@ -87,6 +98,84 @@ pub(crate) struct SectionOptions {
     pub quiet: bool,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct ConvertOptions {
+    /// What is read.
+    #[arg(value_name = "IN", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// What is written.
+    #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub grid: GridOptions,
+    #[command(flatten)]
+    pub view: ViewOptions,
+    /// No summary.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareOptions {
+    /// The part: a mesh or dexels.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub part: PathBuf,
+    /// What it should be: a mesh or dexels.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub target: PathBuf,
+    /// Where the outputs go [default: out/NAME].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Distances up to this count as none.
+    #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Ends whose counterpart is further away have none [default: a tenth of the part's diagonal].
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub reach: Option<f64>,
+    /// Distance at the ends of the picture's scale of colours [default: the largest].
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub range: Option<f64>,
+    #[command(flatten)]
+    pub grid: GridOptions,
+    #[command(flatten)]
+    pub view: ViewOptions,
+    /// No summary.
+    #[arg(long)]
+    pub quiet: bool,
+    /// The report on standard output, in place of the summary.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Where dexels stand, when their file does not say or there are none yet.
+#[derive(Debug, Args)]
+pub(crate) struct GridOptions {
+    /// Dexels stand on the grid of this job or file of dexels.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with = "area")]
+    pub grid: Option<PathBuf>,
+    /// Dexels stand on this rectangle [default: that of the mesh].
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = area, allow_hyphen_values = true)]
+    pub area: Option<[f64; 4]>,
+    /// Number of dexels, like 300x200 [default: square cells, 300 along the longer side].
+    #[arg(long, value_name = "NXxNY", value_parser = cells)]
+    pub cells: Option<[usize; 2]>,
+}
+
+/// How pictures are taken.
+#[derive(Debug, Args)]
+pub(crate) struct ViewOptions {
+    /// Where pictures are taken from: iso, front, back, left, right, top or bottom, or AZIMUTH,ELEVATION in degrees; then
+    /// `,orthographic` if parallel lines are to be parallel.
+    #[arg(long, value_name = "CAMERA", default_value = "iso", value_parser = camera, allow_hyphen_values = true)]
+    pub camera: View,
+    /// Cuts pictures open at a plane, like z=5; may be given for several axes.
+    #[arg(long, value_name = "AXIS=MM", value_parser = section)]
+    pub section: Vec<Section>,
+    /// Width and height of pictures.
+    #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = size)]
+    pub size: [usize; 2],
+}
+
 /// What a run writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Output {
@@ -98,6 +187,8 @@ pub(crate) enum Output {
     Picture,
     /// report.json and report.html
     Report,
+    /// part.dexels, to the bit and with normals: for later runs, not among the default
+    Binary,
 }
 
 /// Reads one of some names, which clap then lists.
@@ -119,6 +210,77 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
+fn size(text: &str) -> Result<[usize; 2], String> {
+    let size = cells(text)?;
+    let most = View::MOST;
+    if size.iter().all(|n| (1..=most).contains(n)) {
+        Ok(size)
+    } else {
+        Err(format!("expected 1 to {most} each way"))
+    }
+}
+
+fn area(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
+    match numbers[..] {
+        [Ok(x0), Ok(y0), Ok(x1), Ok(y1)] if x0 < x1 && y0 < y1 && [x0, y0, x1, y1].iter().all(|c| c.is_finite()) => {
+            Ok([x0, y0, x1, y1])
+        }
+        _ => Err("expected four numbers, the lower and the upper corner, like 0,0,60,40".to_owned()),
+    }
+}
+
+fn camera(text: &str) -> Result<View, String> {
+    let iso = View::default();
+    let mut view = iso;
+    let mut angles = Vec::new();
+    for word in text.split(',').map(str::trim) {
+        let named = match word {
+            "iso" => Some([iso.azimuth, iso.elevation]),
+            "front" => Some([-90.0, 0.0]),
+            "right" => Some([0.0, 0.0]),
+            "back" => Some([90.0, 0.0]),
+            "left" => Some([180.0, 0.0]),
+            "top" => Some([-90.0, 90.0]),
+            "bottom" => Some([-90.0, -90.0]),
+            _ => None,
+        };
+        match (named, word, word.parse::<f64>()) {
+            (Some(named), ..) if angles.is_empty() => angles.extend(named),
+            (None, "orthographic", _) => view.orthographic = true,
+            (None, "perspective", _) => view.orthographic = false,
+            (None, _, Ok(angle)) if angle.is_finite() && angles.len() < 2 => angles.push(angle),
+            _ => angles.push(f64::NAN),
+        }
+    }
+    match angles[..] {
+        [] => Ok(view),
+        [azimuth, elevation] if azimuth.is_finite() && elevation.abs() <= 90.0 => {
+            (view.azimuth, view.elevation) = (azimuth, elevation);
+            Ok(view)
+        }
+        _ => Err(
+            "expected iso, front, back, left, right, top, bottom or two angles like -58,40 (the second from -90 to 90), \
+             and perhaps orthographic"
+                .to_owned(),
+        ),
+    }
+}
+
+fn section(text: &str) -> Result<Section, String> {
+    let parts = text
+        .split_once('=')
+        .map(|(axis, at)| (axis.trim(), at.trim().parse::<f64>()));
+    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
+    match parts {
+        Some((name, Ok(at))) if at.is_finite() && axis(name).is_some() => Ok(Section {
+            axis: axis(name).unwrap_or_default(),
+            at,
+        }),
+        _ => Err("expected an axis and a number, like z=5".to_owned()),
+    }
+}
+
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -134,6 +296,40 @@ mod tests {
     fn the_command_line_is_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn cameras_and_sections_are_read() {
+        let top = camera("top,orthographic").unwrap();
+        assert_eq!((top.azimuth, top.elevation, top.orthographic), (-90.0, 90.0, true));
+        let other = camera("orthographic, -20.5, 10").unwrap();
+        assert_eq!(
+            (other.azimuth, other.elevation, other.orthographic),
+            (-20.5, 10.0, true)
+        );
+        assert!(!camera("iso").unwrap().orthographic);
+        for bad in [
+            "",
+            "under",
+            "1",
+            "1,2,3",
+            "0,91",
+            "NaN,0",
+            "top,5",
+            "top,front",
+            "inf,1",
+        ] {
+            assert!(camera(bad).is_err(), "{bad}");
+        }
+        let plane = section("y = -2.5").unwrap();
+        assert_eq!((plane.axis, plane.at), (1, -2.5));
+        for bad in ["", "x", "x=", "w=1", "x=inf", "x=1=2"] {
+            assert!(section(bad).is_err(), "{bad}");
+        }
+        assert_eq!(area("-1,0,2.5,3"), Ok([-1.0, 0.0, 2.5, 3.0]));
+        for bad in ["", "1,2,3", "0,0,0,1", "0,0,inf,1", "0,0,1,1,1"] {
+            assert!(area(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

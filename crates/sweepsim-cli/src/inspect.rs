@@ -1,46 +1,36 @@
 //! `inspect`: what is in a file.
 
 use crate::failure::Failure;
+use crate::solid::{Kind, soup};
 use crate::words::{count, counted, measure, point};
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufReader;
 use std::path::Path;
-use sweepsim_dexel::{Stock, TriangleSoup};
-use sweepsim_formats::{Job, Note, PathOptions, Program, read_dexels_csv, read_path_file, read_ply, read_stl};
+use sweepsim_dexel::{Dexels, Grid, Mesh, Source, Stock};
+use sweepsim_formats::{
+    DexelFormat, Job, Note, PathOptions, Program, read_dexels_csv, read_dexels_file, read_mesh_file, read_path_file,
+};
 use sweepsim_motion::{Pose, ProfileSegment, Tool, Turn};
 
 /// Prints what is in a file.
 pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
-    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let unreadable = |error: std::io::Error| Failure::message(format!("cannot read {}: {error}", file.display()));
     let mut text = Text::default();
-    match extension.as_deref() {
-        Some("ron") => job(&mut text, &Job::read(file)?),
-        Some("stl") => triangles(&mut text, &read_stl(file)?),
-        Some("ply") => {
-            let mesh = read_ply(&std::fs::read(file).map_err(unreadable)?)
-                .map_err(|error| Failure::message(format!("{}: {error}", file.display())))?;
-            text.line("vertices", &count(mesh.vertices.len() as u64));
-            text.line("triangles", &count(mesh.triangles.len() as u64));
-            text.bounds(mesh.vertices.iter().copied());
-        }
-        Some("csv") if is_dexels(file).map_err(unreadable)? => {
+    match Kind::of(file)? {
+        Kind::Job => job(&mut text, &Job::read(file)?),
+        Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),
+        Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Csv) => {
+            let unreadable =
+                |error: std::io::Error| Failure::message(format!("cannot read {}: {error}", file.display()));
             let reader = BufReader::new(File::open(file).map_err(unreadable)?);
             let rows =
                 read_dexels_csv(reader).map_err(|error| Failure::message(format!("{}:{error}", file.display())))?;
-            dexels(&mut text, &rows);
+            table(&mut text, &rows);
         }
-        _ => program(&mut text, &read_path_file(file, &PathOptions::default())?),
+        Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
+        Kind::Path => program(&mut text, &read_path_file(file, &PathOptions::default())?),
     }
     crate::print(&text.0)
-}
-
-/// Whether a table is one of dexels: its header says.
-fn is_dexels(file: &Path) -> std::io::Result<bool> {
-    let mut header = Vec::new();
-    BufReader::new(File::open(file)?).read_until(b'\n', &mut header)?;
-    Ok(header.trim_ascii() == b"i,j,z0,z1")
 }
 
 #[derive(Default)]
@@ -63,6 +53,25 @@ impl Text {
         if range[0][0] <= range[1][0] {
             self.line("bounds", &format!("{} … {} mm", point(range[0]), point(range[1])));
         }
+    }
+
+    fn grid(&mut self, grid: &Grid) {
+        let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+        let (min, max) = (grid.min(), grid.max());
+        self.line(
+            "grid",
+            &format!(
+                "{} × {} dexels, {} × {} mm apart, x {} … {}, y {} … {} mm",
+                count(nx as u64),
+                count(ny as u64),
+                measure(dx),
+                measure(dy),
+                measure(min[0]),
+                measure(max[0]),
+                measure(min[1]),
+                measure(max[1])
+            ),
+        );
     }
 
     fn notes<'a>(&mut self, notes: impl Iterator<Item = &'a Note>) {
@@ -132,22 +141,7 @@ pub(crate) fn tool(tool: &Tool) -> String {
 fn job(text: &mut Text, job: &Job) {
     text.line("job", &job.name);
     text.line("tolerance", &format!("{} mm", job.tolerance));
-    let ([nx, ny], [dx, dy]) = (job.grid.cells(), job.grid.spacing());
-    let (min, max) = (job.grid.min(), job.grid.max());
-    text.line(
-        "grid",
-        &format!(
-            "{} × {} dexels, {} × {} mm apart, x {} … {}, y {} … {} mm",
-            count(nx as u64),
-            count(ny as u64),
-            measure(dx),
-            measure(dy),
-            measure(min[0]),
-            measure(max[0]),
-            measure(min[1]),
-            measure(max[1])
-        ),
-    );
+    text.grid(&job.grid);
     let stock = match &job.stock {
         Stock::Block { min, max } => format!("block {} … {} mm", point(*min), point(*max)),
         Stock::Cylinder {
@@ -219,16 +213,43 @@ fn program(text: &mut Text, program: &Program) {
     text.notes(program.notes.iter());
 }
 
-fn triangles(text: &mut Text, soup: &TriangleSoup) {
-    text.line("triangles", &count(soup.triangles.len() as u64));
-    text.bounds(soup.triangles.iter().flatten().copied());
-    match soup.check_closed() {
-        Ok(()) => text.line("closed", "yes"),
+fn mesh(text: &mut Text, mesh: &Mesh) {
+    text.line("vertices", &count(mesh.vertices.len() as u64));
+    text.line("triangles", &count(mesh.triangles.len() as u64));
+    text.bounds(mesh.vertices.iter().copied());
+    let triangles = soup(mesh);
+    match triangles.check_closed() {
+        Ok(()) => {
+            text.line("closed", "yes");
+            text.line("volume", &format!("{} mm³", measure(triangles.volume())));
+        }
         Err(error) => text.line("closed", &format!("no: {error}")),
     }
 }
 
-fn dexels(text: &mut Text, rows: &[sweepsim_formats::DexelRow]) {
+fn dexels(text: &mut Text, dexels: &Dexels) {
+    text.grid(dexels.grid());
+    text.line("intervals", &count(dexels.count() as u64));
+    text.line("dexels", &format!("{} with material", count(dexels.covered() as u64)));
+    let ends = || dexels.iter().flat_map(|(_, line)| line.heights());
+    let lowest = ends().map(|[z, _]| z).fold(f64::INFINITY, f64::min);
+    let highest = ends().map(|[_, z]| z).fold(f64::NEG_INFINITY, f64::max);
+    if lowest <= highest {
+        text.line("z", &format!("{} … {} mm", measure(lowest), measure(highest)));
+    }
+    text.line("volume", &format!("{} mm³", measure(dexels.volume())));
+    let cut = dexels
+        .iter()
+        .flat_map(|(_, line)| line.iter().flat_map(|i| [i.lower, i.upper]));
+    let cut = cut.filter(|end| end.source != Source::STOCK).count();
+    text.line(
+        "cut",
+        &format!("{} of {}", count(cut as u64), counted(2 * dexels.count() as u64, "end")),
+    );
+    text.line("memory", &crate::words::bytes(dexels.bytes() as u64));
+}
+
+fn table(text: &mut Text, rows: &[sweepsim_formats::DexelRow]) {
     text.line("intervals", &count(rows.len() as u64));
     let lines = rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)).count();
     text.line("dexels", &format!("{} with material", count(lines as u64)));

@@ -4,6 +4,8 @@
 //! ([`sweepsim`], `sweepsim_dexel`, `sweepsim_formats`, `sweepsim_motion`).
 
 mod arguments;
+mod compare;
+mod convert;
 mod failure;
 mod inspect;
 mod outputs;
@@ -12,6 +14,7 @@ pub mod picture;
 mod progress;
 mod run;
 mod section;
+mod solid;
 mod words;
 
 use arguments::{Arguments, Command};
@@ -27,6 +30,8 @@ pub fn main() -> ExitCode {
         Command::Sweep(options) => run::run(run::Task::Sweep, &options),
         Command::Section(options) => section::run(&options),
         Command::Inspect { file } => inspect::inspect(&file).map(|()| ExitCode::SUCCESS),
+        Command::Convert(options) => convert::convert(&options).map(|()| ExitCode::SUCCESS),
+        Command::Compare(options) => compare::compare(&options).map(|()| ExitCode::SUCCESS),
     };
     done.unwrap_or_else(|failure| {
         anstream::eprintln!("{failure}");

@@ -4,8 +4,8 @@ use crate::arguments::{Output, RunOptions};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::page::{self, Page};
-use crate::picture;
 use crate::progress::Progress;
+use crate::solid;
 use crate::words;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -16,10 +16,8 @@ use sweepsim::{
     Boundary, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all,
 };
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
-use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_csv, write_ply};
+use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
 
-/// Width and height of `part.png`.
-const PICTURE: [usize; 2] = [1600, 1200];
 /// How far the triangles of envelope.ply may be off, in millimetres.
 const CHORD: f64 = 0.02;
 /// How many unresolved dexels the summary names.
@@ -69,7 +67,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         let outcome = compute(task, &job, options, &progress, &mut report)?;
         progress.check()?;
         describe(&mut report, &job, options, &outcome);
-        write(&job, &outcome, &mut outputs, &progress, &mut report)?;
+        write(options, &outcome, &mut outputs, &progress, &mut report)?;
         if task == Task::Sweep && options.method == Method::Surface && outputs.wants(Output::Mesh) {
             write_envelope(&job, &mut outputs, &progress, &mut report)?;
         }
@@ -225,7 +223,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
 
 /// Writes dexels, mesh and picture.
 fn write(
-    job: &Job,
+    options: &RunOptions,
     outcome: &Outcome,
     outputs: &mut Outputs,
     progress: &Progress,
@@ -235,6 +233,12 @@ fn write(
         progress.phase("dexels");
         phase(report, "dexels", || {
             outputs.write("dexels.csv", |file| write_dexels_csv(&outcome.dexels, file))
+        })?;
+    }
+    if outputs.wants(Output::Binary) {
+        progress.phase("dexels");
+        phase(report, "dexels", || {
+            outputs.write("part.dexels", |file| write_dexels_binary(&outcome.dexels, file))
         })?;
     }
     if !outputs.wants(Output::Mesh) && !outputs.wants(Output::Picture) {
@@ -251,9 +255,7 @@ fn write(
     if outputs.wants(Output::Picture) {
         progress.phase("picture");
         phase(report, "picture", || {
-            let image = picture::render(&mesh, PICTURE);
-            let png = picture::png(&image)
-                .map_err(|error| Failure::message(format!("{}: cannot make the picture: {error}", job.name)))?;
+            let png = solid::picture(&options.view, &mesh, None)?;
             outputs.write("part.png", |file| file.write_all(&png))
         })?;
     }

@@ -1,6 +1,6 @@
 //! Pictures: the same at any number of threads, plausible, and whole.
 
-use sweepsim_cli::picture::{Image, View, png, render};
+use sweepsim_cli::picture::{Drawing, Image, Section, View, legend, png, render};
 use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock, surface};
 
 const SIZE: [usize; 2] = [160, 120];
@@ -116,6 +116,136 @@ fn a_png_has_the_pixels() {
     assert!(png(&wrong).is_err());
 }
 
+/// A closed box: outside 40 × 30 × 12, with a cavity that is seen by a section only.
+fn hollow() -> Mesh {
+    let grid = Grid::new([0.0, 0.0], [40.0, 30.0], [40, 30]).unwrap();
+    let block = |min: [f64; 3], max: [f64; 3]| Stock::Block { min, max };
+    let solid = Stock::Difference(
+        block([0.0; 3], [40.0, 30.0, 12.0]).into(),
+        vec![block([10.0, 10.0, 4.0], [30.0, 20.0, 8.0])],
+    );
+    surface(&solid.dexels(&grid).unwrap())
+}
+
+#[test]
+fn sections_lay_open_the_inside() {
+    let mesh = hollow();
+    let view = View {
+        size: SIZE,
+        azimuth: -90.0,
+        elevation: 90.0,
+        orthographic: true,
+        ..View::default()
+    };
+    let sections = [Section { axis: 2, at: 6.0 }];
+    let open = view.draw(&Drawing {
+        sections: &sections,
+        ..Drawing::new(&mesh)
+    });
+    let closed = view.render(&mesh);
+    let at = |image: &Image, x: f64, y: f64| {
+        // The box fills the free part of the picture's width or height: 40 mm are 4/3 of 30.
+        let scale = 0.86 * 120.0 / 30.0;
+        let place = [80.0 + (x - 20.0) * scale, 60.0 - (y - 15.0) * scale];
+        pixel(image, place[0] as usize, place[1] as usize)
+    };
+    let warm = |[red, _, blue]: [u8; 3]| red > blue;
+    // The lid is steel, the plane of the section is clay, the cavity's floor is steel.
+    for (x, y, inside) in [
+        (3.0, 3.0, true),
+        (37.0, 27.0, true),
+        (20.0, 25.0, true),
+        (20.0, 15.0, false),
+        (13.0, 12.0, false),
+    ] {
+        assert!(!warm(at(&closed, x, y)), "{x} {y} {:?}", at(&closed, x, y));
+        assert_eq!(warm(at(&open, x, y)), inside, "{x} {y} {:?}", at(&open, x, y));
+    }
+    // Below the cavity, and where there is nothing.
+    let cut = |at: f64| {
+        let sections = [
+            Section { axis: 2, at },
+            Section { axis: 7, at: 0.0 },
+            Section { axis: 0, at: f64::NAN },
+        ];
+        view.draw(&Drawing {
+            sections: &sections,
+            ..Drawing::new(&mesh)
+        })
+    };
+    assert!(warm(at(&cut(2.0), 20.0, 15.0)));
+    assert!(cut(-1.0) == view.render(&Mesh::default()));
+    // From below it is the other half that is left.
+    let below = View {
+        elevation: -90.0,
+        ..view
+    };
+    let open = below.draw(&Drawing {
+        sections: &[Section { axis: 2, at: 2.0 }],
+        ..Drawing::new(&mesh)
+    });
+    assert!(warm(at(&open, 20.0, 15.0)));
+}
+
+#[test]
+fn parallel_lines_stay_parallel() {
+    let mesh = hollow();
+    // How wide the box is in each row of the picture, seen from the front and above: it is bluer than all around it.
+    let widths = |orthographic: bool| -> Vec<usize> {
+        let view = View {
+            size: [400, 300],
+            azimuth: -90.0,
+            elevation: 30.0,
+            opening: 60.0,
+            orthographic,
+            ..View::default()
+        };
+        let image = view.render(&mesh);
+        let steel = |x: usize, y: usize| {
+            let [red, _, blue] = pixel(&image, x, y);
+            blue > red.saturating_add(22)
+        };
+        let rows = (0..300).map(|y| (0..400).filter(|x| steel(*x, y)).count());
+        rows.filter(|width| *width > 100).collect()
+    };
+    let spread = |widths: &[usize]| widths.iter().max().unwrap() - widths.iter().min().unwrap();
+    let (level, lens) = (widths(true), widths(false));
+    assert!(level.len() > 100 && lens.len() > 100, "{} {}", level.len(), lens.len());
+    // The first and the last row are covered in part.
+    let inner = &level[2..level.len() - 2];
+    assert!(spread(inner) <= 2 && spread(&lens) > 40, "{level:?} {lens:?}");
+}
+
+#[test]
+fn values_have_the_colours_of_the_scale() {
+    let mesh = hollow();
+    let picture = |value: f32, range: f32| {
+        let view = View {
+            size: SIZE,
+            aside: legend::WIDTH,
+            ..View::default()
+        };
+        let values = vec![value; mesh.vertices.len()];
+        let mut image = view.draw(&Drawing {
+            values: &values,
+            range,
+            ..Drawing::new(&mesh)
+        });
+        let plain = image.clone();
+        legend::draw(&mut image, range);
+        // The scale is beside the part.
+        let changed = (0..SIZE[0] * SIZE[1]).filter(|k| image.rgb[3 * k..3 * k + 3] != plain.rgb[3 * k..3 * k + 3]);
+        assert!(changed.map(|k| k % SIZE[0]).min() > Some(SIZE[0] * 3 / 4));
+        pixel(&image, SIZE[0] * 43 / 100, SIZE[1] / 2)
+    };
+    let [high, low, middle, none] = [0.05, -0.05, 0.0, f32::NAN].map(|value| picture(value, 0.05));
+    assert!(high[0] > high[2] + 60, "{high:?}");
+    assert!(low[2] > low[0] + 60, "{low:?}");
+    assert!(middle.iter().all(|c| *c > 150), "{middle:?}");
+    assert!(none.iter().all(|c| *c < 130), "{none:?}");
+    assert_eq!(picture(9.0, 0.05), high);
+}
+
 #[test]
 fn nothing_gives_a_background() {
     let image = render(&Mesh::default(), SIZE);
@@ -142,6 +272,7 @@ fn odd_views_do_no_harm() {
         opening: 1e9,
         margin: -1.0,
         size: [1, 300],
+        ..View::default()
     };
     assert_eq!(view.render(&mesh).rgb.len(), 900);
     // From the other side the part is still seen.

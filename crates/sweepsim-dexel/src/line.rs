@@ -63,7 +63,7 @@ impl<'a> Line<'a> {
     }
 
     /// Their heights only, `[lower, upper]`: faster than whole intervals.
-    pub fn heights(&self) -> impl DoubleEndedIterator<Item = [f64; 2]> + ExactSizeIterator + 'a {
+    pub fn heights(&self) -> impl DoubleEndedIterator<Item = [f64; 2]> + ExactSizeIterator + use<'a> {
         self.pieces.iter().map(|piece| [piece.lower.z, piece.upper.z])
     }
 

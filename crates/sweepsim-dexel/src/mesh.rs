@@ -1,6 +1,6 @@
 //! Triangles, going in and coming out.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
 /// Triangles with shared vertices and a normal at each: for pictures and files.
@@ -50,6 +50,19 @@ pub enum MeshError {
 }
 
 impl Mesh {
+    /// The triangles alone; `None` if one has a vertex that the mesh does not have.
+    #[must_use]
+    pub fn soup(&self) -> Option<TriangleSoup> {
+        let corner = |v: u32| self.vertices.get(v as usize).copied();
+        let triangles = self.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(corner);
+            Some([a?, b?, c?])
+        });
+        Some(TriangleSoup {
+            triangles: triangles.collect::<Option<_>>()?,
+        })
+    }
+
     /// The same for pictures: around each vertex, triangles whose normals are further than an angle (given by its cosine) from each
     /// other's get vertices and normals of their own, so that edges look sharp. Places stay as they are; a triangle
     /// with a vertex that the mesh does not have is left out.
@@ -94,6 +107,64 @@ impl Mesh {
 }
 
 impl TriangleSoup {
+    /// The volume that the triangles enclose, if they are closed: negative if they are inside out.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        // Seen from a corner of the solid, so that little cancels.
+        let origin = self.triangles.first().map_or([0.0; 3], |t| t[0]);
+        let six = self.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|p| [0, 1, 2].map(|k| p[k] - origin[k]));
+            (0..3)
+                .map(|k| a[k] * (b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3]))
+                .sum::<f64>()
+        });
+        six.sum::<f64>() / 6.0
+    }
+
+    /// A mesh whose vertices are the corners, those that are equal to the bit as one, with the normals of the triangles around, each
+    /// weighted by its area; see [`Mesh::crisp`] for sharp edges. Triangles with two corners in one place are left out.
+    #[must_use]
+    pub fn indexed(&self) -> Mesh {
+        let mut mesh = Mesh::default();
+        // Only looked up, so its order does not matter. Adding 0 makes −0 and 0 one.
+        let mut numbers: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.triangles.len() / 2);
+        let mut sums: Vec<[f64; 3]> = Vec::new();
+        for corners in &self.triangles {
+            let key = corners.map(|p| p.map(|c| (c + 0.0).to_bits()));
+            if key[0] == key[1] || key[1] == key[2] || key[2] == key[0] {
+                continue;
+            }
+            let [a, b, c] = *corners;
+            let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
+            let normal = [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+            let triangle = [0, 1, 2].map(|k| {
+                *numbers.entry(key[k]).or_insert_with(|| {
+                    mesh.vertices.push(corners[k]);
+                    sums.push([0.0; 3]);
+                    mesh.vertices.len() as u32 - 1
+                })
+            });
+            for v in triangle {
+                let sum = &mut sums[v as usize];
+                *sum = [0, 1, 2].map(|k| sum[k] + normal[k]);
+            }
+            mesh.triangles.push(triangle);
+        }
+        mesh.cut = vec![false; mesh.vertices.len()];
+        mesh.normals = sums
+            .iter()
+            .map(|sum| {
+                let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
+                if length > 0.0 {
+                    sum.map(|c| (c / length) as f32)
+                } else {
+                    [0.0, 0.0, 1.0]
+                }
+            })
+            .collect();
+        mesh
+    }
+
     /// Whether every edge is used as often in one direction as in the other (corners compared exactly).
     ///
     /// # Errors

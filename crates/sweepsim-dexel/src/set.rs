@@ -186,49 +186,83 @@ mod tests {
             .all(|i| i.lower.normal[2] == -1.0 && i.upper.normal[2] == 1.0)
     }
 
+    fn operations(a: &[[i32; 2]], b: &[[i32; 2]], lo: i32, hi: i32) -> Result<(), TestCaseError> {
+        let (p, q) = (cells(a), cells(b));
+        let (x, y) = (set(a), set(b));
+        let model =
+            |f: &dyn Fn(bool, bool) -> bool| boundary(&p.iter().zip(&q).map(|(p, q)| f(*p, *q)).collect::<Vec<_>>());
+        let cases: [(IntervalSet<End>, Vec<f64>); 6] = [
+            (x.clone(), boundary(&p)),
+            (x.union(&y), model(&|p, q| p || q)),
+            (x.intersection(&y), model(&|p, q| p && q)),
+            (x.difference(&y), model(&|p, q| p && !q)),
+            (x.symmetric_difference(&y), model(&|p, q| p != q)),
+            (x.complement(Interval::between(f64::from(lo), f64::from(hi))), {
+                let outside = p.iter().zip(lo.min(60)..).enumerate();
+                boundary(
+                    &outside
+                        .map(|(k, (p, _))| !p && lo <= k as i32 && (k as i32) < hi)
+                        .collect::<Vec<_>>(),
+                )
+            }),
+        ];
+        for (k, (found, expected)) in cases.iter().enumerate() {
+            prop_assert_eq!(&ends(found), expected, "case {}", k);
+            prop_assert!(outwards(found), "case {}", k);
+        }
+        for k in 0..60 {
+            prop_assert_eq!(x.contains(f64::from(k) + 0.5), p[k as usize]);
+        }
+        prop_assert_eq!(x.union(&y), y.union(&x));
+        prop_assert_eq!(x.intersection(&y), y.intersection(&x));
+        Ok(())
+    }
+
+    fn merging(a: &[[i32; 2]], tolerance: i32) -> Result<(), TestCaseError> {
+        let x = set(a);
+        let merged = x.clone().merged(f64::from(tolerance));
+        let thick = |set: &IntervalSet<End>| -> IntervalSet<End> {
+            set.into_iter()
+                .filter(|i| i.length() > f64::from(tolerance))
+                .copied()
+                .collect()
+        };
+        let all = Interval::between(-100.0, 200.0);
+        prop_assert!(thick(&x).difference(&merged).is_empty());
+        prop_assert!(thick(&x.complement(all)).intersection(&merged).is_empty());
+        prop_assert!(merged.into_iter().all(|i| i.length() > f64::from(tolerance)));
+        prop_assert!(
+            merged
+                .complement(all)
+                .into_iter()
+                .all(|i| i.length() > f64::from(tolerance))
+        );
+        prop_assert_eq!(merged.clone().merged(f64::from(tolerance)), merged);
+        Ok(())
+    }
+
     proptest! {
         #[test]
         fn operations_agree_with_the_model(a in pieces(), b in pieces(), lo in 0..60i32, hi in 0..60i32) {
-            let (p, q) = (cells(&a), cells(&b));
-            let (x, y) = (set(&a), set(&b));
-            let model = |f: &dyn Fn(bool, bool) -> bool| {
-                boundary(&p.iter().zip(&q).map(|(p, q)| f(*p, *q)).collect::<Vec<_>>())
-            };
-            let cases: [(IntervalSet<End>, Vec<f64>); 6] = [
-                (x.clone(), boundary(&p)),
-                (x.union(&y), model(&|p, q| p || q)),
-                (x.intersection(&y), model(&|p, q| p && q)),
-                (x.difference(&y), model(&|p, q| p && !q)),
-                (x.symmetric_difference(&y), model(&|p, q| p != q)),
-                (x.complement(Interval::between(f64::from(lo), f64::from(hi))), {
-                    let outside = p.iter().zip(lo.min(60)..).enumerate();
-                    boundary(&outside.map(|(k, (p, _))| !p && lo <= k as i32 && (k as i32) < hi).collect::<Vec<_>>())
-                }),
-            ];
-            for (k, (found, expected)) in cases.iter().enumerate() {
-                prop_assert_eq!(&ends(found), expected, "case {}", k);
-                prop_assert!(outwards(found), "case {}", k);
-            }
-            for k in 0..60 {
-                prop_assert_eq!(x.contains(f64::from(k) + 0.5), p[k as usize]);
-            }
-            prop_assert_eq!(x.union(&y), y.union(&x));
-            prop_assert_eq!(x.intersection(&y), y.intersection(&x));
+            operations(&a, &b, lo, hi)?;
         }
 
         #[test]
         fn merging_keeps_all_that_is_thick(a in pieces(), tolerance in 0..6i32) {
-            let x = set(&a);
-            let merged = x.clone().merged(f64::from(tolerance));
-            let thick = |set: &IntervalSet<End>| -> IntervalSet<End> {
-                set.into_iter().filter(|i| i.length() > f64::from(tolerance)).copied().collect()
-            };
-            let all = Interval::between(-100.0, 200.0);
-            prop_assert!(thick(&x).difference(&merged).is_empty());
-            prop_assert!(thick(&x.complement(all)).intersection(&merged).is_empty());
-            prop_assert!(merged.into_iter().all(|i| i.length() > f64::from(tolerance)));
-            prop_assert!(merged.complement(all).into_iter().all(|i| i.length() > f64::from(tolerance)));
-            prop_assert_eq!(merged.clone().merged(f64::from(tolerance)), merged);
+            merging(&a, tolerance)?;
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 1_000_000, ..ProptestConfig::default() })]
+        /// `cargo test --release -p sweepsim-dexel -- --ignored million`
+        #[test]
+        #[ignore = "takes minutes"]
+        fn a_million_operations_agree_with_the_model(
+            a in pieces(), b in pieces(), lo in 0..60i32, hi in 0..60i32, tolerance in 0..6i32,
+        ) {
+            operations(&a, &b, lo, hi)?;
+            merging(&a, tolerance)?;
         }
     }
 

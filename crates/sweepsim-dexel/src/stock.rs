@@ -129,7 +129,7 @@ impl Stock {
                 height,
             } => cylinder(grid, *base, *axis, *radius, *height),
             Self::Ball { centre, radius } => ball(grid, *centre, *radius),
-            Self::Mesh(soup) => mesh(grid, soup),
+            Self::Mesh(soup) => mesh_dexels(grid, soup),
             Self::Dexels(dexels) if dexels.grid() == grid => Ok(Dexels::clone(dexels)),
             Self::Dexels(_) => Err(GridMismatch.into()),
             Self::Union(parts) => all(grid, Dexels::empty(*grid), Operation::Union, parts),
@@ -280,7 +280,8 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
     }))
 }
 
-fn mesh(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
+/// The dexels of the inside of a closed surface.
+pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
     soup.check_closed()?;
     let [dx, dy] = grid.spacing();
     let shift = [dx * 7.548_776_662e-10, dy * 5.698_402_910e-10];

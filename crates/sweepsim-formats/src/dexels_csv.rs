@@ -8,7 +8,7 @@ use crate::error::{FormatError, Problem};
 use crate::numbers::shortest;
 use crate::text;
 
-const HEADER: &str = "i,j,z0,z1";
+pub(crate) const HEADER: &str = "i,j,z0,z1";
 
 /// An interval of a dexel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,7 +16,7 @@
 
 use std::fmt::Write as _;
 
-use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_dexel::{Dexels, Grid, Interval};
 
 use crate::error::{FormatError, Problem};
 use crate::numbers::shortest;
@@ -130,6 +130,15 @@ impl Fixture {
                 None,
             ))
         }
+    }
+
+    /// The stored dexels. Normals and sources are not stored: those of horizontal faces of stock stand for them.
+    #[must_use]
+    pub fn dexels(&self) -> Dexels {
+        Dexels::from_fn(self.grid, |index, line| {
+            let ends = self.ends(index);
+            line.extend(ends.as_chunks().0.iter().map(|[z0, z1]| Interval::between(*z0, *z1)));
+        })
     }
 
     /// The name of the job.

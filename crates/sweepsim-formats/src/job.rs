@@ -41,7 +41,8 @@ impl Units {
 ///     units: Mm,                                     // or Inch: of all lengths here
 ///     tolerance: 1e-6,                               // of interval ends
 ///     grid: Grid(min: (0, 0), max: (20, 10), cells: (200, 100)),
-///     stock: Cylinder(base: (10, 5, 0), radius: 4, height: 5),   // axis: (0, 0, 1); or Block(min:, max:), Mesh("file.stl")
+///     stock: Cylinder(base: (10, 5, 0), radius: 4, height: 5),   // axis: (0, 0, 1); or Block(min:, max:), Ball(centre:, radius:),
+///         // Mesh("file.stl"), Dexels("out/earlier/part.dexels"), Union([…]), Intersection([…]), Difference(…, […])
 ///     tools: { 1: Ball(radius: 2, length: 30) },     // Flat, Bull(corner:), Apt(d:, r:, e:, f:, a:, b:, h:), Profile(start:, segments:)
 ///     paths: [
 ///         Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1)), ((20, 5, 3), (1, 0, 2))]),

@@ -28,6 +28,10 @@
 //! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
 //! | dexels to the bit, compact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
 //! | dexels as NumPy arrays (`.npz`) | [`read_dexels_npz`] | [`write_dexels_npz`] |
+//! | meshes for ParaView (`.vtp`) | [`read_vtp`] | [`write_vtp`] |
+//! | dexels for ParaView (`.vtu`) | | [`write_dexels_vtu`] |
+//! | any of these meshes, by extension | [`read_mesh_file`] | [`write_mesh_file`] |
+//! | any of these dexels, by extension | [`read_dexels_file`] | [`write_dexels_file`] |
 //! | dexels, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
 //!
@@ -40,6 +44,7 @@ pub mod csv;
 mod dexels_binary;
 mod dexels_csv;
 mod error;
+mod files;
 mod fixtures;
 pub mod gcode;
 mod glb;
@@ -58,12 +63,16 @@ mod surface_tool;
 mod text;
 mod threemf;
 mod tools;
+mod vtk;
 mod zip;
 
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels_binary::{read_dexels_binary, write_dexels_binary};
 pub use dexels_csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
 pub use error::{FormatError, Place, Problem};
+pub use files::{
+    DexelFormat, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file, write_dexels_file, write_mesh_file,
+};
 pub use fixtures::{Difference, Fixture};
 pub use glb::{read_glb, write_glb};
 pub use job::{Job, Limits, Target, Units};
@@ -72,6 +81,9 @@ pub use numbers::shortest;
 pub use paths::{JobPath, PathOptions, read_path_file};
 pub use ply::{read_ply, write_ply};
 pub use program::{Note, Program, ProgramPose};
-pub use report::{Collision, Deviation, DexelCounts, Report, UnresolvedDexel};
+pub use report::{
+    Collision, ComparisonReport, Deviation, DexelCounts, Furthest, HistogramBar, Report, UnresolvedDexel,
+};
 pub use stl::{parse_stl, read_stl, write_stl};
 pub use threemf::{read_3mf, write_3mf};
+pub use vtk::{read_vtp, write_dexels_vtu, write_vtp};

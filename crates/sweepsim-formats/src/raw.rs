@@ -56,7 +56,15 @@ pub(crate) enum Stock {
         radius: f64,
         height: f64,
     },
+    Ball {
+        centre: [f64; 3],
+        radius: f64,
+    },
     Mesh(String),
+    Dexels(String),
+    Union(Vec<Stock>),
+    Intersection(Vec<Stock>),
+    Difference(Box<Stock>, Vec<Stock>),
 }
 
 fn z_axis() -> [f64; 3] {

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::Path as FilePath;
+use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
 use sweepsim_motion::{Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
+use crate::files::{MeshFormat, read_dexels_file, read_mesh_file};
 use crate::job::{Job, Limits, Target, Units};
 use crate::locate::Node;
 use crate::paths::{self, JobPath, PathOptions};
@@ -73,7 +75,7 @@ impl Reader<'_> {
         )?;
         let tolerance = tolerance * self.unit;
         let grid = self.grid(&raw.grid)?;
-        let stock = self.stock(&raw.stock)?;
+        let stock = self.stock(&raw.stock, &["stock".into()], &grid)?;
         if let Some((number, place)) = self.places.key("tools").second_key() {
             let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
             return Err(FormatError::new(problem, Some(text::place(self.text, place))));
@@ -182,14 +184,23 @@ impl Reader<'_> {
         })
     }
 
-    fn stock(&self, raw: &raw::Stock) -> Result<Stock, FormatError> {
+    /// A piece of stock, whose value the steps lead to.
+    fn stock(&self, raw: &raw::Stock, at: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
         let scale = |point: [f64; 3]| point.map(|c| c * self.unit);
         let steps = |name: &str, k: Option<usize>| -> Vec<Step> {
-            let path = [Some("stock".into()), Some(name.into()), k.map(Step::Item)];
-            path.into_iter().flatten().collect()
+            let more = [Some(name.into()), k.map(Step::Item)].into_iter().flatten();
+            at.iter().cloned().chain(more).collect()
         };
         let finite = |name: &str, point: [f64; 3]| {
             (0..3).try_for_each(|k| self.check(name, point[k], true, "finite", &steps(name, Some(k))))
+        };
+        // Those in the list that is the item number `place` of a wrapper.
+        let list = |parts: &[raw::Stock], place: usize| -> Result<Vec<Stock>, FormatError> {
+            let each = parts.iter().enumerate().map(|(k, part)| {
+                let steps: Vec<Step> = at.iter().cloned().chain([Step::Item(place), Step::Item(k)]).collect();
+                self.stock(part, &steps, grid)
+            });
+            each.collect()
         };
         match *raw {
             raw::Stock::Block { min, max } => {
@@ -226,14 +237,54 @@ impl Reader<'_> {
                     height: height * self.unit,
                 })
             }
-            raw::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", &["stock".into()])?)),
+            raw::Stock::Ball { centre, radius } => {
+                finite("centre", centre)?;
+                self.check("radius", radius, radius > 0.0, "positive", &steps("radius", None))?;
+                Ok(Stock::Ball {
+                    centre: scale(centre),
+                    radius: radius * self.unit,
+                })
+            }
+            raw::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", at)?)),
+            raw::Stock::Dexels(ref name) => self.dexels(name, at, grid),
+            raw::Stock::Union(ref parts) => Ok(Stock::Union(list(parts, 0)?)),
+            raw::Stock::Intersection(ref parts) => Ok(Stock::Intersection(list(parts, 0)?)),
+            raw::Stock::Difference(ref whole, ref parts) => {
+                let steps: Vec<Step> = at.iter().cloned().chain([Step::Item(0)]).collect();
+                let whole = self.stock(whole, &steps, grid)?;
+                Ok(Stock::Difference(whole.into(), list(parts, 1)?))
+            }
         }
+    }
+
+    /// What an earlier run left, in millimetres as all its outputs.
+    fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
+        let file = paths::beside(self.file, name);
+        let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
+        if dexels.grid() == grid {
+            return Ok(Stock::Dexels(Arc::new(dexels)));
+        }
+        let words = |grid: &Grid| {
+            let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
+            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm")
+        };
+        let what = format!("the grid of {name}");
+        Err(self.error(
+            Problem::value(what, words(dexels.grid()), format!("that of the job, {}", words(grid))),
+            steps,
+        ))
     }
 
     /// The triangles of a file that is named at the steps, in millimetres.
     fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
         let file = paths::beside(self.file, name);
-        let mesh = self.named(read_stl(&file), &file, what, steps)?;
+        let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
+        let mesh = if known {
+            let mesh = self.named(read_mesh_file(&file), &file, what, steps)?;
+            mesh.soup().unwrap_or_default()
+        } else {
+            self.named(read_stl(&file), &file, what, steps)?
+        };
         Ok(if self.unit == 1.0 {
             mesh
         } else {

@@ -104,8 +104,10 @@ pub struct Unresolved {
 /// How many boxes met which fate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SolveStatistics {
-    /// Boxes looked at.
+    /// Boxes looked at: those of the subdivision itself, which an [`Observer`] sees.
     pub boxes: u64,
+    /// Boxes of the searches on the faces of boxes (curves only). They have no fate here, but count towards the budget.
+    pub faces: u64,
     /// Of these, excluded by a sign of the coefficients.
     pub sign: u64,
     /// Excluded by affine enclosures.
@@ -133,6 +135,7 @@ pub struct SolveStatistics {
 impl SolveStatistics {
     pub(crate) fn merge(&mut self, other: &Self) {
         self.boxes += other.boxes;
+        self.faces += other.faces;
         self.sign += other.sign;
         self.linear += other.linear;
         self.projection += other.projection;
@@ -203,7 +206,7 @@ impl Watch {
         open: usize,
         observer: &mut dyn Observer,
     ) -> Option<Cause> {
-        if statistics.boxes >= options.boxes {
+        if statistics.boxes + statistics.faces >= options.boxes {
             return Some(Cause::Boxes);
         }
         if open > options.unresolved {

@@ -161,7 +161,9 @@ fn observers_see_every_box_of_curves_and_surfaces() {
     }
     let mut count = Count::default();
     let curves = CurveSolver::new(1e-3).solve(&nested(2), &mut count).unwrap();
-    assert_eq!(count.0.len() as u64, curves.statistics.boxes);
+    let SolveStatistics { boxes, faces, .. } = curves.statistics;
+    assert_eq!(count.0.len() as u64, boxes);
+    assert!(faces > 0, "splits are searched for crossings");
     assert!(count.0.contains(&Fate::Certified));
     let mut count = Count::default();
     let surface = SurfaceSolver::new(0.05).solve(&nested(3), &mut count).unwrap();

@@ -55,3 +55,8 @@ pub use section::{Section, SectionCurve, section};
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};
 pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, probe, sweep};
+
+/// The README's example is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

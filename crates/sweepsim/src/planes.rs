@@ -207,38 +207,32 @@ where
                 continue;
             }
             let target = self.lattice.grid.index(self.lattice.i[0], j);
-            let Some((x, base, sample, orientation)) = self.root(&from, q, y, within) else {
+            let Some(found) = self.root(&from, q, (target, y), within) else {
                 return false;
             };
-            from = Vertex { x, y };
+            from = Vertex { x: found.x, y };
             // Beyond the domain another patch, or another segment, has the curve.
-            if x.iter().all(|x| (0.0..=1.0).contains(x)) {
-                self.sink.found(Preimage {
-                    target,
-                    x,
-                    from: base,
-                    seen: sample.seen,
-                    orientation,
-                });
+            if found.x.iter().all(|x| (0.0..=1.0).contains(x)) {
+                self.sink.found(found);
             }
         }
         true
     }
 
-    /// The point of the span where `Y = y`, by Newton's method from between `p` and `q`; with the last point evaluated.
+    /// The point of the span where `Y = y`, by Newton's method from between `p` and `q`.
     fn root(
         &mut self,
         p: &Vertex<N>,
         q: &Vertex<N>,
-        y: f64,
+        (target, y): (usize, f64),
         within: &[Interval; N],
-    ) -> Option<([f64; N], [f64; N], Sample<N, M::Seen>, i8)> {
+    ) -> Option<Preimage<N, M::Seen>> {
         let part = ((y - p.y) / (q.y - p.y)).clamp(0.0, 1.0);
         let mut x: [f64; N] = std::array::from_fn(|k| p.x[k] + part * (q.x[k] - p.x[k]));
         for _ in 0..STEPS {
             let sample = self.evaluate(&x);
-            let target = [self.x, y, 0.0];
-            let rest = nalgebra::SVector::<f64, N>::from_fn(|i, _| sample.value[i] - target[i]);
+            let wanted = [self.x, y, 0.0];
+            let rest = nalgebra::SVector::<f64, N>::from_fn(|i, _| sample.value[i] - wanted[i]);
             let matrix = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, k| sample.jacobian[i][k]);
             let determinant = matrix.determinant();
             let step = matrix.try_inverse()? * rest;
@@ -249,7 +243,13 @@ where
             if step.amax() <= self.accept {
                 // The box holds one point of the span with this Y: if Newton's method found it, it is in the box.
                 let inside = (0..N).all(|k| next[k] >= within[k].lo - 1e-9 && next[k] <= within[k].hi + 1e-9);
-                return inside.then(|| (next, x, sample, if determinant > 0.0 { 1 } else { -1 }));
+                return inside.then_some(Preimage {
+                    target,
+                    x: next,
+                    from: x,
+                    seen: sample.seen,
+                    orientation: if determinant > 0.0 { 1 } else { -1 },
+                });
             }
             x = std::array::from_fn(|k| next[k].clamp(within[k].lo, within[k].hi));
         }

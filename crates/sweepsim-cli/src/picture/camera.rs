@@ -5,23 +5,34 @@ use super::scene::Scene;
 use super::vector::{Vector, add, along, cross, dot, scale, sub, unit};
 
 /// A camera with the scene in its view.
+///
+/// Depth in a picture is a number that is linear on the picture's planes and grows towards the viewer: in perspective 1 / distance,
+/// else [`FAR`] less the distance.
 pub(super) struct Camera {
-    pub eye: Vector,
+    eye: Vector,
     pub right: Vector,
     pub up: Vector,
     pub forward: Vector,
-    /// Half the picture's width and height at distance 1.
-    pub half: [f32; 2],
+    /// Half the picture's width and height: at distance 1, or at all.
+    half: [f32; 2],
+    orthographic: bool,
+    /// Share of the picture's width at its right that the view leaves free.
+    aside: f32,
 }
+
+/// Beyond all of a scene in the unit ball, seen from where an orthographic camera stands.
+const FAR: f32 = 4.0;
 
 impl Camera {
     pub fn new(view: &View, scene: &Scene) -> Self {
         let kept = |value: f64, from: f64, to: f64| if value.is_finite() { value.clamp(from, to) } else { from };
         let azimuth = kept(view.azimuth, -1e6, 1e6).to_radians();
-        let elevation = kept(view.elevation, 5.0, 85.0).to_radians();
+        let elevation = kept(view.elevation, -90.0, 90.0).to_radians();
         let longer = (0.5 * kept(view.opening, 5.0, 90.0).to_radians()).tan();
-        let largest = view.size[0].max(view.size[1]) as f64;
-        let half = view.size.map(|n| (longer * n as f64 / largest) as f32);
+        let aside = kept(view.aside, 0.0, 0.5);
+        let size = [(1.0 - aside) * view.size[0] as f64, view.size[1] as f64];
+        let shape = size.map(|n| n / size[0].max(size[1]));
+        let (half, aside) = (shape.map(|n| (longer * n) as f32), aside as f32);
         let towards = [
             elevation.cos() * azimuth.cos(),
             elevation.cos() * azimuth.sin(),
@@ -29,11 +40,16 @@ impl Camera {
         ]
         .map(|c| c as f32);
         let forward = scale(unit(towards), -1.0);
-        let right = unit(cross(forward, [0.0, 0.0, 1.0]));
+        // Level, also for one who looks straight down.
+        let right = [-azimuth.sin() as f32, azimuth.cos() as f32, 0.0];
         let up = cross(right, forward);
         // In the camera's directions, every point must be in the four half-spaces x − px ≤ h (z − pz), and so on:
         // the nearest place where all hold.
         let free = (1.0 - 2.0 * kept(view.margin, 0.0, 0.4)) as f32;
+        if view.orthographic {
+            let level = Self::level(scene, [right, up, forward], shape.map(|n| n as f32), free);
+            return Self { aside, ..level };
+        }
         let mut most = [[f32::NEG_INFINITY; 2]; 2];
         let mut nearest = f32::INFINITY;
         for p in &scene.positions {
@@ -50,31 +66,100 @@ impl Camera {
         }
         let back = |k: usize| -(most[k][0] + most[k][1]) / (2.0 * free * half[k]);
         let depth = back(0).min(back(1)).min(nearest - 0.1);
-        let aside = [0, 1].map(|k: usize| 0.5 * (most[k][0] - most[k][1]));
-        let eye = add(scale(forward, depth), add(scale(right, aside[0]), scale(up, aside[1])));
+        let off = [0, 1].map(|k: usize| 0.5 * (most[k][0] - most[k][1]));
+        let eye = add(scale(forward, depth), add(scale(right, off[0]), scale(up, off[1])));
         Self {
             eye,
             right,
             up,
             forward,
             half,
+            orthographic: false,
+            aside,
         }
     }
 
-    /// Place in the picture, from −1 to 1 to the right and up, and distance along the axis.
-    pub fn project(&self, p: Vector) -> [f32; 3] {
-        let d = sub(p, self.eye);
-        let z = dot(d, self.forward);
-        [
-            dot(d, self.right) / (z * self.half[0]),
-            dot(d, self.up) / (z * self.half[1]),
-            z,
-        ]
+    /// An orthographic camera: the scene's box in its directions fills the free part of a picture of some shape.
+    fn level(scene: &Scene, axes: [Vector; 3], shape: [f32; 2], free: f32) -> Self {
+        let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+        for p in &scene.positions {
+            for (range, axis) in range.iter_mut().zip(axes) {
+                let x = dot(*p, axis);
+                *range = [range[0].min(x), range[1].max(x)];
+            }
+        }
+        if scene.positions.is_empty() {
+            range = [[-1.0, 1.0]; 3];
+        }
+        let [right, up, forward] = axes;
+        let middle = [0, 1].map(|k: usize| 0.5 * (range[k][0] + range[k][1]));
+        let needed = [0, 1].map(|k: usize| 0.5 * (range[k][1] - range[k][0]) / (free * shape[k]));
+        let size = needed[0].max(needed[1]).max(1e-6);
+        let eye = add(scale(right, middle[0]), scale(up, middle[1]));
+        Self {
+            eye: along(eye, range[2][0] - 0.5, forward),
+            right,
+            up,
+            forward,
+            half: shape.map(|n| size * n),
+            orthographic: true,
+            aside: 0.0,
+        }
     }
 
-    /// Direction of a place in the picture, of length 1 along the axis.
-    pub fn ray(&self, x: f32, y: f32) -> Vector {
-        let ray = along(self.forward, x * self.half[0], self.right);
-        along(ray, y * self.half[1], self.up)
+    /// Place in the picture, from −1 to 1 to the right and up; depth; and the weight of a corner there in means over a triangle.
+    pub fn project(&self, p: Vector) -> [f32; 4] {
+        let d = sub(p, self.eye);
+        let z = dot(d, self.forward);
+        let (x, y) = (dot(d, self.right) / self.half[0], dot(d, self.up) / self.half[1]);
+        let [x, y, near, weight] = if self.orthographic {
+            [x, y, FAR - z, 1.0]
+        } else {
+            [x / z, y / z, 1.0 / z, 1.0 / z]
+        };
+        [x * (1.0 - self.aside) - self.aside, y, near, weight]
+    }
+
+    /// Where the line of sight at a place in the picture begins, and its direction, of length 1 along the axis.
+    pub fn sight(&self, x: f32, y: f32) -> [Vector; 2] {
+        let x = (x + self.aside) / (1.0 - self.aside);
+        let aside = add(scale(self.right, x * self.half[0]), scale(self.up, y * self.half[1]));
+        if self.orthographic {
+            [add(self.eye, aside), self.forward]
+        } else {
+            [self.eye, add(self.forward, aside)]
+        }
+    }
+
+    /// How far along the axis a depth is.
+    pub fn distance(&self, near: f32) -> f32 {
+        if self.orthographic { FAR - near } else { 1.0 / near }
+    }
+
+    /// The depth at a distance along the axis.
+    pub fn near(&self, distance: f32) -> f32 {
+        if self.orthographic {
+            FAR - distance
+        } else {
+            1.0 / distance
+        }
+    }
+
+    /// What a difference of depths is as one of distances, about.
+    pub fn difference(&self, near: f32, difference: f32) -> f32 {
+        if self.orthographic {
+            difference
+        } else {
+            difference / (near * near)
+        }
+    }
+
+    /// Direction from a point to the viewer.
+    pub fn towards(&self, p: Vector) -> Vector {
+        if self.orthographic {
+            scale(self.forward, -1.0)
+        } else {
+            unit(sub(self.eye, p))
+        }
     }
 }

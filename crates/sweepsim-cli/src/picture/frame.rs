@@ -4,7 +4,7 @@ use super::Image;
 use super::camera::Camera;
 use super::light::{Around, Lights};
 use super::scene::Scene;
-use super::shade::{self, Spot};
+use super::shade::{self, Matter, Spot};
 use super::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
 use rayon::prelude::*;
 
@@ -17,13 +17,16 @@ const RIM: usize = 1;
 /// Steps of the corners' places within a sample's distance.
 const STEP: f32 = 256.0;
 const EMPTY: u32 = u32::MAX;
+/// Stands for a triangle where a section is seen.
+const LAID_OPEN: u32 = u32::MAX - 1;
 
-/// A vertex in the picture: in steps from the top left sample, and 1 / distance.
+/// A vertex in the picture: in steps from the top left sample; its depth, and its weight in means over a triangle.
 #[derive(Clone, Copy)]
 struct Point {
     x: i64,
     y: i64,
     near: f32,
+    weight: f32,
 }
 
 /// Twice the area of a triangle, positive when counter-clockwise with `y` up, that is seen from its front.
@@ -38,12 +41,13 @@ pub(super) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usi
         .positions
         .par_iter()
         .map(|p| {
-            let [x, y, z] = camera.project(*p);
+            let [x, y, near, weight] = camera.project(*p);
             let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
             Point {
                 x: place(x, samples[0]),
                 y: place(-y, samples[1]),
-                near: 1.0 / z,
+                near,
+                weight,
             }
         })
         .collect();
@@ -54,19 +58,20 @@ pub(super) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usi
         .zip(&lists)
         .enumerate()
         .for_each(|(band, (rows, list))| {
-            let band = Band::new(scene, lights, &points, size, band * BAND, list);
+            let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
             band.paint(scene, camera, lights, rows);
         });
     Image { size, rgb }
 }
 
-/// The triangles that each band sees the front of, in their order.
+/// The triangles that each band sees the front of, or any side if there are sections, in their order.
 fn sort_into_bands(scene: &Scene, points: &[Point], bands: usize) -> Vec<Vec<u32>> {
     let step = STEP as i64;
     let mut lists = vec![Vec::new(); bands];
     for (number, t) in scene.triangles.iter().enumerate() {
         let [a, b, c] = t.map(|v| points[v as usize]);
-        if area([a.x, a.y], [b.x, b.y], [c.x, c.y]) <= 0 {
+        let seen = area([a.x, a.y], [b.x, b.y], [c.x, c.y]);
+        if seen == 0 || (seen < 0 && scene.sections.is_empty()) {
             continue;
         }
         let row = |y: i64| y.div_euclid(step * SAMPLES as i64);
@@ -93,11 +98,23 @@ struct Band {
     near: Vec<f32>,
     normals: Vec<Vector>,
     around: Vec<Around>,
-    cut: Vec<f32>,
+    values: Vec<f32>,
+    /// How often a line of sight leaves the part less how often it enters it, where there are sections.
+    depth: Vec<i32>,
+    /// Whether it is the inside of the part that is seen, laid open by a section.
+    inside: Vec<bool>,
 }
 
 impl Band {
-    fn new(scene: &Scene, lights: &Lights, points: &[Point], size: [usize; 2], top: usize, list: &[u32]) -> Self {
+    fn new(
+        scene: &Scene,
+        camera: &Camera,
+        lights: &Lights,
+        points: &[Point],
+        size: [usize; 2],
+        top: usize,
+        list: &[u32],
+    ) -> Self {
         let width = (size[0] + 2 * RIM) * SAMPLES;
         let height = (BAND + 2 * RIM) * SAMPLES;
         let count = width * height;
@@ -109,7 +126,9 @@ impl Band {
             near: vec![0.0; count],
             normals: Vec::new(),
             around: Vec::new(),
-            cut: Vec::new(),
+            values: Vec::new(),
+            depth: vec![0; if scene.sections.is_empty() { 0 } else { count }],
+            inside: Vec::new(),
         };
         if list.is_empty() {
             return band;
@@ -119,9 +138,15 @@ impl Band {
         }
         band.normals = vec![[0.0; 3]; count];
         band.around = vec![Around::default(); count];
-        band.cut = vec![0.0; count];
+        band.values = vec![0.0; count];
+        band.inside = vec![false; count];
         for index in 0..count {
-            band.look_up(scene, lights, points, index);
+            if band.depth.get(index).is_some_and(|depth| *depth > 0) && band.lay_open(scene, camera, index) {
+                continue;
+            }
+            if band.triangles[index] != EMPTY {
+                band.look_up(scene, lights, points, index);
+            }
         }
         band
     }
@@ -132,8 +157,13 @@ impl Band {
         [-rim, (self.top * SAMPLES) as i64 - rim].map(|n| n * STEP as i64)
     }
 
-    fn draw(&mut self, number: u32, points: [Point; 3]) {
+    fn draw(&mut self, number: u32, mut points: [Point; 3]) {
         let (step, origin) = (STEP as i64, self.origin());
+        let [a, b, c] = points.map(|p| [p.x, p.y]);
+        let back = area(a, b, c) < 0;
+        if back {
+            points.swap(1, 2);
+        }
         let [a, b, c] = points.map(|p| [p.x - origin[0], p.y - origin[1]]);
         let height = self.near.len() / self.width;
         let range = |k: usize, count: usize| {
@@ -153,14 +183,21 @@ impl Band {
             // Going right by one sample, `area(p, q, at)` grows by (q.y − p.y) steps.
             let mut weights = [area(b, c, first), area(c, a, first), area(a, b, first)];
             let grow = [c[1] - b[1], a[1] - c[1], b[1] - a[1]].map(|d| d * step);
+            // A sample on an edge is in one of the two triangles beside it: in the one to the right of it, or below.
+            let own = [[b, c], [c, a], [a, b]].map(|[p, q]| q[1] > p[1] || (q[1] == p[1] && q[0] < p[0]));
             let start = row as usize * self.width;
             for column in left..=right {
                 if weights.iter().all(|w| *w >= 0) {
                     let near = scale * (0..3).map(|k| weights[k] as f32 * points[k].near).sum::<f32>();
                     let index = start + column as usize;
-                    if near > self.near[index] {
+                    if !back && near > self.near[index] {
                         self.near[index] = near;
                         self.triangles[index] = number;
+                    }
+                    if (0..3).all(|k| weights[k] > 0 || own[k])
+                        && let Some(depth) = self.depth.get_mut(index)
+                    {
+                        *depth += if back { 1 } else { -1 };
                     }
                 }
                 for k in 0..3 {
@@ -172,9 +209,6 @@ impl Band {
 
     /// Between the corners of the triangle at a sample, as seen in perspective.
     fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[Point], index: usize) {
-        if self.triangles[index] == EMPTY {
-            return;
-        }
         let corners = scene.triangles[self.triangles[index] as usize].map(|v| v as usize);
         let p = corners.map(|v| points[v]);
         let origin = self.origin();
@@ -185,21 +219,60 @@ impl Band {
         ];
         let [a, b, c] = p.map(|p| [p.x, p.y]);
         let weights = [area(b, c, at), area(c, a, at), area(a, b, at)];
-        let weights = [0, 1, 2].map(|k| weights[k] as f32 * p[k].near);
+        let weights = [0, 1, 2].map(|k| weights[k] as f32 * p[k].weight);
         let sum: f32 = weights.iter().sum();
         let mut normal = [0.0; 3];
         let mut around = Around::default();
-        let mut cut = 0.0;
+        let mut value = 0.0;
         for k in 0..3 {
             let w = weights[k] / sum;
             normal = along(normal, w, scene.normals[corners[k]]);
             around.sky += w * lights.around[corners[k]].sky;
             around.ground += w * lights.around[corners[k]].ground;
-            cut += w * scene.cut[corners[k]];
+            value += w * scene.values[corners[k]];
         }
         self.normals[index] = unit(normal);
         self.around[index] = around;
-        self.cut[index] = cut;
+        self.values[index] = value;
+    }
+
+    /// Where a line of sight leaves the part once more than it enters it, it has entered through a section: as the part is closed,
+    /// that is certain. The sections leave a convex piece of space, so the line enters through the last of them that it meets, and
+    /// nothing is in front.
+    fn lay_open(&mut self, scene: &Scene, camera: &Camera, index: usize) -> bool {
+        let [x, y] = self.place(index);
+        let [from, ray] = camera.sight(x, y);
+        let entered = scene.sections.iter().filter_map(|(normal, at)| {
+            let towards = -dot(*normal, ray);
+            (towards > 0.0).then(|| ((dot(*normal, from) - at) / towards, *normal))
+        });
+        let last = entered.fold(None, |last: Option<(f32, Vector)>, next| match last {
+            Some(last) if last.0 >= next.0 => Some(last),
+            _ => Some(next),
+        });
+        let Some((distance, normal)) = last.filter(|(distance, _)| *distance > 0.0) else {
+            return false;
+        };
+        self.triangles[index] = LAID_OPEN;
+        self.near[index] = camera.near(distance);
+        self.normals[index] = normal;
+        self.inside[index] = true;
+        self.around[index] = Around {
+            sky: 0.5 + 0.5 * normal[2],
+            ground: 0.5 - 0.5 * normal[2],
+        };
+        true
+    }
+
+    /// The place of a sample in the picture, from −1 to 1 to the right and up.
+    fn place(&self, index: usize) -> [f32; 2] {
+        let rim = (RIM * SAMPLES) as f32;
+        let across = [
+            (index % self.width) as f32 - rim,
+            (self.top * SAMPLES) as f32 + (index / self.width) as f32 - rim,
+        ];
+        let [x, y] = [0, 1].map(|k| (across[k] + 0.5) / (self.size[k] * SAMPLES) as f32 * 2.0 - 1.0);
+        [x, -y]
     }
 
     /// The pixels of the band's rows.
@@ -212,7 +285,7 @@ impl Band {
                 let colour = if self.normals.is_empty() {
                     behind()
                 } else {
-                    self.pixel(camera, lights, [column, row], behind)
+                    self.pixel(scene, camera, lights, [column, row], behind)
                 };
                 for k in 0..3 {
                     // Between two bytes, which one is decided by a fixed pattern: so the background has no visible steps.
@@ -223,7 +296,14 @@ impl Band {
     }
 
     /// The mean of a pixel's samples.
-    fn pixel(&self, camera: &Camera, lights: &Lights, at: [usize; 2], behind: impl Fn() -> Vector) -> Vector {
+    fn pixel(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        lights: &Lights,
+        at: [usize; 2],
+        behind: impl Fn() -> Vector,
+    ) -> Vector {
         let mut spots: Vec<(Spot, f32, f32, usize)> = Vec::new();
         let mut free = 0_usize;
         for sample in 0..SAMPLES * SAMPLES {
@@ -235,20 +315,28 @@ impl Band {
                 continue;
             }
             let near = self.near[index];
-            let (normal, around, cut) = (self.normals[index], self.around[index], self.cut[index]);
-            let line = self.line(index);
-            let across = [column - RIM * SAMPLES, self.top * SAMPLES + row - RIM * SAMPLES];
-            let [x, y] = [0, 1].map(|k| (across[k] as f32 + 0.5) / (self.size[k] * SAMPLES) as f32 * 2.0 - 1.0);
-            let place = along(camera.eye, 1.0 / near, camera.ray(x, -y));
+            let (normal, around, value) = (self.normals[index], self.around[index], self.values[index]);
+            let matter = match (self.inside[index], scene.valued) {
+                (true, _) => Matter::Section,
+                (false, true) => Matter::Value,
+                (false, false) => Matter::Metal,
+            };
+            let line = self.line(camera, index);
+            let [x, y] = self.place(index);
+            let [from, ray] = camera.sight(x, y);
+            let place = along(from, camera.distance(near), ray);
             let alike = spots.iter_mut().find(|(spot, first, _, count)| {
-                (near - first).abs() < 0.01 * near && dot(spot.normal, normal) > 0.9 * *count as f32
+                (near - first).abs() < 0.01 * near
+                    && dot(spot.normal, normal) > 0.9 * *count as f32
+                    && spot.matter == matter
+                    && spot.value.is_nan() == value.is_nan()
             });
             if let Some((spot, _, lines, count)) = alike {
                 spot.at = add(spot.at, place);
                 spot.normal = add(spot.normal, normal);
                 spot.around.sky += around.sky;
                 spot.around.ground += around.ground;
-                spot.cut += cut;
+                spot.value += value;
                 *lines += line;
                 *count += 1;
             } else {
@@ -256,7 +344,8 @@ impl Band {
                     at: place,
                     normal,
                     around,
-                    cut,
+                    value,
+                    matter,
                 };
                 spots.push((spot, near, line, 1));
             }
@@ -272,7 +361,7 @@ impl Band {
             spot.at = scale(spot.at, mean);
             spot.around.sky *= mean;
             spot.around.ground *= mean;
-            spot.cut *= mean;
+            spot.value *= mean;
             let lit = shade::shade(camera, lights, &spot);
             let lined = mix(lit, scale(lit, 0.45), lines * mean);
             colour = along(colour, count as f32 * part, lined);
@@ -281,7 +370,7 @@ impl Band {
     }
 
     /// How much of an edge there is at a sample: where the depth jumps, or the normal does.
-    fn line(&self, index: usize) -> f32 {
+    fn line(&self, camera: &Camera, index: usize) -> f32 {
         let centre = self.near[index];
         let mut line = 0.0_f32;
         for step in [2, 2 * self.width] {
@@ -295,8 +384,9 @@ impl Band {
                 line = line.max(0.7);
                 continue;
             }
-            // 1 / distance is linear on planes.
-            let bend = (self.near[before] + self.near[after] - 2.0 * centre).abs() / (centre * centre);
+            // Depth is linear on planes.
+            let bend = (self.near[before] + self.near[after] - 2.0 * centre).abs();
+            let bend = camera.difference(centre, bend);
             line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
             let turn = 1.0 - dot(self.normals[before], self.normals[after]);
             line = line.max(0.30 * smooth_step(0.12, 0.6, turn));

@@ -50,7 +50,8 @@ impl Map {
         };
         let points: Vec<Vector> = scene.positions.iter().map(|p| map.place(*p)).collect();
         for t in &scene.triangles {
-            map.draw(t.map(|v| points[v as usize]));
+            // Light that comes in through a section gets as far as the back of the face behind.
+            map.draw(t.map(|v| points[v as usize]), !scene.sections.is_empty());
         }
         map
     }
@@ -65,8 +66,11 @@ impl Map {
         ]
     }
 
-    fn draw(&mut self, [a, b, c]: [Vector; 3]) {
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    fn draw(&mut self, [a, mut b, mut c]: [Vector; 3], backs: bool) {
+        let mut area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if area < 0.0 && backs {
+            (area, b, c) = (-area, c, b);
+        }
         // Seen from behind: there is a front before it.
         if area.is_nan() || area <= 0.0 {
             return;

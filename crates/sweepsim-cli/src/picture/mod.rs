@@ -1,9 +1,11 @@
 //! Pictures of parts, computed without a graphics card.
 //!
 //! A [`Mesh`] is put on a plane under a soft sky with a large lamp to its left. What tools cut is warm, what they left of
-//! the stock is cool. How it is made:
+//! the stock is cool; or each vertex has a value, and faces the colour that the [`legend`] has for it. [Sections](Section) take
+//! away what is between them and the viewer, and lay open the inside. How it is made:
 //!
-//! 1. `scene`: the triangles, moved and scaled so that they fit into the unit ball; `camera`: where one looks from.
+//! 1. `scene`: the triangles, cut off at the sections, moved and scaled so that they fit into the unit ball; `camera`: where one
+//!    looks from.
 //! 2. `light`: depth maps from many directions. The sky is seen or not from each vertex, the lamp from each pixel, through
 //!    sixteen maps spread over it: its shadows are sharp at their beginning and soft further on.
 //! 3. `frame`: bands of pixel rows, each on its own: nine samples per pixel find the nearest triangle (exactly, in whole
@@ -14,6 +16,7 @@
 
 mod camera;
 mod frame;
+pub mod legend;
 mod light;
 mod scene;
 mod shade;
@@ -33,6 +36,41 @@ pub struct Image {
     pub rgb: Vec<u8>,
 }
 
+/// A plane across an axis. What is between it and the viewer is not drawn; the inside of the part is seen where the plane cuts it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// 0 for `x`, 1 for `y`, 2 for `z`; others are no section.
+    pub axis: usize,
+    /// Where on the axis.
+    pub at: f64,
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawing<'a> {
+    /// The part: closed, its triangles counter-clockwise seen from outside.
+    pub mesh: &'a Mesh,
+    /// A value for each vertex, NaN for none, that faces are coloured by. Without any, they are by what made them.
+    pub values: &'a [f32],
+    /// Values from `-range` to `range` have colours of their own.
+    pub range: f32,
+    /// Where it is cut off.
+    pub sections: &'a [Section],
+}
+
+impl<'a> Drawing<'a> {
+    /// A mesh as it is.
+    #[must_use]
+    pub fn new(mesh: &'a Mesh) -> Self {
+        Self {
+            mesh,
+            values: &[],
+            range: 1.0,
+            sections: &[],
+        }
+    }
+}
+
 /// Where one looks from, and how large the picture is. The distance is such that the mesh fills the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
@@ -40,12 +78,16 @@ pub struct View {
     pub size: [usize; 2],
     /// Direction of the viewer seen from the part, in degrees around `z`: 0 is on its `+x` side, 90 on its `+y` side.
     pub azimuth: f64,
-    /// Height of the viewer above the horizon, in degrees: kept between 5 and 85.
+    /// Height of the viewer above the horizon, in degrees: kept between −90 and 90.
     pub elevation: f64,
+    /// Whether parallel lines are parallel in the picture. If not, it is seen through a lens.
+    pub orthographic: bool,
     /// Opening of the lens, of the picture's longer side, in degrees: kept between 5 and 90.
     pub opening: f64,
     /// Which share of the picture stays free on each side: kept between 0 and 0.4.
     pub margin: f64,
+    /// Which share of the width stays free at the right, for a [`legend`]: kept between 0 and 0.5.
+    pub aside: f64,
 }
 
 impl Default for View {
@@ -54,8 +96,10 @@ impl Default for View {
             size: [1600, 1200],
             azimuth: -58.0,
             elevation: 40.0,
+            orthographic: false,
             opening: 26.0,
             margin: 0.07,
+            aside: 0.0,
         }
     }
 }
@@ -70,8 +114,20 @@ impl View {
     /// The size is kept between 1 and [`View::MOST`] each way.
     #[must_use]
     pub fn render(&self, mesh: &Mesh) -> Image {
+        self.draw(&Drawing::new(mesh))
+    }
+
+    /// As [`View::render`], with values and sections. Sections want a mesh that is closed.
+    #[must_use]
+    pub fn draw(&self, drawing: &Drawing<'_>) -> Image {
         let size = self.size.map(|n| n.clamp(1, Self::MOST));
-        let scene = Scene::new(mesh);
+        let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
+        let towards = [
+            elevation.cos() * azimuth.cos(),
+            elevation.cos() * azimuth.sin(),
+            elevation.sin(),
+        ];
+        let scene = Scene::new(drawing, towards);
         let camera = Camera::new(&Self { size, ..*self }, &scene);
         let lights = Lights::new(&scene, &camera);
         frame::render(&scene, &camera, &lights, size)

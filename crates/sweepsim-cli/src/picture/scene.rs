@@ -1,6 +1,7 @@
 //! A mesh made ready.
 
 use super::vector::{Vector, cross, sub, unit};
+use super::{Drawing, Section};
 use sweepsim_dexel::Mesh;
 
 /// Triangles in the unit ball.
@@ -8,16 +9,37 @@ use sweepsim_dexel::Mesh;
 pub(super) struct Scene {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
-    /// 1 where a tool cut, 0 elsewhere.
-    pub cut: Vec<f32>,
+    /// 1 where a tool cut, 0 elsewhere; or the values of the drawing, from −1 to 1.
+    pub values: Vec<f32>,
+    /// Whether they are those of the drawing.
+    pub valued: bool,
     pub triangles: Vec<[u32; 3]>,
+    /// Planes that the part is cut off at: normal, towards what is taken away, and distance from the middle.
+    pub sections: Vec<(Vector, f32)>,
     /// Height of the plane that the part lies on.
     pub ground: f32,
 }
 
-impl Scene {
+/// A vertex in the mesh's coordinates.
+#[derive(Clone, Copy)]
+struct Vertex {
+    place: [f64; 3],
+    normal: Option<[f32; 3]>,
+    value: f32,
+}
+
+/// A part of a mesh: triangles of vertices that are all in use.
+#[derive(Default)]
+struct Piece {
+    vertices: Vec<Vertex>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Piece {
     /// Keeps what can be drawn.
-    pub fn new(mesh: &Mesh) -> Self {
+    fn new(drawing: &Drawing<'_>) -> Self {
+        let mesh: &Mesh = drawing.mesh;
+        let with_normals = mesh.normals.len() == mesh.vertices.len();
         let good = |t: &[u32; 3]| {
             t.iter().all(|v| {
                 mesh.vertices
@@ -25,62 +47,143 @@ impl Scene {
                     .is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() < 1e150))
             })
         };
-        let kept: Vec<[u32; 3]> = mesh.triangles.iter().filter(|t| good(t)).copied().collect();
         // Vertices without a triangle are no part of the picture.
         let mut numbers = vec![u32::MAX; mesh.vertices.len()];
-        let mut used = Vec::new();
-        let triangles: Vec<[u32; 3]> = kept
-            .iter()
-            .map(|t| {
-                t.map(|v| {
-                    let number = &mut numbers[v as usize];
-                    if *number == u32::MAX {
-                        *number = used.len() as u32;
-                        used.push(v as usize);
-                    }
-                    *number
-                })
-            })
-            .collect();
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for v in &used {
+        let mut piece = Self::default();
+        for t in mesh.triangles.iter().filter(|t| good(t)) {
+            let corners = t.map(|v| {
+                let number = &mut numbers[v as usize];
+                if *number == u32::MAX {
+                    *number = piece.vertices.len() as u32;
+                    let cut = || f32::from(u8::from(mesh.cut.get(v as usize).copied().unwrap_or(false)));
+                    piece.vertices.push(Vertex {
+                        place: mesh.vertices[v as usize],
+                        normal: with_normals.then(|| mesh.normals[v as usize]),
+                        value: match drawing.values {
+                            [] => cut(),
+                            values => values
+                                .get(v as usize)
+                                .map_or(f32::NAN, |value| (value / drawing.range).clamp(-1.0, 1.0)),
+                        },
+                    });
+                }
+                *number
+            });
+            piece.triangles.push(corners);
+        }
+        piece
+    }
+
+    /// What is not on the side of a section that is taken away: there `side · (place − at)` is positive.
+    fn cut_off(self, section: &Section, side: f64) -> Self {
+        let height = |v: u32| side * (self.vertices[v as usize].place[section.axis] - section.at);
+        let mut kept = Self::default();
+        let mut numbers = vec![u32::MAX; self.vertices.len()];
+        for t in &self.triangles {
+            // The corners of what is left of the triangle, going around.
+            let mut polygon: [u32; 4] = [0; 4];
+            let mut count = 0;
             for k in 0..3 {
-                low[k] = low[k].min(mesh.vertices[*v][k]);
-                high[k] = high[k].max(mesh.vertices[*v][k]);
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                let (from, to) = (height(a), height(b));
+                let mut push = |v: u32| {
+                    polygon[count] = v;
+                    count += 1;
+                };
+                if from <= 0.0 {
+                    let number = &mut numbers[a as usize];
+                    if *number == u32::MAX {
+                        *number = kept.vertices.len() as u32;
+                        kept.vertices.push(self.vertices[a as usize]);
+                    }
+                    push(*number);
+                }
+                if (from <= 0.0) != (to <= 0.0) {
+                    push(kept.vertices.len() as u32);
+                    // From the lower end, so that both triangles of an edge are cut in one place.
+                    let (a, b, s) = if from <= 0.0 {
+                        (a, b, from / (from - to))
+                    } else {
+                        (b, a, to / (to - from))
+                    };
+                    let [a, b] = [a, b].map(|v| self.vertices[v as usize]);
+                    kept.vertices.push(between(a, b, s, section));
+                }
+            }
+            for k in 2..count {
+                kept.triangles.push([polygon[0], polygon[k - 1], polygon[k]]);
             }
         }
-        if triangles.is_empty() {
+        kept
+    }
+}
+
+fn between(a: Vertex, b: Vertex, s: f64, section: &Section) -> Vertex {
+    let t = s as f32;
+    let mut place = [0, 1, 2].map(|k| a.place[k] + s * (b.place[k] - a.place[k]));
+    place[section.axis] = section.at;
+    let normals = a.normal.zip(b.normal);
+    Vertex {
+        place,
+        normal: normals.map(|(a, b)| [0, 1, 2].map(|k| a[k] + t * (b[k] - a[k]))),
+        value: a.value + t * (b.value - a.value),
+    }
+}
+
+impl Scene {
+    /// `towards` is the direction of the viewer: what is between him and a section is taken away.
+    pub fn new(drawing: &Drawing<'_>, towards: [f64; 3]) -> Self {
+        let mut piece = Piece::new(drawing);
+        let sections: Vec<(&Section, f64)> = drawing
+            .sections
+            .iter()
+            .filter(|section| section.axis < 3 && section.at.is_finite())
+            .map(|section| (section, if towards[section.axis] < 0.0 { -1.0 } else { 1.0 }))
+            .collect();
+        for (section, side) in &sections {
+            piece = piece.cut_off(section, *side);
+        }
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in piece.vertices.iter().map(|v| v.place) {
+            for k in 0..3 {
+                low[k] = low[k].min(p[k]);
+                high[k] = high[k].max(p[k]);
+            }
+        }
+        if piece.triangles.is_empty() {
             return Self::default();
         }
         let centre = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let radius = 0.5 * (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt();
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let positions: Vec<Vector> = used
+        let positions: Vec<Vector> = piece
+            .vertices
             .iter()
-            .map(|v| [0, 1, 2].map(|k| ((mesh.vertices[*v][k] - centre[k]) / radius) as f32))
+            .map(|v| [0, 1, 2].map(|k| ((v.place[k] - centre[k]) / radius) as f32))
             .collect();
-        let mut flat = vec![[0.0, 0.0, 1.0]; used.len()];
-        if mesh.normals.len() != mesh.vertices.len() {
-            for t in &triangles {
-                let [a, b, c] = t.map(|v| positions[v as usize]);
-                for v in t {
-                    flat[*v as usize] = unit(cross(sub(b, a), sub(c, a)));
-                }
+        let mut flat = vec![[0.0, 0.0, 1.0]; positions.len()];
+        for t in &piece.triangles {
+            let [a, b, c] = t.map(|v| positions[v as usize]);
+            for v in t {
+                flat[*v as usize] = unit(cross(sub(b, a), sub(c, a)));
             }
         }
+        let normals = piece.vertices.iter().zip(flat);
         Self {
-            normals: used
-                .iter()
-                .zip(flat)
-                .map(|(v, flat)| mesh.normals.get(*v).map_or(flat, |n| unit(*n)))
-                .collect(),
-            cut: used
-                .iter()
-                .map(|v| f32::from(u8::from(mesh.cut.get(*v).copied().unwrap_or(false))))
-                .collect(),
+            normals: normals.map(|(v, flat)| v.normal.map_or(flat, unit)).collect(),
+            values: piece.vertices.iter().map(|v| v.value).collect(),
+            valued: !drawing.values.is_empty(),
             ground: ((low[2] - centre[2]) / radius) as f32,
+            sections: sections
+                .iter()
+                .map(|(section, side)| {
+                    let mut normal = [0.0; 3];
+                    normal[section.axis] = *side as f32;
+                    (normal, (side * (section.at - centre[section.axis]) / radius) as f32)
+                })
+                .collect(),
             positions,
-            triangles,
+            triangles: piece.triangles,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Colours.
 
 use super::camera::Camera;
+use super::legend;
 use super::light::{Around, Lights, NET_REACH};
 use super::vector::{Vector, add, along, dot, mix, scale, smooth_step, times, unit};
 
@@ -10,13 +11,32 @@ pub(super) struct Spot {
     pub at: Vector,
     pub normal: Vector,
     pub around: Around,
-    /// 1 for cut, 0 for stock.
-    pub cut: f32,
+    /// 1 for cut, 0 for stock; in pictures of values the value, from −1 to 1, or NaN where there is none.
+    pub value: f32,
+    pub matter: Matter,
+}
+
+/// What is seen.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Matter {
+    /// A face, coloured by what made it.
+    Metal,
+    /// A face, coloured by its value.
+    Value,
+    /// The inside, where a section lays it open.
+    Section,
 }
 
 /// Of what a tool cut: bright bronze; of the stock: blue steel.
 const CUT: Vector = [0.66, 0.345, 0.155];
 const STOCK: Vector = [0.135, 0.19, 0.26];
+/// The inside of a part: pale clay with fine stripes.
+const CLAY: Vector = [0.60, 0.50, 0.43];
+/// Stripes in the length of the part's radius, and how much darker they are.
+const STRIPES: f32 = 34.0;
+const STRIPE: f32 = 0.82;
+/// A face without a value.
+const UNKNOWN: Vector = [0.055, 0.05, 0.06];
 const LAMP: Vector = [2.75, 2.62, 2.42];
 const SKY: Vector = [0.78, 0.86, 1.0];
 const GROUND: Vector = [0.52, 0.50, 0.47];
@@ -30,9 +50,13 @@ fn surroundings(d: Vector) -> Vector {
 /// Light from a spot to the eye, as the picture shows it: linear, from 0 to 1.
 pub(super) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
     let n = unit(spot.normal);
-    let view = unit([0, 1, 2].map(|k| camera.eye[k] - spot.at[k]));
-    let base = mix(STOCK, CUT, spot.cut);
-    let shine = 0.32 + 0.30 * spot.cut;
+    let view = camera.towards(spot.at);
+    let (base, shine) = match spot.matter {
+        Matter::Metal => (mix(STOCK, CUT, spot.value), 0.32 + 0.30 * spot.value),
+        Matter::Value if spot.value.is_nan() => (UNKNOWN, 0.1),
+        Matter::Value => (legend::colour(spot.value), 0.08),
+        Matter::Section => (scale(CLAY, stripes(spot.at, n)), 0.0),
+    };
     let cosine = dot(n, lights.lamp);
     let lamp = if cosine > 0.0 { lights.lamp_at(spot.at, n) } else { 0.0 };
     let open = (spot.around.sky + spot.around.ground).min(1.0);
@@ -66,6 +90,16 @@ pub(super) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
     light.map(|c| film(0.74 * c))
 }
 
+/// Diagonal stripes on a plane, with soft edges.
+fn stripes(p: Vector, n: Vector) -> f32 {
+    // Two directions in the plane that look alike on all three planes of the axes.
+    let axis = (0..3).fold(0, |a, k| if n[k].abs() > n[a].abs() { k } else { a });
+    let phase = (p[(axis + 1) % 3] + p[(axis + 2) % 3]) * STRIPES;
+    let wave = (phase.fract() + 1.0).fract();
+    let edge = smooth_step(0.0, 0.12, wave) * (1.0 - smooth_step(0.38, 0.5, wave));
+    1.0 + edge * (STRIPE - 1.0)
+}
+
 /// The curve of film: dark parts a little darker, bright ones never cut off. After Narkowicz's fit of the ACES curve.
 fn film(x: f32) -> f32 {
     ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
@@ -77,12 +111,12 @@ pub(super) fn background(camera: &Camera, lights: &Lights, ground: f32, x: f32, 
     let high = [0.90, 0.915, 0.93];
     let vignette = 1.0 - 0.10 * smooth_step(0.6, 1.9, x * x + y * y);
     let colour = scale(mix(low, high, smooth_step(-1.1, 0.9, y)), vignette);
-    let ray = camera.ray(x, y);
-    let distance = (ground - camera.eye[2]) / ray[2];
-    if !(ray[2] < 0.0 && distance.is_finite()) {
+    let [from, ray] = camera.sight(x, y);
+    let distance = (ground - from[2]) / ray[2];
+    if !(ray[2] < 0.0 && distance > 0.0 && distance.is_finite()) {
         return colour;
     }
-    let p = along(camera.eye, distance, ray);
+    let p = along(from, distance, ray);
     let near = 1.0 - smooth_step(0.6 * NET_REACH, 0.98 * NET_REACH, p[0].hypot(p[1]));
     let [sky, lamp] = lights.ground(p[0], p[1]);
     let shadow = 1.0 - near * (0.62 * (1.0 - sky) + 0.30 * (1.0 - lamp));

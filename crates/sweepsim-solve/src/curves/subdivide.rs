@@ -112,7 +112,7 @@ impl Search<'_> {
         self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
         self.points.run(&face, &mut Faces(observer));
         // Boxes of faces count, else searches that find nothing certain on any face would have no end.
-        self.statistics.boxes += self.points.statistics.boxes;
+        self.statistics.faces += self.points.statistics.boxes;
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
         let place = |s: &Row, outward: f64| -> Row {
             let mut x = [0.0; MAX_UNKNOWNS];
@@ -397,7 +397,7 @@ impl Search<'_> {
                     if !(at > lo && at < hi) || crossings.iter().any(near) {
                         continue;
                     }
-                    if self.statistics.boxes >= self.options.boxes {
+                    if self.statistics.boxes + self.statistics.faces >= self.options.boxes {
                         self.leave(cell, crossings, Cause::Boxes);
                         return None;
                     }

@@ -1,0 +1,267 @@
+//! `compare`: how a part differs from its target.
+
+use crate::arguments::{CompareOptions, Output};
+use crate::failure::Failure;
+use crate::outputs::Outputs;
+use crate::run::folder_name;
+use crate::solid::{Solid, bounds, picture, soup};
+use crate::words;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::time::Instant;
+use sweepsim_dexel::{Comparison, DistanceTo, Grid, Mesh, Nearest};
+use sweepsim_formats::{ComparisonReport, Deviation, Furthest, HistogramBar};
+
+/// Bars of the histogram.
+const BARS: usize = 20;
+
+/// Compares, and writes the report and the picture.
+pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
+    let mut report = ComparisonReport {
+        part: options.part.display().to_string(),
+        target: options.target.display().to_string(),
+        tolerance: options.tolerance,
+        ..ComparisonReport::default()
+    };
+    let start = Instant::now();
+    let [part, target] = read(options)?;
+    let name = options.part.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = options
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("out").join(folder_name(&name)));
+    let mut outputs = Outputs::new(folder, &[Output::Picture, Output::Report])?;
+    let (mesh, goal) = (part.surface(), target.surface());
+    let around = bounds(&mesh)
+        .ok_or_else(|| Failure::message(format!("{}: there is nothing in this part", options.part.display())))?;
+    if bounds(&goal).is_none() {
+        let message = format!("{}: there is nothing in this target", options.target.display());
+        return Err(Failure::message(message));
+    }
+    let grid = match (part.grid(), target.grid(), options.grid.grid(Some(around))?) {
+        (Some(grid), ..) | (None, Some(grid), _) | (None, None, Some(grid)) => grid,
+        (None, None, None) => return Err(Failure::message("no grid to compare on")),
+    };
+    report.seconds.insert("read".to_owned(), start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let found = differences(options, &grid, [&part, &target], [&mesh, &goal])?;
+    describe(&mut report, options, &found);
+    report.cells = grid.cells();
+    let tree = DistanceTo::new(&soup(&goal));
+    let [dx, dy] = grid.spacing();
+    let furthest = |tree: &DistanceTo, of: &Mesh| tree.furthest(&soup(of), dx.min(dy)).map(furthest_of);
+    report.furthest_of_part = furthest(&tree, &mesh);
+    report.furthest_of_target = furthest(&DistanceTo::new(&soup(&mesh)), &goal);
+    report
+        .seconds
+        .insert("compare".to_owned(), start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let values = values(&mesh, &tree);
+    let largest = values
+        .iter()
+        .copied()
+        .filter(|v| v.is_finite())
+        .fold(0.0, |a: f32, v| a.max(v.abs()));
+    let range = options
+        .range
+        .unwrap_or(round(f64::from(largest).max(options.tolerance)));
+    let png = picture(&options.view, &mesh, Some((&values, range)))?;
+    outputs.write("part.png", |file| file.write_all(&png))?;
+    report
+        .seconds
+        .insert("picture".to_owned(), start.elapsed().as_secs_f64());
+    let json = report
+        .to_json()
+        .map_err(|error| Failure::message(format!("cannot make the report: {error}")))?;
+    outputs.write("report.json", |file| file.write_all(json.as_bytes()))?;
+    if options.json {
+        crate::print(&json)
+    } else if options.quiet {
+        Ok(())
+    } else {
+        crate::print(&summary(&report, &outputs))
+    }
+}
+
+/// Reads both. A table of dexels stands on the grid of the other one, if the options name none.
+fn read(options: &CompareOptions) -> Result<[Solid; 2], Failure> {
+    let given = if options.grid.grid.is_some() || options.grid.area.is_some() {
+        options.grid.grid(None)?
+    } else {
+        None
+    };
+    let files = [&options.part, &options.target];
+    let table = files.map(|file| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")));
+    match table {
+        [true, false] => {
+            let target = Solid::read(files[1], given.as_ref())?;
+            let grid = given.or(target.grid());
+            Ok([Solid::read(files[0], grid.as_ref())?, target])
+        }
+        _ => {
+            let part = Solid::read(files[0], given.as_ref())?;
+            let grid = given.or(part.grid());
+            let target = Solid::read(files[1], grid.as_ref())?;
+            Ok([part, target])
+        }
+    }
+}
+
+/// End by end of the part's dexels: with the target's on the same grid, or with its surface.
+fn differences(
+    options: &CompareOptions,
+    grid: &Grid,
+    [part, target]: [&Solid; 2],
+    [mesh, goal]: [&Mesh; 2],
+) -> Result<Comparison, Failure> {
+    let diagonal = bounds(mesh).map_or(1.0, |[low, high]| {
+        (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt()
+    });
+    let reach = options.reach.unwrap_or(0.1 * diagonal);
+    let dexels = part.dexels(&options.part, grid)?;
+    let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
+    match target {
+        Solid::Dexels(target) if target.grid() == grid => {
+            sweepsim_dexel::compare(&dexels, target, reach).map_err(|error| failed(&error))
+        }
+        Solid::Dexels(_) => {
+            sweepsim_dexel::compare_with_mesh(&dexels, &soup(goal), reach).map_err(|error| failed(&error))
+        }
+        Solid::Mesh(target) => {
+            sweepsim_dexel::compare_with_mesh(&dexels, &soup(target), reach).map_err(|error| failed(&error))
+        }
+    }
+}
+
+fn furthest_of((place, near): ([f64; 3], Nearest)) -> Furthest {
+    Furthest {
+        place,
+        distance: near.distance,
+    }
+}
+
+/// The next larger number of one or two digits, for a scale that is easy to read.
+fn round(value: f64) -> f64 {
+    let whole = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 8.0];
+    // Beyond the last, and where the logarithm was rounded down.
+    steps
+        .into_iter()
+        .map(|step| step * whole)
+        .find(|step| *step >= value)
+        .unwrap_or(10.0 * whole)
+}
+
+/// How far each vertex is outside of the target.
+fn values(mesh: &Mesh, tree: &DistanceTo) -> Vec<f32> {
+    use rayon::prelude::*;
+    let places = mesh.vertices.par_iter();
+    places
+        .map(|p| tree.nearest(*p).map_or(f32::NAN, |near| near.distance as f32))
+        .collect()
+}
+
+/// Fills in what the report says.
+fn describe(report: &mut ComparisonReport, options: &CompareOptions, found: &Comparison) {
+    report.volume = found.volume;
+    report.target_volume = found.target;
+    report.excess_volume = found.excess;
+    report.missing_volume = found.missing;
+    report.area = found.area();
+    report.unmatched = found.unmatched();
+    report.mean = found.mean();
+    report.rms = found.rms();
+    let side = |sign: f64| {
+        let mut all = Deviation::default();
+        for (distance, area) in found
+            .deviations
+            .iter()
+            .filter_map(|d| Some((sign * d.distance?, d.area)))
+        {
+            if distance > options.tolerance {
+                all.max = all.max.max(distance);
+                all.mean += area * distance;
+                all.rms += area * distance * distance;
+                all.area += area;
+                all.count += 1;
+            }
+        }
+        if all.area > 0.0 {
+            all.mean /= all.area;
+            all.rms = (all.rms / all.area).sqrt();
+        }
+        all
+    };
+    report.gouge = side(-1.0);
+    report.excess = side(1.0);
+    if let Some([low, high]) = found.range() {
+        let step = (high - low) / BARS as f64;
+        let limit = |k: usize| low + step * k as f64;
+        let limits: Vec<f64> = (1..BARS).map(limit).collect();
+        let areas = found.histogram(&limits);
+        let bars = areas.iter().enumerate().map(|(k, area)| HistogramBar {
+            from: limit(k),
+            to: limit(k + 1),
+            area: *area,
+        });
+        report.histogram = bars.collect();
+    }
+}
+
+/// What a person wants to know.
+fn summary(report: &ComparisonReport, outputs: &Outputs) -> String {
+    let mut text = String::new();
+    let mut line = |label: &str, value: &str| {
+        // A String takes all that is written to it.
+        let _ = writeln!(text, "{label:>10}  {value}");
+    };
+    let volume = |value: f64| format!("{} mm³", words::measure(value));
+    line(
+        "volume",
+        &format!("{}, target {}", volume(report.volume), volume(report.target_volume)),
+    );
+    line(
+        "excess",
+        &format!("{}, {}", volume(report.excess_volume), words_of(&report.excess)),
+    );
+    line(
+        "missing",
+        &format!("{}, {}", volume(report.missing_volume), words_of(&report.gouge)),
+    );
+    let [mean, rms] = [report.mean, report.rms].map(length);
+    let area = words::measure(report.area);
+    line("distance", &format!("mean {mean}, RMS {rms} mm, over {area} mm²"));
+    for (label, furthest) in [("part", report.furthest_of_part), ("target", report.furthest_of_target)] {
+        if let Some(Furthest { place, distance }) = furthest {
+            let (distance, place) = (length(distance), words::point(place));
+            line("furthest", &format!("{distance} mm at {place}, of the {label}"));
+        }
+    }
+    if report.unmatched > 0 {
+        line(
+            "note",
+            &format!(
+                "{} without a counterpart",
+                words::counted(report.unmatched as u64, "end")
+            ),
+        );
+    }
+    let names: Vec<&str> = outputs.written.iter().map(|(name, _)| *name).collect();
+    line("out", &format!("{}: {}", outputs.folder().display(), names.join(", ")));
+    text
+}
+
+/// A distance. What is less than the noise of millimetres in `f64` is 0.
+fn length(value: f64) -> String {
+    words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
+}
+
+fn words_of(deviation: &Deviation) -> String {
+    if deviation.count == 0 {
+        return "no end beyond the tolerance".to_owned();
+    }
+    let [max, mean] = [deviation.max, deviation.mean].map(length);
+    let count = words::counted(deviation.count as u64, "end");
+    format!("up to {max}, mean {mean} mm, at {count}")
+}

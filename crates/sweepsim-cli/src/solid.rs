@@ -1,0 +1,177 @@
+//! Parts from files, as meshes or dexels, and their pictures.
+
+use crate::arguments::{GridOptions, ViewOptions};
+use crate::failure::Failure;
+use crate::picture::{self, Drawing, View, legend};
+use crate::words::measure;
+use std::path::Path;
+use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriangleSoup, surface};
+use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
+
+/// Dexels along the longer side of a mesh, where nothing else is said.
+const CELLS: f64 = 300.0;
+/// Cosine of 40°: edges of meshes from files that are sharper look sharp.
+const CRISP: f64 = 0.766;
+
+/// What a file holds.
+pub(crate) enum Solid {
+    Mesh(Mesh),
+    Dexels(Dexels),
+}
+
+/// What kind of file it is, as far as its extension says (and its first line, for tables).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Job,
+    Mesh,
+    Dexels,
+    /// A path, or anything else: its reader has the message.
+    Path,
+}
+
+impl Kind {
+    /// That of a file to be read.
+    pub fn of(file: &Path) -> Result<Self, Failure> {
+        let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+        if extension.as_deref() == Some("ron") {
+            return Ok(Self::Job);
+        }
+        if MeshFormat::of(file).is_some() {
+            return Ok(Self::Mesh);
+        }
+        Ok(match DexelFormat::of(file) {
+            Some(DexelFormat::Csv) if !is_dexels_csv(file)? => Self::Path,
+            Some(_) => Self::Dexels,
+            None => Self::Path,
+        })
+    }
+}
+
+impl Solid {
+    /// Reads a mesh or dexels; `grid` is for tables of dexels.
+    pub fn read(file: &Path, grid: Option<&Grid>) -> Result<Self, Failure> {
+        match Kind::of(file)? {
+            Kind::Mesh => Ok(Self::Mesh(read_mesh_file(file)?)),
+            Kind::Dexels if grid.is_none() && DexelFormat::of(file) == Some(DexelFormat::Csv) => {
+                Err(Failure::message(format!(
+                    "{}: a table of dexels does not say where they stand: expected --grid with the job, or --area and --cells",
+                    file.display()
+                )))
+            }
+            Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
+            Kind::Job | Kind::Path => Err(Failure::message(format!(
+                "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz)",
+                file.display()
+            ))),
+        }
+    }
+
+    /// The grid, if it has one.
+    pub fn grid(&self) -> Option<Grid> {
+        match self {
+            Self::Dexels(dexels) => Some(*dexels.grid()),
+            Self::Mesh(_) => None,
+        }
+    }
+
+    /// The surface, with edges that look sharp.
+    pub fn surface(&self) -> Mesh {
+        match self {
+            Self::Dexels(dexels) => surface(dexels),
+            Self::Mesh(mesh) => mesh.crisp(CRISP),
+        }
+    }
+
+    /// The dexels on a grid: their own are taken as they are.
+    pub fn dexels(&self, file: &Path, grid: &Grid) -> Result<Dexels, Failure> {
+        match self {
+            Self::Dexels(dexels) => Ok(dexels.clone()),
+            Self::Mesh(mesh) => Stock::Mesh(soup(mesh))
+                .dexels(grid)
+                .map_err(|error| Failure::message(format!("{}: {error}", file.display()))),
+        }
+    }
+}
+
+/// The triangles of a mesh; readers have made sure that their vertices are there.
+pub(crate) fn soup(mesh: &Mesh) -> TriangleSoup {
+    mesh.soup().unwrap_or_default()
+}
+
+/// Lower and upper corner of the box around a mesh, unless it is empty.
+pub(crate) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
+    let corners = mesh
+        .triangles
+        .iter()
+        .flatten()
+        .filter_map(|v| mesh.vertices.get(*v as usize));
+    corners.fold(None, |range, p| {
+        let [low, high] = range.unwrap_or([*p; 2]);
+        Some([
+            [0, 1, 2].map(|k| low[k].min(p[k])),
+            [0, 1, 2].map(|k| high[k].max(p[k])),
+        ])
+    })
+}
+
+impl GridOptions {
+    /// The grid that the options name: whole, or with the area of `around`, if that is known.
+    pub fn grid(&self, around: Option<[[f64; 3]; 2]>) -> Result<Option<Grid>, Failure> {
+        let failed = |error| Failure::message(format!("the grid: {error}"));
+        if let Some(file) = &self.grid {
+            let grid = match Kind::of(file)? {
+                Kind::Job => Job::read(file)?.grid,
+                _ => *read_dexels_file(file, None)?.grid(),
+            };
+            let cells = self.cells.unwrap_or(grid.cells());
+            return Grid::new(grid.min(), grid.max(), cells).map(Some).map_err(failed);
+        }
+        let area = match (self.area, around) {
+            (Some([x0, y0, x1, y1]), _) => Some([[x0, y0], [x1, y1]]),
+            (None, Some(bounds)) => Some(bounds.map(|[x, y, _]| [x, y])),
+            (None, None) => None,
+        };
+        let Some([min, max]) = area else { return Ok(None) };
+        if around.is_none() && self.cells.is_none() {
+            return Err(Failure::message("--area: expected --cells beside it"));
+        }
+        let size = [0, 1].map(|k: usize| max[k] - min[k]);
+        let step = size[0].max(size[1]) / CELLS;
+        let cells = self
+            .cells
+            .unwrap_or_else(|| size.map(|s| (s / step).round().max(1.0) as usize));
+        Grid::new(min, max, cells).map(Some).map_err(failed)
+    }
+}
+
+/// The PNG of a part: by what made its faces, or by a value for each vertex, with the scale from minus to plus the second.
+pub(crate) fn picture(options: &ViewOptions, mesh: &Mesh, values: Option<(&[f32], f64)>) -> Result<Vec<u8>, Failure> {
+    if let Some([low, high]) = bounds(mesh) {
+        for section in &options.section {
+            let (from, to) = (low[section.axis], high[section.axis]);
+            if !(from < section.at && section.at < to) {
+                let axis = ["x", "y", "z"][section.axis];
+                let [at, from, to] = [section.at, from, to].map(measure);
+                let message = format!("--section {axis}={at} does not meet the part, which is from {from} to {to}");
+                return Err(Failure::message(message));
+            }
+        }
+    }
+    let view = View {
+        size: options.size,
+        aside: if values.is_some() { legend::WIDTH } else { 0.0 },
+        ..options.camera
+    };
+    let mut drawing = Drawing {
+        sections: &options.section,
+        ..Drawing::new(mesh)
+    };
+    if let Some((values, range)) = values {
+        (drawing.values, drawing.range) = (values, range as f32);
+    }
+    let mut image = view.draw(&drawing);
+    if let Some((_, range)) = values {
+        legend::draw(&mut image, range as f32);
+    }
+    picture::png(&image).map_err(|error| Failure::message(format!("cannot make the picture: {error}")))
+}

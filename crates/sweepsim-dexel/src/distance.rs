@@ -1,0 +1,443 @@
+//! How far a point is from a closed surface of triangles, and on which side.
+//!
+//! The nearest triangle is found in a tree of boxes. The side is that of the *pseudonormal* at the nearest place: the face's normal; on
+//! an edge the sum of those of its two faces; on a vertex the sum of those around, each weighted by its angle there. With
+//! it the sign is right for every closed surface that does not cross itself, also where the nearest place is on a sharp
+//! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
+
+use crate::mesh::TriangleSoup;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Triangles of a leaf of the tree.
+const LEAF: usize = 4;
+/// Most samples of [`DistanceTo::furthest`].
+const SAMPLES: f64 = 2e6;
+
+/// A surface of triangles, made ready to be asked for distances.
+///
+/// ```
+/// use sweepsim_dexel::{DistanceTo, TriangleSoup};
+/// let p = [[0.0; 3], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+/// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|v| p[v])).to_vec();
+/// let wedge = DistanceTo::new(&TriangleSoup { triangles });
+/// let near = wedge.nearest([1.0, 1.0, -0.5]).ok_or("no triangles")?;
+/// assert_eq!((near.distance, near.place), (0.5, [1.0, 1.0, 0.0]));
+/// assert_eq!(wedge.nearest([1.0, 1.0, 0.25]).map(|near| near.distance), Some(-0.25));
+/// # Ok::<(), &str>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DistanceTo {
+    vertices: Vec<[f64; 3]>,
+    faces: Vec<Face>,
+    nodes: Vec<Node>,
+}
+
+/// The place of a surface that is nearest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// How far the point is outside: negative inside.
+    pub distance: f64,
+    /// Where.
+    pub place: [f64; 3],
+    /// Unit normal of the triangle there.
+    pub normal: [f64; 3],
+}
+
+#[derive(Clone, Debug)]
+struct Face {
+    corners: [u32; 3],
+    normal: [f64; 3],
+    /// Pseudonormals at the corners, and at the edges from each corner to the next; of any length.
+    at_corners: [[f32; 3]; 3],
+    at_edges: [[f32; 3]; 3],
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Faces `first..first + count`; of an inner node the second child is at `first`, the first right behind it.
+    first: u32,
+    count: u32,
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+}
+
+fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
+    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
+}
+
+/// Which part of a triangle is meant.
+#[derive(Clone, Copy)]
+enum Part {
+    Inside,
+    Edge(usize),
+    Corner(usize),
+}
+
+/// The place of a triangle nearest to `p` (Ericson: *Real-Time Collision Detection*, 5.1.5).
+fn nearest_on(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> ([f64; 3], Part) {
+    let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(p, a));
+    let (d1, d2) = (dot(ab, ap), dot(ac, ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return (a, Part::Corner(0));
+    }
+    let bp = sub(p, b);
+    let (d3, d4) = (dot(ab, bp), dot(ac, bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return (b, Part::Corner(1));
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return (along(a, d1 / (d1 - d3), ab), Part::Edge(0));
+    }
+    let cp = sub(p, c);
+    let (d5, d6) = (dot(ab, cp), dot(ac, cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return (c, Part::Corner(2));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return (along(a, d2 / (d2 - d6), ac), Part::Edge(2));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return (along(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), sub(c, b)), Part::Edge(1));
+    }
+    let scale = 1.0 / (va + vb + vc);
+    (along(along(a, vb * scale, ab), vc * scale, ac), Part::Inside)
+}
+
+impl Node {
+    fn distance_squared(&self, p: [f64; 3]) -> f64 {
+        (0..3)
+            .map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2))
+            .sum()
+    }
+}
+
+impl DistanceTo {
+    /// Makes a surface ready. Triangles without area are left out: closed surfaces are closed without them, too.
+    #[must_use]
+    pub fn new(soup: &TriangleSoup) -> Self {
+        let mesh = soup.indexed();
+        let normal_of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
+            let n = cross(sub(b, a), sub(c, a));
+            let length = dot(n, n).sqrt();
+            (length > 0.0 && length.is_finite()).then(|| n.map(|c| c / length))
+        };
+        let mut faces: Vec<Face> = mesh
+            .triangles
+            .iter()
+            .filter_map(|t| {
+                Some(Face {
+                    corners: *t,
+                    normal: normal_of(t)?,
+                    at_corners: [[0.0; 3]; 3],
+                    at_edges: [[0.0; 3]; 3],
+                })
+            })
+            .collect();
+        let mut around = vec![[0.0; 3]; mesh.vertices.len()];
+        // Only looked up, so its order does not matter.
+        let mut edges: HashMap<(u32, u32), [f64; 3]> = HashMap::with_capacity(2 * faces.len());
+        let key = |a: u32, b: u32| (a.min(b), a.max(b));
+        for face in &faces {
+            let p = face.corners.map(|v| mesh.vertices[v as usize]);
+            for k in 0..3 {
+                let (u, v) = (sub(p[(k + 1) % 3], p[k]), sub(p[(k + 2) % 3], p[k]));
+                let angle = dot(cross(u, v), cross(u, v)).sqrt().atan2(dot(u, v));
+                let sum = &mut around[face.corners[k] as usize];
+                *sum = along(*sum, angle, face.normal);
+                let sum = edges
+                    .entry(key(face.corners[k], face.corners[(k + 1) % 3]))
+                    .or_default();
+                *sum = along(*sum, 1.0, face.normal);
+            }
+        }
+        for face in &mut faces {
+            let corners = face.corners;
+            face.at_corners = corners.map(|v| around[v as usize].map(|c| c as f32));
+            face.at_edges = [0, 1, 2].map(|k| {
+                let sum = edges.get(&key(corners[k], corners[(k + 1) % 3]));
+                sum.copied().unwrap_or(face.normal).map(|c| c as f32)
+            });
+        }
+        let mut tree = Self {
+            vertices: mesh.vertices,
+            faces: Vec::new(),
+            nodes: Vec::new(),
+        };
+        if !faces.is_empty() {
+            tree.split(&mut faces, 0);
+            tree.faces = faces;
+        }
+        tree
+    }
+
+    /// Builds the tree over some faces, the first of which has the number `first` in all.
+    fn split(&mut self, faces: &mut [Face], first: usize) {
+        let number = self.nodes.len();
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for p in faces.iter().flat_map(|f| f.corners).map(|v| self.vertices[v as usize]) {
+            for k in 0..3 {
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
+        }
+        self.nodes.push(Node {
+            low,
+            high,
+            first: first as u32,
+            count: faces.len() as u32,
+        });
+        if faces.len() <= LEAF {
+            return;
+        }
+        let axis = (0..3).fold(0, |a, k| if high[k] - low[k] > high[a] - low[a] { k } else { a });
+        let middle = faces.len() / 2;
+        let vertices = &self.vertices;
+        let place = |f: &Face| f.corners.iter().map(|v| vertices[*v as usize][axis]).sum::<f64>();
+        faces.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)));
+        let (lower, upper) = faces.split_at_mut(middle);
+        self.split(lower, first);
+        let second = self.nodes.len() as u32;
+        self.split(upper, first + middle);
+        (self.nodes[number].first, self.nodes[number].count) = (second, 0);
+    }
+
+    /// The place of the surface nearest to a point; `None` without triangles, or for a point that is not finite.
+    #[must_use]
+    pub fn nearest(&self, p: [f64; 3]) -> Option<Nearest> {
+        self.search(p, f64::INFINITY, |_| true)
+    }
+
+    /// The nearest among the triangles that face about the same way as `normal` (less than 90° apart), no further away than `reach`.
+    /// So a side of a thin wall is not compared with the other side.
+    #[must_use]
+    pub fn nearest_facing(&self, p: [f64; 3], normal: [f64; 3], reach: f64) -> Option<Nearest> {
+        self.search(p, reach, |face| dot(face.normal, normal) > 0.0)
+    }
+
+    fn search(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<Nearest> {
+        let mut best = reach * reach;
+        let mut found: Option<(usize, [f64; 3], Part)> = None;
+        // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
+        let mut open = smallvec::SmallVec::<[(f64, u32); 64]>::new();
+        open.extend(self.nodes.first().map(|root| (root.distance_squared(p), 0)));
+        while let Some((away, number)) = open.pop() {
+            // Not less: nothing to find, or a NaN.
+            if !(away <= best) {
+                continue;
+            }
+            let node = &self.nodes[number as usize];
+            if node.count == 0 {
+                let mut children = [number + 1, node.first].map(|n| (self.nodes[n as usize].distance_squared(p), n));
+                if children[0].0 < children[1].0 {
+                    children.swap(0, 1);
+                }
+                open.extend(children);
+                continue;
+            }
+            for number in node.first..node.first + node.count {
+                let face = &self.faces[number as usize];
+                if !wanted(face) {
+                    continue;
+                }
+                let (place, part) = nearest_on(p, face.corners.map(|v| self.vertices[v as usize]));
+                let off = sub(p, place);
+                let square = dot(off, off);
+                if square < best || (square == best && found.is_none()) {
+                    best = square;
+                    found = Some((number as usize, place, part));
+                }
+            }
+        }
+        let (number, place, part) = found?;
+        let face = &self.faces[number];
+        let side = match part {
+            Part::Inside => face.normal,
+            Part::Edge(k) => face.at_edges[k].map(f64::from),
+            Part::Corner(k) => face.at_corners[k].map(f64::from),
+        };
+        let outside = dot(sub(p, place), side) >= 0.0;
+        Some(Nearest {
+            distance: if outside { best.sqrt() } else { -best.sqrt() },
+            place,
+            normal: face.normal,
+        })
+    }
+
+    /// The point of another surface that is furthest from this one, and its nearest place here: the one-sided Hausdorff distance, as
+    /// samples see it. They are on all its vertices and no further than `spacing` apart on its triangles, or, where these would
+    /// be more than some millions, as dense as that allows. `None` without triangles here or there.
+    #[must_use]
+    pub fn furthest(&self, other: &TriangleSoup, spacing: f64) -> Option<([f64; 3], Nearest)> {
+        let area: f64 = other
+            .triangles
+            .iter()
+            .map(|[a, b, c]| {
+                let n = cross(sub(*b, *a), sub(*c, *a));
+                0.5 * dot(n, n).sqrt()
+            })
+            .sum();
+        let spacing = spacing.max((area / SAMPLES).sqrt());
+        let of = |p: [f64; 3]| Some((p, self.nearest(p)?));
+        let mesh = other.indexed();
+        let corners: Vec<_> = mesh.vertices.par_iter().map(|p| of(*p)).collect();
+        // Between the corners: in rows along the longest side, fewer and fewer towards the corner opposite.
+        let of_triangle = |t: &[u32; 3]| {
+            let p = t.map(|v| mesh.vertices[v as usize]);
+            let sides = [0, 1, 2].map(|k| sub(p[(k + 1) % 3], p[k]));
+            let k = (0..3).fold(0, |a, k| {
+                if dot(sides[k], sides[k]) > dot(sides[a], sides[a]) {
+                    k
+                } else {
+                    a
+                }
+            });
+            let (from, side, back) = (p[k], sides[k], sides[(k + 2) % 3]);
+            let (length, twice) = (dot(side, side).sqrt(), cross(side, back));
+            // Long sides of thin triangles have samples without end: bounded, too.
+            let steps = |length: f64| (length / spacing).ceil().clamp(1.0, 4096.0) as usize;
+            let rows = steps(dot(twice, twice).sqrt() / length);
+            let samples = (0..rows).flat_map(|row| {
+                let up = row as f64 / rows as f64;
+                let begin = along(from, -up, back);
+                let columns = steps((1.0 - up) * length);
+                let first = usize::from(row == 0);
+                (first..=columns - first).map(move |c| along(begin, (1.0 - up) * c as f64 / columns as f64, side))
+            });
+            samples.filter_map(of).reduce(further)
+        };
+        let inner: Vec<_> = mesh.triangles.par_iter().map(of_triangle).collect();
+        corners.into_iter().chain(inner).flatten().reduce(further)
+    }
+}
+
+/// The one whose distance is larger; of equal ones the first.
+fn further(a: ([f64; 3], Nearest), b: ([f64; 3], Nearest)) -> ([f64; 3], Nearest) {
+    if b.1.distance.abs() > a.1.distance.abs() { b } else { a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Stock, TriDexels};
+    use proptest::prelude::*;
+
+    fn block(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
+        let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
+        let quads = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+        TriangleSoup {
+            triangles: triangles.map(|t| t.map(p)).collect(),
+        }
+    }
+
+    proptest! {
+        /// The distance to a box has a formula.
+        #[test]
+        fn distances_to_a_box(p in [-4.0..7.0_f64, -4.0..7.0, -4.0..7.0]) {
+            let (min, max) = ([-1.0, 0.0, 0.5], [3.0, 2.0, 4.5]);
+            let near = DistanceTo::new(&block(min, max)).nearest(p).unwrap();
+            let out = [0, 1, 2].map(|k| (min[k] - p[k]).max(p[k] - max[k]));
+            let beyond = out.iter().map(|c| c.max(0.0).powi(2)).sum::<f64>().sqrt();
+            let within = out.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(0.0);
+            prop_assert!((near.distance - beyond - within).abs() < 1e-12, "{near:?}");
+        }
+    }
+
+    /// A solid with corners of all kinds, convex and not, against all its triangles one after the other and against its dexels.
+    #[test]
+    fn the_tree_finds_what_all_triangles_have() {
+        let part = |min: [f64; 3], max: [f64; 3]| Stock::Block { min, max };
+        let solid = Stock::Difference(
+            part([-4.1; 3], [4.2; 3]).into(),
+            vec![part([-1.0; 3], [5.0; 3]), part([-9.0, 1.0, -2.0], [9.0, 3.0, -1.0])],
+        );
+        let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [20; 3], &solid).unwrap().surface();
+        let soup = mesh.soup().unwrap();
+        let tree = DistanceTo::new(&soup);
+        let (mut state, mut sides) = (9_u64, [0; 2]);
+        for _ in 0..2000 {
+            let p = [0; 3].map(|_| {
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1_u64 << 53) as f64 * 12.0 - 6.0
+            });
+            let near = tree.nearest(p).unwrap();
+            let slow = soup.triangles.iter().map(|t| {
+                let off = sub(p, nearest_on(p, *t).0);
+                dot(off, off)
+            });
+            let slow = slow.fold(f64::INFINITY, f64::min).sqrt();
+            assert!((near.distance.abs() - slow).abs() < 1e-12);
+            let beside = |axis: usize, low: f64, high: f64| low < p[axis] && p[axis] < high;
+            let inside = (0..3).all(|k| beside(k, -4.1, 4.2))
+                && !(0..3).all(|k| p[k] > -1.0)
+                && !(beside(1, 1.0, 3.0) && beside(2, -2.0, -1.0));
+            assert!(
+                inside == (near.distance < 0.0) || near.distance.abs() < 1e-9,
+                "{p:?} {near:?}"
+            );
+            sides[usize::from(inside)] += 1;
+        }
+        assert!(sides.iter().all(|n| *n > 300), "{sides:?}");
+    }
+
+    #[test]
+    fn furthest_points_are_those_of_the_shapes() {
+        let (small, large) = (block([0.0; 3], [4.0; 3]), block([0.0, 0.0, -0.5], [4.0, 4.0, 6.0]));
+        let (place, near) = DistanceTo::new(&small).furthest(&large, 0.1).unwrap();
+        // Samples between the corners are rounded.
+        assert!(
+            (place[2] - 6.0).abs() < 1e-14 && (near.distance - 2.0).abs() < 1e-14,
+            "{place:?} {near:?}"
+        );
+        let (_, back) = DistanceTo::new(&large).furthest(&small, 0.1).unwrap();
+        // The middle of the small one's top is 2 away from the sides and from the top.
+        assert!((back.distance + 2.0).abs() < 0.06, "{back:?}");
+        assert!(
+            DistanceTo::new(&TriangleSoup::default())
+                .furthest(&small, 0.1)
+                .is_none()
+        );
+        assert!(
+            DistanceTo::new(&small)
+                .furthest(&TriangleSoup::default(), 0.1)
+                .is_none()
+        );
+        assert!(DistanceTo::new(&small).nearest([f64::NAN; 3]).is_none());
+    }
+
+    #[test]
+    fn sides_of_a_thin_wall_are_told_apart() {
+        let tree = DistanceTo::new(&block([0.0; 3], [9.0, 9.0, 0.1]));
+        let p = [4.0, 4.0, 0.3];
+        assert!((tree.nearest(p).unwrap().distance - 0.2).abs() < 1e-12);
+        let lower = tree.nearest_facing(p, [0.0, 0.0, -1.0], 1.0).unwrap();
+        assert_eq!(lower.place[2], 0.0);
+        assert!((lower.distance + 0.3).abs() < 1e-12);
+        assert!(tree.nearest_facing(p, [0.0, 0.0, -1.0], 0.25).is_none());
+    }
+}
