@@ -176,6 +176,37 @@ fn the_methods_agree() {
     }
 }
 
+/// A motion of B-splines in the job or in a file of its own, by every command that sweeps.
+#[test]
+fn motions_of_splines_are_simulated_swept_and_cut() {
+    let motion = "tip: Curve(degree: 2, points: [(10, -4, 3), (6, 5, 2), (10, 14, 3)]), \
+                  orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0.3, 0, 0)])";
+    let place = Place::new(&JOB.replace(SECOND, &format!("motion: Motion({motion})")));
+    let volume = |command: &str| {
+        let output = place.run(command, &["--quiet"]);
+        assert!(output.status.success(), "{command}: {}", text(&output.stderr));
+        place.report()["volume"].as_f64().expect("a number")
+    };
+    let (left, swept) = (volume("simulate"), volume("sweep"));
+    assert!(left < 20.0 * 10.0 * 6.0 && swept > 100.0, "{left} {swept}");
+    let output = place.run("section", &["--plane", "z=4"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let inspected = text(&place.inspect("job.ron").stdout);
+    assert!(inspected.contains("1 move of tool 2"), "{inspected}");
+    // From a file the same, to the bit.
+    fs::write(place.path("way.ron"), format!("Motion({motion})")).expect("a file");
+    fs::write(place.path("job.ron"), JOB.replace(SECOND, "file: \"way.ron\"")).expect("a file");
+    assert_eq!((volume("simulate"), volume("sweep")), (left, swept));
+    let place = Place::new(&JOB.replace(SECOND, "file: \"way.ron\""));
+    let bad = format!("Motion({})", motion.replace("0.3, 0, 0", "NaN, 0, 0"));
+    fs::write(place.path("way.ron"), bad).expect("a file");
+    assert_bad(
+        &place,
+        &place.run("simulate", &[]),
+        &["way.ron:1:", "point 1 of the orientation"],
+    );
+}
+
 #[test]
 fn inspect_tells_what_is_there() {
     let place = Place::new(JOB);

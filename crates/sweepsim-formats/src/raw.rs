@@ -167,6 +167,8 @@ pub(crate) struct Path {
     #[serde(default)]
     pub moves: Option<Vec<Move>>,
     #[serde(default)]
+    pub motion: Option<Motion>,
+    #[serde(default)]
     pub law: Option<Law>,
     #[serde(default)]
     pub arcs: Option<Arcs>,
@@ -219,6 +221,46 @@ pub(crate) enum Move {
         turn: Turn,
         #[serde(default = "one")]
         turns: u16,
+    },
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Motion {
+    pub tip: Curve,
+    #[serde(default)]
+    pub orientation: Option<Orientation>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Curve {
+    pub degree: usize,
+    pub points: Vec<[f64; 3]>,
+    #[serde(default)]
+    pub knots: Option<Vec<f64>>,
+    #[serde(default)]
+    pub weights: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Orientation {
+    Quaternions {
+        degree: usize,
+        points: Vec<[f64; 4]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+    },
+    Matrices {
+        degree: usize,
+        points: Vec<[[f64; 3]; 3]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+        #[serde(default)]
+        weights: Option<Vec<f64>>,
+        #[serde(default)]
+        tolerance: Option<f64>,
     },
 }
 

@@ -15,7 +15,7 @@ use crate::paths::{self, JobPath, PathOptions};
 use crate::stl::read_stl;
 use crate::surface_tool;
 use crate::tools::{self, Step};
-use crate::{gcode, raw, text};
+use crate::{gcode, motion, raw, text};
 
 /// Where a job does not say how exact interval ends are, in its units.
 const TOLERANCE: f64 = 1e-6;
@@ -49,10 +49,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// A problem with the value that the steps lead to.
     fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
-        let node = steps.iter().fold(&self.places, |node, step| match step {
-            Step::Key(key) => node.key(key),
-            Step::Item(index) => node.item(*index),
-        });
+        let node = steps.iter().fold(&self.places, |node, step| step.of(node));
         FormatError::new(problem, Some(text::place(self.text, node.span.clone())))
     }
 
@@ -339,11 +336,25 @@ impl Reader<'_> {
             raw::Table::Ac => RotaryTable::Ac,
             raw::Table::Bc => RotaryTable::Bc,
         };
-        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
-            let tool = raw.tool.ok_or_else(|| {
+        let tool = || {
+            raw.tool.ok_or_else(|| {
                 let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
                 self.error(problem, &steps(&[]))
-            })?;
+            })
+        };
+        let whole = |tool: u32, path: Path, source: String| {
+            vec![JobPath {
+                tool,
+                rapid: vec![false; path.moves()],
+                path,
+                source,
+                lines: Vec::new(),
+                notes: Vec::new(),
+            }]
+        };
+        let own = || format!("path {index} of the job");
+        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+            let tool = tool()?;
             let path = made.map_err(|(problem, place)| {
                 let mut path = steps(&[field.into()]);
                 let rest = place
@@ -352,15 +363,22 @@ impl Reader<'_> {
                 path.extend(rest);
                 self.error(problem, &path)
             })?;
-            Ok(vec![JobPath {
-                tool,
-                rapid: vec![false; path.moves()],
-                path,
-                source: format!("path {index} of the job"),
-                lines: Vec::new(),
-                notes: Vec::new(),
-            }])
+            Ok(whole(tool, path, own()))
         };
+        if let Some(raw_motion) = &raw.motion {
+            if raw.poses.is_some() || raw.moves.is_some() || raw.file.is_some() || raw.law.is_some() {
+                let problem = Problem::syntax(
+                    "`motion` with `poses`, `moves`, `file` or `law` in one path: a motion says all of it, expected it alone",
+                );
+                return Err(self.error(problem, &steps(&["motion".into()])));
+            }
+            let tool = tool()?;
+            let path = motion::path(raw_motion, self.unit).map_err(|fault| {
+                let place: Vec<Step> = std::iter::once("motion".into()).chain(fault.field).collect();
+                self.error(fault.problem, &steps(&place))
+            })?;
+            return Ok(whole(tool, path, own()));
+        }
         let own_law = match law {
             raw::Law::Slerp => Law::Slerp,
             raw::Law::ConstantSpeed => Law::ConstantSpeed,
@@ -400,6 +418,19 @@ impl Reader<'_> {
                     },
                 };
                 let file = paths::beside(self.file, name);
+                if file
+                    .extension()
+                    .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+                {
+                    if raw.law.is_some() {
+                        let problem =
+                            Problem::syntax("`law` with the file of a motion: a motion says how the tool turns");
+                        return Err(self.error(problem, &steps(&["law".into()])));
+                    }
+                    let tool = tool()?;
+                    let path = self.named(motion::read(&file, self.unit), &file, "path", &steps(&["file".into()]))?;
+                    return Ok(whole(tool, path, name.clone()));
+                }
                 let read = paths::read_path_file(&file, &options);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
                 paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
@@ -411,7 +442,8 @@ impl Reader<'_> {
             (None, None) => match &raw.moves {
                 Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
                 None => {
-                    let problem = Problem::syntax("this path has no poses: expected `poses`, `moves` or `file`");
+                    let problem =
+                        Problem::syntax("this path has no poses: expected `poses`, `moves`, `motion` or `file`");
                     Err(self.error(problem, &steps(&[])))
                 }
             },

@@ -3,9 +3,10 @@
 use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
 
 use crate::error::Problem;
+use crate::locate::Node;
 use crate::raw;
 
-/// What is wrong with a tool, and in which of its fields (the keys or positions from the tool on).
+/// What is wrong with a tool or a motion, and in which of its fields (the keys or positions from there on).
 pub(crate) struct Fault {
     pub problem: Problem,
     pub field: Vec<Step>,
@@ -16,6 +17,16 @@ pub(crate) struct Fault {
 pub(crate) enum Step {
     Key(String),
     Item(usize),
+}
+
+impl Step {
+    /// Where it leads to from a value.
+    pub fn of<'n>(&self, node: &'n Node) -> &'n Node {
+        match self {
+            Self::Key(key) => node.key(key),
+            Self::Item(index) => node.item(*index),
+        }
+    }
 }
 
 impl From<&str> for Step {

@@ -16,6 +16,10 @@ fn everything_that_a_job_may_have() {
         "a.csv",
         b"x,y,z,i,j,k,rapid,tool\n0,0,1,0,0,1,1,1\n1,0,0,0,0,1,0,1\n2,0,0,0,0,1,0,2\n3,0,0,0,1,0,0,2\n",
     );
+    write(
+        "motion.ron",
+        b"Motion(tip: Curve(degree: 1, points: [(0, 0, 0), (1, 0, 0)], weights: [1, 2]))",
+    );
     write("b.tap", b"G90\nT2 M6\nM428\nG0 X0 Y0 Z1 A0 C0\nG1 Z0\nX1 A90\n");
     let text = r#"
 Job(
@@ -38,6 +42,11 @@ Job(
         Path(tool: 4, poses: [ ((-20.0, -10.0, 0.0), (0.0, 0.0, 1.0)), ((20.0, 10.0, 8.0), (0.1, 0.0, 1.0)) ]),
         Path(file: "a.csv"),
         Path(tool: 2, file: "b.tap", table: AC, arc_tolerance: 0.001),
+        Path(tool: 1, motion: Motion(
+            tip: Curve(degree: 2, points: [(0, 0, 5), (1, 1, 5), (2, 0, 5), (3, 0, 5)], knots: [0, 0, 0, 1, 4, 4, 4]),
+            orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)]),
+        )),
+        Path(tool: 1, file: "motion.ron"),
     ],
     target: Some(Mesh("part.stl")),
     limits: Some(Limits(gouge: 0.02, excess: 0.1)),
@@ -58,8 +67,12 @@ Job(
     assert_eq!(job.tools.len(), 6);
     // The path of the table divides where its tool changes.
     let tools: Vec<u32> = job.paths.iter().map(|path| path.tool).collect();
-    assert_eq!(tools, [4, 1, 2, 2]);
-    assert_eq!(job.moves(), 1 + 1 + 1 + 2);
+    assert_eq!(tools, [4, 1, 2, 2, 1, 1]);
+    // The motion has a move between each two knots; the orientation's are over the range of the tip's.
+    assert_eq!(job.moves(), 1 + 1 + 1 + 2 + 2 + 1);
+    let knot = &job.paths[4].path.poses()[1];
+    assert!((knot.tip().x - 1.25 * 25.4).abs() < 1e-12, "{knot:?}");
+    assert_eq!(job.paths[5].path.poses()[1].tip().x, 25.4);
     assert_eq!(
         job.paths[0].path.poses()[1].tip().as_slice(),
         [20.0 * 25.4, 10.0 * 25.4, 8.0 * 25.4]

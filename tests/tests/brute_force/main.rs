@@ -13,6 +13,7 @@ mod cases;
 mod corpus;
 mod degenerate;
 mod generic;
+mod jobs;
 mod judge;
 mod metamorphic;
 mod motions;
