@@ -167,6 +167,7 @@ fn job(text: &mut Text, job: &Job) {
     for (number, cutter) in &job.tools {
         text.line("tool", &format!("{number}: {}", tool(cutter)));
     }
+    text.notes(job.notes.iter());
     for path in &job.paths {
         let moves = counted(path.path.moves() as u64, "move");
         text.line("path", &format!("{moves} of tool {}, from {}", path.tool, path.source));

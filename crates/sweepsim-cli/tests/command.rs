@@ -207,6 +207,31 @@ fn motions_of_splines_are_simulated_swept_and_cut() {
     );
 }
 
+/// A corner that cuts the lines beside it instead of touching them is a tool, but not without a word.
+#[test]
+fn a_corner_that_is_not_tangent_is_said_by_every_command() {
+    let good = "Apt(d: 4, r: 1, e: 1, f: 1, a: 0, b: 0, h: 30)";
+    let odd = good.replace("r: 1,", "r: 1.25,");
+    let place = Place::new(&JOB.replace("Ball(radius: 2, length: 30)", &odd));
+    let words = [
+        "line 4: tool 1: the corner (r, e, f) is not tangent to the bottom line",
+        "side line",
+    ];
+    let said = |output: &Output| {
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let said = text(&output.stdout);
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    };
+    said(&place.run("simulate", &[]));
+    let notes = place.report()["notes"].as_array().expect("a list").len();
+    assert_eq!(notes, 2);
+    said(&place.run("sweep", &[]));
+    said(&place.run("section", &["--plane", "z=4"]));
+    said(&place.inspect("job.ron"));
+    fs::write(place.path("job.ron"), JOB.replace("Ball(radius: 2, length: 30)", good)).expect("a file");
+    assert!(!text(&place.inspect("job.ron").stdout).contains("tangent"));
+}
+
 #[test]
 fn inspect_tells_what_is_there() {
     let place = Place::new(JOB);

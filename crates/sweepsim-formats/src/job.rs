@@ -8,6 +8,7 @@ use sweepsim_motion::{Body, Tool};
 
 use crate::error::FormatError;
 use crate::paths::JobPath;
+use crate::program::Note;
 use crate::{read_job, text};
 
 /// Millimetres of an inch.
@@ -55,7 +56,8 @@ impl Units {
 /// ```
 ///
 /// Further tools are `Lollipop(radius:, neck:, length:)`, `Dovetail(radius:, angle:, height:, neck:, length:)`,
-/// `Barrel(radius:, flank:, height:, length:)`, `Lens(radius:, bottom:, length:)` and `Surface("file.ron")`. Segments of a profile are `Line((rho, zeta))`,
+/// `Barrel(radius:, flank:, height:, length:)` and `Lens(radius:, bottom:, length:)` (both with `corner:`, default 0),
+/// `Oval(radius:, tip:, flank:, length:)`, `Taper(radius:, tip:, flank:, angle:, length:)` and `Surface("file.ron")`. Segments of a profile are `Line((rho, zeta))`,
 /// `Arc(to:, centre:, turn: Cw | Ccw)` and `Spline(degree:, points:, knots:, weights:)`. What moves with tools and removes nothing is said
 /// by `bodies: { 1: [Shank(tool), Holder(tool)] }`: solids like tools, in the frame of tool 1.
 ///
@@ -94,6 +96,8 @@ pub struct Job {
     pub target: Option<Target>,
     /// How far the result may be from the target.
     pub limits: Option<Limits>,
+    /// What is odd about the tools, with the lines of the job's file.
+    pub notes: Vec<Note>,
 }
 
 /// What is to come out of a job.

@@ -112,11 +112,28 @@ pub(crate) enum Tool {
         radius: f64,
         flank: f64,
         height: f64,
+        #[serde(default)]
+        corner: f64,
         length: f64,
     },
     Lens {
         radius: f64,
         bottom: f64,
+        #[serde(default)]
+        corner: f64,
+        length: f64,
+    },
+    Oval {
+        radius: f64,
+        tip: f64,
+        flank: f64,
+        length: f64,
+    },
+    Taper {
+        radius: f64,
+        tip: f64,
+        flank: f64,
+        angle: f64,
         length: f64,
     },
     Profile {

@@ -5,13 +5,14 @@ use std::path::Path as FilePath;
 use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::{Body, BodyKind, Law, Path, RotaryTable, Tool};
+use sweepsim_motion::{AptWarning, Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
 use crate::files::{MeshFormat, read_dexels_file, read_mesh_file};
 use crate::job::{Job, Limits, Target, Units};
 use crate::locate::Node;
 use crate::paths::{self, JobPath, PathOptions};
+use crate::program::Note;
 use crate::stl::read_stl;
 use crate::surface_tool;
 use crate::tools::{self, Step};
@@ -49,8 +50,12 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// A problem with the value that the steps lead to.
     fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
-        let node = steps.iter().fold(&self.places, |node, step| step.of(node));
-        FormatError::new(problem, Some(text::place(self.text, node.span.clone())))
+        let span = self.node(steps).span.clone();
+        FormatError::new(problem, Some(text::place(self.text, span)))
+    }
+
+    fn node(&self, steps: &[Step]) -> &Node {
+        steps.iter().fold(&self.places, |node, step| step.of(node))
     }
 
     fn check(&self, what: &str, value: f64, good: bool, expected: &str, steps: &[Step]) -> Result<(), FormatError> {
@@ -77,11 +82,12 @@ impl Reader<'_> {
             let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
             return Err(FormatError::new(problem, Some(text::place(self.text, place))));
         }
-        let mut tools = BTreeMap::new();
+        let (mut tools, mut notes) = (BTreeMap::new(), Vec::new());
         for (&number, tool) in &raw.tools {
             let steps = vec!["tools".into(), Step::Key(number.to_string())];
-            let made = self.tool(number, tool, &steps)?;
+            let (made, odd) = self.tool(number, tool, &steps)?;
             tools.insert(number, made);
+            notes.extend(odd);
         }
         let mut bodies = BTreeMap::new();
         for (&number, list) in &raw.bodies {
@@ -96,7 +102,8 @@ impl Reader<'_> {
                     raw::Body::Shank(solid) => (BodyKind::Shank, solid),
                     raw::Body::Holder(solid) => (BodyKind::Holder, solid),
                 };
-                let solid = self.tool(number, solid, &steps(index))?;
+                let (solid, odd) = self.tool(number, solid, &steps(index))?;
+                notes.extend(odd);
                 made.push(Body { kind, solid });
             }
             bodies.insert(number, made);
@@ -142,21 +149,27 @@ impl Reader<'_> {
             paths,
             target,
             limits,
+            notes,
         })
     }
 
-    /// The solid of tool `number`, or of a body that moves with it.
-    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<Tool, FormatError> {
-        match raw {
-            raw::Tool::Surface(name) => {
-                let file = paths::beside(self.file, name);
-                self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)
-            }
-            tool => tools::tool(number, tool, self.unit).map_err(|fault| {
-                let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
-                self.error(fault.problem, &steps)
-            }),
+    /// The solid of tool `number`, or of a body that moves with it, and what is odd about it.
+    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
+        if let raw::Tool::Surface(name) = raw {
+            let file = paths::beside(self.file, name);
+            let tool = self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)?;
+            return Ok((tool, Vec::new()));
         }
+        let made = tools::tool(number, raw, self.unit).map_err(|fault| {
+            let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
+            self.error(fault.problem, &steps)
+        })?;
+        let line = text::place(self.text, self.node(steps).span.clone()).line;
+        let note = |warning: AptWarning| Note {
+            line,
+            message: format!("tool {number}: {warning}"),
+        };
+        Ok((made.tool, made.warnings.into_iter().map(note).collect()))
     }
 
     fn grid(&self, raw: &raw::Grid) -> Result<Grid, FormatError> {

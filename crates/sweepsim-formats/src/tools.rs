@@ -1,6 +1,6 @@
 //! The tools of a job.
 
-use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
+use sweepsim_motion::{Apt, AptError, AptWarning, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
 
 use crate::error::Problem;
 use crate::locate::Node;
@@ -35,8 +35,23 @@ impl From<&str> for Step {
     }
 }
 
+/// A tool, and what is odd about it.
+pub(crate) struct Made {
+    pub tool: Tool,
+    pub warnings: Vec<AptWarning>,
+}
+
+impl From<Tool> for Made {
+    fn from(tool: Tool) -> Self {
+        Self {
+            tool,
+            warnings: Vec::new(),
+        }
+    }
+}
+
 /// Makes tool `number`; lengths are multiplied by `unit`.
-pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Fault> {
+pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Made, Fault> {
     let made = match *raw {
         raw::Tool::Ball { radius, length } => Tool::ball(radius * unit, length * unit),
         raw::Tool::Flat { radius, length } => Tool::flat(radius * unit, length * unit),
@@ -44,7 +59,10 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
         raw::Tool::Apt { d, r, e, f, a, b, h } => {
             let [d, r, e, f, h] = [d, r, e, f, h].map(|length| length * unit);
             return Tool::apt(&Apt { d, r, e, f, a, b, h })
-                .map(|(tool, _)| tool)
+                .map(|(tool, warnings)| Made {
+                    tool,
+                    warnings: warnings.into_iter().map(|warning| in_units(warning, unit)).collect(),
+                })
                 .map_err(|error| {
                     let (problem, field) = match error {
                         AptError::Parameter { name, value, expected } => (
@@ -72,9 +90,42 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             radius,
             flank,
             height,
+            corner,
             length,
-        } => Tool::barrel(radius * unit, flank * unit, height * unit, length * unit),
-        raw::Tool::Lens { radius, bottom, length } => Tool::lens(radius * unit, bottom * unit, length * unit),
+        } => {
+            let [radius, flank, height, corner, length] = [radius, flank, height, corner, length].map(|c| c * unit);
+            if corner == 0.0 {
+                Tool::barrel(radius, flank, height, length)
+            } else {
+                Tool::barrel_with_corner(radius, flank, height, corner, length)
+            }
+        }
+        raw::Tool::Lens {
+            radius,
+            bottom,
+            corner,
+            length,
+        } => {
+            let [radius, bottom, corner, length] = [radius, bottom, corner, length].map(|c| c * unit);
+            if corner == 0.0 {
+                Tool::lens(radius, bottom, length)
+            } else {
+                Tool::lens_with_corner(radius, bottom, corner, length)
+            }
+        }
+        raw::Tool::Oval {
+            radius,
+            tip,
+            flank,
+            length,
+        } => Tool::oval(radius * unit, tip * unit, flank * unit, length * unit),
+        raw::Tool::Taper {
+            radius,
+            tip,
+            flank,
+            angle,
+            length,
+        } => Tool::taper(radius * unit, tip * unit, flank * unit, angle, length * unit),
         raw::Tool::Profile { start, ref segments } => profile(start, segments, unit),
         raw::Tool::Surface(ref name) => {
             return Err(Fault {
@@ -83,7 +134,7 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             });
         }
     };
-    made.map_err(|error| {
+    made.map(Made::from).map_err(|error| {
         let field = match error {
             ProfileError::Measure { what, .. } => vec![what.into()],
             ProfileError::Open { which, .. } if which.contains("start") => vec!["start".into()],
@@ -132,6 +183,17 @@ fn last(raw: &raw::Tool) -> Vec<Step> {
             vec!["segments".into(), Step::Item(segments.len() - 1)]
         }
         _ => vec![],
+    }
+}
+
+/// A warning with its lengths as the job has them.
+fn in_units(warning: AptWarning, unit: f64) -> AptWarning {
+    match warning {
+        AptWarning::NotTangent { line, distance } => AptWarning::NotTangent {
+            line,
+            distance: distance / unit,
+        },
+        other => other,
     }
 }
 

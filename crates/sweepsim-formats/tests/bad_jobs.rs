@@ -221,6 +221,26 @@ fn one_message_with_its_place() {
             "Apt(d: 10, r: -1, e: 4, f: 1, a: 0, b: 0, h: 30)".into(),
             "job.ron:7:26: `r` of the APT cutter is -1",
         ),
+        (
+            tool,
+            "Oval(radius: 4, tip: 5, flank: 85, length: 30)".into(),
+            "job.ron:7:33: tool 1: tip is 5, but must be positive and less than the radius",
+        ),
+        (
+            tool,
+            "Taper(radius: 4, tip: 1, flank: 85, angle: 95, length: 30)".into(),
+            "job.ron:7:55: tool 1: angle is 95",
+        ),
+        (
+            tool,
+            "Barrel(radius: 4, flank: 40, height: 10, corner: 5, length: 30)".into(),
+            "job.ron:7:61: tool 1: corner is 5, but must be positive and less than half the height",
+        ),
+        (
+            tool,
+            "Lens(radius: 4, bottom: 20, corner: -1, length: 30)".into(),
+            "job.ron:7:48: tool 1: corner is -1",
+        ),
         (tool, format!("{tool}, 1: {tool}"), "job.ron:7:48: a second tool 1"),
         // Paths.
         (

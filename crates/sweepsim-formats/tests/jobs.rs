@@ -37,6 +37,11 @@ Job(
         6: Profile(start: (0.0, 0.0), segments: [
                Spline(degree: 3, points: [(0, 0), (3, 0), (5, 2), (4, 6), (6, 9)], knots: Some([0, 0, 0, 0, 1, 2, 2, 2, 2])),
                Spline(degree: 2, points: [(6, 9), (8, 9), (8, 11)], weights: Some([1.0, 0.7071067811865476, 1.0])), Line((8, 30)), Line((0, 30)) ]),
+        7: Oval(radius: 4, tip: 1, flank: 85, length: 40),
+        8: Taper(radius: 4, tip: 1, flank: 85, angle: 10, length: 40),
+        9: Barrel(radius: 4, flank: 40, height: 20, corner: 0.5, length: 40),
+        10: Lens(radius: 4, bottom: 20, corner: 0.5, length: 40),
+        11: Apt(d: 12, r: 20, e: -14, f: 10, a: 0, b: 0, h: 40),
     },
     paths: [
         Path(tool: 4, poses: [ ((-20.0, -10.0, 0.0), (0.0, 0.0, 1.0)), ((20.0, 10.0, 8.0), (0.1, 0.0, 1.0)) ]),
@@ -64,7 +69,12 @@ Job(
             ..
         }
     ));
-    assert_eq!(job.tools.len(), 6);
+    assert_eq!(job.tools.len(), 11);
+    let notes: Vec<String> = job.notes.iter().map(ToString::to_string).collect();
+    assert!(
+        matches!(&notes[..], [one] if one.starts_with("line 21: tool 11: the corner (r, e, f) is not tangent to the bottom line, which passes its centre at 10:")),
+        "{notes:?}"
+    );
     // The path of the table divides where its tool changes.
     let tools: Vec<u32> = job.paths.iter().map(|path| path.tool).collect();
     assert_eq!(tools, [4, 1, 2, 2, 1, 1]);

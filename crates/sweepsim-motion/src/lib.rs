@@ -8,6 +8,7 @@ mod apt;
 mod assembly;
 mod bezier;
 mod boundary;
+mod circle_segment;
 mod even;
 mod freeform;
 mod lists;

@@ -10,6 +10,7 @@
 //! error of 1e-8). That is neither looser nor tighter than what is promised, at any slope.
 
 mod cases;
+mod circle_segments;
 mod corpus;
 mod degenerate;
 mod generic;
