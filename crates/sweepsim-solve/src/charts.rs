@@ -544,9 +544,13 @@ impl<const N: usize> Chart<'_, N> {
                 return Outcome::Absent;
             }
             if (0..N).all(|i| hi[i] - lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+                // As near as rounding lets it come: a smaller box would know no more.
+                let rests = |next: &SVector<f64, N>| {
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept.max(2.0 * linear.slack[i]))
+                };
                 return match next {
                     Some(next) if self.owns(&next) => found(next),
-                    Some(next) if (next - s).amax() <= self.accept => Outcome::Absent,
+                    Some(next) if rests(&next) => Outcome::Absent,
                     _ => Outcome::Unclear,
                 };
             }

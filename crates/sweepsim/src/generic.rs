@@ -90,7 +90,11 @@ pub(crate) fn parts(path: &Path, symmetric: bool, reach: f64, tolerance: f64) ->
     let mut from = 0;
     for to in 1..poses.len() {
         if !path.rests(from, to) {
-            let segments = path.segments(to - 1, reach, LAW * tolerance);
+            let segments = if symmetric {
+                path.segments_of_symmetric(to - 1, reach, LAW * tolerance)
+            } else {
+                path.segments(to - 1, reach, LAW * tolerance)
+            };
             let tips = [poses[from].tip(), poses[to].tip()];
             put(to - 1, segments, tips, [displaced(from), displaced(to)]);
             from = to;
