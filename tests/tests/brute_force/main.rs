@@ -19,4 +19,6 @@ mod jobs;
 mod judge;
 mod metamorphic;
 mod motions;
+mod random;
 mod relations;
+mod splines;
