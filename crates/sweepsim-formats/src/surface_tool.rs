@@ -1,4 +1,4 @@
-//! Tools of B-spline surfaces: the file that `Surface("…")` of a job names.
+//! Tools of B-spline surfaces: the file that `Surface("…")` of a job names. Sides of surfaces may join several others.
 //!
 //! ```ron
 //! Surfaces(

@@ -1,6 +1,6 @@
-//! Tools of any shape: patches of one's own, and how they join.
+//! Tools of any shape: patches of one's own.
 
-use crate::boundary::{Edge, NormalField, Patch};
+use crate::boundary::{NormalField, Patch};
 use nalgebra::Vector3;
 use sweepsim_spline::{Bernstein, RationalSpline, SplineError};
 use thiserror::Error;
@@ -56,14 +56,14 @@ pub enum ToolError {
     /// There is none.
     #[error("a tool needs at least one patch")]
     Empty,
-    /// A side lies at no other one.
-    #[error("side {side} of patch {patch} joins no other side: near ({}, {}, {}) the boundary is open, or the other side runs at another pace", .place[0], .place[1], .place[2])]
+    /// A side, or a part of one, lies at no other one.
+    #[error("side {side} of patch {patch} joins no other side near ({}, {}, {}): the boundary is open there", .place[0], .place[1], .place[2])]
     Open {
         /// The patch, from 0.
         patch: usize,
         /// Its side.
         side: Side,
-        /// The middle of the side.
+        /// The middle of the part.
         place: [f64; 3],
     },
     /// Two patches that join face opposite ways.
@@ -145,10 +145,6 @@ impl std::fmt::Display for Side {
 
 /// Highest degree of a patch: that of the moments, four times as high, must still be evaluated well.
 const MOST: usize = 7;
-/// Places along a side at which two sides are compared.
-const PLACES: usize = 17;
-/// Sides whose normals enclose no larger angle (its sine) join smoothly.
-const SMOOTH: f64 = 1e-9;
 
 fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
     [0, 1, 2].map(|k| {
@@ -295,163 +291,4 @@ pub(crate) fn pieces(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolErro
         }
     }
     Ok(patches)
-}
-
-/// A side as a curve in `r` from 0 to 1, with the normals of its patch.
-struct Curve {
-    patch: usize,
-    side: Side,
-    position: [Bernstein; 3],
-    weight: Bernstein,
-    field: NormalField,
-    places: Vec<Vector3<f64>>,
-}
-
-impl Curve {
-    fn new(patches: &[Patch], patch: usize, side: Side) -> Self {
-        let (axis, at, backwards) = match side {
-            Side::Bottom => (1, 0.0, false),
-            Side::Right => (0, 1.0, false),
-            Side::Top => (1, 1.0, true),
-            Side::Left => (0, 0.0, true),
-        };
-        let cut = |form: &Bernstein| {
-            let form = form.slice(axis, at);
-            let form = if backwards { form.reverse(0) } else { form };
-            form.assumed_exact()
-        };
-        let three = |forms: &[Bernstein; 3]| [0, 1, 2].map(|k| cut(&forms[k]));
-        let of = &patches[patch];
-        let (position, weight) = (three(&of.position), cut(&of.weight));
-        let place = |n: usize| {
-            let r = [n as f64 / (PLACES - 1) as f64];
-            let w = weight.evaluate(&r);
-            Vector3::from([0, 1, 2].map(|k| position[k].evaluate(&r) / w))
-        };
-        Self {
-            patch,
-            side,
-            places: (0..PLACES).map(place).collect(),
-            field: NormalField {
-                normal: three(&of.field.normal),
-                moment: three(&of.field.moment),
-            },
-            position,
-            weight,
-        }
-    }
-
-    /// Whether it is a point.
-    fn is_pole(&self, tolerance: f64) -> bool {
-        self.places
-            .iter()
-            .all(|place| (place - self.places[0]).norm() <= tolerance)
-    }
-
-    fn lies_at(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
-        (0..PLACES).all(|n| {
-            let m = if backwards { PLACES - 1 - n } else { n };
-            (self.places[n] - other.places[m]).norm() <= tolerance
-        })
-    }
-
-    fn normal(&self, n: usize) -> Option<Vector3<f64>> {
-        let r = [n as f64 / (PLACES - 1) as f64];
-        let normal = Vector3::from([0, 1, 2].map(|k| self.field.normal[k].evaluate(&r)));
-        normal.try_normalize(1e-12)
-    }
-
-    /// The same curve the other way.
-    fn reversed(&self) -> ([Bernstein; 3], Bernstein, NormalField) {
-        let back = |form: &Bernstein| form.reverse(0);
-        let three = |forms: &[Bernstein; 3]| [0, 1, 2].map(|k| back(&forms[k]));
-        let field = NormalField {
-            normal: three(&self.field.normal),
-            moment: three(&self.field.moment),
-        };
-        (three(&self.position), back(&self.weight), field)
-    }
-}
-
-/// Whether two joined sides have the same normals all along.
-fn is_smooth(a: &Curve, b: &Curve) -> bool {
-    (0..PLACES).all(|n| match (a.normal(n), b.normal(PLACES - 1 - n)) {
-        (Some(a), Some(b)) => a.cross(&b).norm() <= SMOOTH && a.dot(&b) > 0.0,
-        // At a pole a normal may vanish.
-        _ => true,
-    })
-}
-
-/// The sharp edges of a closed boundary.
-///
-/// # Errors
-/// [`ToolError`]: it is none.
-pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, ToolError> {
-    if patches.is_empty() {
-        return Err(ToolError::Empty);
-    }
-    let mut curves: Vec<Curve> = (0..patches.len())
-        .flat_map(|patch| {
-            [Side::Bottom, Side::Right, Side::Top, Side::Left].map(|side| Curve::new(patches, patch, side))
-        })
-        .collect();
-    curves.retain(|curve| !curve.is_pole(tolerance));
-    let mut edges = Vec::new();
-    for (number, curve) in curves.iter().enumerate() {
-        let others = || curves.iter().enumerate().filter(|(other, _)| *other != number);
-        let mut joined = others().filter(|(_, other)| curve.lies_at(other, true, tolerance));
-        let (patch, side) = (curve.patch, curve.side);
-        let Some((partner, other)) = joined.next() else {
-            return Err(
-                match others().find(|(_, other)| curve.lies_at(other, false, tolerance)) {
-                    Some((_, other)) => ToolError::Flipped {
-                        patch,
-                        side,
-                        other: other.patch,
-                    },
-                    None => ToolError::Open {
-                        patch,
-                        side,
-                        place: curve.places[PLACES / 2].into(),
-                    },
-                },
-            );
-        };
-        if joined.next().is_some() {
-            return Err(ToolError::Branching { patch, side });
-        }
-        if number < partner && !is_smooth(curve, other) {
-            // Along this side its own patch is to the left; the edge's direction has face B there.
-            let (_, _, before) = other.reversed();
-            edges.push(Edge {
-                position: curve.position.clone(),
-                weight: curve.weight.clone(),
-                before,
-                after: curve.field.clone(),
-            });
-        }
-    }
-    if volume(patches) <= 0.0 {
-        return Err(ToolError::InsideOut);
-    }
-    Ok(edges)
-}
-
-/// A multiple of the enclosed volume, by sums over each patch: for its sign alone.
-fn volume(patches: &[Patch]) -> f64 {
-    const STEPS: usize = 24;
-    let middle = |n: usize| (n as f64 + 0.5) / STEPS as f64;
-    let mut sum = 0.0;
-    for patch in patches {
-        for i in 0..STEPS {
-            for j in 0..STEPS {
-                let h = 0.5 / STEPS as f64;
-                let (u, v) = (middle(i), middle(j));
-                let along_u = patch.place(u + h, v) - patch.place(u - h, v);
-                let along_v = patch.place(u, v + h) - patch.place(u, v - h);
-                sum += patch.place(u, v).dot(&along_u.cross(&along_v));
-            }
-        }
-    }
-    sum
 }

@@ -3,6 +3,7 @@
 use crate::apt::{Apt, AptError, AptWarning};
 use crate::boundary::{self, Edge, Patch};
 use crate::freeform::{self, ToolError};
+use crate::joints;
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
@@ -217,8 +218,9 @@ impl Tool {
 
     /// A tool of any shape: the solid that `patches` enclose, in any order.
     ///
-    /// Each side of a patch must join one side of another patch (or of the same one, at a seam), at the same pace and within
-    /// `tolerance`; sides that are points are poles. Where the normals differ along a joint there is a sharp edge.
+    /// Every part of a side of a patch must join a part of one other side (of another patch, or of the same one at a seam), within
+    /// `tolerance`: one side may join several, and at another pace. Sides that are points are poles. Where the normals differ along a joint
+    /// there is a sharp edge.
     ///
     /// # Errors
     /// [`ToolError`]: open, patches that face different ways, more than two sides at one place, inside out.
@@ -241,7 +243,7 @@ impl Tool {
     /// ```
     pub fn from_patches(patches: Vec<Patch>, tolerance: f64) -> Result<Self, ToolError> {
         Ok(Self {
-            edges: freeform::edges(&patches, tolerance)?,
+            edges: joints::edges(&patches, tolerance)?,
             patches,
             profile: None,
         })
