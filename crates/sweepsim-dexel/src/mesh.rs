@@ -1,5 +1,7 @@
 //! Triangles, going in and coming out.
 
+use crate::frame::Frame;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
@@ -50,6 +52,19 @@ pub enum MeshError {
 }
 
 impl Mesh {
+    /// Moves what is given in a frame to its place in the world.
+    pub(crate) fn move_to_world(&mut self, frame: &Frame) {
+        if frame.is_world() {
+            return;
+        }
+        for place in &mut self.vertices {
+            *place = frame.to_world(*place);
+        }
+        for normal in &mut self.normals {
+            *normal = frame.turn_to_world(normal.map(f64::from)).map(|c| c as f32);
+        }
+    }
+
     /// The triangles alone; `None` if one has a vertex that the mesh does not have.
     #[must_use]
     pub fn soup(&self) -> Option<TriangleSoup> {
@@ -107,6 +122,17 @@ impl Mesh {
 }
 
 impl TriangleSoup {
+    /// The triangles of the world in the coordinates of a frame.
+    pub(crate) fn seen_from(&self, frame: &Frame) -> Cow<'_, Self> {
+        if frame.is_world() {
+            return Cow::Borrowed(self);
+        }
+        let turned = |corners: &[[f64; 3]; 3]| corners.map(|p| frame.from_world(p));
+        Cow::Owned(Self {
+            triangles: self.triangles.iter().map(turned).collect(),
+        })
+    }
+
     /// The volume that the triangles enclose, if they are closed: negative if they are inside out.
     #[must_use]
     pub fn volume(&self) -> f64 {
