@@ -54,6 +54,9 @@ impl Units {
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
 ///
+/// The grid may have a frame of its own, `frame: Frame(origin: (0, 0, 0), z: (1, 0, 0), x: (0, 1, 0))`: the dexels stand along its `z`, and `min`, `max`
+/// and all numbers of dexels are in it.
+///
 /// Further tools are `Lollipop(radius:, neck:, length:)`, `Dovetail(radius:, angle:, height:, neck:, length:)`,
 /// `Barrel(radius:, flank:, height:, length:)`, `Lens(radius:, bottom:, length:)` and `Surface("file.ron")`. What moves with tools and removes nothing is said
 /// by `bodies: { 1: [Shank(tool), Holder(tool)] }`: solids like tools, in the frame of tool 1.
