@@ -165,6 +165,16 @@ pub(crate) fn failed(error: SweepError, options: &RunOptions) -> Failure {
     }
 }
 
+/// What was odd in the job and the files that it names.
+pub(crate) fn notes_of(job: &Job, file: &Path) -> Vec<String> {
+    let own = job.notes.iter().map(|note| format!("{}: {note}", file.display()));
+    let of_paths = job
+        .paths
+        .iter()
+        .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)));
+    own.chain(of_paths).collect()
+}
+
 /// What the job leaves or sweeps, on its own grid.
 fn compute(
     task: Task,
@@ -230,11 +240,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
     };
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
-    report.notes = job
-        .paths
-        .iter()
-        .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
-        .collect();
+    report.notes = notes_of(job, &options.job);
     if options.boundary == Boundary::Paper {
         let note =
             "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
