@@ -15,6 +15,7 @@
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 use crate::Interval;
+use crate::trail::Trail;
 use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum, Vector3};
 
 /// A map `R^N → R^N` with enclosures over boxes.
@@ -58,13 +59,35 @@ pub struct Sample<const N: usize, S> {
     pub seen: S,
 }
 
-/// A set of right-hand sides with a range query.
-pub trait Targets<const N: usize> {
-    /// Whether any target lies in the range.
-    fn any(&self, range: &[Interval; N]) -> bool;
+/// A right-hand side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<const N: usize> {
+    /// Its number.
+    pub number: usize,
+    /// Row and place in the row. Where neighbours differ evenly they are solved faster.
+    pub place: [usize; 2],
+    /// `q`.
+    pub value: [f64; N],
+}
 
-    /// Calls `visit` with each target in the range until that returns `false`.
-    fn visit(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool);
+/// A set of right-hand sides with a range query, in rows: targets of a row differ in their second value alone.
+pub trait Targets<const N: usize> {
+    /// How many targets lie in the range.
+    fn count(&self, range: &[Interval; N]) -> usize;
+
+    /// Calls `visit` with each target in the range until that returns `false`: row by row, and in each upwards. Of a row, `narrow` is
+    /// shown the lowest, and says which second values are wanted.
+    fn visit(
+        &self,
+        range: &[Interval; N],
+        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    );
+}
+
+/// Rows that are wanted as they are.
+fn all_of<const N: usize>(_: &[f64; N]) -> Interval {
+    Interval::new(f64::NEG_INFINITY, f64::INFINITY)
 }
 
 /// A solution `Φ(x) = q` of one target.
@@ -160,6 +183,10 @@ const STEPS: usize = 32;
 const ON_FACE: f64 = 1e-11;
 /// Boxes with at most this many targets have each of them tested before a split.
 const FEW: usize = 4;
+/// A box whose range holds so many targets is a chart only when it is [`CLOSE`] to linear.
+const MANY: usize = 256;
+/// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
+const CLOSE: f64 = 0.4;
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
@@ -255,9 +282,125 @@ impl<const N: usize> Linear<N> {
         s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
     }
 
+    /// The second values of targets with the other values of `q` that can have a preimage in the box, seen from the centre.
+    fn window(&self, value: &[f64; N], q: &[f64; N]) -> Interval {
+        let mut window = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+        if N < 2 {
+            return window;
+        }
+        for i in 0..N {
+            // |base + factor (q₁ − Φ₁)| ≤ 1 + reach; twice the slack is for the rounding here, of numbers no larger than those of Φ.
+            let factor = self.inverse[(i, 1)];
+            let base: f64 = (0..N)
+                .filter(|k| *k != 1)
+                .map(|k| self.inverse[(i, k)] * (q[k] - value[k]))
+                .sum();
+            let limit = 1.0 + self.reach(i) + 2.0 * self.slack[i];
+            let (a, b) = ((-limit - base) / factor, (limit - base) / factor);
+            let (lo, hi) = (a.min(b), a.max(b));
+            // With a factor of 0 the ends are infinite, or not numbers: they narrow nothing, and targets are tested one by one.
+            if lo.is_finite() && hi.is_finite() {
+                window = Interval::new(window.lo.max(value[1] + lo), window.hi.min(value[1] + hi));
+            }
+        }
+        window
+    }
+
     fn point(&self, s: &SVector<f64, N>) -> [f64; N] {
         std::array::from_fn(|i| self.centre[i] + s[i] * self.half[i])
     }
+}
+
+/// The mean value theorem's bound, iterated to its end.
+///
+/// Seen from a point `c` of the box a preimage `s` is at `p = c − K(Φ(c) − q)`, but for `|s − p| ≤ R|s − c| + e` with the rounding `e`. So
+/// `|s − c| ≤ |p − c| + R|s − c| + e`, and as powers of `R` tend to 0, `|s − c| ≤ (I − R)⁻¹(|p − c| + e)`, and
+/// `|s − p| ≤ R(I − R)⁻¹|p − c| + (I − R)⁻¹e`: what is looked at near a preimage encloses it closely.
+struct Contraction<const N: usize> {
+    /// `R(I − R)⁻¹`.
+    rest: Square<N>,
+    /// `(I − R)⁻¹e`.
+    slack: SVector<f64, N>,
+}
+
+impl<const N: usize> Linear<N> {
+    /// For `‖R‖∞ < 1`.
+    fn contraction(&self) -> Option<Contraction<N>> {
+        // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of terms that are not negative. After k factors what is left out is, row by row,
+        // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large.
+        let norm = self.norm();
+        let (mut sum, mut power, mut left) = (Square::<N>::identity() + self.rest, self.rest, norm * norm);
+        while left > 1e-3 * (1.0 - norm) {
+            power *= power;
+            sum += sum * power;
+            left *= left;
+        }
+        // Besides, a few dozen roundings of terms of one sign.
+        let remainder = left / (1.0 - norm) + 64.0 * f64::EPSILON;
+        let spread = sum * self.rest;
+        let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);
+        let (own, of_slack) = (remainder * most(&spread), remainder * most(&sum));
+        let largest = self.slack.amax();
+        let contraction = Contraction {
+            rest: spread.map(|x| x + own),
+            slack: (sum * self.slack).map(|x| x + of_slack * largest),
+        };
+        let finite = contraction.rest.iter().chain(&contraction.slack).all(|x| x.is_finite());
+        finite.then_some(contraction)
+    }
+}
+
+/// A box of places, in coordinates scaled to that of a chart.
+#[derive(Clone, Copy)]
+struct Region<const N: usize> {
+    lo: SVector<f64, N>,
+    hi: SVector<f64, N>,
+}
+
+impl<const N: usize> Region<N> {
+    fn around(middle: &SVector<f64, N>, reach: &SVector<f64, N>) -> Self {
+        Self {
+            lo: middle - reach,
+            hi: middle + reach,
+        }
+    }
+
+    fn intersect(&mut self, other: &Self) {
+        for i in 0..N {
+            self.lo[i] = if other.lo[i] > self.lo[i] {
+                other.lo[i]
+            } else {
+                self.lo[i]
+            };
+            self.hi[i] = if other.hi[i] < self.hi[i] {
+                other.hi[i]
+            } else {
+                self.hi[i]
+            };
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        (0..N).any(|i| self.lo[i] > self.hi[i])
+    }
+
+    /// The nearest place; the middle for what is not a number.
+    fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| {
+            if s[i].is_nan() {
+                0.5 * (self.lo[i] + self.hi[i])
+            } else {
+                s[i].clamp(self.lo[i], self.hi[i])
+            }
+        })
+    }
+}
+
+/// A place in a chart, and `Φ` there.
+#[derive(Clone, Copy)]
+struct Witness<const N: usize> {
+    at: SVector<f64, N>,
+    value: [f64; N],
 }
 
 /// What became of a target in a chart.
@@ -269,50 +412,6 @@ enum Outcome<const N: usize, S> {
     },
     Absent,
     Unclear,
-}
-
-/// The last targets found in a chart, the latest first: neighbours have neighbouring preimages.
-struct Trail<const N: usize> {
-    found: [([f64; N], SVector<f64, N>); 3],
-    count: usize,
-}
-
-impl<const N: usize> Trail<N> {
-    fn new() -> Self {
-        Self {
-            found: [([0.0; N], SVector::zeros()); 3],
-            count: 0,
-        }
-    }
-
-    fn push(&mut self, q: [f64; N], s: SVector<f64, N>) {
-        self.found.rotate_right(1);
-        self.found[0] = (q, s);
-        self.count = (self.count + 1).min(3);
-    }
-
-    /// Where the preimage of `q` should be, as far as those found are evenly spaced on a line with it.
-    fn guess(&self, q: &[f64; N]) -> Option<SVector<f64, N>> {
-        let even = |next: &[f64; N], at: usize| {
-            let (middle, last) = (&self.found[at].0, &self.found[at + 1].0);
-            let steps = (0..N).map(|i| (next[i] - middle[i], middle[i] - last[i]));
-            let (mut off, mut size) = (0.0_f64, 0.0_f64);
-            for (a, b) in steps {
-                off = off.max((a - b).abs());
-                size = size.max(b.abs());
-            }
-            off <= 1e-6 * size
-        };
-        let [a, b, c] = [0, 1, 2].map(|k| self.found[k].1);
-        if self.count < 2 || !even(q, 0) {
-            return None;
-        }
-        if self.count == 3 && even(&self.found[0].0, 1) {
-            Some((a - b) * 3.0 + c)
-        } else {
-            Some(a * 2.0 - b)
-        }
-    }
 }
 
 impl<C: Clone> ChartSolver<C> {
@@ -364,7 +463,8 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             };
             self.statistics.boxes += 1;
-            if !targets.any(&values) {
+            let count = targets.count(&values);
+            if count == 0 {
                 continue;
             }
             let bounds = map.bounds(&cell);
@@ -375,7 +475,8 @@ impl<C: Clone> ChartSolver<C> {
             let tiny = (0..N).all(|j| small(j) || idle(j));
             if tiny || budget == 0 {
                 let reason = if tiny { Reason::Smallest } else { Reason::Budget };
-                targets.visit(&values, &mut |target, _| {
+                targets.visit(&values, &all_of, &mut |target| {
+                    let target = target.number;
                     sink.undecided(Undecided { target, bounds, reason });
                     true
                 });
@@ -387,10 +488,23 @@ impl<C: Clone> ChartSolver<C> {
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
-                let chart = linear.norm() < 1.0;
-                let first_found =
-                    chart.then(|| self.chart(map, &linear, &bounds, domain, &value, &values, targets, sink));
-                match first_found {
+                // Many targets are worth smaller charts, on which they are settled at first sight.
+                let norm = linear.norm();
+                let chart = norm < 1.0 && (count < MANY || norm < CLOSE);
+                let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
+                    self.chart(
+                        map,
+                        &linear,
+                        &contraction,
+                        &bounds,
+                        domain,
+                        &value,
+                        &values,
+                        targets,
+                        sink,
+                    )
+                });
+                match all_clear {
                     Some(true) => {
                         self.statistics.charts += 1;
                         continue;
@@ -398,7 +512,7 @@ impl<C: Clone> ChartSolver<C> {
                     // Newton's method went astray for some target: nothing of this box was handed out yet.
                     Some(false) => {}
                     None => {
-                        if few_and_absent(&linear, &value, &values, targets) {
+                        if count <= FEW && all_absent(&linear, &value, &values, targets) {
                             continue;
                         }
                     }
@@ -428,6 +542,7 @@ impl<C: Clone> ChartSolver<C> {
         &mut self,
         map: &M,
         linear: &Linear<N>,
+        contraction: &Contraction<N>,
         bounds: &[Interval; N],
         domain: &[Interval; N],
         value: &[f64; N],
@@ -441,8 +556,8 @@ impl<C: Clone> ChartSolver<C> {
         S: Sink<N, M::Seen>,
     {
         let origin = SVector::<f64, N>::zeros();
-        let rows: [f64; N] = std::array::from_fn(|i| linear.reach(i));
-        let mut found: smallvec::SmallVec<[Preimage<N, M::Seen>; 16]> = smallvec::SmallVec::new();
+        let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
+        let mut found: Vec<Preimage<N, M::Seen>> = Vec::new();
         let mut trail = Trail::new();
         let mut clear = true;
         let Self {
@@ -450,24 +565,43 @@ impl<C: Clone> ChartSolver<C> {
         } = self;
         let chart = Chart {
             linear,
+            contraction,
             bounds,
             domain,
             accept: options.accept,
         };
-        targets.visit(values, &mut |target, q| {
-            let start = linear.predict(&origin, value, q);
-            // By the mean value theorem about the centre the preimage is within `rows` of the prediction.
-            let lo = SVector::from_fn(|i, _| f64::max(start[i] - rows[i], -1.0));
-            let hi = SVector::from_fn(|i, _| f64::min(start[i] + rows[i], 1.0));
-            if (0..N).any(|i| lo[i] > hi[i]) {
+        // Of the last target looked at, and of the first one found in the row.
+        let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
+        let mut row = usize::MAX;
+        let window = |q: &[f64; N]| linear.window(value, q);
+        targets.visit(values, &window, &mut |target| {
+            let q = &target.value;
+            if target.place[0] != row {
+                row = target.place[0];
+                last = first.take().or(last);
+            }
+            let mut region = Region::around(&origin, &SVector::repeat(1.0));
+            let near = last.map(|witness| {
+                let (place, own) = chart.region(&witness, q);
+                region.intersect(&own);
+                place
+            });
+            let mut start = origin;
+            if near.is_none() || !region.is_empty() {
+                start = linear.predict(&origin, value, q);
+                region.intersect(&Region::around(&start, &reach));
+            }
+            if region.is_empty() {
                 return true;
             }
-            let guess = trail.guess(q).unwrap_or(start);
-            match chart.solve(map, guess, [lo, hi], q, &mut statistics.evaluations) {
+            let guess = trail.guess(target.place).or(near).unwrap_or(start);
+            let mut witness = None;
+            match chart.solve(map, guess, region, q, &mut witness, &mut statistics.evaluations) {
                 Outcome::Found { s, from, seen } => {
-                    trail.push(*q, s);
+                    first = first.or(witness);
+                    trail.push(target.place, s);
                     found.push(Preimage {
-                        target,
+                        target: target.number,
                         x: linear.point(&s),
                         from,
                         seen,
@@ -477,6 +611,7 @@ impl<C: Clone> ChartSolver<C> {
                 Outcome::Absent => {}
                 Outcome::Unclear => clear = false,
             }
+            last = witness.or(last);
             clear
         });
         if clear {
@@ -489,64 +624,67 @@ impl<C: Clone> ChartSolver<C> {
 /// A box on which the map is injective.
 struct Chart<'a, const N: usize> {
     linear: &'a Linear<N>,
+    contraction: &'a Contraction<N>,
     bounds: &'a [Interval; N],
     domain: &'a [Interval; N],
     accept: f64,
 }
 
 impl<const N: usize> Chart<'_, N> {
+    /// Where a preimage of `q` seems to be, seen from a place, and the region that it is in if it is in the box.
+    fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
+        let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
+        let reach = self.contraction.rest * step.abs() + self.contraction.slack;
+        let place = witness.at + step;
+        (place, Region::around(&place, &reach))
+    }
+
     /// Newton's method from `guess`. Each point that it evaluates in the box also bounds, by the mean value theorem about it,
     /// where in the box a preimage can be; when nothing is left, there is none.
     fn solve<M: ChartMap<N>>(
         &self,
         map: &M,
         guess: SVector<f64, N>,
-        [mut lo, mut hi]: [SVector<f64, N>; 2],
+        mut region: Region<N>,
         q: &[f64; N],
+        witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
     ) -> Outcome<N, M::Seen> {
         let linear = self.linear;
         let mut s = guess;
         for _ in 0..STEPS {
-            // A guess that is not a number goes to the middle.
-            s = SVector::from_fn(|i, _| {
-                if s[i].is_nan() {
-                    0.5 * (lo[i] + hi[i])
-                } else {
-                    s[i].clamp(lo[i], hi[i])
-                }
-            });
+            s = region.clamp(&s);
             let from = linear.point(&s);
             let sample = map.evaluate(&from);
             *evaluations += 1;
+            let here = Witness {
+                at: s,
+                value: sample.value,
+            };
+            *witness = Some(here);
             let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
             let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
             let next = solve_linear(&scaled, &rest).map(|step| s - step);
-            let found = |s| Outcome::Found {
-                s,
-                from,
-                seen: sample.seen.clone(),
-            };
+            let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
             if let Some(next) = next
-                && (next - s).amax() <= self.accept
+                && step <= self.accept
                 && self.owns(&next)
             {
-                return found(next);
+                let seen = sample.seen;
+                return Outcome::Found { s: next, from, seen };
             }
-            let predicted = s - linear.inverse * rest;
-            let far = SVector::from_fn(|i, _| f64::max(hi[i] - s[i], s[i] - lo[i]));
-            let reach = linear.rest * far + linear.slack;
-            for i in 0..N {
-                lo[i] = lo[i].max(predicted[i] - reach[i]);
-                hi[i] = hi[i].min(predicted[i] + reach[i]);
-            }
-            if (0..N).any(|i| lo[i] > hi[i]) {
+            let (predicted, own) = self.region(&here, q);
+            let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - s[i], s[i] - region.lo[i]));
+            region.intersect(&own);
+            region.intersect(&Region::around(&predicted, &(linear.rest * far + linear.slack)));
+            if region.is_empty() {
                 return Outcome::Absent;
             }
-            if (0..N).all(|i| hi[i] - lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+            if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+                let seen = sample.seen;
                 return match next {
-                    Some(next) if self.owns(&next) => found(next),
-                    Some(next) if (next - s).amax() <= self.accept => Outcome::Absent,
+                    Some(next) if self.owns(&next) => Outcome::Found { s: next, from, seen },
+                    Some(_) if step <= self.accept => Outcome::Absent,
                     _ => Outcome::Unclear,
                 };
             }
@@ -604,20 +742,18 @@ fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Opti
     Some(x)
 }
 
-/// Whether the range holds few targets and the mean value test excludes each of them.
-fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
+/// Whether the mean value test excludes each target in the range.
+fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
     linear: &Linear<N>,
     value: &[f64; N],
     values: &[Interval; N],
     targets: &T,
 ) -> bool {
-    let mut count = 0;
     let mut absent = true;
     let origin = SVector::<f64, N>::zeros();
-    targets.visit(values, &mut |_, q| {
-        count += 1;
-        let start = linear.predict(&origin, value, q);
-        absent = count <= FEW && (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
+    targets.visit(values, &all_of, &mut |target| {
+        let start = linear.predict(&origin, value, &target.value);
+        absent = (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
         absent
     });
     absent

@@ -1,7 +1,7 @@
 //! The dexel lines as targets of the charts.
 
 use sweepsim_dexel::Grid;
-use sweepsim_solve::{Interval, Targets};
+use sweepsim_solve::{Interval, Target, Targets};
 
 /// Dexel lines `i[0] ..= i[1]` × `j[0] ..= j[1]` of a grid, all moved by `shift`.
 #[derive(Clone, Debug)]
@@ -85,31 +85,44 @@ impl<'a> Lattice<'a> {
     fn range(&self, x: Interval, y: Interval) -> Option<[(usize, usize); 2]> {
         Some([self.numbers(0, x)?, self.numbers(1, y)?])
     }
-
-    fn each<const N: usize>(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool) {
-        let Some([is, js]) = self.range(range[0], range[1]) else {
-            return;
-        };
-        let mut q = [0.0; N];
-        for i in is.0..=is.1 {
-            q[0] = self.coordinate(0, i);
-            for j in js.0..=js.1 {
-                q[1] = self.coordinate(1, j);
-                if !visit(self.grid.index(i, j), &q) {
-                    return;
-                }
-            }
-        }
-    }
 }
 
 /// The lines as targets of `(X, Y)`, or of `(X, Y, g)` with `g = 0`.
 impl<const N: usize> Targets<N> for Lattice<'_> {
-    fn any(&self, range: &[Interval; N]) -> bool {
-        self.range(range[0], range[1]).is_some()
+    fn count(&self, range: &[Interval; N]) -> usize {
+        self.range(range[0], range[1])
+            .map_or(0, |[is, js]| (is.1 - is.0 + 1) * (js.1 - js.0 + 1))
     }
 
-    fn visit(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool) {
-        self.each(range, visit);
+    fn visit(
+        &self,
+        range: &[Interval; N],
+        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    ) {
+        let Some([is, js]) = self.range(range[0], range[1]) else {
+            return;
+        };
+        let mut value = [0.0; N];
+        for i in is.0..=is.1 {
+            value[0] = self.coordinate(0, i);
+            value[1] = self.coordinate(1, js.0);
+            let window = narrow(&value);
+            let ends = Interval::new(window.lo.max(range[1].lo), window.hi.min(range[1].hi));
+            let Some(wanted) = self.numbers(1, ends) else {
+                continue;
+            };
+            for j in wanted.0.max(js.0)..=wanted.1.min(js.1) {
+                value[1] = self.coordinate(1, j);
+                let target = Target {
+                    number: self.grid.index(i, j),
+                    place: [i, j],
+                    value,
+                };
+                if !visit(&target) {
+                    return;
+                }
+            }
+        }
     }
 }

@@ -1,0 +1,97 @@
+//! Guesses where the next solution is, from those of its neighbours on a lattice.
+
+use nalgebra::SVector;
+
+/// Solutions that a guess takes into account, along a row or across rows.
+const DEPTH: usize = 5;
+
+/// The coefficients, nearest first, of the polynomial through `k` even places, at the next one: `Σ (−1)ⁿ⁺¹ (k over n) xₙ`.
+const EXTRAPOLATION: [&[f64]; DEPTH + 1] = [
+    &[],
+    &[1.0],
+    &[2.0, -1.0],
+    &[3.0, -3.0, 1.0],
+    &[4.0, -6.0, 4.0, -1.0],
+    &[5.0, -10.0, 10.0, -5.0, 1.0],
+];
+
+/// What was found in a row, from its first place on.
+#[derive(Debug)]
+struct Row<const N: usize> {
+    number: usize,
+    first: usize,
+    /// NaN where nothing was found.
+    found: Vec<SVector<f64, N>>,
+}
+
+/// The solutions in the last rows of a lattice.
+#[derive(Debug)]
+pub(crate) struct Trail<const N: usize> {
+    /// The latest last.
+    rows: Vec<Row<N>>,
+}
+
+impl<const N: usize> Trail<N> {
+    pub fn new() -> Self {
+        Self { rows: Vec::new() }
+    }
+
+    pub fn push(&mut self, [number, place]: [usize; 2], s: SVector<f64, N>) {
+        match self.rows.last_mut() {
+            Some(row) if row.number == number && place >= row.first => {
+                let unfound = SVector::repeat(f64::NAN);
+                row.found.resize(place - row.first, unfound);
+                row.found.push(s);
+            }
+            _ => {
+                let mut found = if self.rows.len() > DEPTH {
+                    self.rows.remove(0).found
+                } else {
+                    Vec::new()
+                };
+                found.clear();
+                found.push(s);
+                self.rows.push(Row {
+                    number,
+                    first: place,
+                    found,
+                });
+            }
+        }
+    }
+
+    /// The solution `back` rows before row `number`.
+    fn at(&self, number: usize, back: usize, place: usize) -> Option<&SVector<f64, N>> {
+        let wanted = number.checked_sub(back)?;
+        let row = self.rows.iter().rev().take(back + 1).find(|row| row.number == wanted)?;
+        let s = row.found.get(place.checked_sub(row.first)?)?;
+        (!s[0].is_nan()).then_some(s)
+    }
+
+    /// Where the solution at this place of the lattice should be.
+    pub fn guess(&self, [number, place]: [usize; 2]) -> Option<SVector<f64, N>> {
+        let along = |n: usize| place.checked_sub(n).and_then(|place| self.at(number, 0, place));
+        let across = |n: usize| self.at(number, n, place);
+        let count = |neighbour: &dyn Fn(usize) -> bool| (1..=DEPTH).take_while(|n| neighbour(*n)).count();
+        let in_row = count(&|n| along(n).is_some());
+        let in_column = if in_row == DEPTH {
+            0
+        } else {
+            count(&|n| across(n).is_some())
+        };
+        let most = in_row.max(in_column);
+        if most < 2 {
+            return None;
+        }
+        let factors = EXTRAPOLATION[most].iter().enumerate();
+        let mut sum = SVector::zeros();
+        for (n, factor) in factors {
+            sum += (if in_row >= in_column {
+                along(n + 1)
+            } else {
+                across(n + 1)
+            })? * *factor;
+        }
+        Some(sum)
+    }
+}
