@@ -3,6 +3,7 @@
 use crate::element::{Cells, Element};
 use crate::envelope::{Face, Joint, Near, OnFace, ROOT, Rim, Side, Size, Twist};
 use crate::generic::Part;
+use crate::instant::Motion;
 use crate::lattice::Lattice;
 use crate::placed::Placed;
 use crate::planes::Slicer;
@@ -294,6 +295,7 @@ impl Search<'_> {
     ) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Face {
+                motion: Motion::new(times, element.frame()),
                 element,
                 cells,
                 times,
@@ -376,6 +378,7 @@ impl Search<'_> {
     ) {
         for (number, (element, cells)) in self.cutter.rims.iter().zip(&mut space.rims).enumerate() {
             let mut map = Rim {
+                motion: Motion::new(times, None),
                 element,
                 cells,
                 times,
@@ -412,15 +415,8 @@ impl Search<'_> {
 
     fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
-            let mut map = Joint {
-                element,
-                cells,
-                turn: placed.turn,
-                tip: placed.tip,
-                before: placed.before,
-                after: placed.after,
-                size: self.size,
-            };
+            let pose = (placed.turn, placed.tip);
+            let mut map = Joint::new(element, cells, pose, [placed.before, placed.after], self.size);
             let mut sink = Collector::new();
             match forms {
                 Some(forms) => {

@@ -5,8 +5,9 @@
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
 use crate::form::{Form, MOST, basis, cut, restrict};
+use crate::instant::{Frame, Revolution, Table};
 use crate::point::{FacePoint, FieldPoint, RimPoint, revolved};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
 
 /// Cuts are off the middle, so that what is symmetric does not lie on them.
@@ -40,6 +41,12 @@ pub(crate) struct Element {
     pub largest_moment: f64,
     /// A shorter way to its points, where there is one.
     revolved: Option<Revolved>,
+    /// The same, arranged for the inner loop.
+    pub revolution: Option<Revolution>,
+    /// Homogeneous position, arranged for it.
+    pub places: Table,
+    /// All fields one after another, arranged for it.
+    pub normals: Table,
 }
 
 /// The tensors of a cell: position x, y, z, weight; then per variable the same of the derivative; then per field N, M.
@@ -62,6 +69,7 @@ impl Element {
     fn patch(patch: &Patch) -> Self {
         let element = Self::new(&patch.position, &patch.weight, &[&patch.field], 2);
         Self {
+            revolution: patch.revolved.as_ref().map(Revolution::new),
             revolved: patch.revolved.clone(),
             ..element
         }
@@ -110,6 +118,7 @@ impl Element {
             })
             .collect();
         let mut largest = [0.0_f64; 2];
+        let mut all: Vec<Form> = Vec::new();
         let fields = fields
             .iter()
             .map(|field| {
@@ -117,6 +126,7 @@ impl Element {
                 for (k, form) in forms.iter().enumerate() {
                     largest[k / 3] = largest[k / 3].max(form.largest());
                 }
+                all.extend_from_slice(&forms);
                 put(&forms)
             })
             .collect();
@@ -132,6 +142,9 @@ impl Element {
             largest_normal: largest[0],
             largest_moment: largest[1],
             revolved: None,
+            revolution: None,
+            places: table(point.iter().chain([&weight])),
+            normals: table(all.iter()),
         }
     }
 
@@ -144,7 +157,7 @@ impl Element {
     }
 
     /// The frame of the points of [`Element::face`] in the tool; `None` when it is the tool's.
-    pub fn frame(&self) -> Option<&(Matrix3<f64>, Vector3<f64>)> {
+    pub fn frame(&self) -> Option<&Frame> {
         self.revolved.as_ref().and_then(|revolution| revolution.frame.as_ref())
     }
 
@@ -251,6 +264,12 @@ fn sums_in_general<const COUNT: usize>(c: &[f64], [p, q]: [usize; 2], at: [f64; 
         }
     }
     sums
+}
+
+/// Forms raised to common degrees.
+fn table<'a>(forms: impl Iterator<Item = &'a Form> + Clone) -> Table {
+    let degrees = [0, 1].map(|axis| forms.clone().map(|form| form.degrees[axis]).max().unwrap_or(0));
+    Table::new(&forms.map(|form| form.raised(degrees)).collect::<Vec<_>>(), degrees)
 }
 
 /// A vector-valued list of coefficients: x, y and z apart.
@@ -514,6 +533,7 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Matrix3;
     use proptest::prelude::*;
 
     proptest! {

@@ -36,6 +36,7 @@ mod element;
 mod envelope;
 mod form;
 mod generic;
+mod instant;
 mod lattice;
 mod piece;
 mod placed;
