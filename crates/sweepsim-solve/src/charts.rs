@@ -97,7 +97,7 @@ pub struct Preimage<const N: usize, S = ()> {
     pub target: usize,
     /// The solution.
     pub x: [f64; N],
-    /// Where Newton's method came from in its last step, at most [`ChartOptions::accept`] away.
+    /// Where Newton's method came from in its last step.
     pub from: [f64; N],
     /// What the map saw there.
     pub seen: S,
@@ -130,6 +130,10 @@ pub struct Undecided<const N: usize> {
 pub trait Sink<const N: usize, S = ()> {
     /// A solution.
     fn found(&mut self, preimage: Preimage<N, S>);
+    /// What was received so far, to [forget](Sink::forget) what comes after.
+    fn mark(&self) -> usize;
+    /// Takes back the solutions since the mark: their box is looked at again, in parts.
+    fn forget(&mut self, mark: usize);
     /// A box and a target that remain open.
     fn undecided(&mut self, undecided: Undecided<N>);
 }
@@ -141,8 +145,7 @@ pub struct ChartOptions {
     pub boxes: u64,
     /// A box whose sides are all at most this part of the domain is not split further.
     pub smallest: f64,
-    /// Newton's method ends with a step of at most this part of the half sides of a chart. The solution is then exact to about
-    /// the square of it.
+    /// Newton's method ends with a step that leaves an error of about the square of this, in parts of the domain.
     pub accept: f64,
 }
 
@@ -404,13 +407,9 @@ struct Witness<const N: usize> {
 }
 
 /// What became of a target in a chart.
-enum Outcome<const N: usize, S> {
-    Found {
-        s: SVector<f64, N>,
-        from: [f64; N],
-        seen: S,
-    },
-    Absent,
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Settled,
     Unclear,
 }
 
@@ -555,21 +554,18 @@ impl<C: Clone> ChartSolver<C> {
         T: Targets<N> + ?Sized,
         S: Sink<N, M::Seen>,
     {
-        let origin = SVector::<f64, N>::zeros();
         let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
-        let mut found: Vec<Preimage<N, M::Seen>> = Vec::new();
+        let centre = Witness {
+            at: SVector::zeros(),
+            value: *value,
+        };
+        let mark = sink.mark();
         let mut trail = Trail::new();
         let mut clear = true;
         let Self {
             options, statistics, ..
         } = self;
-        let chart = Chart {
-            linear,
-            contraction,
-            bounds,
-            domain,
-            accept: options.accept,
-        };
+        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
         // Of the last target looked at, and of the first one found in the row.
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
@@ -580,42 +576,45 @@ impl<C: Clone> ChartSolver<C> {
                 row = target.place[0];
                 last = first.take().or(last);
             }
-            let mut region = Region::around(&origin, &SVector::repeat(1.0));
-            let near = last.map(|witness| {
-                let (place, own) = chart.region(&witness, q);
-                region.intersect(&own);
-                place
-            });
-            let mut start = origin;
-            if near.is_none() || !region.is_empty() {
-                start = linear.predict(&origin, value, q);
+            let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
+            region.intersect(&Region::around(&centre.at, &SVector::repeat(1.0)));
+            if !region.is_empty() {
+                let start = linear.predict(&centre.at, value, q);
                 region.intersect(&Region::around(&start, &reach));
             }
             if region.is_empty() {
                 return true;
             }
-            let guess = trail.guess(target.place).or(near).unwrap_or(start);
-            let mut witness = None;
-            match chart.solve(map, guess, region, q, &mut witness, &mut statistics.evaluations) {
-                Outcome::Found { s, from, seen } => {
-                    first = first.or(witness);
+            let guess = trail.guess(target.place).unwrap_or(near);
+            let (mut witness, mut hit) = (None, false);
+            let outcome = chart.solve(
+                map,
+                guess,
+                region,
+                q,
+                &mut witness,
+                &mut statistics.evaluations,
+                &mut |s, from, seen| {
                     trail.push(target.place, s);
-                    found.push(Preimage {
+                    sink.found(Preimage {
                         target: target.number,
                         x: linear.point(&s),
                         from,
                         seen,
                         orientation: linear.orientation,
                     });
-                }
-                Outcome::Absent => {}
-                Outcome::Unclear => clear = false,
+                    hit = true;
+                },
+            );
+            if hit {
+                first = first.or(witness);
             }
             last = witness.or(last);
+            clear = outcome == Outcome::Settled;
             clear
         });
-        if clear {
-            found.into_iter().for_each(|preimage| sink.found(preimage));
+        if !clear {
+            sink.forget(mark);
         }
         clear
     }
@@ -627,10 +626,37 @@ struct Chart<'a, const N: usize> {
     contraction: &'a Contraction<N>,
     bounds: &'a [Interval; N],
     domain: &'a [Interval; N],
-    accept: f64,
+    /// The longest last step of Newton's method, in half sides: well inside the box, and near a face.
+    accept: [f64; 2],
 }
 
-impl<const N: usize> Chart<'_, N> {
+/// So near a face, in half sides, Newton's method is as exact as if the box were the whole domain.
+const NEAR_FACE: f64 = 1e-4;
+/// No last step is longer than this.
+const LONGEST: f64 = 1e-3;
+
+impl<'a, const N: usize> Chart<'a, N> {
+    fn new(
+        linear: &'a Linear<N>,
+        contraction: &'a Contraction<N>,
+        bounds: &'a [Interval; N],
+        domain: &'a [Interval; N],
+        accept: f64,
+    ) -> Self {
+        // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; what else the
+        // map knows is off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
+        let part = (0..N).map(|i| bounds[i].radius() / domain[i].radius()).fold(0.0, f64::max);
+        let scale = (part * part.max(linear.norm())).sqrt();
+        let inside = (accept / scale).min(LONGEST).max(accept);
+        Self {
+            linear,
+            contraction,
+            bounds,
+            domain,
+            accept: [inside, accept],
+        }
+    }
+
     /// Where a preimage of `q` seems to be, seen from a place, and the region that it is in if it is in the box.
     fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
         let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
@@ -641,6 +667,8 @@ impl<const N: usize> Chart<'_, N> {
 
     /// Newton's method from `guess`. Each point that it evaluates in the box also bounds, by the mean value theorem about it,
     /// where in the box a preimage can be; when nothing is left, there is none.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
     fn solve<M: ChartMap<N>>(
         &self,
         map: &M,
@@ -649,7 +677,8 @@ impl<const N: usize> Chart<'_, N> {
         q: &[f64; N],
         witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-    ) -> Outcome<N, M::Seen> {
+        found: &mut impl FnMut(SVector<f64, N>, [f64; N], M::Seen),
+    ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
         for _ in 0..STEPS {
@@ -666,25 +695,27 @@ impl<const N: usize> Chart<'_, N> {
             let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
             let next = solve_linear(&scaled, &rest).map(|step| s - step);
             let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
-            if let Some(next) = next
-                && step <= self.accept
-                && self.owns(&next)
-            {
-                let seen = sample.seen;
-                return Outcome::Found { s: next, from, seen };
+            if let Some(next) = next {
+                let near_face = next.amax() > 1.0 - NEAR_FACE;
+                if step <= self.accept[usize::from(near_face)] && self.owns(&next) {
+                    found(next, from, sample.seen);
+                    return Outcome::Settled;
+                }
             }
             let (predicted, own) = self.region(&here, q);
             let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - s[i], s[i] - region.lo[i]));
             region.intersect(&own);
             region.intersect(&Region::around(&predicted, &(linear.rest * far + linear.slack)));
             if region.is_empty() {
-                return Outcome::Absent;
+                return Outcome::Settled;
             }
             if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
-                let seen = sample.seen;
                 return match next {
-                    Some(next) if self.owns(&next) => Outcome::Found { s: next, from, seen },
-                    Some(_) if step <= self.accept => Outcome::Absent,
+                    Some(next) if self.owns(&next) => {
+                        found(next, from, sample.seen);
+                        Outcome::Settled
+                    }
+                    Some(_) if step <= self.accept[1] => Outcome::Settled,
                     _ => Outcome::Unclear,
                 };
             }

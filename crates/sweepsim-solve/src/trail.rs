@@ -15,13 +15,32 @@ const EXTRAPOLATION: [&[f64]; DEPTH + 1] = [
     &[5.0, -10.0, 10.0, -5.0, 1.0],
 ];
 
+/// Places before the first of a row that it is continued to, when the next begins: that one may begin earlier.
+const BEFORE: usize = 3;
+
 /// What was found in a row, from its first place on.
 #[derive(Debug)]
 struct Row<const N: usize> {
     number: usize,
+    /// [`BEFORE`] places before that of the first solution. Places are counted from there, so that there are some before 0.
     first: usize,
     /// NaN where nothing was found.
     found: Vec<SVector<f64, N>>,
+}
+
+impl<const N: usize> Row<N> {
+    /// Continues the row backwards.
+    fn close(&mut self) {
+        let solutions = self.found[BEFORE..].iter().take_while(|s| !s[0].is_nan());
+        let count = solutions.take(DEPTH).count();
+        if count < 2 {
+            return;
+        }
+        for place in (0..BEFORE).rev() {
+            let factors = EXTRAPOLATION[count].iter().enumerate();
+            self.found[place] = factors.map(|(n, factor)| self.found[place + 1 + n] * *factor).sum();
+        }
+    }
 }
 
 /// The solutions in the last rows of a lattice.
@@ -37,6 +56,7 @@ impl<const N: usize> Trail<N> {
     }
 
     pub fn push(&mut self, [number, place]: [usize; 2], s: SVector<f64, N>) {
+        let place = place + BEFORE;
         match self.rows.last_mut() {
             Some(row) if row.number == number && place >= row.first => {
                 let unfound = SVector::repeat(f64::NAN);
@@ -44,16 +64,20 @@ impl<const N: usize> Trail<N> {
                 row.found.push(s);
             }
             _ => {
+                if let Some(row) = self.rows.last_mut() {
+                    row.close();
+                }
                 let mut found = if self.rows.len() > DEPTH {
                     self.rows.remove(0).found
                 } else {
                     Vec::new()
                 };
                 found.clear();
+                found.resize(BEFORE, SVector::repeat(f64::NAN));
                 found.push(s);
                 self.rows.push(Row {
                     number,
-                    first: place,
+                    first: place - BEFORE,
                     found,
                 });
             }
@@ -70,6 +94,7 @@ impl<const N: usize> Trail<N> {
 
     /// Where the solution at this place of the lattice should be.
     pub fn guess(&self, [number, place]: [usize; 2]) -> Option<SVector<f64, N>> {
+        let place = place + BEFORE;
         let along = |n: usize| place.checked_sub(n).and_then(|place| self.at(number, 0, place));
         let across = |n: usize| self.at(number, n, place);
         let count = |neighbour: &dyn Fn(usize) -> bool| (1..=DEPTH).take_while(|n| neighbour(*n)).count();

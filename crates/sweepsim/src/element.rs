@@ -419,30 +419,36 @@ impl Cells {
         points.resize(self.points, 0.0);
         for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
             let len = slot.len();
-            let weights = &c[slot.start + 3 * len..][..len];
-            for k in 0..3 {
-                for i in 0..len {
-                    let place = slot.start + k * len + i;
-                    points[place] = c[place] / weights[i];
-                }
+            let of = &c[slot.start..][..4 * len];
+            let out = &mut points[slot.start..][..3 * len];
+            let (x, rest) = out.split_at_mut(len);
+            let (y, z) = rest.split_at_mut(len);
+            for i in 0..len {
+                let inverse = 1.0 / of[3 * len + i];
+                x[i] = of[i] * inverse;
+                y[i] = of[len + i] * inverse;
+                z[i] = of[2 * len + i] * inverse;
             }
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
-                let [p, q] = slot.degrees;
+                let p = slot.degrees[0];
                 let n = slot.degrees[axis];
                 if n == 0 {
                     continue;
                 }
                 let factor = n as f64 / (upper[axis] - lower[axis]);
-                let (rows, columns, next) = if axis == 0 { (q + 1, p, 1) } else { (q, p + 1, p + 1) };
-                for k in 0..6 {
-                    let tensor = &c[slot.start + k * slot.len()..][..slot.len()];
-                    let out = &mut points[start + k * len..][..*len];
-                    for j in 0..rows {
-                        for i in 0..columns {
-                            let place = i + (p + 1) * j;
-                            out[i + columns * j] = factor * (tensor[place + next] - tensor[place]);
+                let tensors = c[slot.start..][..6 * slot.len()].chunks_exact(slot.len());
+                for (tensor, out) in tensors.zip(points[*start..][..6 * len].chunks_exact_mut(*len)) {
+                    if axis == 0 {
+                        for (line, out) in tensor.chunks_exact(p + 1).zip(out.chunks_exact_mut(p)) {
+                            for (out, pair) in out.iter_mut().zip(line.windows(2)) {
+                                *out = factor * (pair[1] - pair[0]);
+                            }
+                        }
+                    } else {
+                        for ((out, next), this) in out.iter_mut().zip(&tensor[p + 1..]).zip(tensor) {
+                            *out = factor * (next - this);
                         }
                     }
                 }
@@ -476,12 +482,9 @@ impl Cells {
             .chain(&layout.slopes)
             .map(|slot| (slot, 4));
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
-            for k in 0..count {
-                let range = slot.range();
-                let (start, end) = (range.start + k * slot.len(), range.end + k * slot.len());
-                let (low, high) = (&mut lower[start..end], &mut upper[start..end]);
-                cut(&node.c[start..end], slot.degrees, axis, CUT, low, high);
-            }
+            let range = slot.start..slot.start + count * slot.len();
+            let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
+            cut(&node.c[range], slot.degrees, axis, CUT, low, high);
         }
         let at = node.lower[axis] + CUT * (node.upper[axis] - node.lower[axis]);
         let (mut low_end, mut high_start) = (node.upper, node.lower);

@@ -13,62 +13,13 @@
 
 use crate::element::{Cells, Element, Triples};
 use crate::instant::{Frame, Motion, Placing, Quad, Twisted, position, vector};
+use crate::ranges::{envelope, products, shifted_products};
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Interval, Sample};
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-
-/// Range of `⟨row, point⟩` over all rows and points.
-fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for row in rows {
-        for i in 0..points.len() {
-            let value = points.dot(row, i);
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
-
-/// Range of `⟨row, point⟩ + offset` over all rows with their offsets, and all points.
-fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Triples) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (row, offset) in rows.iter().zip(offsets) {
-        for i in 0..points.len() {
-            let value = points.dot(row, i) + offset;
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
-
-/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; one spin alone goes with all rows.
-fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    let [constant] = spins else {
-        for i in 0..n.len() {
-            for (spin, row) in spins.iter().zip(rows) {
-                let value = m.dot(spin, i) + n.dot(row, i);
-                lo = if value < lo { value } else { lo };
-                hi = if value > hi { value } else { hi };
-            }
-        }
-        return (lo, hi);
-    };
-    for i in 0..n.len() {
-        let fixed = m.dot(constant, i);
-        for row in rows {
-            let value = fixed + n.dot(row, i);
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
 fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {

@@ -57,8 +57,8 @@ impl<'a> Lattice<'a> {
                 n.clamp(window[0] as f64, window[1] as f64)
             }
         };
-        let mut lo = (number(range.lo, window[0]) - 0.5).round().max(window[0] as f64) as usize;
-        let mut hi = (number(range.hi, window[1]) + 0.5).round().min(window[1] as f64) as usize;
+        let mut lo = number(range.lo, window[0]) as usize;
+        let mut hi = (number(range.hi, window[1]) as usize + 1).min(window[1]);
         // The division only guessed: the lines' own coordinates decide.
         while lo <= hi && self.coordinate(axis, lo) < range.lo {
             lo += 1;

@@ -42,6 +42,7 @@ mod piece;
 mod placed;
 mod planes;
 mod point;
+mod ranges;
 mod section;
 mod section_svg;
 mod simulate;
