@@ -252,7 +252,7 @@ impl Dexels {
     /// overlap; they are left sorted by line. Those beyond the grid or without length change nothing.
     pub fn update(&mut self, operation: Operation, intervals: &mut [(u32, Interval)]) {
         intervals.par_sort_by(|(a, p), (b, q)| a.cmp(b).then(p.lower.z.total_cmp(&q.lower.z)));
-        self.update_by(operation, intervals, |group, out| {
+        self.update_by(operation, intervals, |group, (): &mut (), out| {
             out.extend(group.iter().map(|(_, interval)| *interval));
             normalise(out);
         });
@@ -264,14 +264,18 @@ impl Dexels {
     pub fn update_by_crossings(
         &mut self,
         operation: Operation,
-        crossings: &mut [(u32, Crossing)],
+        crossings: &[(u32, Crossing)],
         same: f64,
     ) -> Vec<(u32, AuditFailure)> {
-        crossings.par_sort_by_key(|(line, _)| *line);
+        // Their numbers are sorted, which are shorter: by line, and as they came.
+        let numbers = crossings.iter().zip(0_u32..);
+        let mut sorted: Vec<(u32, u32)> = numbers.map(|((line, _), number)| (*line, number)).collect();
+        sorted.par_sort_unstable();
         let failures = std::sync::Mutex::new(Vec::new());
-        self.update_by(operation, crossings, |group, out| {
-            let mut line: Vec<Crossing> = group.iter().map(|(_, crossing)| *crossing).collect();
-            if let Err(failure) = cover(&mut line, same, out)
+        self.update_by(operation, &sorted, |group, line: &mut Vec<Crossing>, out| {
+            line.clear();
+            line.extend(group.iter().map(|(_, number)| crossings[*number as usize].1));
+            if let Err(failure) = cover(line, same, out)
                 && let (Some((number, _)), Ok(mut failures)) = (group.first(), failures.lock())
             {
                 failures.push((*number, failure));
@@ -282,18 +286,19 @@ impl Dexels {
         failures
     }
 
-    /// Updates by anything sorted by line: `read` makes intervals in normal form of all there is for a line.
-    fn update_by<T: Sync>(
+    /// Updates by anything sorted by line: `read` makes intervals in normal form of all there is for a line. What it works with is kept
+    /// for the next line.
+    fn update_by<T: Sync, W: Default>(
         &mut self,
         operation: Operation,
         sorted: &[(u32, T)],
-        read: impl Fn(&[(u32, T)], &mut Vec<Interval>) + Sync,
+        read: impl Fn(&[(u32, T)], &mut W, &mut Vec<Interval>) + Sync,
     ) {
         let run = operation.run();
         let lines = self.grid.len();
         let chunks = self.chunks.par_iter_mut().enumerate();
-        type Lists = (Vec<Interval>, Vec<Piece>, Vec<Piece>);
-        chunks.for_each_init(Lists::default, |(intervals, packed, scratch), (number, slot)| {
+        type Lists<W> = (W, Vec<Interval>, Vec<Piece>, Vec<Piece>);
+        chunks.for_each_init(Lists::<W>::default, |(work, intervals, packed, scratch), (number, slot)| {
             let begin = |line: usize| sorted.partition_point(|(at, _)| (*at as usize) < line);
             let (first, last) = (number * LINES, ((number + 1) * LINES).min(lines));
             let mut mine = &sorted[begin(first)..begin(last)];
@@ -312,7 +317,7 @@ impl Dexels {
                 let here = mine.partition_point(|(at, _)| *at as usize == first + line);
                 if here > 0 {
                     intervals.clear();
-                    read(&mine[..here], intervals);
+                    read(&mine[..here], work, intervals);
                     chunk.pack(intervals, packed);
                     mine = &mine[here..];
                 }

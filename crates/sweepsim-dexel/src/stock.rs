@@ -351,7 +351,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
         .flatten()
         .fold(0.0, |size: f64, c| size.max(c.abs()));
     let same = 64.0 * f64::EPSILON * size;
-    match dexels.update_by_crossings(Operation::Union, &mut found, same).first() {
+    match dexels.update_by_crossings(Operation::Union, &found, same).first() {
         None => Ok(dexels),
         Some((index, _)) => {
             let (i, j) = grid.place(*index as usize);

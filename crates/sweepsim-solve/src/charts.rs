@@ -559,6 +559,8 @@ impl<C: Clone> ChartSolver<C> {
             at: SVector::zeros(),
             value: *value,
         };
+        let whole = Region::around(&centre.at, &SVector::repeat(1.0));
+        let close = linear.norm() < CLOSE;
         let mark = sink.mark();
         let mut trail = Trail::new();
         let mut clear = true;
@@ -577,8 +579,9 @@ impl<C: Clone> ChartSolver<C> {
                 last = first.take().or(last);
             }
             let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
-            region.intersect(&Region::around(&centre.at, &SVector::repeat(1.0)));
-            if !region.is_empty() {
+            region.intersect(&whole);
+            // What is near needs no second view.
+            if (!close || last.is_none()) && !region.is_empty() {
                 let start = linear.predict(&centre.at, value, q);
                 region.intersect(&Region::around(&start, &reach));
             }

@@ -26,6 +26,8 @@ struct Row<const N: usize> {
     first: usize,
     /// NaN where nothing was found.
     found: Vec<SVector<f64, N>>,
+    /// So many of the last were found one after the other.
+    run: usize,
 }
 
 impl<const N: usize> Row<N> {
@@ -59,9 +61,12 @@ impl<const N: usize> Trail<N> {
         let place = place + BEFORE;
         match self.rows.last_mut() {
             Some(row) if row.number == number && place >= row.first => {
-                let unfound = SVector::repeat(f64::NAN);
-                row.found.resize(place - row.first, unfound);
+                if row.found.len() < place - row.first {
+                    row.found.resize(place - row.first, SVector::repeat(f64::NAN));
+                    row.run = 0;
+                }
                 row.found.push(s);
+                row.run += 1;
             }
             _ => {
                 if let Some(row) = self.rows.last_mut() {
@@ -79,6 +84,7 @@ impl<const N: usize> Trail<N> {
                     number,
                     first: place - BEFORE,
                     found,
+                    run: 1,
                 });
             }
         }
@@ -95,28 +101,26 @@ impl<const N: usize> Trail<N> {
     /// Where the solution at this place of the lattice should be.
     pub fn guess(&self, [number, place]: [usize; 2]) -> Option<SVector<f64, N>> {
         let place = place + BEFORE;
-        let along = |n: usize| place.checked_sub(n).and_then(|place| self.at(number, 0, place));
-        let across = |n: usize| self.at(number, n, place);
-        let count = |neighbour: &dyn Fn(usize) -> bool| (1..=DEPTH).take_while(|n| neighbour(*n)).count();
-        let in_row = count(&|n| along(n).is_some());
-        let in_column = if in_row == DEPTH {
-            0
+        let row = self.rows.last()?;
+        let in_row = if row.number == number && row.first + row.found.len() == place {
+            row.run.min(DEPTH)
         } else {
-            count(&|n| across(n).is_some())
+            0
         };
+        let across = |n: usize| self.at(number, n, place);
+        let mut in_column = 0;
+        if in_row < DEPTH {
+            in_column = (1..=DEPTH).take_while(|n| across(*n).is_some()).count();
+        }
         let most = in_row.max(in_column);
         if most < 2 {
             return None;
         }
-        let factors = EXTRAPOLATION[most].iter().enumerate();
-        let mut sum = SVector::zeros();
-        for (n, factor) in factors {
-            sum += (if in_row >= in_column {
-                along(n + 1)
-            } else {
-                across(n + 1)
-            })? * *factor;
+        let factors = EXTRAPOLATION[most].iter();
+        if in_row >= in_column {
+            let last = row.found.iter().rev();
+            return Some(last.zip(factors).map(|(s, factor)| s * *factor).sum());
         }
-        Some(sum)
+        factors.zip(1..).map(|(factor, n)| Some(across(n)? * *factor)).sum()
     }
 }

@@ -292,10 +292,9 @@ impl ChartMap<2> for Rim<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnRim> {
-        let at = [x[0], 0.0];
         let instant = self.motion.at(self.times, x[1]);
-        let [position, slope, _] = position(&self.element.places.at::<4>(at));
-        let [fields, in_r, _] = self.element.normals.at::<12>(at);
+        let [position, slope] = position(&self.element.places.along::<4>(x[0]));
+        let [fields, in_r] = self.element.normals.along::<12>(x[0]);
         let placing = &instant.placing;
         let (arm, slope) = (placing.turned(&position), placing.turned(&slope));
         let place: Quad = std::array::from_fn(|k| arm[k] + placing.origin[k]);

@@ -353,7 +353,6 @@ impl Table {
     /// Values and both derivatives of the `K` forms.
     pub fn at<const K: usize>(&self, [u, v]: [f64; 2]) -> [[f64; K]; 3] {
         match self.degrees {
-            [2, 0] => self.sums::<K, 3, 1>(&quadratics(u), &[[1.0], [0.0]]),
             [2, 1] => self.sums::<K, 3, 2>(&quadratics(u), &[[1.0 - v, v], [-1.0, 1.0]]),
             [2, 2] => self.sums::<K, 3, 3>(&quadratics(u), &quadratics(v)),
             [p, q] => {
@@ -368,6 +367,18 @@ impl Table {
                 sums
             }
         }
+    }
+
+    /// Values and derivatives of the `K` forms, of no degree in the second variable.
+    pub fn along<const K: usize>(&self, u: f64) -> [[f64; K]; 2] {
+        let rows = |i: usize| self.c.get(i * K..)?.first_chunk::<K>();
+        if self.degrees == [2, 0]
+            && let (Some(a), Some(b), Some(c)) = (rows(0), rows(1), rows(2))
+        {
+            return quadratics(u).map(|[p, q, r]| std::array::from_fn(|k| p * a[k] + q * b[k] + r * c[k]));
+        }
+        let [value, slope, _] = self.at::<K>([u, 0.0]);
+        [value, slope]
     }
 
     fn sums<const K: usize, const P: usize, const Q: usize>(
@@ -400,11 +411,12 @@ fn accumulate<const K: usize>(sums: &mut [[f64; K]; 3], line: &[f64], [a, da]: [
 }
 
 /// Position and its derivatives from their homogeneous forms.
-pub(crate) fn position([value, in_u, in_v]: &[[f64; 4]; 3]) -> [Vector3<f64>; 3] {
+pub(crate) fn position<const N: usize>(forms: &[[f64; 4]; N]) -> [Vector3<f64>; N] {
+    let value = &forms[0];
     let inverse = 1.0 / value[3];
     let place = Vector3::new(value[0], value[1], value[2]) * inverse;
     let slope = |d: &[f64; 4]| (Vector3::new(d[0], d[1], d[2]) - place * d[3]) * inverse;
-    [place, slope(in_u), slope(in_v)]
+    std::array::from_fn(|k| if k == 0 { place } else { slope(&forms[k]) })
 }
 
 impl Twisted {

@@ -95,7 +95,7 @@ proptest! {
             })
         }).collect();
         let mut counted = first.clone();
-        prop_assert!(counted.update_by_crossings(operation, &mut crossings, 0.0).is_empty());
+        prop_assert!(counted.update_by_crossings(operation, &crossings, 0.0).is_empty());
         let heights = |dexels: &Dexels| -> Vec<Vec<[f64; 2]>> {
             (0..grid.len()).map(|index| dexels.at(index).heights().collect()).collect()
         };
@@ -164,7 +164,7 @@ fn failures_are_named() {
         (7, crossing(2.0, -1)),
         (99, crossing(1.0, -1)),
     ];
-    let failures = dexels.update_by_crossings(Operation::Union, &mut all, 0.0);
+    let failures = dexels.update_by_crossings(Operation::Union, &all, 0.0);
     assert_eq!(
         failures.iter().map(|(line, f)| (*line, f.sum)).collect::<Vec<_>>(),
         [(3, 1), (99, -1)]
