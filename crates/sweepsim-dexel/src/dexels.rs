@@ -36,6 +36,33 @@ impl Operation {
     }
 }
 
+/// The lines of crossings and the numbers of the crossings, sorted: counted into chunks of lines, then sorted in each. Crossings beyond the last
+/// chunk are left out.
+fn numbered_by_line(crossings: &[(u32, Crossing)], chunks: usize) -> Vec<(u32, u32)> {
+    let chunk = |line: u32| line as usize / LINES;
+    let mut ends = vec![0_usize; chunks + 1];
+    for (line, _) in crossings {
+        if let Some(end) = ends.get_mut(chunk(*line) + 1) {
+            *end += 1;
+        }
+    }
+    for k in 0..chunks {
+        ends[k + 1] += ends[k];
+    }
+    let mut sorted = vec![(0, 0); ends[chunks]];
+    for ((line, _), number) in crossings.iter().zip(0_u32..) {
+        let at = chunk(*line);
+        if at < chunks {
+            sorted[ends[at]] = (*line, number);
+            ends[at] += 1;
+        }
+    }
+    sorted
+        .par_chunk_by_mut(|(a, _), (b, _)| chunk(*a) == chunk(*b))
+        .for_each(<[(u32, u32)]>::sort_unstable);
+    sorted
+}
+
 /// Intervals of material on every line of a grid: per line sorted, disjoint, of positive length.
 ///
 /// An interval takes 32 bytes and a line about 5 beside them; sixty-four neighbouring lines without material take 8 bytes together.
@@ -267,10 +294,7 @@ impl Dexels {
         crossings: &[(u32, Crossing)],
         same: f64,
     ) -> Vec<(u32, AuditFailure)> {
-        // Their numbers are sorted, which are shorter: by line, and as they came.
-        let numbers = crossings.iter().zip(0_u32..);
-        let mut sorted: Vec<(u32, u32)> = numbers.map(|((line, _), number)| (*line, number)).collect();
-        sorted.par_sort_unstable();
+        let sorted = numbered_by_line(crossings, self.chunks.len());
         let failures = std::sync::Mutex::new(Vec::new());
         self.update_by(operation, &sorted, |group, line: &mut Vec<Crossing>, out| {
             line.clear();
@@ -298,38 +322,41 @@ impl Dexels {
         let lines = self.grid.len();
         let chunks = self.chunks.par_iter_mut().enumerate();
         type Lists<W> = (W, Vec<Interval>, Vec<Piece>, Vec<Piece>);
-        chunks.for_each_init(Lists::<W>::default, |(work, intervals, packed, scratch), (number, slot)| {
-            let begin = |line: usize| sorted.partition_point(|(at, _)| (*at as usize) < line);
-            let (first, last) = (number * LINES, ((number + 1) * LINES).min(lines));
-            let mut mine = &sorted[begin(first)..begin(last)];
-            let idle = if operation == Operation::Union {
-                mine.is_empty()
-            } else {
-                slot.is_none()
-            };
-            if idle || (mine.is_empty() && operation == Operation::Difference) {
-                return;
-            }
-            let chunk = slot.get_or_insert_default();
-            let mut ends = [0; LINES + 1];
-            packed.clear();
-            for line in 0..LINES {
-                let here = mine.partition_point(|(at, _)| *at as usize == first + line);
-                if here > 0 {
-                    intervals.clear();
-                    read(&mine[..here], work, intervals);
-                    chunk.pack(intervals, packed);
-                    mine = &mine[here..];
+        chunks.for_each_init(
+            Lists::<W>::default,
+            |(work, intervals, packed, scratch), (number, slot)| {
+                let begin = |line: usize| sorted.partition_point(|(at, _)| (*at as usize) < line);
+                let (first, last) = (number * LINES, ((number + 1) * LINES).min(lines));
+                let mut mine = &sorted[begin(first)..begin(last)];
+                let idle = if operation == Operation::Union {
+                    mine.is_empty()
+                } else {
+                    slot.is_none()
+                };
+                if idle || (mine.is_empty() && operation == Operation::Difference) {
+                    return;
                 }
-                ends[line + 1] = packed.len();
-            }
-            chunk.rebuild(scratch, |line, old, out| {
-                run(old, &packed[ends[line]..ends[line + 1]], out)
-            });
-            if chunk.is_empty() {
-                *slot = None;
-            }
-        });
+                let chunk = slot.get_or_insert_default();
+                let mut ends = [0; LINES + 1];
+                packed.clear();
+                for line in 0..LINES {
+                    let here = mine.partition_point(|(at, _)| *at as usize == first + line);
+                    if here > 0 {
+                        intervals.clear();
+                        read(&mine[..here], work, intervals);
+                        chunk.pack(intervals, packed);
+                        mine = &mine[here..];
+                    }
+                    ends[line + 1] = packed.len();
+                }
+                chunk.rebuild(scratch, |line, old, out| {
+                    run(old, &packed[ends[line]..ends[line + 1]], out)
+                });
+                if chunk.is_empty() {
+                    *slot = None;
+                }
+            },
+        );
     }
 
     /// All lines with material: their number and intervals, in order.

@@ -286,7 +286,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
     let [dx, dy] = grid.spacing();
     let shift = [dx * 7.548_776_662e-10, dy * 5.698_402_910e-10];
     let [columns, rows] = grid.cells();
-    let mut found: Vec<(u32, Crossing)> = soup
+    let found: Vec<(u32, Crossing)> = soup
         .triangles
         .par_iter()
         .flat_map_iter(|corners| {

@@ -187,7 +187,7 @@ const ON_FACE: f64 = 1e-11;
 /// Boxes with at most this many targets have each of them tested before a split.
 const FEW: usize = 4;
 /// A box whose range holds so many targets is a chart only when it is [`CLOSE`] to linear.
-const MANY: usize = 256;
+const MANY: usize = 1000;
 /// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
 
@@ -588,7 +588,7 @@ impl<C: Clone> ChartSolver<C> {
             if region.is_empty() {
                 return true;
             }
-            let guess = trail.guess(target.place).unwrap_or(near);
+            let guess = trail.guess(target.place).map_or(near, SVector::from);
             let (mut witness, mut hit) = (None, false);
             let outcome = chart.solve(
                 map,
@@ -598,7 +598,7 @@ impl<C: Clone> ChartSolver<C> {
                 &mut witness,
                 &mut statistics.evaluations,
                 &mut |s, from, seen| {
-                    trail.push(target.place, s);
+                    trail.push(target.place, s.into());
                     sink.found(Preimage {
                         target: target.number,
                         x: linear.point(&s),
@@ -648,7 +648,9 @@ impl<'a, const N: usize> Chart<'a, N> {
     ) -> Self {
         // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; what else the
         // map knows is off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
-        let part = (0..N).map(|i| bounds[i].radius() / domain[i].radius()).fold(0.0, f64::max);
+        let part = (0..N)
+            .map(|i| bounds[i].radius() / domain[i].radius())
+            .fold(0.0, f64::max);
         let scale = (part * part.max(linear.norm())).sqrt();
         let inside = (accept / scale).min(LONGEST).max(accept);
         Self {
@@ -825,4 +827,41 @@ fn widest<const N: usize>(
         return largest::<N>(&std::array::from_fn(|j| bounds[j].radius() / domain[j].radius()));
     }
     largest(&weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+
+    /// The bound of [`Contraction`] encloses `R(I − R)⁻¹`, and closely.
+    #[test]
+    fn contractions_are_the_limits_of_their_series() {
+        for norm in [0.0, 1e-3, 0.3, 0.9, 0.999] {
+            let rest = Matrix3::new(0.2, 0.5, 0.3, 0.1, 0.6, 0.2, 0.4, 0.0, 0.6) * norm;
+            let linear = Linear::<3> {
+                centre: [0.0; 3],
+                half: [1.0; 3],
+                inverse: Matrix3::identity(),
+                rest,
+                smear: [0.0; 3],
+                slack: Vector3::new(1e-12, 2e-12, 3e-12),
+                orientation: 1,
+            };
+            let found = linear.contraction().unwrap();
+            let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
+            let (exact, slack) = (rest * inverse, inverse * linear.slack);
+            let rounding = 1e-13 / (1.0 - norm);
+            for k in 0..9 {
+                assert!(
+                    found.rest[k] >= exact[k] - rounding && found.rest[k] <= exact[k] + 2e-3 * exact.amax() + rounding
+                );
+            }
+            for k in 0..3 {
+                assert!(
+                    found.slack[k] >= slack[k] * (1.0 - rounding) && found.slack[k] <= slack[k] + 2e-3 * slack.amax()
+                );
+            }
+        }
+    }
 }

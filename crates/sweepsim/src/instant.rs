@@ -426,3 +426,99 @@ impl Twisted {
         t[0] * n[0] + t[1] * n[1] + t[2] * n[2] + s[0] * m[0] + s[1] * m[1] + s[2] * m[2]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generic::parts;
+    use nalgebra::Rotation3;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Path, Pose, Tool};
+
+    fn near(a: &Quad, b: &Quad, error: f64) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() <= error)
+    }
+
+    proptest! {
+        /// Three ways to the points of surfaces of revolution agree: products of circle and meridian in a frame of their own, tensors, and
+        /// the patch as it is written, with differences for its derivatives.
+        #[test]
+        fn products_agree_with_tensors(
+            at in [0.01..0.99, 0.01..0.99], radius in 0.5..20.0, turn in [-3.0..3.0, -3.0..3.0, -3.0..3.0],
+            tip in [-50.0..50.0, -50.0..50.0, -50.0..50.0], spin in [-1.0..1.0, -1.0..1.0, -1.0..1.0],
+        ) {
+            let turn = Rotation3::new(Vector3::from(turn)).into_inner();
+            let (tip, spin) = (Vector3::from(tip), Vector3::from(spin));
+            let travel = Vector3::new(spin.z, 1.0 - spin.x, spin.y);
+            for tool in [Tool::ball(radius, 3.0 * radius), Tool::bull(radius, 0.3 * radius, 2.0 * radius)] {
+                let tool = tool.unwrap();
+                for (element, patch) in Element::all(&tool).0.iter().zip(tool.patches()) {
+                    let own = Placing::new(&turn, &tip, None);
+                    let (spot, fields) = own.spot(element, at);
+                    let g = fields.map(|field| Twisted::new(&spin, &travel, None).dot(&field));
+                    // A few dozen roundings of numbers of the size of the place, of the tool, and of normals of size 1 with their slopes.
+                    let size = 100.0 + 10.0 * radius;
+                    if let Some(revolution) = &element.revolution {
+                        let frame = element.frame();
+                        let placing = Placing::new(&turn, &tip, frame);
+                        let turned = revolution.at(&placing, at);
+                        let short = turned.spot();
+                        prop_assert!(near(&short.place, &spot.place, 1e-14 * size));
+                        for axis in 0..2 {
+                            prop_assert!(near(&short.slopes[axis], &spot.slopes[axis], 1e-13 * size));
+                        }
+                        prop_assert!(near(&short.normal, &spot.normal, 1e-13));
+                        let twist = Twisted::new(&spin, &travel, frame);
+                        let both = turned.envelopes(&twist);
+                        for d in 0..3 {
+                            prop_assert!((both[d] - g[d]).abs() <= 1e-13 * size, "{d}: {} {}", both[d], g[d]);
+                        }
+                        prop_assert_eq!(turned.envelope(&twist), both[0]);
+                    }
+                    let written = |u: f64, v: f64| turn * patch.place(u, v) + tip;
+                    let [u, v] = at;
+                    prop_assert!((vector(&spot.place) - written(u, v)).amax() <= 1e-13 * size);
+                    let h = 1e-5;
+                    let differences = [
+                        (written(u + h, v) - written(u - h, v)) / (2.0 * h),
+                        (written(u, v + h) - written(u, v - h)) / (2.0 * h),
+                    ];
+                    for axis in 0..2 {
+                        // Third derivatives are below 100 times the radius.
+                        prop_assert!((vector(&spot.slopes[axis]) - differences[axis]).amax() <= 1e-7 * size);
+                    }
+                }
+            }
+        }
+
+        /// The motion of an arc from its table of coefficients is the motion; velocities are differences of places.
+        #[test]
+        fn arcs_agree_with_their_moments(t in 0.01..0.99, from in [-0.5..0.5, -0.5..0.5], to in [-0.5..0.5, -0.5..0.5], still in any::<bool>()) {
+            let pose = |tip: [f64; 3], lean: [f64; 2]| Pose::new(tip, [lean[0], lean[1], 1.0]).unwrap();
+            let path = Path::new(vec![pose([0.0, 1.0, 2.0], from), pose([30.0, -10.0, 5.0], if still { from } else { to })]).unwrap();
+            let own: Frame = (Rotation3::new(Vector3::new(0.3, -0.7, 0.2)).into_inner(), Vector3::new(0.0, 0.0, 5.0));
+            for part in parts(&path, true, 40.0, 1e-6) {
+                let times = Times::new(&part.segment);
+                for frame in [None, Some(&own)] {
+                    let (motion, expected) = (Motion::new(&times, frame), Instant::of(&times.at(t), frame));
+                    let found = motion.at(&times, t);
+                    for k in 0..3 {
+                        prop_assert!(near(&found.placing.turn[k], &expected.placing.turn[k], 1e-14));
+                    }
+                    prop_assert!(near(&found.placing.origin, &expected.placing.origin, 1e-13));
+                    for (a, b) in [(found.own, expected.own), (found.change, expected.change)] {
+                        prop_assert!(near(&a.spin, &b.spin, 1e-13) && near(&a.travel, &b.travel, 1e-12));
+                    }
+                    let point = Vector3::new(3.0, -4.0, 7.0);
+                    let place = |t: f64| {
+                        let placing = motion.at(&times, t).placing;
+                        add(&placing.turned(&point), &placing.origin)
+                    };
+                    let h = 1e-5;
+                    let difference = sub(&place(t + h), &place(t - h)).map(|x| x / (2.0 * h));
+                    prop_assert!(near(&found.moving(&place(t)), &difference, 1e-6));
+                }
+            }
+        }
+    }
+}

@@ -41,7 +41,6 @@ mod lattice;
 mod piece;
 mod placed;
 mod planes;
-mod point;
 mod ranges;
 mod section;
 mod section_svg;

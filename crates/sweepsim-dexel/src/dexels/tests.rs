@@ -89,7 +89,7 @@ proptest! {
         set.shrink();
         prop_assert_eq!(&set, &combined);
         // Crossings of the same intervals: the same again.
-        let mut crossings: Vec<(u32, Crossing)> = b.iter().filter(|(_, i)| i.length() > 0.0).flat_map(|(line, i)| {
+        let crossings: Vec<(u32, Crossing)> = b.iter().filter(|(_, i)| i.length() > 0.0).flat_map(|(line, i)| {
             [(i.lower, 1), (i.upper, -1)].map(|(end, jump)| {
                 (*line, Crossing { z: end.z, jump, normal: end.normal, source: end.source })
             })
@@ -158,7 +158,7 @@ fn failures_are_named() {
         normal: [0.0, 0.0, 1.0],
         source: Source::STOCK,
     };
-    let mut all = vec![
+    let all = vec![
         (7, crossing(0.0, 1)),
         (3, crossing(1.0, 1)),
         (7, crossing(2.0, -1)),
