@@ -10,17 +10,22 @@ pub(crate) struct Lattice<'a> {
     pub shift: [f64; 2],
     pub i: [usize; 2],
     pub j: [usize; 2],
+    /// Where the first lines of the grid stand, and how many there are per length: about.
+    first: [f64; 2],
+    density: [f64; 2],
 }
 
 impl<'a> Lattice<'a> {
     /// All lines of the grid.
     pub fn all(grid: &'a Grid, shift: [f64; 2]) -> Self {
-        let [m, n] = grid.cells();
+        let ([m, n], spacing) = (grid.cells(), grid.spacing());
         Self {
             grid,
             shift,
             i: [0, m - 1],
             j: [0, n - 1],
+            first: [0, 1].map(|k| grid.min()[k] + 0.5 * spacing[k] + shift[k]),
+            density: spacing.map(f64::recip),
         }
     }
 
@@ -36,21 +41,18 @@ impl<'a> Lattice<'a> {
     pub fn one(grid: &'a Grid, index: usize, shift: [f64; 2]) -> Self {
         let (i, j) = grid.place(index);
         Self {
-            grid,
-            shift,
             i: [i, i],
             j: [j, j],
+            ..Self::all(grid, shift)
         }
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.
     pub fn numbers(&self, axis: usize, range: Interval) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
-        let spacing = self.grid.spacing()[axis];
-        let first = self.grid.min()[axis] + 0.5 * spacing + self.shift[axis];
         // NaN ranges hold everything.
         let number = |z: f64, otherwise: usize| {
-            let n = (z - first) / spacing;
+            let n = (z - self.first[axis]) * self.density[axis];
             if n.is_nan() {
                 otherwise as f64
             } else {
@@ -59,7 +61,7 @@ impl<'a> Lattice<'a> {
         };
         let mut lo = number(range.lo, window[0]) as usize;
         let mut hi = (number(range.hi, window[1]) as usize + 1).min(window[1]);
-        // The division only guessed: the lines' own coordinates decide.
+        // The product only guessed: the lines' own coordinates decide.
         while lo <= hi && self.coordinate(axis, lo) < range.lo {
             lo += 1;
         }
