@@ -34,9 +34,10 @@ mod separate;
 mod surface;
 mod system;
 mod tensor;
+mod trail;
 
 pub use charts::{
-    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
+    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Target, Targets, Undecided,
 };
 pub use curves::{Curve, CurvePiece, CurvePoint, CurveSolver, Curves, End, Singular};
 pub use expression::{Expression, MAX_FORMS};

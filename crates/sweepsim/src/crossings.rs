@@ -1,8 +1,9 @@
 //! All crossings of dexel lines with the boundary of a stretch of path: envelope, edges, kinks and the two caps.
 
 use crate::element::{Cells, Element};
-use crate::envelope::{Face, Joint, Near, OnFace, ROOT, Rim, Side, Size, Twist};
+use crate::envelope::{Face, Joint, Near, OnFace, OnJoint, OnRim, ROOT, Rim, Side, Size, Twist};
 use crate::generic::Part;
+use crate::instant::Motion;
 use crate::lattice::Lattice;
 use crate::placed::Placed;
 use crate::planes::Slicer;
@@ -122,24 +123,26 @@ pub(crate) struct Harvest {
     pub statistics: ChartStatistics,
 }
 
-/// Preimages of one map.
-pub(crate) struct Collector<const N: usize, S> {
-    pub found: Vec<Preimage<N, S>>,
-    pub open: Vec<(u32, Reason)>,
+/// Makes crossings of preimages as they come.
+struct Reaper<'a, F> {
+    crossings: &'a mut Vec<Numbered>,
+    open: &'a mut Vec<(u32, Reason)>,
+    make: F,
 }
 
-impl<const N: usize, S> Collector<N, S> {
-    pub fn new() -> Self {
-        Self {
-            found: Vec::new(),
-            open: Vec::new(),
+impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> for Reaper<'_, F> {
+    fn found(&mut self, preimage: Preimage<N, S>) {
+        if let Some(crossing) = (self.make)(&preimage) {
+            self.crossings.push((preimage.target as u32, crossing));
         }
     }
-}
 
-impl<const N: usize, S> Sink<N, S> for Collector<N, S> {
-    fn found(&mut self, preimage: Preimage<N, S>) {
-        self.found.push(preimage);
+    fn mark(&self) -> usize {
+        self.crossings.len()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.crossings.truncate(mark);
     }
 
     fn undecided(&mut self, undecided: Undecided<N>) {
@@ -270,7 +273,7 @@ impl Search<'_> {
         map: &mut M,
         system: impl FnOnce() -> Result<System, SystemError>,
         (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
-        sink: &mut Collector<N, M::Seen>,
+        sink: &mut impl Sink<N, M::Seen>,
     ) where
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
@@ -294,12 +297,20 @@ impl Search<'_> {
     ) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Face {
+                motion: Motion::new(times, element.frame()),
                 element,
                 cells,
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::new();
+            let mut sink = harvest.reaper(|found: &Preimage<3, OnFace>| {
+                Some(Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: found.orientation,
+                    normal: unit(found.seen.normal),
+                    source: source(found.x[2]),
+                })
+            });
             if let Some(forms) = forms {
                 let system = || forms.faces[number].section(&self.plane());
                 self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
@@ -308,16 +319,6 @@ impl Search<'_> {
             } else {
                 space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
-            for found in sink.found {
-                let crossing = Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: found.orientation,
-                    normal: unit(found.seen.normal),
-                    source: source(found.x[2]),
-                };
-                harvest.crossings.push((found.target as u32, crossing));
-            }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.bricks.statistics);
     }
@@ -329,7 +330,7 @@ impl Search<'_> {
         number: usize,
         segment: &Segment,
         charts: &mut ChartSolver<(u32, u32)>,
-        sink: &mut Collector<3, OnFace>,
+        sink: &mut impl Sink<3, OnFace>,
     ) {
         let touches = map
             .values(&ROOT)
@@ -376,12 +377,27 @@ impl Search<'_> {
     ) {
         for (number, (element, cells)) in self.cutter.rims.iter().zip(&mut space.rims).enumerate() {
             let mut map = Rim {
+                motion: Motion::new(times, None),
                 element,
                 cells,
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::new();
+            let mut sink = harvest.reaper(|found: &Preimage<2, OnRim>| {
+                let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
+                if (a < 0.0) == (b < 0.0) {
+                    return None;
+                }
+                // The envelope's normal lies in the fan of the two faces, where g = 0.
+                let [n, m] = found.seen.normals;
+                let lengths = n.norm() * m.norm();
+                Some(Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: if a < 0.0 { -found.orientation } else { found.orientation },
+                    normal: unit(n * (b.abs() / lengths) + m * (a.abs() / lengths)),
+                    source: source(found.x[1]),
+                })
+            });
             match forms {
                 Some(forms) => {
                     let system = || forms.rims[number].section(&self.plane());
@@ -389,39 +405,24 @@ impl Search<'_> {
                 }
                 None => space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink),
             }
-            for found in sink.found {
-                let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
-                if (a < 0.0) == (b < 0.0) {
-                    continue;
-                }
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = found.seen.normals;
-                let (n, m) = (n / n.norm() * (b.abs() / m.norm()), m / m.norm() * (a.abs() / n.norm()));
-                let crossing = Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: if a < 0.0 { -found.orientation } else { found.orientation },
-                    normal: unit(n + m),
-                    source: source(found.x[1]),
-                };
-                harvest.crossings.push((found.target as u32, crossing));
-            }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.bricks.statistics);
     }
 
     fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
-            let mut map = Joint {
-                element,
-                cells,
-                turn: placed.turn,
-                tip: placed.tip,
-                before: placed.before,
-                after: placed.after,
-                size: self.size,
-            };
-            let mut sink = Collector::new();
+            let pose = (placed.turn, placed.tip);
+            let mut map = Joint::new(element, cells, pose, [placed.before, placed.after], self.size);
+            let mut sink = harvest.reaper(|found: &Preimage<2, OnJoint>| {
+                let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
+                let change = negative(found.seen.after) - negative(found.seen.before);
+                (change != 0).then(|| Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: -found.orientation * change,
+                    normal: unit(found.seen.normal),
+                    source: placed.source,
+                })
+            });
             match forms {
                 Some(forms) => {
                     let system = || forms.placed[placed.end][number].section(&self.plane());
@@ -429,27 +430,21 @@ impl Search<'_> {
                 }
                 None => space.placed.solve(&mut map, 0, self.lattice, &mut sink),
             }
-            for found in sink.found {
-                let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
-                let change = negative(found.seen.after) - negative(found.seen.before);
-                if change == 0 {
-                    continue;
-                }
-                let crossing = Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: -found.orientation * change,
-                    normal: unit(found.seen.normal),
-                    source: placed.source,
-                };
-                harvest.crossings.push((found.target as u32, crossing));
-            }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.placed.statistics);
     }
 }
 
 impl Harvest {
+    /// Receives preimages, of which `make` makes crossings.
+    fn reaper<F>(&mut self, make: F) -> Reaper<'_, F> {
+        Reaper {
+            crossings: &mut self.crossings,
+            open: &mut self.open,
+            make,
+        }
+    }
+
     /// Counts what the slicer did since the last time.
     fn count_slices(&mut self, slicer: &mut Slicer) {
         self.statistics.boxes += std::mem::take(&mut slicer.boxes);

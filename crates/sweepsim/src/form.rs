@@ -134,25 +134,69 @@ pub(crate) fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
 }
 
-/// Cuts one coefficient tensor across an axis at the part `at`, into two of the same degrees.
-pub(crate) fn cut(source: &[f64], degrees: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
-    let [p, q] = degrees;
-    let (n, stride, lines, step) = if axis == 0 {
-        (p, 1, q + 1, p + 1)
-    } else {
-        (q, p + 1, p + 1, 1)
-    };
+/// Cuts coefficient tensors of these degrees, one after the other, across an axis at the part `at`, into two of the same degrees.
+pub(crate) fn cut(source: &[f64], [p, q]: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
     upper.copy_from_slice(source);
-    for line in 0..lines {
-        let base = line * step;
-        lower[base] = upper[base];
-        for level in 1..=n {
-            for i in 0..=n - level {
-                let k = base + i * stride;
-                upper[k] += at * (upper[k + stride] - upper[k]);
+    if axis == 0 {
+        match p {
+            0 => lower.copy_from_slice(source),
+            1 => cut_lines::<2>(at, lower, upper),
+            2 => cut_lines::<3>(at, lower, upper),
+            3 => cut_lines::<4>(at, lower, upper),
+            4 => cut_lines::<5>(at, lower, upper),
+            5 => cut_lines::<6>(at, lower, upper),
+            8 => cut_lines::<9>(at, lower, upper),
+            _ => {
+                for (lower, upper) in lower.chunks_exact_mut(p + 1).zip(upper.chunks_exact_mut(p + 1)) {
+                    cut_line(at, lower, upper);
+                }
             }
-            lower[base + level * stride] = upper[base];
         }
+        return;
+    }
+    let line = p + 1;
+    let size = line * (q + 1);
+    for (lower, upper) in lower.chunks_exact_mut(size).zip(upper.chunks_exact_mut(size)) {
+        lower[..line].copy_from_slice(&upper[..line]);
+        for level in 1..=q {
+            for j in 0..=q - level {
+                let (this, next) = upper[j * line..(j + 2) * line].split_at_mut(line);
+                for (a, b) in this.iter_mut().zip(next) {
+                    *a += at * (*b - *a);
+                }
+            }
+            lower[level * line..(level + 1) * line].copy_from_slice(&upper[..line]);
+        }
+    }
+}
+
+/// As [`cut_line`], of all lines of a length known to the compiler.
+fn cut_lines<const N: usize>(at: f64, lower: &mut [f64], upper: &mut [f64]) {
+    for (lower, upper) in lower.chunks_exact_mut(N).zip(upper.chunks_exact_mut(N)) {
+        let mut line = [0.0; N];
+        line.copy_from_slice(upper);
+        let mut first = [0.0; N];
+        first[0] = line[0];
+        for level in 1..N {
+            for i in 0..N - level {
+                line[i] += at * (line[i + 1] - line[i]);
+            }
+            first[level] = line[0];
+        }
+        lower.copy_from_slice(&first);
+        upper.copy_from_slice(&line);
+    }
+}
+
+/// De Casteljau's algorithm.
+fn cut_line(at: f64, lower: &mut [f64], upper: &mut [f64]) {
+    let n = upper.len();
+    lower[0] = upper[0];
+    for level in 1..n {
+        for i in 0..n - level {
+            upper[i] += at * (upper[i + 1] - upper[i]);
+        }
+        lower[level] = upper[0];
     }
 }
 

@@ -10,7 +10,6 @@
 //! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), the answer is none, and the patch is
 //! left to the charts of the column's lines.
 
-use crate::crossings::Collector;
 use crate::lattice::Lattice;
 use crate::placed::Placed;
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum, Vector2};
@@ -60,7 +59,7 @@ impl Slicer {
         system: Result<System, SystemError>,
         lattice: &Lattice,
         accept: f64,
-        sink: &mut Collector<N, M::Seen>,
+        sink: &mut impl Sink<N, M::Seen>,
     ) -> bool
     where
         M: Placed<N>,
@@ -69,7 +68,7 @@ impl Slicer {
         let Ok(system) = system else {
             return false;
         };
-        let found = sink.found.len();
+        let mark = sink.mark();
         for tolerance in TOLERANCES {
             self.curves.tolerance = tolerance;
             let Ok(curves) = self.curves.solve(&system, &mut ()) else {
@@ -81,7 +80,7 @@ impl Slicer {
             if self.cut(map, &curves, tolerance, lattice, accept, sink) {
                 return true;
             }
-            sink.found.truncate(found);
+            sink.forget(mark);
         }
         false
     }
@@ -94,7 +93,7 @@ impl Slicer {
         tolerance: f64,
         lattice: &Lattice,
         accept: f64,
-        sink: &mut Collector<N, M::Seen>,
+        sink: &mut impl Sink<N, M::Seen>,
     ) -> bool
     where
         M: Placed<N>,
@@ -141,12 +140,12 @@ struct Vertex<const N: usize> {
 }
 
 /// The curves of one section being cut by the lines.
-struct Cutting<'a, const N: usize, M: Placed<N>> {
+struct Cutting<'a, const N: usize, M: Placed<N>, K> {
     map: &'a mut M,
     lattice: &'a Lattice<'a>,
     x: f64,
     accept: f64,
-    sink: &'a mut Collector<N, M::Seen>,
+    sink: &'a mut K,
     slicer: &'a mut Slicer,
 }
 
@@ -155,9 +154,10 @@ fn rows<const N: usize>() -> impl Iterator<Item = usize> {
     (0..N).filter(|r| *r != 1)
 }
 
-impl<const N: usize, M> Cutting<'_, N, M>
+impl<const N: usize, M, K> Cutting<'_, N, M, K>
 where
     M: Placed<N>,
+    K: Sink<N, M::Seen>,
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
     fn evaluate(&mut self, x: &[f64; N]) -> Sample<N, M::Seen> {

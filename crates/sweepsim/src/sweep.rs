@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Mutex;
-use sweepsim_dexel::{AuditFailure, Dexels, Frame, Grid, Interval, cover};
+use sweepsim_dexel::{AuditFailure, Dexels, Frame, Grid, Interval, Operation, cover};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Reason;
 use thiserror::Error;
@@ -506,22 +506,27 @@ impl Job<'_> {
             mut open,
             ..
         } = harvest;
-        crossings.par_sort_by_key(|(line, _)| *line);
         open.sort_by_key(|(line, _)| *line);
         let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
         bad.dedup();
-        let groups: Vec<&[Numbered]> = crossings.chunk_by(|a, b| a.0 == b.0).collect();
-        let counted: Vec<(u32, Result<Vec<Interval>, AuditFailure>)> = groups
-            .par_iter()
-            .map(|group| (group[0].0, self.intervals(group)))
-            .collect();
-        let mut wrong = Vec::new();
-        for (line, result) in counted {
-            match result {
-                Ok(intervals) if bad.binary_search(&line).is_err() => volume.unite(line as usize, &intervals),
-                _ => wrong.push(line),
-            }
+        if !bad.is_empty() {
+            crossings.retain(|(line, _)| bad.binary_search(line).is_err());
         }
+        let mut wrong: Vec<u32> = match self.boundary {
+            Boundary::Coverage => {
+                let same = generic::same(self.tolerance);
+                let failures = volume.update_by_crossings(Operation::Union, &crossings, same);
+                failures.into_iter().map(|(line, _)| line).collect()
+            }
+            Boundary::Paper => {
+                crossings.sort_by_key(|(line, _)| *line);
+                for group in crossings.chunk_by(|a, b| a.0 == b.0) {
+                    let mut line: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
+                    volume.unite(group[0].0 as usize, &boundary::by_normals(&mut line));
+                }
+                Vec::new()
+            }
+        };
         wrong.extend(&bad);
         wrong.sort_unstable();
         wrong.dedup();
