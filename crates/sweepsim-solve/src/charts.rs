@@ -272,27 +272,27 @@ enum Outcome<const N: usize, S> {
 }
 
 /// The last targets found in a chart, the latest first: neighbours have neighbouring preimages.
-struct Trail<const N: usize> {
+pub(crate) struct Trail<const N: usize> {
     found: [([f64; N], SVector<f64, N>); 3],
     count: usize,
 }
 
 impl<const N: usize> Trail<N> {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             found: [([0.0; N], SVector::zeros()); 3],
             count: 0,
         }
     }
 
-    fn push(&mut self, q: [f64; N], s: SVector<f64, N>) {
+    pub(crate) fn push(&mut self, q: [f64; N], s: SVector<f64, N>) {
         self.found.rotate_right(1);
         self.found[0] = (q, s);
         self.count = (self.count + 1).min(3);
     }
 
     /// Where the preimage of `q` should be, as far as those found are evenly spaced on a line with it.
-    fn guess(&self, q: &[f64; N]) -> Option<SVector<f64, N>> {
+    pub(crate) fn guess(&self, q: &[f64; N]) -> Option<SVector<f64, N>> {
         let even = |next: &[f64; N], at: usize| {
             let (middle, last) = (&self.found[at].0, &self.found[at + 1].0);
             let steps = (0..N).map(|i| (next[i] - middle[i], middle[i] - last[i]));
@@ -627,7 +627,7 @@ fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
 ///
 /// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
 /// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
-fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
+pub(crate) fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
     let half = bounds.map(Interval::radius);
     jacobian.iter().all(|row| {
         let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
@@ -636,12 +636,12 @@ fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; 
     })
 }
 
-fn largest<const N: usize>(weights: &[f64; N]) -> usize {
+pub(crate) fn largest<const N: usize>(weights: &[f64; N]) -> usize {
     (0..N).fold(0, |best, j| if weights[j] > weights[best] { j } else { best })
 }
 
 /// The variable that moves the values most, measured in `scales`, over the box.
-fn widest<const N: usize>(
+pub(crate) fn widest<const N: usize>(
     bounds: &[Interval; N],
     domain: &[Interval; N],
     jacobian: &[[Interval; N]; N],

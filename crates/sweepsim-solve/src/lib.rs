@@ -13,6 +13,7 @@
 //! | `layout.rs`, `tensor.rs` | how coefficients lie, and what rounding does to them |
 //! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
 
+mod bundle;
 mod certify;
 mod charts;
 mod curves;
@@ -35,6 +36,7 @@ mod surface;
 mod system;
 mod tensor;
 
+pub use bundle::{Bundle, BundleError, BundleSolver};
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Targets, Undecided,
 };

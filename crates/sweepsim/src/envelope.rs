@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Interval, Sample};
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// Range of `⟨row, point⟩` over all rows and points.
 fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {

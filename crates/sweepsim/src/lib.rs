@@ -37,6 +37,7 @@ mod envelope;
 mod form;
 mod generic;
 mod lattice;
+mod lines;
 mod piece;
 mod placed;
 mod planes;

@@ -5,6 +5,7 @@ use crate::crossings::{Cutter, Forms, Harvest, How, Numbered, Search, Workspace}
 use crate::envelope::Size;
 use crate::generic::{self, Part};
 use crate::lattice::Lattice;
+use crate::lines::Bundles;
 use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
@@ -209,6 +210,8 @@ pub enum SweepError {
 const CHUNK: usize = 256;
 /// Segments that a worker takes at a time.
 const BLOCK: usize = 4;
+/// Columns of dexels whose lines make a bundle.
+const STRIP: usize = 128;
 /// Times that a line is solved again, each time moved elsewhere.
 const ATTEMPTS: usize = 5;
 
@@ -441,11 +444,26 @@ impl Job<'_> {
                     }
                 })
             }
-            Method::Lines => self.gather(self.grid.len(), |line, space, harvest| {
-                if !self.monitor.cancelled() {
-                    self.line(chunk, line, 0, space, harvest);
-                }
-            }),
+            Method::Lines => {
+                let bundles: Vec<Bundles> = (0..chunk.len())
+                    .into_par_iter()
+                    .map(|at| Bundles::new(self.tool, chunk, at))
+                    .collect();
+                let blocks = chunk.len().div_ceil(BLOCK);
+                let strips = self.grid.cells()[0].div_ceil(STRIP);
+                self.gather(blocks * strips, |number, space, harvest| {
+                    let (block, strip) = (number / strips, number % strips);
+                    let columns = [strip * STRIP, ((strip + 1) * STRIP).min(self.grid.cells()[0]) - 1];
+                    let lattice = Lattice::columns(self.grid, columns, shift);
+                    let search = self.search(&lattice, How::Lines(&bundles));
+                    for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
+                        if self.monitor.cancelled() {
+                            break;
+                        }
+                        search.part(chunk, at, space, harvest);
+                    }
+                })
+            }
         }
     }
 
