@@ -13,8 +13,8 @@ use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{End, Segment, Tool};
 use sweepsim_solve::{
-    BundleSolver, ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions, SurfaceSolver, System,
-    SystemError, Undecided,
+    BundleSolver, ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions,
+    SurfaceSolver, System, SystemError, Undecided,
 };
 
 /// A tool, prepared.

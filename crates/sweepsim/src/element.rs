@@ -400,31 +400,32 @@ impl Cells {
         points.resize(self.points, 0.0);
         for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
             let len = slot.len();
-            let weights = &c[slot.start + 3 * len..][..len];
-            for k in 0..3 {
-                for i in 0..len {
-                    let place = slot.start + k * len + i;
-                    points[place] = c[place] / weights[i];
+            let (numerators, weights) = c[slot.start..][..4 * len].split_at(3 * len);
+            let own = &mut points[slot.start..][..3 * len];
+            for (points, numerators) in own.chunks_exact_mut(len).zip(numerators.chunks_exact(len)) {
+                for ((point, numerator), weight) in points.iter_mut().zip(numerators).zip(weights) {
+                    *point = numerator / weight;
                 }
             }
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
-                let [p, q] = slot.degrees;
                 let n = slot.degrees[axis];
                 if n == 0 {
                     continue;
                 }
                 let factor = n as f64 / (upper[axis] - lower[axis]);
-                let (rows, columns, next) = if axis == 0 { (q + 1, p, 1) } else { (q, p + 1, p + 1) };
-                for k in 0..6 {
-                    let tensor = &c[slot.start + k * slot.len()..][..slot.len()];
-                    let out = &mut points[start + k * len..][..*len];
-                    for j in 0..rows {
-                        for i in 0..columns {
-                            let place = i + (p + 1) * j;
-                            out[i + columns * j] = factor * (tensor[place + next] - tensor[place]);
-                        }
+                let tensors = &c[slot.start..][..6 * slot.len()];
+                // Along the first axis neighbours are next to each other, along the second a row apart.
+                let (row, next) = if axis == 0 {
+                    (n + 1, 1)
+                } else {
+                    (slot.len(), slot.degrees[0] + 1)
+                };
+                let out = points[*start..][..6 * len].chunks_exact_mut(row - next);
+                for (out, row) in out.zip(tensors.chunks_exact(row)) {
+                    for ((out, a), b) in out.iter_mut().zip(row).zip(&row[next..]) {
+                        *out = factor * (b - a);
                     }
                 }
             }

@@ -166,7 +166,7 @@ pub(crate) fn restrict(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upp
         2 => restrict_rows::<3>(source, q, lower, upper, out),
         3 => restrict_rows::<4>(source, q, lower, upper, out),
         4 => restrict_rows::<5>(source, q, lower, upper, out),
-        5..12 => restrict_large::<12>(source, degrees, lower, upper, out),
+        5..12 if q < 12 => restrict_large::<12>(source, degrees, lower, upper, out),
         _ => restrict_large::<MOST>(source, degrees, lower, upper, out),
     }
 }
@@ -192,7 +192,10 @@ fn restrict_large<const M: usize>(
     upper: [f64; 2],
     out: &mut [f64],
 ) {
-    let (rows, columns) = (blossoms::<M>(p, lower[0], upper[0]), blossoms::<M>(q, lower[1], upper[1]));
+    let (rows, columns) = (
+        blossoms::<M>(p, lower[0], upper[0]),
+        blossoms::<M>(q, lower[1], upper[1]),
+    );
     let mut line = [0.0; M];
     let count = (p + 1) * (q + 1);
     for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {

@@ -54,10 +54,7 @@ impl Bundles {
         Self {
             faces: tool.patches().iter().map(face).collect(),
             rims: tool.edges().iter().map(rim).collect(),
-            placed: [
-                placed(0),
-                if at + 1 == parts.len() { placed(1) } else { Vec::new() },
-            ],
+            placed: [placed(0), if at + 1 == parts.len() { placed(1) } else { Vec::new() }],
         }
     }
 
@@ -86,7 +83,11 @@ fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
         turning.chain(twist.travel.iter().zip(&field.normal))
     };
     let sum = pairs().fold(Bernstein::constant(2, 0.0), |sum, (factor, form)| {
-        if *factor == 0.0 { sum } else { sum.add(&form.scale(*factor)) }
+        if *factor == 0.0 {
+            sum
+        } else {
+            sum.add(&form.scale(*factor))
+        }
     });
     // The velocity is rounded as well.
     let size: f64 = pairs().map(|(factor, form)| factor.abs() * largest(form)).sum();
@@ -97,4 +98,80 @@ fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
 
 fn largest(form: &Bernstein) -> f64 {
     form.coefficients().iter().fold(0.0, |m, c| m.max(c.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Cells, Element};
+    use crate::envelope::{Face, Joint, Rim, Size};
+    use crate::time::Times;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Pose, Segment};
+    use sweepsim_solve::ChartMap;
+
+    const SIZE: Size = Size {
+        spacing: [1.0; 2],
+        slack: 1e-12,
+    };
+
+    /// `X`, `Y` of forms at a point.
+    fn plane(([x, y, _], weight): (&[Bernstein; 3], &Bernstein), at: &[f64]) -> [f64; 2] {
+        [x, y].map(|form| form.evaluate(at) / weight.evaluate(at))
+    }
+
+    proptest! {
+        /// Bundles take bounds from the forms and points from the maps: both must be of the same functions.
+        #[test]
+        fn maps_are_what_the_forms_say(
+            tool in 0..3usize,
+            lean in [-0.8..0.8, -0.8..0.8],
+            tip in [-20.0..20.0, -20.0..20.0, -20.0..20.0],
+            at in [0.0..1.0, 0.0..1.0, 0.0..1.0],
+            moves in proptest::bool::ANY,
+        ) {
+            let tool = [Tool::ball(5.0, 30.0), Tool::flat(5.0, 30.0), Tool::bull(5.0, 1.0, 30.0)][tool].clone().unwrap();
+            let start = Pose::new([0.0; 3], [0.1, 0.2, 1.0]).unwrap();
+            let axis = if moves { [lean[0], lean[1], 1.0] } else { [0.1, 0.2, 1.0] };
+            let segment: Segment = Segment::between(&start, &Pose::new(tip, axis).unwrap()).remove(0);
+            let mut times = Times::new(&segment);
+            let (faces, rims) = Element::all(&tool);
+            // Some hundred roundings of numbers of up to a hundred, and of products of two.
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-10;
+            for (patch, element) in tool.patches().iter().zip(&faces) {
+                let motion = PatchMotion::new(patch, &segment);
+                let mut cells = Cells::new(element);
+                let map = Face { element, cells: &mut cells, times: &mut times, size: SIZE };
+                let [x, y, g] = map.evaluate(&at).value;
+                let [a, b] = plane(motion.position(), &at);
+                prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
+                let [before, after] = [
+                    crate::crossings::twist(&segment, sweepsim_motion::End::Start, &segment.start()),
+                    Side::Beyond(true),
+                ];
+                let (turn, own_tip) = (segment.start(), segment.tips()[0]);
+                let map = Joint { element, cells: &mut cells, turn, tip: own_tip, before, after, size: SIZE };
+                let sample = map.evaluate(&[at[0], at[1]]);
+                let [a, b] = plane(PlacedPatch::new(patch, &turn, &own_tip).position(), &at[..2]);
+                prop_assert!(near(sample.value[0], a) && near(sample.value[1], b));
+                let origin = [at[0], at[1]];
+                for (near_side, side) in [(sample.seen.before, before), (sample.seen.after, after)] {
+                    let form = condition(&side, &patch.field).unwrap();
+                    prop_assert!(near(near_side.at(&origin, &origin), form.evaluate(&origin)));
+                }
+            }
+            for (edge, element) in tool.edges().iter().zip(&rims) {
+                let motion = EdgeMotion::new(edge, &segment);
+                let mut cells = Cells::new(element);
+                let map = Rim { element, cells: &mut cells, times: &mut times, size: SIZE };
+                let origin = [at[0], at[2]];
+                let sample = map.evaluate(&origin);
+                let [a, b] = plane(motion.position(), &origin);
+                prop_assert!(near(sample.value[0], a) && near(sample.value[1], b));
+                for (side, form) in sample.seen.sides.iter().zip(motion.conditions()) {
+                    prop_assert!(near(side.at(&origin, &origin), form.evaluate(&origin)));
+                }
+            }
+        }
+    }
 }

@@ -368,6 +368,30 @@ impl Plan {
     }
 }
 
+/// Sorts crossings by line; those of one line stay in order.
+fn sort_by_line(crossings: &mut Vec<Numbered>) {
+    let largest = crossings.iter().map(|(line, _)| *line).max().unwrap_or(0) as usize;
+    if largest >= 8 * crossings.len() {
+        crossings.par_sort_by_key(|(line, _)| *line);
+        return;
+    }
+    // Lines are few enough to be counted.
+    let mut places = vec![0_u32; largest + 2];
+    for (line, _) in &*crossings {
+        places[*line as usize + 1] += 1;
+    }
+    for line in 0..=largest {
+        places[line + 1] += places[line];
+    }
+    let mut sorted = crossings.clone();
+    for crossing in &*crossings {
+        let place = &mut places[crossing.0 as usize];
+        sorted[*place as usize] = *crossing;
+        *place += 1;
+    }
+    *crossings = sorted;
+}
+
 /// What all chunks of a sweep share.
 struct Job<'a> {
     tool: &'a Tool,
@@ -517,7 +541,7 @@ impl Job<'_> {
             mut open,
             ..
         } = harvest;
-        crossings.par_sort_by_key(|(line, _)| *line);
+        sort_by_line(&mut crossings);
         open.sort_by_key(|(line, _)| *line);
         let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
         bad.dedup();

@@ -93,7 +93,8 @@ impl<const N: usize> Blocks<N> {
     }
 
     pub fn set_conditions(&mut self, conditions: [Bernstein; 2]) -> Result<(), BundleError> {
-        self.first.truncate(self.blocks[CONDITIONS].start.max(self.blocks[ZEROS].range().end));
+        self.first
+            .truncate(self.blocks[CONDITIONS].start.max(self.blocks[ZEROS].range().end));
         self.put(CONDITIONS, &conditions, N + 1)
     }
 
@@ -238,7 +239,8 @@ impl<const N: usize> Blocks<N> {
             }
             // Both numerator and weight may be off by the noise.
             let size = lo.abs().max(hi.abs());
-            let pad = frame.noise[POSITION] * (1.0 + size) / (least - frame.noise[POSITION]) * (1.0 + 1e-12) + EPSILON * size;
+            let pad =
+                frame.noise[POSITION] * (1.0 + size) / (least - frame.noise[POSITION]) * (1.0 + 1e-12) + EPSILON * size;
             values[k] = Interval::new(lo - pad, hi + pad);
         }
         Some(values)

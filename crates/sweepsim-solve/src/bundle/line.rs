@@ -84,7 +84,11 @@ pub(super) fn solve<const N: usize, M: ChartMap<N>>(
         // A guess that is not a number goes to the middle.
         s = SVector::from_fn(|i, _| {
             let (lo, hi) = (window.lo[i], window.hi[i]);
-            if s[i].is_nan() { 0.5 * (lo + hi) } else { s[i].clamp(lo, hi) }
+            if s[i].is_nan() {
+                0.5 * (lo + hi)
+            } else {
+                s[i].clamp(lo, hi)
+            }
         });
         let from = taylor.point(&s);
         let sample = map.evaluate(&from);

@@ -28,9 +28,9 @@ mod cell;
 mod line;
 mod taylor;
 
+use crate::Interval;
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Targets, Undecided};
 use crate::charts::{Trail, collapses, largest, widest};
-use crate::Interval;
 use cell::{Blocks, Frame};
 use line::{Found, Outcome, Window};
 use sweepsim_spline::Bernstein;
@@ -453,14 +453,7 @@ where
         let Some(values) = self.blocks.values(&root, &self.blocks.first) else {
             return false;
         };
-        let whole = Taylor::new(
-            self.blocks,
-            &root,
-            &self.blocks.first,
-            &values,
-            self.map,
-            self.scratch,
-        );
+        let whole = Taylor::new(self.blocks, &root, &self.blocks.first, &values, self.map, self.scratch);
         let x = &a.preimage.x;
         let sample = self.map.evaluate(x);
         self.statistics.evaluations += 1;

@@ -106,14 +106,23 @@ impl<const N: usize> Taylor<N> {
         let weights = position.form(c, targeted);
         let least = crate::tensor::range(weights).0 - noise;
         let least = least * (1.0 - 4.0 * MARGIN * position.degrees.iter().sum::<usize>() as f64).max(0.5);
-        let (weight_slopes, weight_bends) =
-            derivatives(weights, position.degrees, noise, [&mut first_buffer, &mut second_buffer]);
+        let (weight_slopes, weight_bends) = derivatives(
+            weights,
+            position.degrees,
+            noise,
+            [&mut first_buffer, &mut second_buffer],
+        );
         for r in 0..targeted {
             let middle = sample.value[r];
             scratch.clear();
             scratch.extend(position.form(c, r).iter().zip(weights).map(|(p, w)| p - middle * w));
             let shifted = noise * (1.0 + middle.abs()) + 4.0 * f64::EPSILON * middle.abs() * magnitude(weights);
-            let (_, bends) = derivatives(scratch, position.degrees, shifted, [&mut first_buffer, &mut second_buffer]);
+            let (_, bends) = derivatives(
+                scratch,
+                position.degrees,
+                shifted,
+                [&mut first_buffer, &mut second_buffer],
+            );
             // Targets as far from the centre's value as the range reaches.
             let reach = (values[r].hi - middle).max(middle - values[r].lo);
             second[r] = (bends + weight_bends * reach) / least;
