@@ -249,11 +249,12 @@ impl Dexels {
     }
 
     /// Unites with, subtracts or intersects with intervals on numbered lines, in parallel. They may come in any order and
-    /// overlap; they are left sorted by line. Those beyond the grid or without length change nothing.
-    pub fn update(&mut self, operation: Operation, intervals: &mut [(u32, Interval)]) {
-        intervals.par_sort_by(|(a, p), (b, q)| a.cmp(b).then(p.lower.z.total_cmp(&q.lower.z)));
-        self.update_by(operation, intervals, |group, out| {
-            out.extend(group.iter().map(|(_, interval)| *interval));
+    /// overlap. Those beyond the grid or without length change nothing.
+    pub fn update(&mut self, operation: Operation, intervals: &[(u32, Interval)]) {
+        self.update_by(operation, intervals, |_, group, out| {
+            out.extend(group);
+            // Mostly one. A stable sort: the order of equal heights does not depend on threads.
+            out.sort_by(|a, b| a.lower.z.total_cmp(&b.lower.z));
             normalise(out);
         });
     }
@@ -264,17 +265,16 @@ impl Dexels {
     pub fn update_by_crossings(
         &mut self,
         operation: Operation,
-        crossings: &mut [(u32, Crossing)],
+        crossings: &[(u32, Crossing)],
         same: f64,
     ) -> Vec<(u32, AuditFailure)> {
-        crossings.par_sort_by_key(|(line, _)| *line);
         let failures = std::sync::Mutex::new(Vec::new());
-        self.update_by(operation, crossings, |group, out| {
-            let mut line: Vec<Crossing> = group.iter().map(|(_, crossing)| *crossing).collect();
+        self.update_by(operation, crossings, |number, group, out| {
+            let mut line: Vec<Crossing> = group.collect();
             if let Err(failure) = cover(&mut line, same, out)
-                && let (Some((number, _)), Ok(mut failures)) = (group.first(), failures.lock())
+                && let Ok(mut failures) = failures.lock()
             {
-                failures.push((*number, failure));
+                failures.push((number, failure));
             }
         });
         let mut failures = failures.into_inner().unwrap_or_default();
@@ -282,13 +282,20 @@ impl Dexels {
         failures
     }
 
-    /// Updates by anything sorted by line: `read` makes intervals in normal form of all there is for a line.
-    fn update_by<T: Sync>(
+    /// Updates by anything on numbered lines: `read` makes intervals in normal form of all there is for a line.
+    fn update_by<T: Copy + Sync>(
         &mut self,
         operation: Operation,
-        sorted: &[(u32, T)],
-        read: impl Fn(&[(u32, T)], &mut Vec<Interval>) + Sync,
+        numbered: &[(u32, T)],
+        read: impl Fn(u32, &mut dyn Iterator<Item = T>, &mut Vec<Interval>) + Sync,
     ) {
+        // By line, then as they came. What is sorted is small, and no two are equal.
+        let mut sorted: Vec<(u32, usize)> = numbered
+            .par_iter()
+            .enumerate()
+            .map(|(k, (line, _))| (*line, k))
+            .collect();
+        sorted.par_sort_unstable();
         let run = operation.run();
         let lines = self.grid.len();
         let chunks = self.chunks.par_iter_mut().enumerate();
@@ -309,10 +316,14 @@ impl Dexels {
             let mut ends = [0; LINES + 1];
             packed.clear();
             for line in 0..LINES {
-                let here = mine.partition_point(|(at, _)| *at as usize == first + line);
+                let here = mine.iter().take_while(|(at, _)| *at as usize == first + line).count();
                 if here > 0 {
                     intervals.clear();
-                    read(&mine[..here], intervals);
+                    read(
+                        mine[0].0,
+                        &mut mine[..here].iter().map(|(_, k)| numbered[*k].1),
+                        intervals,
+                    );
                     chunk.pack(intervals, packed);
                     mine = &mine[here..];
                 }

@@ -10,9 +10,11 @@
 //! error of 1e-8). That is neither looser nor tighter than what is promised, at any slope.
 
 mod cases;
+mod circle_segments;
 mod corpus;
 mod degenerate;
 mod generic;
+mod jobs;
 mod judge;
 mod metamorphic;
 mod motions;

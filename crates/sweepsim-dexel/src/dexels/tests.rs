@@ -62,7 +62,7 @@ proptest! {
         let mut combined = first.clone();
         combined.combine(operation, &second).unwrap();
         let mut updated = first.clone();
-        updated.update(operation, &mut b.clone());
+        updated.update(operation, &b);
         let mut one_by_one = first.clone();
         for index in 0..grid.len() {
             let line = second.at(index).to_vec();
@@ -89,13 +89,13 @@ proptest! {
         set.shrink();
         prop_assert_eq!(&set, &combined);
         // Crossings of the same intervals: the same again.
-        let mut crossings: Vec<(u32, Crossing)> = b.iter().filter(|(_, i)| i.length() > 0.0).flat_map(|(line, i)| {
+        let crossings: Vec<(u32, Crossing)> = b.iter().filter(|(_, i)| i.length() > 0.0).flat_map(|(line, i)| {
             [(i.lower, 1), (i.upper, -1)].map(|(end, jump)| {
                 (*line, Crossing { z: end.z, jump, normal: end.normal, source: end.source })
             })
         }).collect();
         let mut counted = first.clone();
-        prop_assert!(counted.update_by_crossings(operation, &mut crossings, 0.0).is_empty());
+        prop_assert!(counted.update_by_crossings(operation, &crossings, 0.0).is_empty());
         let heights = |dexels: &Dexels| -> Vec<Vec<[f64; 2]>> {
             (0..grid.len()).map(|index| dexels.at(index).heights().collect()).collect()
         };
@@ -122,7 +122,7 @@ fn the_same_at_any_thread_count() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut dexels = Dexels::empty(grid);
-            dexels.update(Operation::Union, &mut many.clone());
+            dexels.update(Operation::Union, &many);
             dexels
         })
     };
@@ -140,7 +140,7 @@ fn beyond_the_grid_there_is_nothing() {
         dexels.subtract(index, &[piece]);
         assert!(dexels.at(index).is_empty());
     }
-    dexels.update(Operation::Union, &mut [(9, piece), (u32::MAX, piece)]);
+    dexels.update(Operation::Union, &[(9, piece), (u32::MAX, piece)]);
     assert_eq!(dexels, Dexels::empty(grid([3, 3])));
     assert_eq!(
         dexels.combine(Operation::Union, &Dexels::empty(grid([3, 2]))),
@@ -158,13 +158,13 @@ fn failures_are_named() {
         normal: [0.0, 0.0, 1.0],
         source: Source::STOCK,
     };
-    let mut all = vec![
+    let all = vec![
         (7, crossing(0.0, 1)),
         (3, crossing(1.0, 1)),
         (7, crossing(2.0, -1)),
         (99, crossing(1.0, -1)),
     ];
-    let failures = dexels.update_by_crossings(Operation::Union, &mut all, 0.0);
+    let failures = dexels.update_by_crossings(Operation::Union, &all, 0.0);
     assert_eq!(
         failures.iter().map(|(line, f)| (*line, f.sum)).collect::<Vec<_>>(),
         [(3, 1), (99, -1)]
