@@ -22,7 +22,7 @@ pub enum Method {
     /// One subdivision for all lines: boxes on which the envelope system is injective.
     #[default]
     Charts,
-    /// Every line for itself: the paper's Algorithm 4.
+    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision that leads there.
     Lines,
     /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
     Planes,
