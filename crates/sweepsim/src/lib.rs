@@ -38,6 +38,7 @@ mod form;
 mod generic;
 mod instant;
 mod lattice;
+mod lines;
 mod piece;
 mod placed;
 mod planes;

@@ -5,6 +5,7 @@ use crate::crossings::{Cutter, Forms, Harvest, How, Numbered, Search, Workspace}
 use crate::envelope::Size;
 use crate::generic::{self, Part};
 use crate::lattice::Lattice;
+use crate::lines::Bundles;
 use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
@@ -21,7 +22,7 @@ pub enum Method {
     /// One subdivision for all lines: boxes on which the envelope system is injective.
     #[default]
     Charts,
-    /// Every line for itself: the paper's Algorithm 4.
+    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision that leads there.
     Lines,
     /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
     Planes,
@@ -209,6 +210,8 @@ pub enum SweepError {
 const CHUNK: usize = 256;
 /// Segments that a worker takes at a time.
 const BLOCK: usize = 4;
+/// Columns of dexels whose lines make a bundle.
+const STRIP: usize = 128;
 /// Times that a line is solved again, each time moved elsewhere.
 const ATTEMPTS: usize = 5;
 
@@ -448,11 +451,26 @@ impl Job<'_> {
                     }
                 })
             }
-            Method::Lines => self.gather(self.grid.len(), |line, space, harvest| {
-                if !self.monitor.cancelled() {
-                    self.line(chunk, line, 0, space, harvest);
-                }
-            }),
+            Method::Lines => {
+                let bundles: Vec<Bundles> = (0..chunk.len())
+                    .into_par_iter()
+                    .map(|at| Bundles::new(self.tool, chunk, at))
+                    .collect();
+                let blocks = chunk.len().div_ceil(BLOCK);
+                let strips = self.grid.cells()[0].div_ceil(STRIP);
+                self.gather(blocks * strips, |number, space, harvest| {
+                    let (block, strip) = (number / strips, number % strips);
+                    let columns = [strip * STRIP, ((strip + 1) * STRIP).min(self.grid.cells()[0]) - 1];
+                    let lattice = Lattice::columns(self.grid, columns, shift);
+                    let search = self.search(&lattice, How::Lines(&bundles));
+                    for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
+                        if self.monitor.cancelled() {
+                            break;
+                        }
+                        search.part(chunk, at, space, harvest);
+                    }
+                })
+            }
         }
     }
 
