@@ -31,7 +31,6 @@ pub(super) struct Found<const N: usize, S> {
     pub orientation: i8,
 }
 
-#[expect(clippy::large_enum_variant, reason = "made once a target, and taken apart at once")]
 pub(super) enum Outcome<const N: usize, S> {
     Found(Found<N, S>),
     Absent,
