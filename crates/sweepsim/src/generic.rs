@@ -101,9 +101,14 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     let mut from = 0;
     for to in 1..poses.len() {
         if !path.rests(from, to) {
-            let segments = path.segments(to - 1, reach, LAW * tolerance).into_iter().map(seen);
+            let segments = if symmetric {
+                path.segments_of_symmetric(to - 1, reach, LAW * tolerance)
+            } else {
+                path.segments(to - 1, reach, LAW * tolerance)
+            };
+            let segments = segments.into_iter().map(seen).collect();
             let tips = [tip(from), tip(to)];
-            put(to - 1, segments.collect(), tips, [displaced(from), displaced(to)]);
+            put(to - 1, segments, tips, [displaced(from), displaced(to)]);
             from = to;
         }
     }

@@ -20,6 +20,8 @@ use sweepsim_solve::{CurveSolver, Curves, Interval, Preimage, Sample, Sink, Solv
 const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
 /// Boxes of a section, and of each search on a face of one. Sections without trouble need some ten to a hundred.
 const BOXES: u64 = 4_000;
+/// Spans of a section, halves included. Sections without trouble need some hundred; where a curve almost touches itself there is no end to them.
+const SPANS: u32 = 4_000;
 /// Halvings of a span.
 const DEPTH: u32 = 44;
 /// Steps of Newton's method.
@@ -108,6 +110,7 @@ impl Slicer {
             accept,
             sink,
             slicer: self,
+            left: SPANS,
         };
         for curve in curves {
             let count = curve.points.len();
@@ -166,6 +169,8 @@ struct Cutting<'a, const N: usize, M: Placed<N>, K> {
     accept: f64,
     sink: &'a mut K,
     slicer: &'a mut Slicer,
+    /// Spans that may still be looked at.
+    left: u32,
 }
 
 /// What is seen of the equations without that of `Y`: row 0 is `X`, row 2 is `g`.
@@ -192,6 +197,10 @@ where
     /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
     fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) -> bool {
         self.slicer.boxes += 1;
+        let Some(left) = self.left.checked_sub(1) else {
+            return false;
+        };
+        self.left = left;
         let mark = self.map.mark();
         let cell = self.map.place(&within);
         // Where the map asks for nothing (an edge both of whose faces move in, …) no crossing counts.

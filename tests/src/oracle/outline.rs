@@ -132,8 +132,8 @@ impl Outline {
     }
 }
 
-/// A spline becomes so many chords: of a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/1024)²/8`.
-const CHORDS: usize = 1024;
+/// A spline becomes so many chords: of a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/4096)²/8`.
+const CHORDS: usize = 4096;
 
 /// The point of a spline at a part of its domain, by de Boor's algorithm.
 fn curve<'a>(

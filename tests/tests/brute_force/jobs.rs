@@ -2,14 +2,12 @@
 
 use crate::corpus::tools;
 use crate::judge::{judge_sweep, same_sweeps, swept_along};
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use crate::splines::Splines;
 use std::path::Path as FilePath;
-use std::sync::Arc;
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
 use sweepsim_formats::Job;
 use sweepsim_motion::Path;
-use sweepsim_tests::oracle::{Motion, Place, Placement};
 
 const TIP_KNOTS: [f64; 9] = [0.0, 0.0, 0.0, 0.0, 1.2, 3.0, 3.0, 3.0, 3.0];
 const TIPS: [[f64; 3]; 5] = [
@@ -28,34 +26,13 @@ const TURNS: [[f64; 4]; 4] = [
     [1.0, 0.0, 0.3, 0.4],
 ];
 
-/// De Boor's algorithm.
-fn at<const N: usize>(knots: &[f64], points: &[[f64; N]], x: f64) -> [f64; N] {
-    let degree = knots.len() - points.len() - 1;
-    let span = (degree..points.len())
-        .rfind(|&k| knots[k] <= x && knots[k] < knots[k + 1])
-        .expect("a parameter of the domain");
-    let mut row: Vec<[f64; N]> = points[span - degree..=span].to_vec();
-    for level in 1..=degree {
-        for j in (level..=degree).rev() {
-            let i = span - degree + j;
-            let s = (x - knots[i]) / (knots[i + degree + 1 - level] - knots[i]);
-            row[j] = std::array::from_fn(|k| row[j - 1][k] * (1.0 - s) + row[j][k] * s);
-        }
-    }
-    row[degree]
-}
-
-fn placement(x: f64) -> Placement {
-    let homogeneous: Vec<[f64; 4]> = TIPS
-        .iter()
-        .zip(TIP_WEIGHTS)
-        .map(|(p, w)| [p[0] * w, p[1] * w, p[2] * w, w])
-        .collect();
-    let [px, py, pz, w] = at(&TIP_KNOTS, &homogeneous, x);
-    let [q0, q1, q2, q3] = at(&TURN_KNOTS, &TURNS, x);
-    Placement {
-        tip: Vector3::new(px, py, pz) / w,
-        axis: UnitQuaternion::from_quaternion(Quaternion::new(q0, q1, q2, q3)) * Vector3::z(),
+fn splines() -> Splines {
+    Splines {
+        tip_knots: TIP_KNOTS.to_vec(),
+        tips: TIPS.to_vec(),
+        weights: TIP_WEIGHTS.to_vec(),
+        turn_knots: TURN_KNOTS.to_vec(),
+        turns: TURNS.to_vec(),
     }
 }
 
@@ -83,22 +60,9 @@ fn path() -> Path {
 fn the_motion_of_a_job_is_that_of_its_splines() {
     let path = path();
     // One move between each two of 0, 1.2, 2, 3: all knots of either curve.
-    let ranges = [[0.0, 1.2], [1.2, 2.0], [2.0, 3.0]];
-    assert_eq!(path.moves(), ranges.len());
-    let places = ranges.map(|[from, to]| {
-        // The end belongs to the last piece before it.
-        let inside = move |t: f64| (from + (to - from) * t).min(to * (1.0 - 1e-15));
-        let place: Place = Arc::new(move |t| placement(inside(t)));
-        let steps = 2000;
-        let speed = |of: &dyn Fn(&Placement) -> Vector3<f64>| {
-            let value = |k: usize| of(&place(k as f64 / steps as f64));
-            let step = |k: usize| (value(k + 1) - value(k)).norm() * steps as f64;
-            1.5 * (0..steps).map(step).fold(0.0, f64::max)
-        };
-        let speeds = (speed(&|p| p.tip), speed(&|p| p.axis));
-        (place, speeds.0, speeds.1)
-    });
-    let motion = Motion::of_functions(places.into());
+    assert_eq!(path.moves(), 3);
+    assert_eq!(path, splines().path());
+    let motion = splines().motion();
     let grid = Grid::new([-4.31, -4.42], [4.38, 4.29], [11, 11]).expect("a grid");
     for (name, tool) in tools() {
         let profile = tool.profile().expect("a solid of revolution");
