@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use sweepsim_dexel::GridError;
+use sweepsim_dexel::{FrameError, GridError};
 use sweepsim_motion::{MotionError, PathError, PoseError, ProfileError};
 use thiserror::Error;
 
@@ -108,6 +108,9 @@ pub enum Problem {
     /// A grid is none.
     #[error("{0}")]
     Grid(#[source] GridError),
+    /// Vectors that make no frame.
+    #[error("{0}")]
+    Frame(#[source] FrameError),
 }
 
 fn list(numbers: &[u32]) -> String {

@@ -55,6 +55,9 @@ impl Units {
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
 ///
+/// The grid may have a frame of its own, `frame: Frame(origin: (0, 0, 0), z: (1, 0, 0), x: (0, 1, 0))`: the dexels stand along its `z`, and `min`, `max`
+/// and all numbers of dexels are in it.
+///
 /// Further tools are `Lollipop(radius:, neck:, length:)`, `Dovetail(radius:, angle:, height:, neck:, length:)`,
 /// `Barrel(radius:, flank:, height:, length:)` and `Lens(radius:, bottom:, length:)` (both with `corner:`, default 0),
 /// `Oval(radius:, tip:, flank:, length:)`, `Taper(radius:, tip:, flank:, angle:, length:)` and `Surface("file.ron")`. Segments of a profile are `Line((rho, zeta))`,

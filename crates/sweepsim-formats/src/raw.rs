@@ -39,6 +39,17 @@ pub(crate) struct Grid {
     pub min: [f64; 2],
     pub max: [f64; 2],
     pub cells: [i64; 2],
+    #[serde(default)]
+    pub frame: Option<Frame>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Frame {
+    #[serde(default)]
+    pub origin: [f64; 3],
+    pub z: [f64; 3],
+    pub x: [f64; 3],
 }
 
 #[derive(Debug, Deserialize)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
-use sweepsim_dexel::{Grid, Stock, TriangleSoup};
+use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup};
 use sweepsim_motion::{AptWarning, Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
@@ -187,11 +187,16 @@ impl Reader<'_> {
                 self.check("a corner of the grid", value, true, "finite", &steps)?;
             }
         }
-        Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
+        let grid = Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
             let ordered = (0..2).all(|k| raw.min[k] < raw.max[k]);
             let field = if ordered { "cells" } else { "min" };
             self.error(Problem::Grid(error), &["grid".into(), field.into()])
-        })
+        })?;
+        let Some(frame) = &raw.frame else { return Ok(grid) };
+        let origin = frame.origin.map(|c| c * self.unit);
+        let frame = Frame::new(origin, frame.z, frame.x)
+            .map_err(|error| self.error(Problem::Frame(error), &["grid".into(), "frame".into()]))?;
+        Ok(grid.in_frame(frame))
     }
 
     /// A piece of stock, whose value the steps lead to.
@@ -276,7 +281,8 @@ impl Reader<'_> {
         }
         let words = |grid: &Grid| {
             let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
-            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm")
+            let frame = if grid.frame().is_world() { "" } else { " in a frame" };
+            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm{frame}")
         };
         let what = format!("the grid of {name}");
         Err(self.error(

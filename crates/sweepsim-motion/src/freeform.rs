@@ -1,6 +1,7 @@
 //! Tools of any shape: patches of one's own.
 
 use crate::boundary::{NormalField, Patch};
+use crate::turned;
 use nalgebra::Vector3;
 use sweepsim_spline::{Bernstein, RationalSpline, SplineError};
 use thiserror::Error;
@@ -157,11 +158,38 @@ fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
     [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
 }
 
+/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments.
+pub(crate) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> NormalField {
+    let first = weight.coefficients()[0];
+    let polynomial = weight.coefficients().iter().all(|w| *w == first);
+    let (pu, pv) = (
+        [0, 1, 2].map(|k| position[k].derivative(0)),
+        [0, 1, 2].map(|k| position[k].derivative(1)),
+    );
+    let both = cross(&pu, &pv);
+    let (normal, moment) = if polynomial {
+        // F = P / w with a constant weight: the moment of F is that of P over it.
+        let moment = cross(position, &both).map(|form| form.scale(1.0 / first));
+        (both, moment)
+    } else {
+        let (wu, wv) = (weight.derivative(0), weight.derivative(1));
+        let (with_u, with_v) = (cross(position, &pu), cross(position, &pv));
+        let hat = [0, 1, 2].map(|k| {
+            let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
+            sum.sub(&wu.mul(&with_v[k]))
+        });
+        let moment = cross(position, &hat);
+        (hat.map(|form| weight.mul(&form)), moment)
+    };
+    NormalField { normal, moment }
+}
+
 impl Patch {
     /// The patch `position / weight`, whose normal `F_u × F_v` points out of the tool.
     ///
     /// Its normals and moments are made as Bernstein forms: with `P` the position and `w` the weight,
-    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule).
+    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule). Those of a piece of a surface
+    /// of revolution about the third axis, which is recognised where it is one but for rounding, have a lower degree.
     ///
     /// # Errors
     /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the inside (along the sides it
@@ -184,27 +212,8 @@ impl Patch {
         if let Some((index, &value)) = weight.coefficients().iter().enumerate().find(|(_, w)| **w <= 0.0) {
             return Err(PatchError::Weight { index, value });
         }
-        let first = weight.coefficients()[0];
-        let polynomial = weight.coefficients().iter().all(|w| *w == first);
-        let (pu, pv) = (
-            [0, 1, 2].map(|k| position[k].derivative(0)),
-            [0, 1, 2].map(|k| position[k].derivative(1)),
-        );
-        let both = cross(&pu, &pv);
-        let (normal, moment) = if polynomial {
-            // F = P / w with a constant weight: the moment of F is that of P over it.
-            let moment = cross(&position, &both).map(|form| form.scale(1.0 / first));
-            (both, moment)
-        } else {
-            let (wu, wv) = (weight.derivative(0), weight.derivative(1));
-            let (with_u, with_v) = (cross(&position, &pu), cross(&position, &pv));
-            let hat = [0, 1, 2].map(|k| {
-                let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
-                sum.sub(&wu.mul(&with_v[k]))
-            });
-            let moment = cross(&position, &hat);
-            (hat.map(|form| weight.mul(&form)), moment)
-        };
+        let found = turned::field(&position, &weight);
+        let NormalField { normal, moment } = found.unwrap_or_else(|| normals(&position, &weight));
         let largest = normal.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
         if largest == 0.0 || !largest.is_finite() {
             return Err(PatchError::NoNormal { u: 0.5, v: 0.5 });
@@ -279,10 +288,18 @@ pub(crate) fn pieces(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolErro
         let pieces = spline
             .pieces()
             .map_err(|source| ToolError::Spline { surface, source })?;
+        // Pieces of a constant are that constant, whatever the roundings of knot insertion: the surface is polynomial, and the normals of
+        // its patches have about half the degree.
+        let mut weights = spline.control_points().map(|(_, weight)| weight);
+        let first = weights.next();
+        let constant = first.filter(|first| weights.all(|weight| weight == *first));
         for piece in pieces {
             let forms = piece.map.numerators();
             let position = [0, 1, 2].map(|k| forms[k].clone().assumed_exact());
-            let weight = piece.map.weight().clone().assumed_exact();
+            let mut weight = piece.map.weight().clone().assumed_exact();
+            if let Some(constant) = constant {
+                weight = Bernstein::from_fn(weight.degrees(), |_| constant).unwrap_or(weight);
+            }
             patches.push(Patch::new(position, weight).map_err(|source| ToolError::Patch {
                 surface,
                 ranges: [piece.ranges[0], piece.ranges[1]],

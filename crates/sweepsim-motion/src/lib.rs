@@ -21,6 +21,7 @@ mod rotary;
 mod segment;
 mod spline_motion;
 mod tool;
+mod turned;
 
 pub use apt::{Apt, AptError, AptWarning};
 pub use assembly::{Assembly, Body, BodyKind};

@@ -15,6 +15,7 @@
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 use crate::Interval;
+use crate::trail::Trail;
 use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum, Vector3};
 
 /// A map `R^N → R^N` with enclosures over boxes.
@@ -58,13 +59,35 @@ pub struct Sample<const N: usize, S> {
     pub seen: S,
 }
 
-/// A set of right-hand sides with a range query.
-pub trait Targets<const N: usize> {
-    /// Whether any target lies in the range.
-    fn any(&self, range: &[Interval; N]) -> bool;
+/// A right-hand side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<const N: usize> {
+    /// Its number.
+    pub number: usize,
+    /// Row and place in the row. Where neighbours differ evenly they are solved faster.
+    pub place: [usize; 2],
+    /// `q`.
+    pub value: [f64; N],
+}
 
-    /// Calls `visit` with each target in the range until that returns `false`.
-    fn visit(&self, range: &[Interval; N], visit: &mut dyn FnMut(usize, &[f64; N]) -> bool);
+/// A set of right-hand sides with a range query, in rows: targets of a row differ in their second value alone.
+pub trait Targets<const N: usize> {
+    /// How many targets lie in the range.
+    fn count(&self, range: &[Interval; N]) -> usize;
+
+    /// Calls `visit` with each target in the range until that returns `false`: row by row, and in each upwards. Of a row, `narrow` is
+    /// shown the lowest, and says which second values are wanted.
+    fn visit(
+        &self,
+        range: &[Interval; N],
+        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    );
+}
+
+/// Rows that are wanted as they are.
+pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Interval {
+    Interval::new(f64::NEG_INFINITY, f64::INFINITY)
 }
 
 /// A solution `Φ(x) = q` of one target.
@@ -74,7 +97,7 @@ pub struct Preimage<const N: usize, S = ()> {
     pub target: usize,
     /// The solution.
     pub x: [f64; N],
-    /// Where Newton's method came from in its last step, at most [`ChartOptions::accept`] away.
+    /// Where Newton's method came from in its last step.
     pub from: [f64; N],
     /// What the map saw there.
     pub seen: S,
@@ -107,6 +130,10 @@ pub struct Undecided<const N: usize> {
 pub trait Sink<const N: usize, S = ()> {
     /// A solution.
     fn found(&mut self, preimage: Preimage<N, S>);
+    /// What was received so far, to [forget](Sink::forget) what comes after.
+    fn mark(&self) -> usize;
+    /// Takes back the solutions since the mark: their box is looked at again, in parts.
+    fn forget(&mut self, mark: usize);
     /// A box and a target that remain open.
     fn undecided(&mut self, undecided: Undecided<N>);
 }
@@ -118,8 +145,7 @@ pub struct ChartOptions {
     pub boxes: u64,
     /// A box whose sides are all at most this part of the domain is not split further.
     pub smallest: f64,
-    /// Newton's method ends with a step of at most this part of the half sides of a chart. The solution is then exact to about
-    /// the square of it.
+    /// Newton's method ends with a step that leaves an error of about the square of this, in parts of the domain.
     pub accept: f64,
 }
 
@@ -160,6 +186,10 @@ const STEPS: usize = 32;
 const ON_FACE: f64 = 1e-11;
 /// Boxes with at most this many targets have each of them tested before a split.
 const FEW: usize = 4;
+/// A box whose range holds so many targets is a chart only when it is [`CLOSE`] to linear.
+const MANY: usize = 1000;
+/// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
+const CLOSE: f64 = 0.4;
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
@@ -255,64 +285,132 @@ impl<const N: usize> Linear<N> {
         s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
     }
 
+    /// The second values of targets with the other values of `q` that can have a preimage in the box, seen from the centre.
+    fn window(&self, value: &[f64; N], q: &[f64; N]) -> Interval {
+        let mut window = Interval::new(f64::NEG_INFINITY, f64::INFINITY);
+        if N < 2 {
+            return window;
+        }
+        for i in 0..N {
+            // |base + factor (q₁ − Φ₁)| ≤ 1 + reach; twice the slack is for the rounding here, of numbers no larger than those of Φ.
+            let factor = self.inverse[(i, 1)];
+            let base: f64 = (0..N)
+                .filter(|k| *k != 1)
+                .map(|k| self.inverse[(i, k)] * (q[k] - value[k]))
+                .sum();
+            let limit = 1.0 + self.reach(i) + 2.0 * self.slack[i];
+            let (a, b) = ((-limit - base) / factor, (limit - base) / factor);
+            let (lo, hi) = (a.min(b), a.max(b));
+            // With a factor of 0 the ends are infinite, or not numbers: they narrow nothing, and targets are tested one by one.
+            if lo.is_finite() && hi.is_finite() {
+                window = Interval::new(window.lo.max(value[1] + lo), window.hi.min(value[1] + hi));
+            }
+        }
+        window
+    }
+
     fn point(&self, s: &SVector<f64, N>) -> [f64; N] {
         std::array::from_fn(|i| self.centre[i] + s[i] * self.half[i])
     }
 }
 
-/// What became of a target in a chart.
-enum Outcome<const N: usize, S> {
-    Found {
-        s: SVector<f64, N>,
-        from: [f64; N],
-        seen: S,
-    },
-    Absent,
-    Unclear,
+/// The mean value theorem's bound, iterated to its end.
+///
+/// Seen from a point `c` of the box a preimage `s` is at `p = c − K(Φ(c) − q)`, but for `|s − p| ≤ R|s − c| + e` with the rounding `e`. So
+/// `|s − c| ≤ |p − c| + R|s − c| + e`, and as powers of `R` tend to 0, `|s − c| ≤ (I − R)⁻¹(|p − c| + e)`, and
+/// `|s − p| ≤ R(I − R)⁻¹|p − c| + (I − R)⁻¹e`: what is looked at near a preimage encloses it closely.
+struct Contraction<const N: usize> {
+    /// `R(I − R)⁻¹`.
+    rest: Square<N>,
+    /// `(I − R)⁻¹e`.
+    slack: SVector<f64, N>,
 }
 
-/// The last targets found in a chart, the latest first: neighbours have neighbouring preimages.
-struct Trail<const N: usize> {
-    found: [([f64; N], SVector<f64, N>); 3],
-    count: usize,
-}
-
-impl<const N: usize> Trail<N> {
-    fn new() -> Self {
-        Self {
-            found: [([0.0; N], SVector::zeros()); 3],
-            count: 0,
+impl<const N: usize> Linear<N> {
+    /// For `‖R‖∞ < 1`.
+    fn contraction(&self) -> Option<Contraction<N>> {
+        // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of terms that are not negative. After k factors what is left out is, row by row,
+        // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large.
+        let norm = self.norm();
+        let (mut sum, mut power, mut left) = (Square::<N>::identity() + self.rest, self.rest, norm * norm);
+        while left > 1e-3 * (1.0 - norm) {
+            power *= power;
+            sum += sum * power;
+            left *= left;
         }
-    }
-
-    fn push(&mut self, q: [f64; N], s: SVector<f64, N>) {
-        self.found.rotate_right(1);
-        self.found[0] = (q, s);
-        self.count = (self.count + 1).min(3);
-    }
-
-    /// Where the preimage of `q` should be, as far as those found are evenly spaced on a line with it.
-    fn guess(&self, q: &[f64; N]) -> Option<SVector<f64, N>> {
-        let even = |next: &[f64; N], at: usize| {
-            let (middle, last) = (&self.found[at].0, &self.found[at + 1].0);
-            let steps = (0..N).map(|i| (next[i] - middle[i], middle[i] - last[i]));
-            let (mut off, mut size) = (0.0_f64, 0.0_f64);
-            for (a, b) in steps {
-                off = off.max((a - b).abs());
-                size = size.max(b.abs());
-            }
-            off <= 1e-6 * size
+        // Besides, a few dozen roundings of terms of one sign.
+        let remainder = left / (1.0 - norm) + 64.0 * f64::EPSILON;
+        let spread = sum * self.rest;
+        let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);
+        let (own, of_slack) = (remainder * most(&spread), remainder * most(&sum));
+        let largest = self.slack.amax();
+        let contraction = Contraction {
+            rest: spread.map(|x| x + own),
+            slack: (sum * self.slack).map(|x| x + of_slack * largest),
         };
-        let [a, b, c] = [0, 1, 2].map(|k| self.found[k].1);
-        if self.count < 2 || !even(q, 0) {
-            return None;
-        }
-        if self.count == 3 && even(&self.found[0].0, 1) {
-            Some((a - b) * 3.0 + c)
-        } else {
-            Some(a * 2.0 - b)
+        let finite = contraction.rest.iter().chain(&contraction.slack).all(|x| x.is_finite());
+        finite.then_some(contraction)
+    }
+}
+
+/// A box of places, in coordinates scaled to that of a chart.
+#[derive(Clone, Copy)]
+struct Region<const N: usize> {
+    lo: SVector<f64, N>,
+    hi: SVector<f64, N>,
+}
+
+impl<const N: usize> Region<N> {
+    fn around(middle: &SVector<f64, N>, reach: &SVector<f64, N>) -> Self {
+        Self {
+            lo: middle - reach,
+            hi: middle + reach,
         }
     }
+
+    fn intersect(&mut self, other: &Self) {
+        for i in 0..N {
+            self.lo[i] = if other.lo[i] > self.lo[i] {
+                other.lo[i]
+            } else {
+                self.lo[i]
+            };
+            self.hi[i] = if other.hi[i] < self.hi[i] {
+                other.hi[i]
+            } else {
+                self.hi[i]
+            };
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        (0..N).any(|i| self.lo[i] > self.hi[i])
+    }
+
+    /// The nearest place; the middle for what is not a number.
+    fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| {
+            if s[i].is_nan() {
+                0.5 * (self.lo[i] + self.hi[i])
+            } else {
+                s[i].clamp(self.lo[i], self.hi[i])
+            }
+        })
+    }
+}
+
+/// A place in a chart, and `Φ` there.
+#[derive(Clone, Copy)]
+struct Witness<const N: usize> {
+    at: SVector<f64, N>,
+    value: [f64; N],
+}
+
+/// What became of a target in a chart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Settled,
+    Unclear,
 }
 
 impl<C: Clone> ChartSolver<C> {
@@ -364,7 +462,8 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             };
             self.statistics.boxes += 1;
-            if !targets.any(&values) {
+            let count = targets.count(&values);
+            if count == 0 {
                 continue;
             }
             let bounds = map.bounds(&cell);
@@ -375,7 +474,8 @@ impl<C: Clone> ChartSolver<C> {
             let tiny = (0..N).all(|j| small(j) || idle(j));
             if tiny || budget == 0 {
                 let reason = if tiny { Reason::Smallest } else { Reason::Budget };
-                targets.visit(&values, &mut |target, _| {
+                targets.visit(&values, &all_of, &mut |target| {
+                    let target = target.number;
                     sink.undecided(Undecided { target, bounds, reason });
                     true
                 });
@@ -387,10 +487,23 @@ impl<C: Clone> ChartSolver<C> {
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
-                let chart = linear.norm() < 1.0;
-                let first_found =
-                    chart.then(|| self.chart(map, &linear, &bounds, domain, &value, &values, targets, sink));
-                match first_found {
+                // Many targets are worth smaller charts, on which they are settled at first sight.
+                let norm = linear.norm();
+                let chart = norm < 1.0 && (count < MANY || norm < CLOSE);
+                let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
+                    self.chart(
+                        map,
+                        &linear,
+                        &contraction,
+                        &bounds,
+                        domain,
+                        &value,
+                        &values,
+                        targets,
+                        sink,
+                    )
+                });
+                match all_clear {
                     Some(true) => {
                         self.statistics.charts += 1;
                         continue;
@@ -398,7 +511,7 @@ impl<C: Clone> ChartSolver<C> {
                     // Newton's method went astray for some target: nothing of this box was handed out yet.
                     Some(false) => {}
                     None => {
-                        if few_and_absent(&linear, &value, &values, targets) {
+                        if count <= FEW && all_absent(&linear, &value, &values, targets) {
                             continue;
                         }
                     }
@@ -428,6 +541,7 @@ impl<C: Clone> ChartSolver<C> {
         &mut self,
         map: &M,
         linear: &Linear<N>,
+        contraction: &Contraction<N>,
         bounds: &[Interval; N],
         domain: &[Interval; N],
         value: &[f64; N],
@@ -440,47 +554,70 @@ impl<C: Clone> ChartSolver<C> {
         T: Targets<N> + ?Sized,
         S: Sink<N, M::Seen>,
     {
-        let origin = SVector::<f64, N>::zeros();
-        let rows: [f64; N] = std::array::from_fn(|i| linear.reach(i));
-        let mut found: smallvec::SmallVec<[Preimage<N, M::Seen>; 16]> = smallvec::SmallVec::new();
+        let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
+        let centre = Witness {
+            at: SVector::zeros(),
+            value: *value,
+        };
+        let whole = Region::around(&centre.at, &SVector::repeat(1.0));
+        let close = linear.norm() < CLOSE;
+        let mark = sink.mark();
         let mut trail = Trail::new();
         let mut clear = true;
         let Self {
             options, statistics, ..
         } = self;
-        let chart = Chart {
-            linear,
-            bounds,
-            domain,
-            accept: options.accept,
-        };
-        targets.visit(values, &mut |target, q| {
-            let start = linear.predict(&origin, value, q);
-            // By the mean value theorem about the centre the preimage is within `rows` of the prediction.
-            let lo = SVector::from_fn(|i, _| f64::max(start[i] - rows[i], -1.0));
-            let hi = SVector::from_fn(|i, _| f64::min(start[i] + rows[i], 1.0));
-            if (0..N).any(|i| lo[i] > hi[i]) {
+        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
+        // Of the last target looked at, and of the first one found in the row.
+        let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
+        let mut row = usize::MAX;
+        let window = |q: &[f64; N]| linear.window(value, q);
+        targets.visit(values, &window, &mut |target| {
+            let q = &target.value;
+            if target.place[0] != row {
+                row = target.place[0];
+                last = first.take().or(last);
+            }
+            let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
+            region.intersect(&whole);
+            // What is near needs no second view.
+            if (!close || last.is_none()) && !region.is_empty() {
+                let start = linear.predict(&centre.at, value, q);
+                region.intersect(&Region::around(&start, &reach));
+            }
+            if region.is_empty() {
                 return true;
             }
-            let guess = trail.guess(q).unwrap_or(start);
-            match chart.solve(map, guess, [lo, hi], q, &mut statistics.evaluations) {
-                Outcome::Found { s, from, seen } => {
-                    trail.push(*q, s);
-                    found.push(Preimage {
-                        target,
+            let guess = trail.guess(target.place).map_or(near, SVector::from);
+            let (mut witness, mut hit) = (None, false);
+            let outcome = chart.solve(
+                map,
+                guess,
+                region,
+                q,
+                &mut witness,
+                &mut statistics.evaluations,
+                &mut |s, from, seen| {
+                    trail.push(target.place, s.into());
+                    sink.found(Preimage {
+                        target: target.number,
                         x: linear.point(&s),
                         from,
                         seen,
                         orientation: linear.orientation,
                     });
-                }
-                Outcome::Absent => {}
-                Outcome::Unclear => clear = false,
+                    hit = true;
+                },
+            );
+            if hit {
+                first = first.or(witness);
             }
+            last = witness.or(last);
+            clear = outcome == Outcome::Settled;
             clear
         });
-        if clear {
-            found.into_iter().for_each(|preimage| sink.found(preimage));
+        if !clear {
+            sink.forget(mark);
         }
         clear
     }
@@ -489,68 +626,105 @@ impl<C: Clone> ChartSolver<C> {
 /// A box on which the map is injective.
 struct Chart<'a, const N: usize> {
     linear: &'a Linear<N>,
+    contraction: &'a Contraction<N>,
     bounds: &'a [Interval; N],
     domain: &'a [Interval; N],
-    accept: f64,
+    /// The longest last step of Newton's method, in half sides: well inside the box, and near a face.
+    accept: [f64; 2],
 }
 
-impl<const N: usize> Chart<'_, N> {
+/// So near a face, in half sides, Newton's method is as exact as if the box were the whole domain.
+const NEAR_FACE: f64 = 1e-4;
+/// No last step is longer than this.
+const LONGEST: f64 = 1e-3;
+
+impl<'a, const N: usize> Chart<'a, N> {
+    fn new(
+        linear: &'a Linear<N>,
+        contraction: &'a Contraction<N>,
+        bounds: &'a [Interval; N],
+        domain: &'a [Interval; N],
+        accept: f64,
+    ) -> Self {
+        // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; what else the
+        // map knows is off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
+        let part = (0..N)
+            .map(|i| bounds[i].radius() / domain[i].radius())
+            .fold(0.0, f64::max);
+        let scale = (part * part.max(linear.norm())).sqrt();
+        let inside = (accept / scale).min(LONGEST).max(accept);
+        Self {
+            linear,
+            contraction,
+            bounds,
+            domain,
+            accept: [inside, accept],
+        }
+    }
+
+    /// Where a preimage of `q` seems to be, seen from a place, and the region that it is in if it is in the box.
+    fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
+        let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
+        let reach = self.contraction.rest * step.abs() + self.contraction.slack;
+        let place = witness.at + step;
+        (place, Region::around(&place, &reach))
+    }
+
     /// Newton's method from `guess`. Each point that it evaluates in the box also bounds, by the mean value theorem about it,
     /// where in the box a preimage can be; when nothing is left, there is none.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
     fn solve<M: ChartMap<N>>(
         &self,
         map: &M,
         guess: SVector<f64, N>,
-        [mut lo, mut hi]: [SVector<f64, N>; 2],
+        mut region: Region<N>,
         q: &[f64; N],
+        witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-    ) -> Outcome<N, M::Seen> {
+        found: &mut impl FnMut(SVector<f64, N>, [f64; N], M::Seen),
+    ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
         for _ in 0..STEPS {
-            // A guess that is not a number goes to the middle.
-            s = SVector::from_fn(|i, _| {
-                if s[i].is_nan() {
-                    0.5 * (lo[i] + hi[i])
-                } else {
-                    s[i].clamp(lo[i], hi[i])
-                }
-            });
+            s = region.clamp(&s);
             let from = linear.point(&s);
             let sample = map.evaluate(&from);
             *evaluations += 1;
+            let here = Witness {
+                at: s,
+                value: sample.value,
+            };
+            *witness = Some(here);
             let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
             let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
             let next = solve_linear(&scaled, &rest).map(|step| s - step);
-            let found = |s| Outcome::Found {
-                s,
-                from,
-                seen: sample.seen.clone(),
-            };
-            if let Some(next) = next
-                && (next - s).amax() <= self.accept
-                && self.owns(&next)
-            {
-                return found(next);
+            let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
+            if let Some(next) = next {
+                let near_face = next.amax() > 1.0 - NEAR_FACE;
+                if step <= self.accept[usize::from(near_face)] && self.owns(&next) {
+                    found(next, from, sample.seen);
+                    return Outcome::Settled;
+                }
             }
-            let predicted = s - linear.inverse * rest;
-            let far = SVector::from_fn(|i, _| f64::max(hi[i] - s[i], s[i] - lo[i]));
-            let reach = linear.rest * far + linear.slack;
-            for i in 0..N {
-                lo[i] = lo[i].max(predicted[i] - reach[i]);
-                hi[i] = hi[i].min(predicted[i] + reach[i]);
+            let (predicted, own) = self.region(&here, q);
+            let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - s[i], s[i] - region.lo[i]));
+            region.intersect(&own);
+            region.intersect(&Region::around(&predicted, &(linear.rest * far + linear.slack)));
+            if region.is_empty() {
+                return Outcome::Settled;
             }
-            if (0..N).any(|i| lo[i] > hi[i]) {
-                return Outcome::Absent;
-            }
-            if (0..N).all(|i| hi[i] - lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+            if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
                 // As near as rounding lets it come: a smaller box would know no more.
                 let rests = |next: &SVector<f64, N>| {
-                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept.max(2.0 * linear.slack[i]))
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
                 };
                 return match next {
-                    Some(next) if self.owns(&next) => found(next),
-                    Some(next) if rests(&next) => Outcome::Absent,
+                    Some(next) if self.owns(&next) => {
+                        found(next, from, sample.seen);
+                        Outcome::Settled
+                    }
+                    Some(next) if rests(&next) => Outcome::Settled,
                     _ => Outcome::Unclear,
                 };
             }
@@ -608,20 +782,18 @@ fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Opti
     Some(x)
 }
 
-/// Whether the range holds few targets and the mean value test excludes each of them.
-fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
+/// Whether the mean value test excludes each target in the range.
+fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
     linear: &Linear<N>,
     value: &[f64; N],
     values: &[Interval; N],
     targets: &T,
 ) -> bool {
-    let mut count = 0;
     let mut absent = true;
     let origin = SVector::<f64, N>::zeros();
-    targets.visit(values, &mut |_, q| {
-        count += 1;
-        let start = linear.predict(&origin, value, q);
-        absent = count <= FEW && (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
+    targets.visit(values, &all_of, &mut |target| {
+        let start = linear.predict(&origin, value, &target.value);
+        absent = (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
         absent
     });
     absent
@@ -631,7 +803,7 @@ fn few_and_absent<const N: usize, T: Targets<N> + ?Sized>(
 ///
 /// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
 /// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
-fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
+pub(crate) fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
     let half = bounds.map(Interval::radius);
     jacobian.iter().all(|row| {
         let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
@@ -640,12 +812,12 @@ fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; 
     })
 }
 
-fn largest<const N: usize>(weights: &[f64; N]) -> usize {
+pub(crate) fn largest<const N: usize>(weights: &[f64; N]) -> usize {
     (0..N).fold(0, |best, j| if weights[j] > weights[best] { j } else { best })
 }
 
 /// The variable that moves the values most, measured in `scales`, over the box.
-fn widest<const N: usize>(
+pub(crate) fn widest<const N: usize>(
     bounds: &[Interval; N],
     domain: &[Interval; N],
     jacobian: &[[Interval; N]; N],
@@ -659,4 +831,41 @@ fn widest<const N: usize>(
         return largest::<N>(&std::array::from_fn(|j| bounds[j].radius() / domain[j].radius()));
     }
     largest(&weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+
+    /// The bound of [`Contraction`] encloses `R(I − R)⁻¹`, and closely.
+    #[test]
+    fn contractions_are_the_limits_of_their_series() {
+        for norm in [0.0, 1e-3, 0.3, 0.9, 0.999] {
+            let rest = Matrix3::new(0.2, 0.5, 0.3, 0.1, 0.6, 0.2, 0.4, 0.0, 0.6) * norm;
+            let linear = Linear::<3> {
+                centre: [0.0; 3],
+                half: [1.0; 3],
+                inverse: Matrix3::identity(),
+                rest,
+                smear: [0.0; 3],
+                slack: Vector3::new(1e-12, 2e-12, 3e-12),
+                orientation: 1,
+            };
+            let found = linear.contraction().unwrap();
+            let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
+            let (exact, slack) = (rest * inverse, inverse * linear.slack);
+            let rounding = 1e-13 / (1.0 - norm);
+            for k in 0..9 {
+                assert!(
+                    found.rest[k] >= exact[k] - rounding && found.rest[k] <= exact[k] + 2e-3 * exact.amax() + rounding
+                );
+            }
+            for k in 0..3 {
+                assert!(
+                    found.slack[k] >= slack[k] * (1.0 - rounding) && found.slack[k] <= slack[k] + 2e-3 * slack.amax()
+                );
+            }
+        }
+    }
 }

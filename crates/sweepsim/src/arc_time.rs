@@ -178,6 +178,17 @@ impl ArcTimes {
         (a.min(b), a.max(b))
     }
 
+    /// `κ k`.
+    pub fn pace(&self) -> Vector3<f64> {
+        self.pace
+    }
+
+    /// Of the whole: `Â`, its weight and `Âᵀ b′`.
+    pub fn coefficients(&self) -> impl Iterator<Item = (Matrix3<f64>, f64, Vector3<f64>)> {
+        let root = &self.nodes[0];
+        (0..self.count).map(|i| (root.turns[i], root.weights[i], root.travel[i].into()))
+    }
+
     /// The motion at `t`.
     pub fn at(&self, t: f64) -> Moment {
         let root = &self.nodes[0];

@@ -1,9 +1,11 @@
 //! All crossings of dexel lines with the boundary of a stretch of path: envelope, edges, kinks and the two caps.
 
 use crate::element::{Cells, Element};
-use crate::envelope::{Face, Joint, Near, OnFace, ROOT, Rim, Side, Size, Twist};
+use crate::envelope::{Face, Joint, Near, OnFace, OnJoint, OnRim, ROOT, Rim, Side, Size, Twist};
 use crate::generic::Part;
+use crate::instant::Motion;
 use crate::lattice::Lattice;
+use crate::lines::Bundles;
 use crate::placed::Placed;
 use crate::planes::Slicer;
 use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
@@ -12,8 +14,8 @@ use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{End, Segment, Tool};
 use sweepsim_solve::{
-    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions, SurfaceSolver, System,
-    SystemError, Undecided,
+    BundleSolver, ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions,
+    SurfaceSolver, System, SystemError, Undecided,
 };
 
 /// A tool, prepared.
@@ -48,6 +50,7 @@ pub(crate) struct Workspace {
     pub bricks: ChartSolver<(u32, u32)>,
     pub placed: ChartSolver<u32>,
     pub slicer: Slicer,
+    pub bundles: BundleSolver,
 }
 
 impl Workspace {
@@ -63,6 +66,7 @@ impl Workspace {
             bricks: ChartSolver::new(options),
             placed: ChartSolver::new(options),
             slicer: Slicer::new(),
+            bundles: BundleSolver::new(options),
         }
     }
 }
@@ -76,6 +80,16 @@ pub(crate) enum How<'a> {
     Planes(&'a [Forms]),
     /// By charts within the boxes of the envelope surfaces: Algorithm 1.
     Surface,
+    /// Line by line, in bundles: Algorithm 4. The systems of each part.
+    Lines(&'a [Bundles]),
+}
+
+/// What a part needs to be solved so.
+#[derive(Clone, Copy)]
+struct Means<'a> {
+    forms: Option<&'a Forms>,
+    bundles: Option<&'a Bundles>,
+    surface: Option<&'a Segment>,
 }
 
 /// A tool under one motion, and at rest at its start and end.
@@ -122,24 +136,26 @@ pub(crate) struct Harvest {
     pub statistics: ChartStatistics,
 }
 
-/// Preimages of one map.
-pub(crate) struct Collector<const N: usize, S> {
-    pub found: Vec<Preimage<N, S>>,
-    pub open: Vec<(u32, Reason)>,
+/// Makes crossings of preimages as they come.
+struct Reaper<'a, F> {
+    crossings: &'a mut Vec<Numbered>,
+    open: &'a mut Vec<(u32, Reason)>,
+    make: F,
 }
 
-impl<const N: usize, S> Collector<N, S> {
-    pub fn new() -> Self {
-        Self {
-            found: Vec::new(),
-            open: Vec::new(),
+impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> for Reaper<'_, F> {
+    fn found(&mut self, preimage: Preimage<N, S>) {
+        if let Some(crossing) = (self.make)(&preimage) {
+            self.crossings.push((preimage.target as u32, crossing));
         }
     }
-}
 
-impl<const N: usize, S> Sink<N, S> for Collector<N, S> {
-    fn found(&mut self, preimage: Preimage<N, S>) {
-        self.found.push(preimage);
+    fn mark(&self) -> usize {
+        self.crossings.len()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.crossings.truncate(mark);
     }
 
     fn undecided(&mut self, undecided: Undecided<N>) {
@@ -174,6 +190,19 @@ pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
     })
 }
 
+/// What moves before and after a placement of the part: that at its start (0), or that at its end (1), the last of the path.
+pub(crate) fn sides(parts: &[Part], at: usize, end: usize) -> [Side; 2] {
+    let segment = &parts[at].segment;
+    if end == 1 {
+        return [twist(segment, End::Finish, &segment.end()), Side::Beyond(true)];
+    }
+    let turn = segment.start();
+    let before = at
+        .checked_sub(1)
+        .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
+    [before, twist(segment, End::Start, &turn)]
+}
+
 /// A search of some lines along some segments.
 pub(crate) struct Search<'a> {
     pub tool: &'a Tool,
@@ -202,37 +231,41 @@ impl Search<'_> {
             t: start + share * segment.time(t) as f32,
         };
         let mut times = Times::new(segment);
-        let forms = match self.how {
-            How::Planes(forms) => Some(&forms[at]),
-            _ => None,
+        let mut means = Means {
+            forms: None,
+            bundles: None,
+            surface: None,
         };
-        let surface = matches!(self.how, How::Surface).then_some(segment);
-        self.faces(&mut times, (forms, surface), &source, space, harvest);
-        self.rims(&mut times, forms, &source, space, harvest);
+        match self.how {
+            How::Charts => {}
+            How::Planes(forms) => means.forms = Some(&forms[at]),
+            How::Lines(bundles) => means.bundles = Some(&bundles[at]),
+            How::Surface => means.surface = Some(segment),
+        }
+        self.faces(&mut times, means, &source, space, harvest);
+        self.rims(&mut times, means, &source, space, harvest);
         let turn = segment.start();
-        let before = at
-            .checked_sub(1)
-            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
+        let [before, after] = sides(parts, at, 0);
         let placed = Placement {
             turn,
             tip: segment.tips()[0],
             before,
-            after: twist(segment, End::Start, &turn),
+            after,
             source: source(0.0),
             end: 0,
         };
-        self.joint(&placed, forms, space, harvest);
+        self.joint(&placed, means, space, harvest);
         if at + 1 == parts.len() {
-            let turn = segment.end();
+            let [before, after] = sides(parts, at, 1);
             let placed = Placement {
-                turn,
+                turn: segment.end(),
                 tip: segment.tips()[1],
-                before: twist(segment, End::Finish, &turn),
-                after: Side::Beyond(true),
+                before,
+                after,
                 source: source(1.0),
                 end: 1,
             };
-            self.joint(&placed, forms, space, harvest);
+            self.joint(&placed, means, space, harvest);
         }
         harvest.count_slices(&mut space.slicer);
         for cells in space.faces.iter_mut().chain(&mut space.rims) {
@@ -270,7 +303,7 @@ impl Search<'_> {
         map: &mut M,
         system: impl FnOnce() -> Result<System, SystemError>,
         (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
-        sink: &mut Collector<N, M::Seen>,
+        sink: &mut impl Sink<N, M::Seen>,
     ) where
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
@@ -287,37 +320,37 @@ impl Search<'_> {
     fn faces(
         &self,
         times: &mut Times,
-        (forms, surface): (Option<&Forms>, Option<&Segment>),
+        means: Means,
         source: &dyn Fn(f64) -> Source,
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let mut map = Face {
+                motion: Motion::new(times, element.frame()),
                 element,
                 cells,
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::new();
-            if let Some(forms) = forms {
-                let system = || forms.faces[number].section(&self.plane());
-                self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
-            } else if let Some(segment) = surface {
-                self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
-            } else {
-                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
-            }
-            for found in sink.found {
-                let crossing = Crossing {
+            let mut sink = harvest.reaper(|found: &Preimage<3, OnFace>| {
+                Some(Crossing {
                     z: found.seen.height.at(&found.x, &found.from),
                     jump: found.orientation,
                     normal: unit(found.seen.normal),
                     source: source(found.x[2]),
-                };
-                harvest.crossings.push((found.target as u32, crossing));
+                })
+            });
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.face(number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
+                let system = || forms.faces[number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
+            } else if let Some(segment) = means.surface {
+                self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
+            } else {
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.bricks.statistics);
     }
@@ -329,7 +362,7 @@ impl Search<'_> {
         number: usize,
         segment: &Segment,
         charts: &mut ChartSolver<(u32, u32)>,
-        sink: &mut Collector<3, OnFace>,
+        sink: &mut impl Sink<3, OnFace>,
     ) {
         let touches = map
             .values(&ROOT)
@@ -369,87 +402,84 @@ impl Search<'_> {
     fn rims(
         &self,
         times: &mut Times,
-        forms: Option<&Forms>,
+        means: Means,
         source: &dyn Fn(f64) -> Source,
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
         for (number, (element, cells)) in self.cutter.rims.iter().zip(&mut space.rims).enumerate() {
             let mut map = Rim {
+                motion: Motion::new(times, None),
                 element,
                 cells,
                 times,
                 size: self.size,
             };
-            let mut sink = Collector::new();
-            match forms {
-                Some(forms) => {
-                    let system = || forms.rims[number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
-                }
-                None => space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink),
-            }
-            for found in sink.found {
+            let mut sink = harvest.reaper(|found: &Preimage<2, OnRim>| {
                 let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
                 if (a < 0.0) == (b < 0.0) {
-                    continue;
+                    return None;
                 }
                 // The envelope's normal lies in the fan of the two faces, where g = 0.
                 let [n, m] = found.seen.normals;
-                let (n, m) = (n / n.norm() * (b.abs() / m.norm()), m / m.norm() * (a.abs() / n.norm()));
-                let crossing = Crossing {
+                let lengths = n.norm() * m.norm();
+                Some(Crossing {
                     z: found.seen.height.at(&found.x, &found.from),
                     jump: if a < 0.0 { -found.orientation } else { found.orientation },
-                    normal: unit(n + m),
+                    normal: unit(n * (b.abs() / lengths) + m * (a.abs() / lengths)),
                     source: source(found.x[1]),
-                };
-                harvest.crossings.push((found.target as u32, crossing));
+                })
+            });
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.rim(number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
+                let system = || forms.rims[number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
+            } else {
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.bricks.statistics);
     }
 
-    fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
+    fn joint(&self, placed: &Placement, means: Means, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
-            let mut map = Joint {
-                element,
-                cells,
-                turn: placed.turn,
-                tip: placed.tip,
-                before: placed.before,
-                after: placed.after,
-                size: self.size,
-            };
-            let mut sink = Collector::new();
-            match forms {
-                Some(forms) => {
-                    let system = || forms.placed[placed.end][number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
-                }
-                None => space.placed.solve(&mut map, 0, self.lattice, &mut sink),
-            }
-            for found in sink.found {
+            let pose = (placed.turn, placed.tip);
+            let mut map = Joint::new(element, cells, pose, [placed.before, placed.after], self.size);
+            let mut sink = harvest.reaper(|found: &Preimage<2, OnJoint>| {
                 let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
                 let change = negative(found.seen.after) - negative(found.seen.before);
-                if change == 0 {
-                    continue;
-                }
-                let crossing = Crossing {
+                (change != 0).then(|| Crossing {
                     z: found.seen.height.at(&found.x, &found.from),
                     jump: -found.orientation * change,
                     normal: unit(found.seen.normal),
                     source: placed.source,
-                };
-                harvest.crossings.push((found.target as u32, crossing));
+                })
+            });
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.placed(placed.end, number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
+                let system = || forms.placed[placed.end][number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
+            } else {
+                space.placed.solve(&mut map, 0, self.lattice, &mut sink);
             }
-            harvest.open.extend(sink.open);
         }
         harvest.count(&mut space.placed.statistics);
+        harvest.count(&mut space.bundles.statistics);
     }
 }
 
 impl Harvest {
+    /// Receives preimages, of which `make` makes crossings.
+    fn reaper<F>(&mut self, make: F) -> Reaper<'_, F> {
+        Reaper {
+            crossings: &mut self.crossings,
+            open: &mut self.open,
+            make,
+        }
+    }
+
     /// Counts what the slicer did since the last time.
     fn count_slices(&mut self, slicer: &mut Slicer) {
         self.statistics.boxes += std::mem::take(&mut slicer.boxes);

@@ -4,10 +4,10 @@
 //! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
-use crate::form::{Form, MOST, basis, cut, restrict};
-use crate::point::{FacePoint, FieldPoint, RimPoint, revolved};
-use nalgebra::{Matrix3, Vector3};
-use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
+use crate::form::{Form, cut, restrict};
+use crate::instant::{Frame, Revolution, Table, position};
+use nalgebra::Vector3;
+use sweepsim_motion::{Edge, NormalField, Patch, Tool};
 
 /// Cuts are off the middle, so that what is symmetric does not lie on them.
 pub(crate) const CUT: f64 = 0.492;
@@ -23,10 +23,6 @@ impl Slot {
     fn len(&self) -> usize {
         (self.degrees[0] + 1) * (self.degrees[1] + 1)
     }
-
-    fn range(&self) -> std::ops::Range<usize> {
-        self.start..self.start + self.len()
-    }
 }
 
 /// A patch (two variables, one field of normals) or an edge (one variable, the normals of both its faces).
@@ -38,8 +34,13 @@ pub(crate) struct Element {
     /// Largest coefficients of `N` and `M`.
     pub largest_normal: f64,
     pub largest_moment: f64,
-    /// A shorter way to its points, where there is one.
-    revolved: Option<Revolved>,
+    /// A shorter way to its points, where there is one, arranged for the inner loop.
+    pub revolution: Option<Revolution>,
+    frame: Option<Frame>,
+    /// Homogeneous position, arranged for it.
+    pub places: Table,
+    /// All fields one after another, arranged for it.
+    pub normals: Table,
 }
 
 /// The tensors of a cell: position x, y, z, weight; then per variable the same of the derivative; then per field N, M.
@@ -62,7 +63,8 @@ impl Element {
     fn patch(patch: &Patch) -> Self {
         let element = Self::new(&patch.position, &patch.weight, &[&patch.field], 2);
         Self {
-            revolved: patch.revolved.clone(),
+            revolution: patch.revolved.as_ref().map(Revolution::new),
+            frame: patch.revolved.as_ref().and_then(|revolved| revolved.frame),
             ..element
         }
     }
@@ -110,6 +112,7 @@ impl Element {
             })
             .collect();
         let mut largest = [0.0_f64; 2];
+        let mut all: Vec<Form> = Vec::new();
         let fields = fields
             .iter()
             .map(|field| {
@@ -117,6 +120,7 @@ impl Element {
                 for (k, form) in forms.iter().enumerate() {
                     largest[k / 3] = largest[k / 3].max(form.largest());
                 }
+                all.extend_from_slice(&forms);
                 put(&forms)
             })
             .collect();
@@ -131,126 +135,43 @@ impl Element {
             layout,
             largest_normal: largest[0],
             largest_moment: largest[1],
-            revolved: None,
+            revolution: None,
+            frame: None,
+            places: table(point.iter().chain([&weight])),
+            normals: table(all.iter()),
         }
     }
 
-    /// A point of a patch, in the frame of [`Element::frame`].
-    pub fn face(&self, [u, v]: [f64; 2]) -> FacePoint {
-        match &self.revolved {
-            Some(revolution) => revolved(revolution, u, v),
-            None => self.face_in_general([u, v]),
-        }
+    /// A point of a patch in the tool, its normal and the moment of that.
+    pub fn face(&self, at: [f64; 2]) -> (Vector3<f64>, [Vector3<f64>; 2]) {
+        let [value, ..] = self.places.at::<4>(at);
+        let [fields, ..] = self.normals.at::<6>(at);
+        let [place] = position(&[value]);
+        (place, [0, 3].map(|k| triple(&fields[k..])))
     }
 
-    /// The frame of the points of [`Element::face`] in the tool; `None` when it is the tool's.
-    pub fn frame(&self) -> Option<&(Matrix3<f64>, Vector3<f64>)> {
-        self.revolved.as_ref().and_then(|revolution| revolution.frame.as_ref())
+    /// A point of an edge in the tool, the normals of both faces and the moments of those.
+    pub fn rim(&self, r: f64) -> (Vector3<f64>, [[Vector3<f64>; 2]; 2]) {
+        let [value, _] = self.places.along::<4>(r);
+        let [fields, _] = self.normals.along::<12>(r);
+        let [place] = position(&[value]);
+        (place, [0, 6].map(|side| [side, side + 3].map(|k| triple(&fields[k..]))))
     }
 
-    /// The point of a patch, from its tensors.
-    fn face_in_general(&self, at: [f64; 2]) -> FacePoint {
-        let (position, slopes) = self.position_at(at);
-        FacePoint {
-            position,
-            slopes,
-            field: self.field_at(0, at),
-        }
-    }
-
-    /// The point of an edge.
-    pub fn rim(&self, r: f64) -> RimPoint {
-        let at = [r, 0.0];
-        let (position, slopes) = self.position_at(at);
-        RimPoint {
-            position,
-            slope: slopes[0],
-            fields: [self.field_at(0, at), self.field_at(1, at)],
-        }
-    }
-
-    fn position_at(&self, at: [f64; 2]) -> (Vector3<f64>, [Vector3<f64>; 2]) {
-        let sums = self.sums::<4>(&self.layout.position, at);
-        let value = Vector3::new(sums[0][0], sums[1][0], sums[2][0]) / sums[3][0];
-        let slope = |d: usize| (Vector3::new(sums[0][d], sums[1][d], sums[2][d]) - value * sums[3][d]) / sums[3][0];
-        (value, [slope(1), slope(2)])
-    }
-
-    fn field_at(&self, field: usize, at: [f64; 2]) -> FieldPoint {
-        let sums = self.sums::<6>(&self.layout.fields[field], at);
-        let vector = |first: usize, d: usize| Vector3::new(sums[first][d], sums[first + 1][d], sums[first + 2][d]);
-        FieldPoint {
-            normal: [0, 1, 2].map(|d| vector(0, d)),
-            moment: [0, 1, 2].map(|d| vector(3, d)),
-        }
-    }
-
-    /// Value and both derivatives of `COUNT` tensors in a row.
-    fn sums<const COUNT: usize>(&self, slot: &Slot, at: [f64; 2]) -> [[f64; 3]; COUNT] {
-        let [p, q] = slot.degrees;
-        let c = &self.whole[slot.start..][..COUNT * slot.len()];
-        match (p, q) {
-            (2, 0) => sums_of::<COUNT, 3, 1>(c, at),
-            (2, 1) => sums_of::<COUNT, 3, 2>(c, at),
-            (2, 2) => sums_of::<COUNT, 3, 3>(c, at),
-            _ => sums_in_general::<COUNT>(c, slot.degrees, at),
-        }
+    /// The frame of [`Element::revolution`] in the tool; `None` when it is the tool's.
+    pub fn frame(&self) -> Option<&Frame> {
+        self.frame.as_ref()
     }
 }
 
-/// As [`sums_in_general`], for degrees `P − 1` and `Q − 1` known to the compiler.
-fn sums_of<const COUNT: usize, const P: usize, const Q: usize>(c: &[f64], at: [f64; 2]) -> [[f64; 3]; COUNT] {
-    let mut sums = [[0.0; 3]; COUNT];
-    let ([a, da], [b, db]) = (small_basis::<P>(at[0]), small_basis::<Q>(at[1]));
-    for (sum, c) in sums.iter_mut().zip(c.chunks_exact(P * Q)) {
-        for j in 0..Q {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for i in 0..P {
-                value += a[i] * c[i + P * j];
-                slope += da[i] * c[i + P * j];
-            }
-            sum[0] += b[j] * value;
-            sum[1] += b[j] * slope;
-            sum[2] += db[j] * value;
-        }
-    }
-    sums
+fn triple(list: &[f64]) -> Vector3<f64> {
+    Vector3::new(list[0], list[1], list[2])
 }
 
-/// Bernstein polynomials of degree `N − 1 ≤ 2` and their derivatives.
-fn small_basis<const N: usize>(x: f64) -> [[f64; N]; 2] {
-    let y = 1.0 - x;
-    let mut both = [[0.0; N]; 2];
-    let (values, slopes): (&[f64], &[f64]) = match N {
-        1 => (&[1.0], &[0.0]),
-        2 => (&[y, x], &[-1.0, 1.0]),
-        _ => (&[y * y, 2.0 * x * y, x * x], &[-2.0 * y, 2.0 * (y - x), 2.0 * x]),
-    };
-    both[0].copy_from_slice(values);
-    both[1].copy_from_slice(slopes);
-    both
-}
-
-/// Value and both derivatives of `COUNT` tensors of any degrees.
-fn sums_in_general<const COUNT: usize>(c: &[f64], [p, q]: [usize; 2], at: [f64; 2]) -> [[f64; 3]; COUNT] {
-    let mut sums = [[0.0; 3]; COUNT];
-    let mut bases = [[0.0; MOST]; 4];
-    let [a, da, b, db] = &mut bases;
-    basis(p, at[0], a, da);
-    basis(q, at[1], b, db);
-    for (sum, c) in sums.iter_mut().zip(c.chunks_exact((p + 1) * (q + 1))) {
-        for (j, row) in c.chunks_exact(p + 1).enumerate() {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for i in 0..=p {
-                value += a[i] * row[i];
-                slope += da[i] * row[i];
-            }
-            sum[0] += b[j] * value;
-            sum[1] += b[j] * slope;
-            sum[2] += db[j] * value;
-        }
-    }
-    sums
+/// Forms raised to common degrees.
+fn table<'a>(forms: impl Iterator<Item = &'a Form> + Clone) -> Table {
+    let degrees = [0, 1].map(|axis| forms.clone().map(|form| form.degrees[axis]).max().unwrap_or(0));
+    Table::new(&forms.map(|form| form.raised(degrees)).collect::<Vec<_>>(), degrees)
 }
 
 /// A vector-valued list of coefficients: x, y and z apart.
@@ -400,30 +321,36 @@ impl Cells {
         points.resize(self.points, 0.0);
         for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
             let len = slot.len();
-            let weights = &c[slot.start + 3 * len..][..len];
-            for k in 0..3 {
-                for i in 0..len {
-                    let place = slot.start + k * len + i;
-                    points[place] = c[place] / weights[i];
-                }
+            let of = &c[slot.start..][..4 * len];
+            let out = &mut points[slot.start..][..3 * len];
+            let (x, rest) = out.split_at_mut(len);
+            let (y, z) = rest.split_at_mut(len);
+            for i in 0..len {
+                let inverse = 1.0 / of[3 * len + i];
+                x[i] = of[i] * inverse;
+                y[i] = of[len + i] * inverse;
+                z[i] = of[2 * len + i] * inverse;
             }
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
-                let [p, q] = slot.degrees;
+                let p = slot.degrees[0];
                 let n = slot.degrees[axis];
                 if n == 0 {
                     continue;
                 }
                 let factor = n as f64 / (upper[axis] - lower[axis]);
-                let (rows, columns, next) = if axis == 0 { (q + 1, p, 1) } else { (q, p + 1, p + 1) };
-                for k in 0..6 {
-                    let tensor = &c[slot.start + k * slot.len()..][..slot.len()];
-                    let out = &mut points[start + k * len..][..*len];
-                    for j in 0..rows {
-                        for i in 0..columns {
-                            let place = i + (p + 1) * j;
-                            out[i + columns * j] = factor * (tensor[place + next] - tensor[place]);
+                let tensors = c[slot.start..][..6 * slot.len()].chunks_exact(slot.len());
+                for (tensor, out) in tensors.zip(points[*start..][..6 * len].chunks_exact_mut(*len)) {
+                    if axis == 0 {
+                        for (line, out) in tensor.chunks_exact(p + 1).zip(out.chunks_exact_mut(p)) {
+                            for (out, pair) in out.iter_mut().zip(line.windows(2)) {
+                                *out = factor * (pair[1] - pair[0]);
+                            }
+                        }
+                    } else {
+                        for ((out, next), this) in out.iter_mut().zip(&tensor[p + 1..]).zip(tensor) {
+                            *out = factor * (next - this);
                         }
                     }
                 }
@@ -457,12 +384,9 @@ impl Cells {
             .chain(&layout.slopes)
             .map(|slot| (slot, 4));
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
-            for k in 0..count {
-                let range = slot.range();
-                let (start, end) = (range.start + k * slot.len(), range.end + k * slot.len());
-                let (low, high) = (&mut lower[start..end], &mut upper[start..end]);
-                cut(&node.c[start..end], slot.degrees, axis, CUT, low, high);
-            }
+            let range = slot.start..slot.start + count * slot.len();
+            let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
+            cut(&node.c[range], slot.degrees, axis, CUT, low, high);
         }
         let at = node.lower[axis] + CUT * (node.upper[axis] - node.lower[axis]);
         let (mut low_end, mut high_start) = (node.upper, node.lower);
@@ -508,36 +432,5 @@ impl Cells {
             Triples::new(points, start, len),
             Triples::new(points, start + 3 * len, len),
         ]
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// The short way to the points of surfaces of revolution is the general one, turned into their frame.
-        #[test]
-        fn products_agree_with_tensors(u in 0.0..1.0, v in 0.0..1.0, radius in 0.5..20.0) {
-            let tools = [Tool::ball(radius, 3.0 * radius), Tool::bull(radius, 0.3 * radius, 2.0 * radius)];
-            for element in tools.into_iter().flat_map(|tool| Element::all(&tool.unwrap()).0) {
-                let (short, long) = (element.face([u, v]), element.face_in_general([u, v]));
-                let (turn, shift) = element.frame().copied().unwrap_or((Matrix3::identity(), Vector3::zeros()));
-                // A few dozen roundings of numbers of the size of the tool, its normals (of size 1) and their slopes.
-                let near = |a: Vector3<f64>, b: Vector3<f64>, size: f64| (a - b).amax() <= 1e-14 * size;
-                let size = 10.0 * radius;
-                prop_assert!(near(turn * short.position + shift, long.position, size));
-                for axis in 0..2 {
-                    prop_assert!(near(turn * short.slopes[axis], long.slopes[axis], 10.0 * size));
-                }
-                for d in 0..3 {
-                    let normal = turn * short.field.normal[d];
-                    let moment = turn * short.field.moment[d] + shift.cross(&normal);
-                    prop_assert!(near(normal, long.field.normal[d], 100.0));
-                    prop_assert!(near(moment, long.field.moment[d], 10.0 * size));
-                }
-            }
-        }
     }
 }

@@ -12,63 +12,14 @@
 //! everywhere.
 
 use crate::element::{Cells, Element, Triples};
-use crate::point::FacePoint;
+use crate::instant::{Frame, Motion, Placing, Quad, Twisted, position, vector};
+use crate::ranges::{envelope, products, shifted_products};
 use crate::time::Times;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Interval, Sample};
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
-
-/// Range of `⟨row, point⟩` over all rows and points.
-fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for row in rows {
-        for i in 0..points.len() {
-            let value = points.dot(row, i);
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
-
-/// Range of `⟨row, point⟩ + offset` over all rows with their offsets, and all points.
-fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Triples) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    for (row, offset) in rows.iter().zip(offsets) {
-        for i in 0..points.len() {
-            let value = points.dot(row, i) + offset;
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
-
-/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; one spin alone goes with all rows.
-fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
-    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
-    let [constant] = spins else {
-        for i in 0..n.len() {
-            for (spin, row) in spins.iter().zip(rows) {
-                let value = m.dot(spin, i) + n.dot(row, i);
-                lo = if value < lo { value } else { lo };
-                hi = if value > hi { value } else { hi };
-            }
-        }
-        return (lo, hi);
-    };
-    for i in 0..n.len() {
-        let fixed = m.dot(constant, i);
-        for row in rows {
-            let value = fixed + n.dot(row, i);
-            lo = if value < lo { value } else { lo };
-            hi = if value > hi { value } else { hi };
-        }
-    }
-    (lo, hi)
-}
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
 fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
@@ -134,6 +85,7 @@ pub(crate) struct Face<'a> {
     pub element: &'a Element,
     pub cells: &'a mut Cells,
     pub times: &'a mut Times,
+    pub motion: Motion<'a>,
     pub size: Size,
 }
 
@@ -206,49 +158,34 @@ impl ChartMap<3> for Face<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnFace> {
-        let point = self.element.face([x[0], x[1]]);
-        let moment = self.times.at(x[2]);
-        let spin = moment.own_spin;
-        // The motion as the patch's own frame sees it.
-        let (turn, tip, spin, travel, travel_slope) = match self.element.frame() {
-            None => (moment.turn, moment.tip, spin, moment.travel, moment.travel_slope),
-            Some((own, shift)) => (
-                moment.turn * own,
-                moment.tip + moment.turn * shift,
-                own.tr_mul(&spin),
-                own.tr_mul(&(moment.travel + spin.cross(shift))),
-                own.tr_mul(&match moment.own_spin_slope {
-                    None => moment.travel_slope,
-                    Some(slope) => moment.travel_slope + slope.cross(shift),
-                }),
-            ),
+        let instant = self.motion.at(self.times, x[2]);
+        let (spot, [g, g_u, g_v], g_t) = match &self.element.revolution {
+            Some(revolution) => {
+                let turned = revolution.at(&instant.placing, [x[0], x[1]]);
+                let g_t = turned.envelope(&instant.change);
+                (turned.spot(), turned.envelopes(&instant.own), g_t)
+            }
+            None => {
+                let (spot, fields) = instant.placing.spot(self.element, [x[0], x[1]]);
+                let g = fields.map(|field| instant.own.dot(&field));
+                (spot, g, instant.change.dot(&fields[0]))
+            }
         };
-        let spin_slope = moment.own_spin_slope.map(|slope| match self.element.frame() {
-            None => slope,
-            Some((own, _)) => own.tr_mul(&slope),
-        });
-        let place = turn * point.position + tip;
-        let slopes = [turn * point.slopes[0], turn * point.slopes[1]];
-        let moving = moment.spin.cross(&(place - moment.tip)) + moment.velocity;
-        let field = &point.field;
-        let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
-        let mut g_t = travel_slope.dot(&field.normal[0]);
-        if let Some(slope) = spin_slope {
-            g_t += slope.dot(&field.moment[0]);
-        }
+        let moving = instant.moving(&spot.place);
+        let [in_u, in_v] = &spot.slopes;
         Sample {
-            value: [place.x, place.y, g(0)],
+            value: [spot.place[0], spot.place[1], g],
             jacobian: [
-                [slopes[0].x, slopes[1].x, moving.x],
-                [slopes[0].y, slopes[1].y, moving.y],
-                [g(1), g(2), g_t],
+                [in_u[0], in_v[0], moving[0]],
+                [in_u[1], in_v[1], moving[1]],
+                [g_u, g_v, g_t],
             ],
             seen: OnFace {
                 height: Near {
-                    value: place.z,
-                    slope: [slopes[0].z, slopes[1].z, moving.z],
+                    value: spot.place[2],
+                    slope: [in_u[2], in_v[2], moving[2]],
                 },
-                normal: turn * field.normal[0],
+                normal: vector(&spot.normal),
             },
         }
     }
@@ -301,6 +238,7 @@ pub(crate) struct Rim<'a> {
     pub element: &'a Element,
     pub cells: &'a mut Cells,
     pub times: &'a mut Times,
+    pub motion: Motion<'a>,
     pub size: Size,
 }
 
@@ -354,34 +292,33 @@ impl ChartMap<2> for Rim<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnRim> {
-        let point = self.element.rim(x[0]);
-        let moment = self.times.at(x[1]);
-        let spin = moment.own_spin;
-        let place = moment.turn * point.position + moment.tip;
-        let slope = moment.turn * point.slope;
-        let moving = moment.spin.cross(&(place - moment.tip)) + moment.velocity;
+        let instant = self.motion.at(self.times, x[1]);
+        let [position, slope] = position(&self.element.places.along::<4>(x[0]));
+        let [fields, in_r] = self.element.normals.along::<12>(x[0]);
+        let placing = &instant.placing;
+        let (arm, slope) = (placing.turned(&position), placing.turned(&slope));
+        let place: Quad = std::array::from_fn(|k| arm[k] + placing.origin[k]);
+        let moving = instant.moving(&place);
         let side = |k: usize| {
-            let field = &point.fields[k];
-            let g = |d: usize| spin.dot(&field.moment[d]) + moment.travel.dot(&field.normal[d]);
-            let mut g_t = moment.travel_slope.dot(&field.normal[0]);
-            if let Some(slope) = moment.own_spin_slope {
-                g_t += slope.dot(&field.moment[0]);
-            }
+            let (field, in_r) = (&fields[6 * k..6 * k + 6], &in_r[6 * k..6 * k + 6]);
             Near {
-                value: g(0),
-                slope: [g(1), g_t],
+                value: instant.own.dot(field),
+                slope: [instant.own.dot(in_r), instant.change.dot(field)],
             }
         };
         Sample {
-            value: [place.x, place.y],
-            jacobian: [[slope.x, moving.x], [slope.y, moving.y]],
+            value: [place[0], place[1]],
+            jacobian: [[slope[0], moving[0]], [slope[1], moving[1]]],
             seen: OnRim {
                 height: Near {
-                    value: place.z,
-                    slope: [slope.z, moving.z],
+                    value: place[2],
+                    slope: [slope[2], moving[2]],
                 },
                 sides: [side(0), side(1)],
-                normals: [0, 1].map(|k| moment.turn * point.fields[k].normal[0]),
+                normals: [0, 6].map(|k| {
+                    let normal = Vector3::new(fields[k], fields[k + 1], fields[k + 2]);
+                    vector(&placing.turned(&normal))
+                }),
             },
         }
     }
@@ -422,42 +359,56 @@ impl Side {
         }
     }
 
-    /// `g` at a point; its sign alone where there is no motion.
-    fn near(&self, point: &FacePoint, frame: Option<&(Matrix3<f64>, Vector3<f64>)>) -> Near<2> {
+    fn seen(&self, frame: Option<&Frame>) -> Seen {
         match self {
-            Self::Beyond(negative) => Near {
-                value: if *negative { -1.0 } else { 1.0 },
-                slope: [0.0; 2],
-            },
-            Self::Moving(twist) => {
-                let field = &point.field;
-                let (spin, travel) = (Vector3::from(twist.spin), Vector3::from(twist.travel));
-                let (spin, travel) = match frame {
-                    None => (spin, travel),
-                    Some((own, shift)) => (own.tr_mul(&spin), own.tr_mul(&(travel + spin.cross(shift)))),
-                };
-                let g = |d: usize| spin.dot(&field.moment[d]) + travel.dot(&field.normal[d]);
-                Near {
-                    value: g(0),
-                    slope: [g(1), g(2)],
-                }
-            }
+            Self::Beyond(negative) => Seen::Beyond(*negative),
+            Self::Moving(twist) => Seen::Moving(Twisted::new(&twist.spin.into(), &twist.travel.into(), frame)),
         }
     }
+}
+
+/// A side of a joint as the frame of a patch sees it.
+enum Seen {
+    Moving(Twisted),
+    Beyond(bool),
 }
 
 /// A placed patch between two motions: a kink of the path, or a cap at its start or end.
 pub(crate) struct Joint<'a> {
     pub element: &'a Element,
     pub cells: &'a mut Cells,
-    pub turn: Matrix3<f64>,
-    pub tip: Vector3<f64>,
-    pub before: Side,
-    pub after: Side,
-    pub size: Size,
+    turn: Matrix3<f64>,
+    tip: Vector3<f64>,
+    before: Side,
+    after: Side,
+    size: Size,
+    placing: Placing,
+    seen: [Seen; 2],
 }
 
-impl Joint<'_> {
+impl<'a> Joint<'a> {
+    /// A patch turned by `turn`, its tip at `tip`.
+    pub fn new(
+        element: &'a Element,
+        cells: &'a mut Cells,
+        (turn, tip): (Matrix3<f64>, Vector3<f64>),
+        [before, after]: [Side; 2],
+        size: Size,
+    ) -> Self {
+        let frame = element.frame();
+        Self {
+            placing: Placing::new(&turn, &tip, frame),
+            seen: [before.seen(frame), after.seen(frame)],
+            element,
+            cells,
+            turn,
+            tip,
+            before,
+            after,
+            size,
+        }
+    }
+
     fn row(&self, r: usize) -> [[f64; 3]; 1] {
         [[self.turn[(r, 0)], self.turn[(r, 1)], self.turn[(r, 2)]]]
     }
@@ -494,25 +445,46 @@ impl ChartMap<2> for Joint<'_> {
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnJoint> {
-        let point = self.element.face(*x);
-        let frame = self.element.frame();
-        let (turn, tip) = match frame {
-            None => (self.turn, self.tip),
-            Some((own, shift)) => (self.turn * own, self.tip + self.turn * shift),
+        let near = |side: &Seen, envelopes: &dyn Fn(&Twisted) -> [f64; 3]| match side {
+            Seen::Moving(twist) => {
+                let [value, in_u, in_v] = envelopes(twist);
+                Near {
+                    value,
+                    slope: [in_u, in_v],
+                }
+            }
+            Seen::Beyond(negative) => Near {
+                value: if *negative { -1.0 } else { 1.0 },
+                slope: [0.0; 2],
+            },
         };
-        let place = turn * point.position + tip;
-        let slopes = [turn * point.slopes[0], turn * point.slopes[1]];
+        let (spot, [before, after]) = match &self.element.revolution {
+            Some(revolution) => {
+                let turned = revolution.at(&self.placing, *x);
+                let sides = self
+                    .seen
+                    .each_ref()
+                    .map(|side| near(side, &|twist| turned.envelopes(twist)));
+                (turned.spot(), sides)
+            }
+            None => {
+                let (spot, fields) = self.placing.spot(self.element, *x);
+                let envelopes = |twist: &Twisted| fields.map(|field| twist.dot(&field));
+                (spot, self.seen.each_ref().map(|side| near(side, &envelopes)))
+            }
+        };
+        let [in_u, in_v] = &spot.slopes;
         Sample {
-            value: [place.x, place.y],
-            jacobian: [[slopes[0].x, slopes[1].x], [slopes[0].y, slopes[1].y]],
+            value: [spot.place[0], spot.place[1]],
+            jacobian: [[in_u[0], in_v[0]], [in_u[1], in_v[1]]],
             seen: OnJoint {
                 height: Near {
-                    value: place.z,
-                    slope: [slopes[0].z, slopes[1].z],
+                    value: spot.place[2],
+                    slope: [in_u[2], in_v[2]],
                 },
-                before: self.before.near(&point, frame),
-                after: self.after.near(&point, frame),
-                normal: turn * point.field.normal[0],
+                before,
+                after,
+                normal: vector(&spot.normal),
             },
         }
     }

@@ -134,56 +134,126 @@ pub(crate) fn binomial(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)
 }
 
-/// Cuts one coefficient tensor across an axis at the part `at`, into two of the same degrees.
-pub(crate) fn cut(source: &[f64], degrees: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
-    let [p, q] = degrees;
-    let (n, stride, lines, step) = if axis == 0 {
-        (p, 1, q + 1, p + 1)
-    } else {
-        (q, p + 1, p + 1, 1)
-    };
+/// Cuts coefficient tensors of these degrees, one after the other, across an axis at the part `at`, into two of the same degrees.
+pub(crate) fn cut(source: &[f64], [p, q]: [usize; 2], axis: usize, at: f64, lower: &mut [f64], upper: &mut [f64]) {
     upper.copy_from_slice(source);
-    for line in 0..lines {
-        let base = line * step;
-        lower[base] = upper[base];
-        for level in 1..=n {
-            for i in 0..=n - level {
-                let k = base + i * stride;
-                upper[k] += at * (upper[k + stride] - upper[k]);
+    if axis == 0 {
+        match p {
+            0 => lower.copy_from_slice(source),
+            1 => cut_lines::<2>(at, lower, upper),
+            2 => cut_lines::<3>(at, lower, upper),
+            3 => cut_lines::<4>(at, lower, upper),
+            4 => cut_lines::<5>(at, lower, upper),
+            5 => cut_lines::<6>(at, lower, upper),
+            8 => cut_lines::<9>(at, lower, upper),
+            _ => {
+                for (lower, upper) in lower.chunks_exact_mut(p + 1).zip(upper.chunks_exact_mut(p + 1)) {
+                    cut_line(at, lower, upper);
+                }
             }
-            lower[base + level * stride] = upper[base];
         }
+        return;
+    }
+    let line = p + 1;
+    let size = line * (q + 1);
+    for (lower, upper) in lower.chunks_exact_mut(size).zip(upper.chunks_exact_mut(size)) {
+        lower[..line].copy_from_slice(&upper[..line]);
+        for level in 1..=q {
+            for j in 0..=q - level {
+                let (this, next) = upper[j * line..(j + 2) * line].split_at_mut(line);
+                for (a, b) in this.iter_mut().zip(next) {
+                    *a += at * (*b - *a);
+                }
+            }
+            lower[level * line..(level + 1) * line].copy_from_slice(&upper[..line]);
+        }
+    }
+}
+
+/// As [`cut_line`], of all lines of a length known to the compiler.
+fn cut_lines<const N: usize>(at: f64, lower: &mut [f64], upper: &mut [f64]) {
+    for (lower, upper) in lower.chunks_exact_mut(N).zip(upper.chunks_exact_mut(N)) {
+        let mut line = [0.0; N];
+        line.copy_from_slice(upper);
+        let mut first = [0.0; N];
+        first[0] = line[0];
+        for level in 1..N {
+            for i in 0..N - level {
+                line[i] += at * (line[i + 1] - line[i]);
+            }
+            first[level] = line[0];
+        }
+        lower.copy_from_slice(&first);
+        upper.copy_from_slice(&line);
+    }
+}
+
+/// De Casteljau's algorithm.
+fn cut_line(at: f64, lower: &mut [f64], upper: &mut [f64]) {
+    let n = upper.len();
+    lower[0] = upper[0];
+    for level in 1..n {
+        for i in 0..n - level {
+            upper[i] += at * (upper[i + 1] - upper[i]);
+        }
+        lower[level] = upper[0];
     }
 }
 
 /// The coefficients of forms of these degrees, one after the other in `source`, over the box from `lower` to `upper`: the values
 /// of their blossoms there.
 pub(crate) fn restrict(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
-    match degrees {
-        [2, 0] => restrict_small::<3, 1>(source, lower, upper, out),
-        [2, 1] => restrict_small::<3, 2>(source, lower, upper, out),
-        [2, 2] => restrict_small::<3, 3>(source, lower, upper, out),
-        [p, q] => {
-            let (rows, columns) = (
-                blossoms::<MOST>(p, lower[0], upper[0]),
-                blossoms::<MOST>(q, lower[1], upper[1]),
-            );
-            let mut line = [0.0; MOST];
-            let count = (p + 1) * (q + 1);
-            for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
-                for j in 0..=q {
-                    for i in 0..=p {
-                        out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
-                    }
-                }
-                for i in 0..=p {
-                    for (j, x) in line[..=q].iter_mut().enumerate() {
-                        *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
-                    }
-                    for (j, x) in line[..=q].iter().enumerate() {
-                        out[i + (p + 1) * j] = *x;
-                    }
-                }
+    let [p, q] = degrees;
+    match p {
+        0 => restrict_rows::<1>(source, q, lower, upper, out),
+        1 => restrict_rows::<2>(source, q, lower, upper, out),
+        2 => restrict_rows::<3>(source, q, lower, upper, out),
+        3 => restrict_rows::<4>(source, q, lower, upper, out),
+        4 => restrict_rows::<5>(source, q, lower, upper, out),
+        5..12 if q < 12 => restrict_large::<12>(source, degrees, lower, upper, out),
+        _ => restrict_large::<MOST>(source, degrees, lower, upper, out),
+    }
+}
+
+/// As [`restrict`], for a degree `P − 1` known to the compiler.
+fn restrict_rows<const P: usize>(source: &[f64], q: usize, lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
+    match q {
+        0 => restrict_small::<P, 1>(source, lower, upper, out),
+        1 => restrict_small::<P, 2>(source, lower, upper, out),
+        2 => restrict_small::<P, 3>(source, lower, upper, out),
+        3 => restrict_small::<P, 4>(source, lower, upper, out),
+        4 => restrict_small::<P, 5>(source, lower, upper, out),
+        5..12 => restrict_large::<12>(source, [P - 1, q], lower, upper, out),
+        _ => restrict_large::<MOST>(source, [P - 1, q], lower, upper, out),
+    }
+}
+
+/// As [`restrict`], for any degrees below `M`.
+fn restrict_large<const M: usize>(
+    source: &[f64],
+    [p, q]: [usize; 2],
+    lower: [f64; 2],
+    upper: [f64; 2],
+    out: &mut [f64],
+) {
+    let (rows, columns) = (
+        blossoms::<M>(p, lower[0], upper[0]),
+        blossoms::<M>(q, lower[1], upper[1]),
+    );
+    let mut line = [0.0; M];
+    let count = (p + 1) * (q + 1);
+    for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
+        for j in 0..=q {
+            for i in 0..=p {
+                out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
+            }
+        }
+        for i in 0..=p {
+            for (j, x) in line[..=q].iter_mut().enumerate() {
+                *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
+            }
+            for (j, x) in line[..=q].iter().enumerate() {
+                out[i + (p + 1) * j] = *x;
             }
         }
     }
@@ -293,6 +363,28 @@ mod tests {
             let (l, u) = (at(0.3 * 0.4), at(0.3 + 0.7 * 0.4));
             assert!((value(&part(&lower), at(0.4).0, at(0.4).1) - value(&f, l.0, l.1)).abs() < 1e-14);
             assert!((value(&part(&upper), at(0.4).0, at(0.4).1) - value(&f, u.0, u.1)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn restrictions_of_all_degrees_agree_with_values() {
+        for (p, q) in (0..16).flat_map(|p| (0..16).map(move |q| (p, q))) {
+            let count = (p + 1) * (q + 1);
+            let c: Vec<f64> = (0..2 * count).map(|i| ((i * 7 + 3) % 11) as f64 - 5.0).collect();
+            let (lower, upper) = ([0.2, 0.35], [0.7, 0.9]);
+            let mut out = vec![0.0; 2 * count];
+            restrict(&c, [p, q], lower, upper, &mut out);
+            for k in 0..2 {
+                let form = |c: &[f64]| Form {
+                    degrees: [p, q],
+                    c: c[k * count..][..count].to_vec(),
+                };
+                let at = |k: usize, x: f64| lower[k] + x * (upper[k] - lower[k]);
+                for (u, v) in [(0.0, 1.0), (0.3, 0.8)] {
+                    let error = value(&form(&out), u, v) - value(&form(&c), at(0, u), at(1, v));
+                    assert!(error.abs() < 1e-13, "{p} {q}: {error}");
+                }
+            }
         }
     }
 }

@@ -36,11 +36,13 @@ mod element;
 mod envelope;
 mod form;
 mod generic;
+mod instant;
 mod lattice;
+mod lines;
 mod piece;
 mod placed;
 mod planes;
-mod point;
+mod ranges;
 mod section;
 mod section_svg;
 mod simulate;
@@ -48,6 +50,7 @@ mod surfaces;
 mod sweep;
 pub mod systems;
 mod time;
+mod tri;
 
 pub use boundary::{Boundary, UnknownBoundary};
 pub use piece::{Piece, PiecePoint};
@@ -55,6 +58,7 @@ pub use section::{Section, SectionCurve, section};
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};
 pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, probe, sweep};
+pub use tri::{TriSimulation, simulate_tri};
 
 /// The README's example is tested.
 #[cfg(doctest)]

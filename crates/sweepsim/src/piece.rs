@@ -102,18 +102,10 @@ impl<'a> Moving<'a> {
 
     /// The point, and normal and moment in the tool.
     fn on_patch(&self, k: usize, at: [f64; 2], t: f64) -> (PiecePoint, [Vector3<f64>; 2]) {
-        let element = &self.faces[k];
-        let mut point = element.face(at);
-        if let Some((own, shift)) = element.frame() {
-            point.position = own * point.position + shift;
-            let normal = own * point.field.normal[0];
-            point.field.moment[0] = own * point.field.moment[0] + shift.cross(&normal);
-            point.field.normal[0] = normal;
-        }
+        let (position, [normal, arm]) = self.faces[k].face(at);
         let moment = self.times.at(t);
-        let [normal, arm] = [point.field.normal[0], point.field.moment[0]];
         let seen = PiecePoint {
-            position: (moment.turn * point.position + moment.tip).into(),
+            position: (moment.turn * position + moment.tip).into(),
             normal: unit(moment.turn * normal),
             t: self.time(t),
         };
@@ -121,22 +113,16 @@ impl<'a> Moving<'a> {
     }
 
     fn on_edge(&self, k: usize, r: f64, t: f64) -> Seen {
-        let point = self.rims[k].rim(r);
+        let (position, fields) = self.rims[k].rim(r);
         let moment = self.times.at(t);
-        let [a, b] = [0, 1].map(|side| {
-            let field = &point.fields[side];
-            moment.own_spin.dot(&field.moment[0]) + moment.travel.dot(&field.normal[0])
-        });
+        let [a, b] = fields.map(|[normal, arm]| moment.own_spin.dot(&arm) + moment.travel.dot(&normal));
         // The envelope's normal lies in the fan of the two faces, where g = 0.
-        let [n, m] = [0, 1].map(|side| moment.turn * point.fields[side].normal[0]);
+        let [n, m] = fields.map(|[normal, _]| moment.turn * normal);
+        let (p, q) = (a.abs() / n.norm(), b.abs() / m.norm());
         let (n, m) = (n / n.norm(), m / m.norm());
-        let (p, q) = (
-            a.abs() / point.fields[0].normal[0].norm(),
-            b.abs() / point.fields[1].normal[0].norm(),
-        );
         Seen {
             point: PiecePoint {
-                position: (moment.turn * point.position + moment.tip).into(),
+                position: (moment.turn * position + moment.tip).into(),
                 normal: unit(n * q + m * p),
                 t: self.time(t),
             },
