@@ -14,6 +14,7 @@
 //! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
 
 mod certify;
+mod chart;
 mod charts;
 mod curves;
 mod double;
