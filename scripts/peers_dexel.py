@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tri-dexels beside manifold3d: 243 balls taken out of a block, in one run. See README.md here."""
+"""Tri-dexels beside BREP_cam and manifold3d: 243 balls taken out of a block, in one run. See README.md here."""
 
 import json
 import math
@@ -16,7 +16,8 @@ ROW = "{:<28} {:>9} {:>9} {:>11} {:>13} {:>10}"
 
 
 def row(name, csg, mesh, triangles, volume_error, off):
-    cells = (name, f"{csg:.3f}", f"{mesh:.3f}", triangles, f"{volume_error:.1e}", f"{off:.1e}")
+    away = "steps" if off is None else f"{off:.1e}"
+    cells = (name, f"{csg:.3f}", f"{mesh:.3f}", triangles, f"{volume_error:.1e}", away)
     print(ROW.format(*cells), flush=True)
 
 
@@ -27,6 +28,16 @@ def tri_dexels(lines):
     found = json.loads(done.stdout)
     name = f"tri-dexels, {lines} lines"
     row(name, found["csg_s"], found["mesh_s"], found["triangles"], found["volume_error"], found["off_mm"])
+
+
+def brep_cam(lines):
+    folder = Path(__file__).resolve().parent / "brep_cam"
+    command = ["cargo", "run", "--quiet", "--release", "--", str(lines)]
+    done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
+    found = json.loads(done.stdout)
+    # Its surface is made of squares and walls, off by a cell's slope: no distance would be fair.
+    cells = found["csg_s"], found["mesh_s"], found["triangles"], found["volume_error"]
+    row(f"BREP_cam, {lines} lines", *cells, None)
 
 
 def manifold(segments):
@@ -56,6 +67,8 @@ def main():
     print(ROW.format("", "CSG s", "mesh s", "triangles", "volume error", "off mm"))
     for lines in (90, 180, 360):
         tri_dexels(lines)
+    for lines in (90, 180, 360):
+        brep_cam(lines)
     try:
         import manifold3d  # noqa: F401
     except ImportError as error:

@@ -60,6 +60,9 @@ pub(crate) struct RunOptions {
     /// Another number of dexels than the job's, like 300x200.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
+    /// Makes mesh and picture of lines along x, y and z: steep walls and edges become as sharp as flat ones, for three times the work.
+    #[arg(long)]
+    pub tri: bool,
     /// Another tolerance than the job's, in millimetres.
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,

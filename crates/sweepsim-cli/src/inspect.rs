@@ -91,11 +91,11 @@ pub(crate) fn tool(tool: &Tool) -> String {
         );
     };
     let mut points = vec![profile.start()];
-    let mut arcs = 0;
+    let (mut arcs, mut splines) = (0, 0);
     for segment in profile.segments() {
-        match *segment {
-            ProfileSegment::Line { to } => points.push(to),
-            ProfileSegment::Arc { to, centre, turn } => {
+        match segment {
+            ProfileSegment::Line { to } => points.push(*to),
+            &ProfileSegment::Arc { to, centre, turn } => {
                 arcs += 1;
                 // An arc may reach farther out than its ends.
                 let from = points[points.len() - 1];
@@ -109,17 +109,32 @@ pub(crate) fn tool(tool: &Tool) -> String {
                 }
                 points.push(to);
             }
+            ProfileSegment::Spline { points: own, .. } => {
+                splines += 1;
+                points.extend(own.last());
+            }
         }
+    }
+    // A spline reaches farther than its ends and less far than its control points: the patches know.
+    if splines > 0 {
+        let places = tool
+            .patches()
+            .iter()
+            .flat_map(|patch| (0..=64).map(|k| patch.place(0.0, f64::from(k) / 64.0)));
+        points.extend(places.map(|place| [place.x.hypot(place.y), place.z]));
     }
     let radius = points.iter().map(|p| p[0]).fold(0.0, f64::max);
     let length = points.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let lines = profile.segments().len() - arcs;
+    let lines = profile.segments().len() - arcs - splines;
+    let mut kinds = vec![counted(lines as u64, "line"), counted(arcs as u64, "arc")];
+    if splines > 0 {
+        kinds.push(counted(splines as u64, "spline"));
+    }
     format!(
-        "radius {}, length {} mm ({}, {})",
+        "radius {}, length {} mm ({})",
         measure(radius),
         measure(length),
-        counted(lines as u64, "line"),
-        counted(arcs as u64, "arc")
+        kinds.join(", ")
     )
 }
 
@@ -152,6 +167,7 @@ fn job(text: &mut Text, job: &Job) {
     for (number, cutter) in &job.tools {
         text.line("tool", &format!("{number}: {}", tool(cutter)));
     }
+    text.notes(job.notes.iter());
     for path in &job.paths {
         let moves = counted(path.path.moves() as u64, "move");
         text.line("path", &format!("{moves} of tool {}, from {}", path.tool, path.source));

@@ -15,6 +15,7 @@ mod progress;
 mod run;
 mod section;
 mod solid;
+mod tri;
 mod words;
 
 use arguments::{Arguments, Command};

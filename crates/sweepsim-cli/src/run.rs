@@ -6,6 +6,7 @@ use crate::outputs::Outputs;
 use crate::page::{self, Page};
 use crate::progress::Progress;
 use crate::solid;
+use crate::tri;
 use crate::words;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -37,6 +38,8 @@ struct Outcome {
     dexels: Dexels,
     statistics: Statistics,
     volume_removed: Option<f64>,
+    /// Lines along x and y, for the mesh, that are not certain.
+    unsure: usize,
 }
 
 /// Runs a job and writes what it gives.
@@ -46,6 +49,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
     let mut job = phase(&mut report, "read", || Job::read(&options.job))?;
     if let Some(cells) = options.cells {
         job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
+            .map(|grid| grid.in_frame(*job.grid.frame()))
             .map_err(|error| Failure::message(format!("--cells: {error}")))?;
     }
     job.tolerance = options.tolerance.unwrap_or(job.tolerance);
@@ -53,6 +57,9 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(folder_name(&job.name)));
+    if options.tri {
+        tri::check(&job)?;
+    }
     let mut outputs = Outputs::new(folder, &options.only)?;
     let progress = Progress::new(job.moves(), options.quiet);
     let mut builder = rayon::ThreadPoolBuilder::new();
@@ -64,10 +71,14 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
     let threads = pool.current_num_threads();
     let outcome = pool.install(|| -> Result<Outcome, Failure> {
-        let outcome = compute(task, &job, options, &progress, &mut report)?;
+        let mut outcome = compute(task, &job, options, &progress, &mut report)?;
         progress.check()?;
         describe(&mut report, &job, options, &outcome);
-        write(options, &outcome, &mut outputs, &progress, &mut report)?;
+        write_dexels(&outcome, &mut outputs, &progress, &mut report)?;
+        if outputs.wants(Output::Mesh) || outputs.wants(Output::Picture) {
+            let mesh = mesh(task, &job, options, &mut outcome, &progress, &mut report)?;
+            write_mesh(options, &mesh, &mut outputs, &progress, &mut report)?;
+        }
         if task == Task::Sweep && options.method == Method::Surface && outputs.wants(Output::Mesh) {
             write_envelope(&job, &mut outputs, &progress, &mut report)?;
         }
@@ -94,7 +105,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         let total = start.elapsed().as_secs_f64();
         crate::print(&summary(task, &job, &report, &outputs, threads, total))?;
     }
-    let certain = outcome.statistics.unresolved.is_empty();
+    let certain = outcome.statistics.unresolved.is_empty() && outcome.unsure == 0;
     Ok(if certain { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
@@ -105,7 +116,7 @@ fn json(report: &Report) -> Result<String, Failure> {
 }
 
 /// Does some work and notes how long it took.
-fn phase<T>(report: &mut Report, name: &str, work: impl FnOnce() -> T) -> T {
+pub(crate) fn phase<T>(report: &mut Report, name: &str, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let result = work();
     *report.seconds.entry(name.to_owned()).or_default() += start.elapsed().as_secs_f64();
@@ -139,6 +150,32 @@ pub(crate) fn cuts_of(job: &Job) -> Vec<Cut<'_>> {
         .collect()
 }
 
+/// How the tools of a job are swept.
+pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
+    Options::new(job.tolerance)
+        .method(options.method)
+        .boundary(options.boundary)
+}
+
+/// What the user is told.
+pub(crate) fn failed(error: SweepError, options: &RunOptions) -> Failure {
+    match error {
+        SweepError::Cancelled => Failure::Interrupted,
+        error => Failure::message(format!("{}: {error}", options.job.display())),
+    }
+}
+
+/// What was odd in the job and the files that it names.
+pub(crate) fn notes_of(job: &Job, file: &Path) -> Vec<String> {
+    let own = job.notes.iter().map(|note| format!("{}: {note}", file.display()));
+    let of_paths = job
+        .paths
+        .iter()
+        .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)));
+    own.chain(of_paths).collect()
+}
+
+/// What the job leaves or sweeps, on its own grid.
 fn compute(
     task: Task,
     job: &Job,
@@ -148,16 +185,8 @@ fn compute(
 ) -> Result<Outcome, Failure> {
     let file = options.job.display();
     let cuts = cuts_of(job);
-    let sweeping = Options::new(job.tolerance)
-        .method(options.method)
-        .boundary(options.boundary);
-    let failed = |error: SweepError| match error {
-        SweepError::Cancelled => {
-            progress.finish();
-            Failure::Interrupted
-        }
-        error => Failure::message(format!("{file}: {error}")),
-    };
+    let sweeping = sweeping(job, options);
+    let failed = |error| failed(error, options);
     match task {
         Task::Simulate => {
             progress.phase("stock");
@@ -173,6 +202,7 @@ fn compute(
                 volume_removed: Some(before - done.remaining.volume()),
                 dexels: done.remaining,
                 statistics: done.statistics,
+                unsure: 0,
             })
         }
         Task::Sweep => {
@@ -185,6 +215,7 @@ fn compute(
                 dexels: done.volume,
                 statistics: done.statistics,
                 volume_removed: None,
+                unsure: 0,
             })
         }
     }
@@ -209,11 +240,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
     };
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
-    report.notes = job
-        .paths
-        .iter()
-        .flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)))
-        .collect();
+    report.notes = notes_of(job, &options.job);
     if options.boundary == Boundary::Paper {
         let note =
             "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
@@ -221,9 +248,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
     }
 }
 
-/// Writes dexels, mesh and picture.
-fn write(
-    options: &RunOptions,
+fn write_dexels(
     outcome: &Outcome,
     outputs: &mut Outputs,
     progress: &Progress,
@@ -241,21 +266,51 @@ fn write(
             outputs.write("part.dexels", |file| write_dexels_binary(&outcome.dexels, file))
         })?;
     }
-    if !outputs.wants(Output::Mesh) && !outputs.wants(Output::Picture) {
-        return Ok(());
+    Ok(())
+}
+
+/// The surface of the result.
+fn mesh(
+    task: Task,
+    job: &Job,
+    options: &RunOptions,
+    outcome: &mut Outcome,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<Mesh, Failure> {
+    if !options.tri {
+        progress.phase("mesh");
+        return Ok(phase(report, "mesh", || surface(&outcome.dexels)));
     }
-    progress.phase("mesh");
-    let mesh: Mesh = phase(report, "mesh", || surface(&outcome.dexels));
+    let surface = tri::surface(task, job, options, &outcome.dexels, progress, report)?;
+    outcome.unsure = surface.unsure;
+    if surface.unsure > 0 {
+        let lines = words::counted(surface.unsure as u64, "line");
+        report.notes.push(format!(
+            "{lines} along x or y could not be established: the mesh may be off there"
+        ));
+    }
+    Ok(surface.mesh)
+}
+
+/// Writes mesh and picture.
+fn write_mesh(
+    options: &RunOptions,
+    mesh: &Mesh,
+    outputs: &mut Outputs,
+    progress: &Progress,
+    report: &mut Report,
+) -> Result<(), Failure> {
     if outputs.wants(Output::Mesh) {
         phase(report, "mesh", || {
-            outputs.write("part.ply", |file| write_ply(&mesh, file))
+            outputs.write("part.ply", |file| write_ply(mesh, file))
         })?;
     }
     progress.check()?;
     if outputs.wants(Output::Picture) {
         progress.phase("picture");
         phase(report, "picture", || {
-            let png = solid::picture(&options.view, &mesh, None)?;
+            let png = solid::picture(&options.view, mesh, None)?;
             outputs.write("part.png", |file| file.write_all(&png))
         })?;
     }

@@ -4,7 +4,7 @@ use crate::arguments::{Output, SectionOptions};
 use crate::failure::Failure;
 use crate::outputs::Outputs;
 use crate::progress::Progress;
-use crate::run::{cuts_of, folder_name};
+use crate::run::{cuts_of, folder_name, notes_of};
 use crate::words;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -40,7 +40,7 @@ pub(crate) fn run(options: &SectionOptions) -> Result<ExitCode, Failure> {
     outputs.write("section.svg", |file| file.write_all(found.svg().as_bytes()))?;
     outputs.write("section.csv", |file| file.write_all(table(&found).as_bytes()))?;
     if !options.quiet {
-        crate::print(&summary(&found, &outputs))?;
+        crate::print(&summary(&found, &notes_of(&job, &options.job), &outputs))?;
     }
     Ok(if found.open.is_empty() {
         ExitCode::SUCCESS
@@ -81,7 +81,7 @@ fn table(section: &Section) -> String {
     text
 }
 
-fn summary(section: &Section, outputs: &Outputs) -> String {
+fn summary(section: &Section, notes: &[String], outputs: &Outputs) -> String {
     let points: usize = section.curves.iter().map(|curve| curve.points.len()).sum();
     let mut text = format!(
         "   section  {} of {}, {} of outline\n",
@@ -89,6 +89,9 @@ fn summary(section: &Section, outputs: &Outputs) -> String {
         words::counted(points as u64, "point"),
         words::counted(section.outline().len() as u64, "part"),
     );
+    for note in notes {
+        let _ = writeln!(text, "      note  {note}");
+    }
     for (path, piece, number) in &section.open {
         let _ = writeln!(text, "unresolved  path {path}, move {number}: {}", name(*piece));
     }

@@ -10,8 +10,8 @@ use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_
 
 /// Dexels along the longer side of a mesh, where nothing else is said.
 const CELLS: f64 = 300.0;
-/// Cosine of 40°: edges of meshes from files that are sharper look sharp.
-const CRISP: f64 = 0.766;
+/// Cosine of 40°: edges of meshes from files, or of tri-dexels, that are sharper look sharp.
+pub(crate) const CRISP: f64 = 0.766;
 
 /// What a file holds.
 pub(crate) enum Solid {
@@ -124,7 +124,9 @@ impl GridOptions {
                 _ => *read_dexels_file(file, None)?.grid(),
             };
             let cells = self.cells.unwrap_or(grid.cells());
-            return Grid::new(grid.min(), grid.max(), cells).map(Some).map_err(failed);
+            return Grid::new(grid.min(), grid.max(), cells)
+                .map(|made| Some(made.in_frame(*grid.frame())))
+                .map_err(failed);
         }
         let area = match (self.area, around) {
             (Some([x0, y0, x1, y1]), _) => Some([[x0, y0], [x1, y1]]),

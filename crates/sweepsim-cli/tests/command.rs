@@ -176,6 +176,62 @@ fn the_methods_agree() {
     }
 }
 
+/// A motion of B-splines in the job or in a file of its own, by every command that sweeps.
+#[test]
+fn motions_of_splines_are_simulated_swept_and_cut() {
+    let motion = "tip: Curve(degree: 2, points: [(10, -4, 3), (6, 5, 2), (10, 14, 3)]), \
+                  orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0.3, 0, 0)])";
+    let place = Place::new(&JOB.replace(SECOND, &format!("motion: Motion({motion})")));
+    let volume = |command: &str| {
+        let output = place.run(command, &["--quiet"]);
+        assert!(output.status.success(), "{command}: {}", text(&output.stderr));
+        place.report()["volume"].as_f64().expect("a number")
+    };
+    let (left, swept) = (volume("simulate"), volume("sweep"));
+    assert!(left < 20.0 * 10.0 * 6.0 && swept > 100.0, "{left} {swept}");
+    let output = place.run("section", &["--plane", "z=4"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let inspected = text(&place.inspect("job.ron").stdout);
+    assert!(inspected.contains("1 move of tool 2"), "{inspected}");
+    // From a file the same, to the bit.
+    fs::write(place.path("way.ron"), format!("Motion({motion})")).expect("a file");
+    fs::write(place.path("job.ron"), JOB.replace(SECOND, "file: \"way.ron\"")).expect("a file");
+    assert_eq!((volume("simulate"), volume("sweep")), (left, swept));
+    let place = Place::new(&JOB.replace(SECOND, "file: \"way.ron\""));
+    let bad = format!("Motion({})", motion.replace("0.3, 0, 0", "NaN, 0, 0"));
+    fs::write(place.path("way.ron"), bad).expect("a file");
+    assert_bad(
+        &place,
+        &place.run("simulate", &[]),
+        &["way.ron:1:", "point 1 of the orientation"],
+    );
+}
+
+/// A corner that cuts the lines beside it instead of touching them is a tool, but not without a word.
+#[test]
+fn a_corner_that_is_not_tangent_is_said_by_every_command() {
+    let good = "Apt(d: 4, r: 1, e: 1, f: 1, a: 0, b: 0, h: 30)";
+    let odd = good.replace("r: 1,", "r: 1.25,");
+    let place = Place::new(&JOB.replace("Ball(radius: 2, length: 30)", &odd));
+    let words = [
+        "line 4: tool 1: the corner (r, e, f) is not tangent to the bottom line",
+        "side line",
+    ];
+    let said = |output: &Output| {
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let said = text(&output.stdout);
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    };
+    said(&place.run("simulate", &[]));
+    let notes = place.report()["notes"].as_array().expect("a list").len();
+    assert_eq!(notes, 2);
+    said(&place.run("sweep", &[]));
+    said(&place.run("section", &["--plane", "z=4"]));
+    said(&place.inspect("job.ron"));
+    fs::write(place.path("job.ron"), JOB.replace("Ball(radius: 2, length: 30)", good)).expect("a file");
+    assert!(!text(&place.inspect("job.ron").stdout).contains("tangent"));
+}
+
 #[test]
 fn inspect_tells_what_is_there() {
     let place = Place::new(JOB);

@@ -60,9 +60,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut sets: [Dexels; 3] = block.sets().clone();
     let mut updates = 0;
     for (axis, set) in sets.iter_mut().enumerate() {
-        let mut cuts = cuts(set.grid(), axis);
+        let cuts = cuts(set.grid(), axis);
         updates += cuts.len();
-        set.update(Operation::Difference, &mut cuts);
+        set.update(Operation::Difference, &cuts);
     }
     let solid = TriDexels::from_sets(sets)?;
     let csg = start.elapsed().as_secs_f64();

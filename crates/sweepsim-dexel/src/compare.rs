@@ -6,6 +6,7 @@
 
 use crate::dexels::{Dexels, GridMismatch};
 use crate::distance::DistanceTo;
+use crate::frame::Frame;
 use crate::interval::End;
 use crate::line::Line;
 use crate::mesh::TriangleSoup;
@@ -167,8 +168,10 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
 /// ```
 pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> Result<Comparison, StockError> {
     let grid = *dexels.grid();
-    let goal = mesh_dexels(&grid, target)?;
-    let tree = DistanceTo::new(target);
+    // All in the frame of the grid: distances are the same.
+    let target = target.seen_from(grid.frame());
+    let goal = mesh_dexels(&grid.in_frame(Frame::WORLD), &target)?;
+    let tree = DistanceTo::new(&target);
     let [columns, _] = grid.cells();
     let [dx, dy] = grid.spacing();
     let parts: Vec<Comparison> = (0..columns)

@@ -53,12 +53,36 @@ pub(crate) fn contour(solid: &TriDexels) -> Mesh {
         let [i, j, k] = cell;
         first[i] + slabs[i].first[j * (lattice.points[2] - 1) + k] + u32::from(sheet)
     };
+    // Triangles, slab after slab of lines; then those that need vertices of their own, one after the other.
+    let slabs: Vec<(usize, usize)> = (0..3)
+        .flat_map(|axis| (0..lattice.points[(axis + 1) % 3]).map(move |number| (axis, number)))
+        .collect();
+    type Rest<'a> = Vec<(Ring, Face<'a>)>;
+    let faces: Vec<(Vec<[u32; 3]>, Rest<'_>)> = slabs
+        .into_par_iter()
+        .map(|(axis, number)| {
+            let (mut triangles, mut rest) = (Vec::new(), Vec::new());
+            for (at, hit) in hits[axis].slab(&lattice, number) {
+                let face = Face { axis, at, hit };
+                let ring = face.ring(&lattice, &vertex);
+                if ring.keys.iter().all(Option::is_none) {
+                    triangles.extend(face.halves(&lattice, &mesh, ring.corners));
+                } else {
+                    rest.push((ring, face));
+                }
+            }
+            (triangles, rest)
+        })
+        .collect();
     let mut extra = Extra::default();
-    for (axis, hits) in hits.iter().enumerate() {
-        for (at, hit) in hits.iter(&lattice) {
-            face(&lattice, axis, at, hit, &vertex, &mut mesh, &mut extra);
+    let mut fans = Vec::new();
+    for (triangles, rest) in faces {
+        mesh.triangles.extend(triangles);
+        for (ring, face) in rest {
+            fans.extend(face.fan(&lattice, &mesh, ring, &mut extra));
         }
     }
+    mesh.triangles.extend(fans);
     extra.finish(&mut mesh);
     mesh
 }
@@ -114,6 +138,7 @@ impl Slab {
 }
 
 /// A curve on a face that two curves cross.
+#[derive(Clone, Copy)]
 struct Key {
     /// The axis that is normal to the face.
     normal: usize,
@@ -170,54 +195,58 @@ impl Extra {
     }
 }
 
-/// The triangles around the interval end on the edge along `axis` that begins at a point.
-fn face(
-    lattice: &Lattice,
+/// The quadrilateral around the interval end on the edge along `axis` that begins at a point.
+struct Face<'a> {
     axis: usize,
     at: [usize; 3],
-    hit: &Hit,
-    vertex: &impl Fn([usize; 3], usize) -> u32,
-    mesh: &mut Mesh,
-    extra: &mut Extra,
-) {
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let place = lattice.place(axis, at, hit);
-    let mut solid = at;
-    solid[axis] += usize::from(!hit.upper);
-    // The cells around the edge, counter-clockwise seen from its far end: by how far they begin below it.
-    let around = [[1, 1], [0, 1], [0, 0], [1, 0]];
-    let corner = |[a, b]: [usize; 2]| {
-        let mut cell = at;
-        cell[u] -= a;
-        cell[v] -= b;
-        vertex(cell, 4 * axis + a + 2 * b)
-    };
-    // The faces between them: normal to u below v, normal to v above u, normal to u above v, normal to v below u.
-    let between = [(u, v, 1), (v, u, 0), (u, v, 0), (v, u, 1)];
-    let mut polygon: Vec<u32> = Vec::with_capacity(8);
-    for k in 0..4 {
-        polygon.push(corner(around[k]));
-        let (normal, other, below) = between[k];
-        let mut low = at;
-        low[other] -= below;
-        let mut points = [low; 4];
-        points[1][axis] += 1;
-        points[2][other] += 1;
-        points[3][axis] += 1;
-        points[3][other] += 1;
-        let [a, b, c, d] = points.map(|p| lattice.inside(p));
-        if a == d && b == c && a != b {
-            let key = Key { normal, low, solid };
-            polygon.push(extra.number(lattice, mesh, key, place, hit));
+    hit: &'a Hit,
+}
+
+/// The vertices in the cells around an edge, counter-clockwise seen from outside, and the curves between each and the next where
+/// two cross the face of the lattice there.
+struct Ring {
+    corners: [u32; 4],
+    keys: [Option<Key>; 4],
+}
+
+impl Face<'_> {
+    fn ring(&self, lattice: &Lattice, vertex: &impl Fn([usize; 3], usize) -> u32) -> Ring {
+        let (axis, at) = (self.axis, self.at);
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut solid = at;
+        solid[axis] += usize::from(!self.hit.upper);
+        // The cells around the edge, counter-clockwise seen from its far end: by how far they begin below it.
+        let mut corners = [[1, 1], [0, 1], [0, 0], [1, 0]].map(|[a, b]| {
+            let mut cell = at;
+            cell[u] -= a;
+            cell[v] -= b;
+            vertex(cell, 4 * axis + a + 2 * b)
+        });
+        // The faces between them: normal to u below v, normal to v above u, normal to u above v, normal to v below u.
+        let mut keys = [(u, v, 1), (v, u, 0), (u, v, 0), (v, u, 1)].map(|(normal, other, below)| {
+            let mut low = at;
+            low[other] -= below;
+            let mut points = [low; 4];
+            points[1][axis] += 1;
+            points[2][other] += 1;
+            points[3][axis] += 1;
+            points[3][other] += 1;
+            let [a, b, c, d] = points.map(|p| lattice.inside(p));
+            (a == d && b == c && a != b).then_some(Key { normal, low, solid })
+        });
+        if !self.hit.upper {
+            corners.reverse();
+            // What was before a corner is now after it.
+            keys = [2, 1, 0, 3].map(|k| keys[k]);
         }
+        Ring { corners, keys }
     }
-    if !hit.upper {
-        polygon.reverse();
-    }
-    if let [a, b, c, d] = polygon[..] {
-        // The diagonal that stays nearer to the tangent plane.
+
+    /// Two triangles, by the diagonal that stays nearer to the tangent plane.
+    fn halves(&self, lattice: &Lattice, mesh: &Mesh, [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
+        let place = lattice.place(self.axis, self.at, self.hit);
         let p = [a, b, c, d].map(|n| mesh.vertices[n as usize]);
-        let off = |a: [f64; 3], b: [f64; 3]| match hit.normal {
+        let off = |a: [f64; 3], b: [f64; 3]| match self.hit.normal {
             Some(n) => [0, 1, 2]
                 .map(|k| (0.5 * (a[k] + b[k]) - place[k]) * f64::from(n[k]))
                 .iter()
@@ -226,16 +255,24 @@ fn face(
             None => [0, 1, 2].map(|k| (a[k] - b[k]).powi(2)).iter().sum::<f64>(),
         };
         if off(p[0], p[2]) <= off(p[1], p[3]) {
-            mesh.triangles.extend([[a, b, c], [a, c, d]]);
+            [[a, b, c], [a, c, d]]
         } else {
-            mesh.triangles.extend([[a, b, d], [b, c, d]]);
+            [[a, b, d], [b, c, d]]
         }
-    } else {
-        let middle = extra.at(mesh, place, hit);
-        for k in 0..polygon.len() {
-            mesh.triangles
-                .push([middle, polygon[k], polygon[(k + 1) % polygon.len()]]);
+    }
+
+    /// Triangles around a vertex at the interval end, with vertices on the faces that two curves cross.
+    fn fan(&self, lattice: &Lattice, mesh: &Mesh, ring: Ring, extra: &mut Extra) -> Vec<[u32; 3]> {
+        let place = lattice.place(self.axis, self.at, self.hit);
+        let mut polygon: Vec<u32> = Vec::with_capacity(8);
+        for (corner, key) in ring.corners.into_iter().zip(ring.keys) {
+            polygon.push(corner);
+            polygon.extend(key.map(|key| extra.number(lattice, mesh, key, place, self.hit)));
         }
+        let middle = extra.at(mesh, place, self.hit);
+        (0..polygon.len())
+            .map(|k| [middle, polygon[k], polygon[(k + 1) % polygon.len()]])
+            .collect()
     }
 }
 

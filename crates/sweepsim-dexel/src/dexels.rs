@@ -36,9 +36,9 @@ impl Operation {
     }
 }
 
-/// The lines of crossings and the numbers of the crossings, sorted: counted into chunks of lines, then sorted in each. Crossings beyond the last
+/// The lines of crossings (or intervals) and their numbers, sorted: counted into chunks of lines, then sorted in each. Those beyond the last
 /// chunk are left out.
-fn numbered_by_line(crossings: &[(u32, Crossing)], chunks: usize) -> Vec<(u32, u32)> {
+fn numbered_by_line<T>(crossings: &[(u32, T)], chunks: usize) -> Vec<(u32, u32)> {
     let chunk = |line: u32| line as usize / LINES;
     let mut ends = vec![0_usize; chunks + 1];
     for (line, _) in crossings {
@@ -276,11 +276,13 @@ impl Dexels {
     }
 
     /// Unites with, subtracts or intersects with intervals on numbered lines, in parallel. They may come in any order and
-    /// overlap; they are left sorted by line. Those beyond the grid or without length change nothing.
-    pub fn update(&mut self, operation: Operation, intervals: &mut [(u32, Interval)]) {
-        intervals.par_sort_by(|(a, p), (b, q)| a.cmp(b).then(p.lower.z.total_cmp(&q.lower.z)));
-        self.update_by(operation, intervals, |group, (): &mut (), out| {
-            out.extend(group.iter().map(|(_, interval)| *interval));
+    /// overlap. Those beyond the grid or without length change nothing.
+    pub fn update(&mut self, operation: Operation, intervals: &[(u32, Interval)]) {
+        let sorted = numbered_by_line(intervals, self.chunks.len());
+        self.update_by(operation, &sorted, |group, (): &mut (), out| {
+            out.extend(group.iter().map(|(_, number)| intervals[*number as usize].1));
+            // Mostly one. A stable sort: the order of equal heights does not depend on threads.
+            out.sort_by(|a, b| a.lower.z.total_cmp(&b.lower.z));
             normalise(out);
         });
     }

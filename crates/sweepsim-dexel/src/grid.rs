@@ -1,13 +1,18 @@
 //! Where the dexels stand.
 
+use crate::frame::Frame;
 use thiserror::Error;
 
-/// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles.
+/// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).
+///
+/// All numbers of dexels are in the frame of their grid: places, heights and normals. What is made of them with other things
+/// ([stock](crate::Stock), [surfaces](crate::surface), meshes to compare with) is in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     min: [f64; 2],
     max: [f64; 2],
     cells: [usize; 2],
+    frame: Frame,
 }
 
 /// Why numbers make no grid.
@@ -42,9 +47,39 @@ impl Grid {
             return Err(GridError::Area { min, max });
         }
         match cells[0].checked_mul(cells[1]) {
-            Some(count) if count > 0 && count <= Self::MOST => Ok(Self { min, max, cells }),
+            Some(count) if count > 0 && count <= Self::MOST => Ok(Self {
+                min,
+                max,
+                cells,
+                frame: Frame::WORLD,
+            }),
             _ => Err(GridError::Cells(cells)),
         }
+    }
+
+    /// The same lines in a frame: along its `z`, and `x` and `y` are the frame's.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Frame, Grid, Stock, surface};
+    /// // From the side: the lines run along the world's x.
+    /// let side = Frame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
+    /// let grid = Grid::new([0.0, 0.0], [4.0, 2.0], [8, 4])?.in_frame(side);
+    /// let block = Stock::Block { min: [1.0, 0.0, 0.0], max: [9.0, 4.0, 2.0] }.dexels(&grid)?;
+    /// let line = block.intervals(0, 0).to_vec();
+    /// assert_eq!((line[0].lower.z, line[0].upper.z), (1.0, 9.0));
+    /// // Its surface is where the block is.
+    /// assert!(surface(&block).vertices.iter().all(|v| (1.0..=9.0).contains(&v[0]) && (0.0..=4.0).contains(&v[1])));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn in_frame(self, frame: Frame) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// Where the grid's own coordinates are in the world.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        &self.frame
     }
 
     /// Lower corner of the area.

@@ -1,5 +1,7 @@
 //! Triangles, going in and coming out.
 
+use crate::frame::Frame;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
@@ -50,6 +52,19 @@ pub enum MeshError {
 }
 
 impl Mesh {
+    /// Moves what is given in a frame to its place in the world.
+    pub(crate) fn move_to_world(&mut self, frame: &Frame) {
+        if frame.is_world() {
+            return;
+        }
+        for place in &mut self.vertices {
+            *place = frame.to_world(*place);
+        }
+        for normal in &mut self.normals {
+            *normal = frame.turn_to_world(normal.map(f64::from)).map(|c| c as f32);
+        }
+    }
+
     /// The triangles alone; `None` if one has a vertex that the mesh does not have.
     #[must_use]
     pub fn soup(&self) -> Option<TriangleSoup> {
@@ -65,12 +80,13 @@ impl Mesh {
 
     /// The same for pictures: around each vertex, triangles whose normals are further than an angle (given by its cosine) from each
     /// other's get vertices and normals of their own, so that edges look sharp. Places stay as they are; a triangle
-    /// with a vertex that the mesh does not have is left out.
+    /// with a vertex that the mesh does not have is left out. A triangle is cut when all its corners are; a vertex, when most of the area around it
+    /// is: on an edge between cut and uncut faces each side has its own.
     #[must_use]
     pub fn crisp(&self, cosine: f64) -> Self {
         let mut mesh = Self::default();
-        // The vertices made of each, with the sums of their triangles' normals.
-        let mut made: Vec<Vec<(u32, [f64; 3])>> = vec![Vec::new(); self.vertices.len()];
+        // The vertices made of each, with the sums of their triangles' normals, and of lengths of those that are cut less the others.
+        let mut made: Vec<Vec<(u32, [f64; 3], f64)>> = vec![Vec::new(); self.vertices.len()];
         for triangle in &self.triangles {
             if triangle.iter().any(|v| *v as usize >= self.vertices.len()) {
                 continue;
@@ -78,25 +94,31 @@ impl Mesh {
             let [a, b, c] = triangle.map(|v| self.vertices[v as usize]);
             let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
             let normal = [0, 1, 2].map(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+            let cut = triangle
+                .iter()
+                .all(|v| self.cut.get(*v as usize).copied().unwrap_or(false));
+            let area = normal.iter().map(|c| c * c).sum::<f64>().sqrt() * if cut { 1.0 } else { -1.0 };
             let corners = triangle.map(|old| {
-                let near = made[old as usize].iter_mut().find(|(_, sum)| {
+                let near = made[old as usize].iter_mut().find(|(_, sum, _)| {
                     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
                     dot(*sum, normal) >= cosine * dot(*sum, *sum).sqrt() * dot(normal, normal).sqrt()
                 });
-                if let Some((new, sum)) = near {
+                if let Some((new, sum, cut)) = near {
                     *sum = [0, 1, 2].map(|k| sum[k] + normal[k]);
+                    *cut += area;
                     return *new;
                 }
                 let new = mesh.vertices.len() as u32;
                 mesh.vertices.push(self.vertices[old as usize]);
-                mesh.cut.push(self.cut.get(old as usize).copied().unwrap_or(false));
+                mesh.cut.push(false);
                 mesh.normals.push([0.0, 0.0, 1.0]);
-                made[old as usize].push((new, normal));
+                made[old as usize].push((new, normal, area));
                 new
             });
             mesh.triangles.push(corners);
         }
-        for (new, sum) in made.into_iter().flatten() {
+        for (new, sum, cut) in made.into_iter().flatten() {
+            mesh.cut[new as usize] = cut > 0.0;
             let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
             if length > 0.0 {
                 mesh.normals[new as usize] = sum.map(|c| (c / length) as f32);
@@ -107,6 +129,17 @@ impl Mesh {
 }
 
 impl TriangleSoup {
+    /// The triangles of the world in the coordinates of a frame.
+    pub(crate) fn seen_from(&self, frame: &Frame) -> Cow<'_, Self> {
+        if frame.is_world() {
+            return Cow::Borrowed(self);
+        }
+        let turned = |corners: &[[f64; 3]; 3]| corners.map(|p| frame.from_world(p));
+        Cow::Owned(Self {
+            triangles: self.triangles.iter().map(turned).collect(),
+        })
+    }
+
     /// The volume that the triangles enclose, if they are closed: negative if they are inside out.
     #[must_use]
     pub fn volume(&self) -> f64 {

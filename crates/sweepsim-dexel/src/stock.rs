@@ -75,9 +75,6 @@ pub enum StockError {
         /// Its radius.
         radius: f64,
     },
-    /// Dexels have one direction: they cannot be turned.
-    #[error("dexels of an earlier run cannot be turned to another axis")]
-    Turned,
     /// Triangles that enclose nothing.
     #[error(transparent)]
     Mesh(#[from] MeshError),
@@ -87,9 +84,9 @@ pub enum StockError {
     /// Triangles that cross each other or are turned inside out: some lines do not pass through them in good order.
     #[error("the mesh is inside out or crosses itself: at ({x}, {y}) a line leaves it before it enters")]
     Tangled {
-        /// Where.
+        /// Where, in the frame of the grid.
         x: f64,
-        /// Where.
+        /// Where, in the frame of the grid.
         y: f64,
     },
 }
@@ -103,7 +100,7 @@ fn end(z: f64, normal: [f64; 3]) -> End {
 }
 
 impl Stock {
-    /// The dexels of the stock.
+    /// The dexels of the stock. It is in the world; the grid may have a frame of its own.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Stock};
@@ -142,55 +139,11 @@ impl Stock {
     }
 }
 
-impl Stock {
-    /// The stock as seen along another axis: its `x`, `y`, `z` are those with the numbers `axis + 1`, `axis + 2` and `axis` (mod 3).
-    ///
-    /// # Errors
-    /// [`StockError::Turned`] for dexels, unless along `z`, which changes nothing.
-    pub fn seen_along(&self, axis: usize) -> Result<Self, StockError> {
-        let turn = |p: [f64; 3]| [p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis % 3]];
-        let each = |parts: &[Self]| {
-            parts
-                .iter()
-                .map(|part| part.seen_along(axis))
-                .collect::<Result<Vec<_>, _>>()
-        };
-        Ok(match self {
-            Self::Block { min, max } => Self::Block {
-                min: turn(*min),
-                max: turn(*max),
-            },
-            Self::Cylinder {
-                base,
-                axis,
-                radius,
-                height,
-            } => Self::Cylinder {
-                base: turn(*base),
-                axis: turn(*axis),
-                radius: *radius,
-                height: *height,
-            },
-            Self::Ball { centre, radius } => Self::Ball {
-                centre: turn(*centre),
-                radius: *radius,
-            },
-            Self::Mesh(soup) => Self::Mesh(TriangleSoup {
-                triangles: soup.triangles.iter().map(|corners| corners.map(turn)).collect(),
-            }),
-            Self::Dexels(dexels) if axis % 3 == 2 => Self::Dexels(Arc::clone(dexels)),
-            Self::Dexels(_) => return Err(StockError::Turned),
-            Self::Union(parts) => Self::Union(each(parts)?),
-            Self::Intersection(parts) => Self::Intersection(each(parts)?),
-            Self::Difference(whole, parts) => Self::Difference(Box::new(whole.seen_along(axis)?), each(parts)?),
-        })
-    }
-}
-
 fn ball(grid: &Grid, centre: [f64; 3], radius: f64) -> Result<Dexels, StockError> {
     if !(centre.iter().all(|c| c.is_finite()) && radius > 0.0 && radius.is_finite()) {
         return Err(StockError::Ball { radius });
     }
+    let centre = grid.frame().from_world(centre);
     Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         let [x, y] = [grid.x(i) - centre[0], grid.y(j) - centre[1]];
@@ -217,15 +170,37 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
     if !(0..3).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k]) {
         return Err(StockError::Block { min, max });
     }
-    let piece = Interval {
-        lower: end(min[2], [0.0, 0.0, -1.0]),
-        upper: end(max[2], [0.0, 0.0, 1.0]),
-    };
+    let frame = grid.frame();
+    let along = frame.axes()[2];
     Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
-        let p = [grid.x(i), grid.y(j)];
-        if (0..2).all(|k| min[k] <= p[k] && p[k] <= max[k]) {
-            line.push(piece);
+        let from = frame.to_world([grid.x(i), grid.y(j), 0.0]);
+        let (mut lower, mut upper) = (end(f64::NEG_INFINITY, [0.0; 3]), end(f64::INFINITY, [0.0; 3]));
+        for k in 0..3 {
+            if along[k] == 0.0 {
+                if !(min[k] <= from[k] && from[k] <= max[k]) {
+                    return;
+                }
+                continue;
+            }
+            let face = |place: f64, out: f64| {
+                let mut normal = [0.0; 3];
+                normal[k] = out;
+                end((place - from[k]) / along[k], frame.turn_from_world(normal))
+            };
+            let (mut below, mut above) = (face(min[k], -1.0), face(max[k], 1.0));
+            if along[k] < 0.0 {
+                std::mem::swap(&mut below, &mut above);
+            }
+            if below.z > lower.z {
+                lower = below;
+            }
+            if above.z < upper.z {
+                upper = above;
+            }
+        }
+        if lower.z < upper.z {
+            line.push(Interval { lower, upper });
         }
     }))
 }
@@ -236,7 +211,8 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
     if !(finite && length > 0.0 && radius > 0.0 && height > 0.0) {
         return Err(StockError::Cylinder { radius, height });
     }
-    let a = axis.map(|c| c / length);
+    let a = grid.frame().turn_from_world(axis.map(|c| c / length));
+    let base = grid.frame().from_world(base);
     Ok(Dexels::from_fn(*grid, |index, line| {
         let (i, j) = grid.place(index);
         // The line (x, y, z): along the axis at s = p·a + z a_z, across it at q + z e with e = z-direction less a_z a.
@@ -283,6 +259,7 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
 /// The dexels of the inside of a closed surface.
 pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
     soup.check_closed()?;
+    let soup = &*soup.seen_from(grid.frame());
     let [dx, dy] = grid.spacing();
     let shift = [dx * 7.548_776_662e-10, dy * 5.698_402_910e-10];
     let [columns, rows] = grid.cells();

@@ -37,7 +37,7 @@ const CRISP: f64 = 0.766;
 
 /// The surface of dexels, closed, as triangles with normals.
 ///
-/// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
+/// It is in the world, wherever the frame of the dexels' grid is. Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
 /// side has a vertex of its own. At the ends the normals are those of the dexels. A vertex counts as cut when a tool made
 /// the end. A wall counts as cut when a tool made the end that the space in front of it goes to; beside a dexel without
 /// material, when it is inside of a hole or both ends of the interval behind were cut.
@@ -299,6 +299,7 @@ fn assemble(field: &Field<'_>, parts: Vec<Part>) -> Mesh {
         mesh.cut.extend(part.cut);
     }
     split(&mut mesh, &creased);
+    mesh.move_to_world(grid.frame());
     mesh
 }
 

@@ -2,6 +2,7 @@
 
 use crate::contour;
 use crate::dexels::{Dexels, GridMismatch, Operation};
+use crate::frame::Frame;
 use crate::grid::{Grid, GridError};
 use crate::mesh::Mesh;
 use crate::stock::{Stock, StockError};
@@ -9,8 +10,8 @@ use thiserror::Error;
 
 /// Three sets of dexels, along `x`, `y` and `z`, whose lines meet in the centres of `cells[0] × cells[1] × cells[2]` boxes.
 ///
-/// Dexels along an axis see the solid turned: their `x`, `y` and `z` are the axes `axis + 1`, `axis + 2` and `axis` (mod 3), and
-/// so are the coordinates of their normals. What is steep for one set is flat for another, so every face is met by lines
+/// Dexels along an axis have the [frame](Grid::frame) of [`Frame::cyclic`]: their `x`, `y` and `z` are the axes `axis + 1`, `axis + 2`
+/// and `axis` (mod 3), and so are the coordinates of their normals. What is steep for one set is flat for another, so every face is met by lines
 /// of at least one set at less than 55° from its normal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriDexels {
@@ -53,6 +54,7 @@ impl TriDexels {
         let along = |axis: usize| {
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
             Grid::new([min[u], min[v]], [max[u], max[v]], [cells[u], cells[v]])
+                .map(|grid| grid.in_frame(Frame::cyclic(axis)))
         };
         let grids = [along(0)?, along(1)?, along(2)?];
         // Room for a rim, too.
@@ -83,16 +85,16 @@ impl TriDexels {
     pub fn new(min: [f64; 3], max: [f64; 3], cells: [usize; 3], stock: &Stock) -> Result<Self, TriDexelsError> {
         let [x, y, z] = Self::grids(min, max, cells)?;
         let whole = Stock::Block { min, max };
-        let set = |axis: usize, grid: Grid| -> Result<Dexels, StockError> {
-            let mut set = stock.seen_along(axis)?.dexels(&grid)?;
-            set.intersect_all(&whole.seen_along(axis)?.dexels(&grid)?)?;
+        let set = |grid: Grid| -> Result<Dexels, StockError> {
+            let mut set = stock.dexels(&grid)?;
+            set.intersect_all(&whole.dexels(&grid)?)?;
             Ok(set)
         };
-        let sets = [set(0, x)?, set(1, y)?, set(2, z)?];
+        let sets = [set(x)?, set(y)?, set(z)?];
         Ok(Self { min, max, cells, sets })
     }
 
-    /// Puts sets along `x`, `y` and `z` together.
+    /// Puts sets along `x`, `y` and `z` together: their grids are in the frames of [`Frame::cyclic`].
     ///
     /// # Errors
     /// [`TriDexelsError::Mismatch`]: their grids are not those of one box.
@@ -129,6 +131,12 @@ impl TriDexels {
     #[must_use]
     pub fn sets(&self) -> &[Dexels; 3] {
         &self.sets
+    }
+
+    /// The sets alone, as [`from_sets`](Self::from_sets) takes them.
+    #[must_use]
+    pub fn into_sets(self) -> [Dexels; 3] {
+        self.sets
     }
 
     /// Unites with, subtracts or intersects with `other`.

@@ -4,7 +4,7 @@
 //!
 //! | part | content |
 //! | --- | --- |
-//! | header | `sweepdxl`; version `u32`; 0 as `u32`; area: min x, y and max x, y as `f64`; cells in x and y as `u64`; checksum `u32` |
+//! | header | `sweepdxl`; version `u32`; 1 as `u32` if there is a frame, else 0; area: min x, y and max x, y as `f64`; cells in x and y as `u64`; the frame's origin and axes x, y, z as 12 `f64`; checksum `u32` |
 //! | blocks | number of the first line `u64`; lines `u32`; bytes `u32`; the bytes; checksum `u32` |
 //! | end | `u64::MAX`; 0 as `u32`; 8 as `u32`; number of all intervals `u64`; checksum `u32` |
 //!
@@ -26,7 +26,7 @@
 
 use std::io::{Read, Write};
 
-use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source, pack_normal, unpack_normal};
+use sweepsim_dexel::{Dexels, DexelsBuilder, End, Frame, Grid, Interval, Source, pack_normal, unpack_normal};
 
 use crate::checksum::crc32;
 use crate::error::{FormatError, Problem};
@@ -34,6 +34,8 @@ use crate::error::{FormatError, Problem};
 const MAGIC: &[u8; 8] = b"sweepdxl";
 const VERSION: u32 = 1;
 const HEADER: usize = 64;
+/// What follows the header where there is a frame.
+const FRAME: usize = 96;
 const BLOCK_HEADER: usize = 16;
 /// Lines of a block.
 const LINES: usize = 4096;
@@ -89,12 +91,18 @@ pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io:
     let mut header = Vec::with_capacity(HEADER);
     header.extend_from_slice(MAGIC);
     header.extend_from_slice(&VERSION.to_le_bytes());
-    header.extend_from_slice(&0_u32.to_le_bytes());
+    let framed = !grid.frame().is_world();
+    header.extend_from_slice(&u32::from(framed).to_le_bytes());
     for number in grid.min().into_iter().chain(grid.max()) {
         header.extend_from_slice(&number.to_le_bytes());
     }
     for number in grid.cells() {
         header.extend_from_slice(&(number as u64).to_le_bytes());
+    }
+    if framed {
+        for number in framed_numbers(grid.frame()) {
+            header.extend_from_slice(&number.to_le_bytes());
+        }
     }
     writer.write_all(&header)?;
     writer.write_all(&crc32(&[&header]).to_le_bytes())?;
@@ -107,6 +115,20 @@ pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io:
         first += lines;
     }
     block(END, 0, &(dexels.count() as u64).to_le_bytes(), writer)
+}
+
+/// Origin and axes of a frame.
+pub(crate) fn framed_numbers(frame: &Frame) -> impl Iterator<Item = f64> {
+    let [x, y, z] = frame.axes();
+    [frame.origin(), x, y, z].into_iter().flatten()
+}
+
+/// A grid in the frame that twelve numbers say, `<f8`.
+pub(crate) fn in_frame(grid: Grid, numbers: &[[u8; 8]]) -> Result<Grid, FormatError> {
+    let vector = |n: usize| [0, 1, 2].map(|k| numbers.get(3 * n + k).map_or(f64::NAN, |b| f64::from_le_bytes(*b)));
+    Frame::from_axes(vector(0), [vector(1), vector(2), vector(3)])
+        .map(|frame| grid.in_frame(frame))
+        .map_err(|error| FormatError::new(Problem::Frame(error), None))
 }
 
 fn block(first: u64, lines: u32, payload: &[u8], writer: &mut impl Write) -> std::io::Result<()> {
@@ -271,20 +293,34 @@ fn header(reader: &mut impl Read) -> Result<Grid, FormatError> {
         Err(length) => return problem(format!("this is no file of dexels: expected more than {length} bytes")),
     };
     let version = u32::from_le_bytes(number(&header, 8));
-    let sum = head::<4>(reader)?;
+    let framed = u32::from_le_bytes(number(&header, 12));
     if version != VERSION {
         return Err(FormatError::new(
             Problem::value("the version of this file", version, format!("{VERSION}")),
             None,
         ));
     }
-    if sum.map(u32::from_le_bytes) != Ok(crc32(&[&header])) {
-        return problem("this file is damaged: the checksum of its header is wrong");
+    let damaged = || problem("this file is damaged: the checksum of its header is wrong");
+    let mut frame = Vec::new();
+    if framed == 1 {
+        let Ok(numbers) = head::<FRAME>(reader)? else {
+            return damaged();
+        };
+        frame.extend(numbers);
+    }
+    let sum = head::<4>(reader)?;
+    if framed > 1 || sum.map(u32::from_le_bytes) != Ok(crc32(&[&header, &frame])) {
+        return damaged();
     }
     let float = |k: usize| f64::from_le_bytes(number(&header, 16 + 8 * k));
     let cells = [48, 56].map(|at| usize::try_from(u64::from_le_bytes(number(&header, at))).unwrap_or(0));
-    Grid::new([float(0), float(1)], [float(2), float(3)], cells)
-        .map_err(|error| FormatError::new(Problem::Grid(error), None))
+    let grid = Grid::new([float(0), float(1)], [float(2), float(3)], cells)
+        .map_err(|error| FormatError::new(Problem::Grid(error), None))?;
+    if framed == 0 {
+        return Ok(grid);
+    }
+    let (numbers, _) = frame.as_chunks::<8>();
+    in_frame(grid, numbers)
 }
 
 /// The rest of a block.

@@ -5,8 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use sweepsim_dexel::GridError;
-use sweepsim_motion::{PathError, PoseError, ProfileError};
+use sweepsim_dexel::{FrameError, GridError};
+use sweepsim_motion::{MotionError, PathError, PoseError, ProfileError};
 use thiserror::Error;
 
 /// A file that cannot be read, understood or written.
@@ -102,9 +102,15 @@ pub enum Problem {
     /// A path is none.
     #[error("{0}")]
     Path(#[source] PathError),
+    /// A motion is none.
+    #[error("{0}")]
+    Motion(#[source] MotionError),
     /// A grid is none.
     #[error("{0}")]
     Grid(#[source] GridError),
+    /// Vectors that make no frame.
+    #[error("{0}")]
+    Frame(#[source] FrameError),
 }
 
 fn list(numbers: &[u32]) -> String {

@@ -8,6 +8,7 @@ use sweepsim_motion::{Body, Tool};
 
 use crate::error::FormatError;
 use crate::paths::JobPath;
+use crate::program::Note;
 use crate::{read_job, text};
 
 /// Millimetres of an inch.
@@ -54,14 +55,24 @@ impl Units {
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
 ///
+/// The grid may have a frame of its own, `frame: Frame(origin: (0, 0, 0), z: (1, 0, 0), x: (0, 1, 0))`: the dexels stand along its `z`, and `min`, `max`
+/// and all numbers of dexels are in it.
+///
 /// Further tools are `Lollipop(radius:, neck:, length:)`, `Dovetail(radius:, angle:, height:, neck:, length:)`,
-/// `Barrel(radius:, flank:, height:, length:)`, `Lens(radius:, bottom:, length:)` and `Surface("file.ron")`. What moves with tools and removes nothing is said
+/// `Barrel(radius:, flank:, height:, length:)` and `Lens(radius:, bottom:, length:)` (both with `corner:`, default 0),
+/// `Oval(radius:, tip:, flank:, length:)`, `Taper(radius:, tip:, flank:, angle:, length:)` and `Surface("file.ron")`. Segments of a profile are `Line((rho, zeta))`,
+/// `Arc(to:, centre:, turn: Cw | Ccw)` and `Spline(degree:, points:, knots:, weights:)`. What moves with tools and removes nothing is said
 /// by `bodies: { 1: [Shank(tool), Holder(tool)] }`: solids like tools, in the frame of tool 1.
 ///
 /// A path may say how the tool turns between poses: `law: Slerp | ConstantSpeed | Rotary(AC) | Rotary(BC)`. Poses of tools that are not
 /// symmetric about their axis may have a third direction, where the tool's x points: `((tip), (axis), (side))`. Instead of `poses` there may be
 /// `moves: [Start(pose), Line(pose), Arc(to: pose, centre: (x, y, z), turn: Ccw), …]` with arcs and helices of the tip (further `normal`,
 /// default `(0, 0, 1)`, and `turns`, default 1).
+///
+/// A motion of one's own is given by B-splines: `motion: Motion(tip: Curve(degree:, points: [(x, y, z), …]), orientation: Quaternions(degree:, points:
+/// [(w, x, y, z), …]))`, or `Matrices(degree:, points: [(row, row, row), …])`, which must be rotations within `tolerance:` (default 1e-9). Both curves take
+/// `knots:` (default: evenly spaced over the domain of the other curve, or `[0, 1]`), tip and matrices also `weights:`. The same `Motion(…)` may be a file
+/// that `file: "….ron"` names. See [`SplineMotion`](sweepsim_motion::SplineMotion).
 ///
 /// A path of a program takes further `arcs: Chords | Exact` (default: chords), `arc_tolerance` (default: 10 times the job's), `table: AC | BC` (default: by the letters in
 /// use) and `tip_control: true` (the coordinates are the tip in the part's frame without a word in the program); see
@@ -88,6 +99,8 @@ pub struct Job {
     pub target: Option<Target>,
     /// How far the result may be from the target.
     pub limits: Option<Limits>,
+    /// What is odd about the tools, with the lines of the job's file.
+    pub notes: Vec<Note>,
 }
 
 /// What is to come out of a job.

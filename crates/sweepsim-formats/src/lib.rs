@@ -17,7 +17,7 @@
 //! | what | read | write |
 //! | --- | --- | --- |
 //! | jobs (RON) | [`Job::read`] | |
-//! | tools of B-spline surfaces (RON) | with the job | |
+//! | tools of B-spline surfaces, motions of B-splines (RON) | with the job | |
 //! | paths as tables (`.csv`) | [`csv::read_path`] | [`csv::write_path`] |
 //! | paths as programs (`.nc`, `.ngc`, …) | [`gcode::read`] | |
 //! | either, by extension | [`read_path_file`] | |
@@ -50,6 +50,7 @@ pub mod gcode;
 mod glb;
 mod job;
 mod locate;
+mod motion;
 mod npz;
 mod numbers;
 mod paths;

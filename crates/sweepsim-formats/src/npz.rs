@@ -4,6 +4,7 @@
 //! | --- | --- | --- |
 //! | `area` | (2, 2) `<f8` | min x, y; max x, y |
 //! | `cells` | (2,) `<u8` | cells in x and y |
+//! | `frame` | (4, 3) `<f8` | only where the grid has a frame: its origin and its axes x, y, z in the world |
 //! | `line` | (n,) `<u4` | the line of each interval, `i · cells[1] + j`, never less than the one before |
 //! | `z` | (n, 2) `<f8` | its ends |
 //! | `normal` | (n, 2, 3) `<f4` | their normals |
@@ -13,6 +14,7 @@ use std::io::Write;
 
 use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source};
 
+use crate::dexels_binary::{framed_numbers, in_frame};
 use crate::error::{FormatError, Problem};
 use crate::zip::{self, Archive};
 
@@ -49,7 +51,9 @@ pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
     let n = dexels.count();
     let area = grid.min().into_iter().chain(grid.max()).flat_map(f64::to_le_bytes);
     let cells = grid.cells().into_iter().flat_map(|n| (n as u64).to_le_bytes());
-    let entries = [
+    let frame = framed_numbers(grid.frame()).flat_map(f64::to_le_bytes);
+    let frame = ("frame.npy", npy("<f8", &[4, 3], frame));
+    let mut entries = vec![
         ("area.npy", npy("<f8", &[2, 2], area)),
         ("cells.npy", npy("<u8", &[2], cells)),
         (
@@ -82,6 +86,9 @@ pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
             npy("<f4", &[n, 2], ends().flat_map(|e| e.source.t.to_le_bytes())),
         ),
     ];
+    if !grid.frame().is_world() {
+        entries.push(frame);
+    }
     zip::write(&entries, writer)
 }
 
@@ -151,6 +158,11 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
         ));
     };
     let grid = Grid::new([x0, y0], [x1, y1], [nx, ny]).map_err(|error| FormatError::new(Problem::Grid(error), None))?;
+    let grid = if archive.has("frame.npy") {
+        in_frame(grid, array(&archive, "frame", "<f8", &[3])?)?
+    } else {
+        grid
+    };
     if grid.len() > MOST {
         return Err(problem(format!(
             "{} dexels are too many: expected at most {MOST}",

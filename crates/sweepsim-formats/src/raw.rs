@@ -39,6 +39,17 @@ pub(crate) struct Grid {
     pub min: [f64; 2],
     pub max: [f64; 2],
     pub cells: [i64; 2],
+    #[serde(default)]
+    pub frame: Option<Frame>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Frame {
+    #[serde(default)]
+    pub origin: [f64; 3],
+    pub z: [f64; 3],
+    pub x: [f64; 3],
 }
 
 #[derive(Debug, Deserialize)]
@@ -112,11 +123,28 @@ pub(crate) enum Tool {
         radius: f64,
         flank: f64,
         height: f64,
+        #[serde(default)]
+        corner: f64,
         length: f64,
     },
     Lens {
         radius: f64,
         bottom: f64,
+        #[serde(default)]
+        corner: f64,
+        length: f64,
+    },
+    Oval {
+        radius: f64,
+        tip: f64,
+        flank: f64,
+        length: f64,
+    },
+    Taper {
+        radius: f64,
+        tip: f64,
+        flank: f64,
+        angle: f64,
         length: f64,
     },
     Profile {
@@ -141,8 +169,14 @@ pub(crate) enum Segment {
         centre: [f64; 2],
         turn: Turn,
     },
-    #[expect(dead_code, reason = "named, but not understood yet")]
-    Spline(ron::Value),
+    Spline {
+        degree: usize,
+        points: Vec<[f64; 2]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+        #[serde(default)]
+        weights: Option<Vec<f64>>,
+    },
 }
 
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -160,6 +194,8 @@ pub(crate) struct Path {
     pub poses: Option<Vec<Pose>>,
     #[serde(default)]
     pub moves: Option<Vec<Move>>,
+    #[serde(default)]
+    pub motion: Option<Motion>,
     #[serde(default)]
     pub law: Option<Law>,
     #[serde(default)]
@@ -213,6 +249,46 @@ pub(crate) enum Move {
         turn: Turn,
         #[serde(default = "one")]
         turns: u16,
+    },
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Motion {
+    pub tip: Curve,
+    #[serde(default)]
+    pub orientation: Option<Orientation>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Curve {
+    pub degree: usize,
+    pub points: Vec<[f64; 3]>,
+    #[serde(default)]
+    pub knots: Option<Vec<f64>>,
+    #[serde(default)]
+    pub weights: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum Orientation {
+    Quaternions {
+        degree: usize,
+        points: Vec<[f64; 4]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+    },
+    Matrices {
+        degree: usize,
+        points: Vec<[[f64; 3]; 3]>,
+        #[serde(default)]
+        knots: Option<Vec<f64>>,
+        #[serde(default)]
+        weights: Option<Vec<f64>>,
+        #[serde(default)]
+        tolerance: Option<f64>,
     },
 }
 

@@ -4,18 +4,19 @@ use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 use std::sync::Arc;
 
-use sweepsim_dexel::{Grid, Stock, TriangleSoup};
-use sweepsim_motion::{Body, BodyKind, Law, Path, RotaryTable, Tool};
+use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup};
+use sweepsim_motion::{AptWarning, Body, BodyKind, Law, Path, RotaryTable, Tool};
 
 use crate::error::{FormatError, Problem};
 use crate::files::{MeshFormat, read_dexels_file, read_mesh_file};
 use crate::job::{Job, Limits, Target, Units};
 use crate::locate::Node;
 use crate::paths::{self, JobPath, PathOptions};
+use crate::program::Note;
 use crate::stl::read_stl;
 use crate::surface_tool;
 use crate::tools::{self, Step};
-use crate::{gcode, raw, text};
+use crate::{gcode, motion, raw, text};
 
 /// Where a job does not say how exact interval ends are, in its units.
 const TOLERANCE: f64 = 1e-6;
@@ -49,11 +50,12 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// A problem with the value that the steps lead to.
     fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
-        let node = steps.iter().fold(&self.places, |node, step| match step {
-            Step::Key(key) => node.key(key),
-            Step::Item(index) => node.item(*index),
-        });
-        FormatError::new(problem, Some(text::place(self.text, node.span.clone())))
+        let span = self.node(steps).span.clone();
+        FormatError::new(problem, Some(text::place(self.text, span)))
+    }
+
+    fn node(&self, steps: &[Step]) -> &Node {
+        steps.iter().fold(&self.places, |node, step| step.of(node))
     }
 
     fn check(&self, what: &str, value: f64, good: bool, expected: &str, steps: &[Step]) -> Result<(), FormatError> {
@@ -80,11 +82,12 @@ impl Reader<'_> {
             let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
             return Err(FormatError::new(problem, Some(text::place(self.text, place))));
         }
-        let mut tools = BTreeMap::new();
+        let (mut tools, mut notes) = (BTreeMap::new(), Vec::new());
         for (&number, tool) in &raw.tools {
             let steps = vec!["tools".into(), Step::Key(number.to_string())];
-            let made = self.tool(number, tool, &steps)?;
+            let (made, odd) = self.tool(number, tool, &steps)?;
             tools.insert(number, made);
+            notes.extend(odd);
         }
         let mut bodies = BTreeMap::new();
         for (&number, list) in &raw.bodies {
@@ -99,7 +102,8 @@ impl Reader<'_> {
                     raw::Body::Shank(solid) => (BodyKind::Shank, solid),
                     raw::Body::Holder(solid) => (BodyKind::Holder, solid),
                 };
-                let solid = self.tool(number, solid, &steps(index))?;
+                let (solid, odd) = self.tool(number, solid, &steps(index))?;
+                notes.extend(odd);
                 made.push(Body { kind, solid });
             }
             bodies.insert(number, made);
@@ -145,21 +149,27 @@ impl Reader<'_> {
             paths,
             target,
             limits,
+            notes,
         })
     }
 
-    /// The solid of tool `number`, or of a body that moves with it.
-    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<Tool, FormatError> {
-        match raw {
-            raw::Tool::Surface(name) => {
-                let file = paths::beside(self.file, name);
-                self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)
-            }
-            tool => tools::tool(number, tool, self.unit).map_err(|fault| {
-                let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
-                self.error(fault.problem, &steps)
-            }),
+    /// The solid of tool `number`, or of a body that moves with it, and what is odd about it.
+    fn tool(&self, number: u32, raw: &raw::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
+        if let raw::Tool::Surface(name) = raw {
+            let file = paths::beside(self.file, name);
+            let tool = self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)?;
+            return Ok((tool, Vec::new()));
         }
+        let made = tools::tool(number, raw, self.unit).map_err(|fault| {
+            let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
+            self.error(fault.problem, &steps)
+        })?;
+        let line = text::place(self.text, self.node(steps).span.clone()).line;
+        let note = |warning: AptWarning| Note {
+            line,
+            message: format!("tool {number}: {warning}"),
+        };
+        Ok((made.tool, made.warnings.into_iter().map(note).collect()))
     }
 
     fn grid(&self, raw: &raw::Grid) -> Result<Grid, FormatError> {
@@ -177,11 +187,16 @@ impl Reader<'_> {
                 self.check("a corner of the grid", value, true, "finite", &steps)?;
             }
         }
-        Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
+        let grid = Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
             let ordered = (0..2).all(|k| raw.min[k] < raw.max[k]);
             let field = if ordered { "cells" } else { "min" };
             self.error(Problem::Grid(error), &["grid".into(), field.into()])
-        })
+        })?;
+        let Some(frame) = &raw.frame else { return Ok(grid) };
+        let origin = frame.origin.map(|c| c * self.unit);
+        let frame = Frame::new(origin, frame.z, frame.x)
+            .map_err(|error| self.error(Problem::Frame(error), &["grid".into(), "frame".into()]))?;
+        Ok(grid.in_frame(frame))
     }
 
     /// A piece of stock, whose value the steps lead to.
@@ -266,7 +281,8 @@ impl Reader<'_> {
         }
         let words = |grid: &Grid| {
             let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
-            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm")
+            let frame = if grid.frame().is_world() { "" } else { " in a frame" };
+            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm{frame}")
         };
         let what = format!("the grid of {name}");
         Err(self.error(
@@ -339,11 +355,25 @@ impl Reader<'_> {
             raw::Table::Ac => RotaryTable::Ac,
             raw::Table::Bc => RotaryTable::Bc,
         };
-        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
-            let tool = raw.tool.ok_or_else(|| {
+        let tool = || {
+            raw.tool.ok_or_else(|| {
                 let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
                 self.error(problem, &steps(&[]))
-            })?;
+            })
+        };
+        let whole = |tool: u32, path: Path, source: String| {
+            vec![JobPath {
+                tool,
+                rapid: vec![false; path.moves()],
+                path,
+                source,
+                lines: Vec::new(),
+                notes: Vec::new(),
+            }]
+        };
+        let own = || format!("path {index} of the job");
+        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+            let tool = tool()?;
             let path = made.map_err(|(problem, place)| {
                 let mut path = steps(&[field.into()]);
                 let rest = place
@@ -352,15 +382,22 @@ impl Reader<'_> {
                 path.extend(rest);
                 self.error(problem, &path)
             })?;
-            Ok(vec![JobPath {
-                tool,
-                rapid: vec![false; path.moves()],
-                path,
-                source: format!("path {index} of the job"),
-                lines: Vec::new(),
-                notes: Vec::new(),
-            }])
+            Ok(whole(tool, path, own()))
         };
+        if let Some(raw_motion) = &raw.motion {
+            if raw.poses.is_some() || raw.moves.is_some() || raw.file.is_some() || raw.law.is_some() {
+                let problem = Problem::syntax(
+                    "`motion` with `poses`, `moves`, `file` or `law` in one path: a motion says all of it, expected it alone",
+                );
+                return Err(self.error(problem, &steps(&["motion".into()])));
+            }
+            let tool = tool()?;
+            let path = motion::path(raw_motion, self.unit).map_err(|fault| {
+                let place: Vec<Step> = std::iter::once("motion".into()).chain(fault.field).collect();
+                self.error(fault.problem, &steps(&place))
+            })?;
+            return Ok(whole(tool, path, own()));
+        }
         let own_law = match law {
             raw::Law::Slerp => Law::Slerp,
             raw::Law::ConstantSpeed => Law::ConstantSpeed,
@@ -400,6 +437,19 @@ impl Reader<'_> {
                     },
                 };
                 let file = paths::beside(self.file, name);
+                if file
+                    .extension()
+                    .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+                {
+                    if raw.law.is_some() {
+                        let problem =
+                            Problem::syntax("`law` with the file of a motion: a motion says how the tool turns");
+                        return Err(self.error(problem, &steps(&["law".into()])));
+                    }
+                    let tool = tool()?;
+                    let path = self.named(motion::read(&file, self.unit), &file, "path", &steps(&["file".into()]))?;
+                    return Ok(whole(tool, path, name.clone()));
+                }
                 let read = paths::read_path_file(&file, &options);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
                 paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
@@ -411,7 +461,8 @@ impl Reader<'_> {
             (None, None) => match &raw.moves {
                 Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
                 None => {
-                    let problem = Problem::syntax("this path has no poses: expected `poses`, `moves` or `file`");
+                    let problem =
+                        Problem::syntax("this path has no poses: expected `poses`, `moves`, `motion` or `file`");
                     Err(self.error(problem, &steps(&[])))
                 }
             },

@@ -1,11 +1,12 @@
 //! The tools of a job.
 
-use sweepsim_motion::{Apt, AptError, Profile, ProfileError, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Apt, AptError, AptWarning, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
 
 use crate::error::Problem;
+use crate::locate::Node;
 use crate::raw;
 
-/// What is wrong with a tool, and in which of its fields (the keys or positions from the tool on).
+/// What is wrong with a tool or a motion, and in which of its fields (the keys or positions from there on).
 pub(crate) struct Fault {
     pub problem: Problem,
     pub field: Vec<Step>,
@@ -18,14 +19,39 @@ pub(crate) enum Step {
     Item(usize),
 }
 
+impl Step {
+    /// Where it leads to from a value.
+    pub fn of<'n>(&self, node: &'n Node) -> &'n Node {
+        match self {
+            Self::Key(key) => node.key(key),
+            Self::Item(index) => node.item(*index),
+        }
+    }
+}
+
 impl From<&str> for Step {
     fn from(key: &str) -> Self {
         Self::Key(key.to_owned())
     }
 }
 
+/// A tool, and what is odd about it.
+pub(crate) struct Made {
+    pub tool: Tool,
+    pub warnings: Vec<AptWarning>,
+}
+
+impl From<Tool> for Made {
+    fn from(tool: Tool) -> Self {
+        Self {
+            tool,
+            warnings: Vec::new(),
+        }
+    }
+}
+
 /// Makes tool `number`; lengths are multiplied by `unit`.
-pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Fault> {
+pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Made, Fault> {
     let made = match *raw {
         raw::Tool::Ball { radius, length } => Tool::ball(radius * unit, length * unit),
         raw::Tool::Flat { radius, length } => Tool::flat(radius * unit, length * unit),
@@ -33,7 +59,10 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
         raw::Tool::Apt { d, r, e, f, a, b, h } => {
             let [d, r, e, f, h] = [d, r, e, f, h].map(|length| length * unit);
             return Tool::apt(&Apt { d, r, e, f, a, b, h })
-                .map(|(tool, _)| tool)
+                .map(|(tool, warnings)| Made {
+                    tool,
+                    warnings: warnings.into_iter().map(|warning| in_units(warning, unit)).collect(),
+                })
                 .map_err(|error| {
                     let (problem, field) = match error {
                         AptError::Parameter { name, value, expected } => (
@@ -61,10 +90,43 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             radius,
             flank,
             height,
+            corner,
             length,
-        } => Tool::barrel(radius * unit, flank * unit, height * unit, length * unit),
-        raw::Tool::Lens { radius, bottom, length } => Tool::lens(radius * unit, bottom * unit, length * unit),
-        raw::Tool::Profile { start, ref segments } => profile(start, segments, unit)?,
+        } => {
+            let [radius, flank, height, corner, length] = [radius, flank, height, corner, length].map(|c| c * unit);
+            if corner == 0.0 {
+                Tool::barrel(radius, flank, height, length)
+            } else {
+                Tool::barrel_with_corner(radius, flank, height, corner, length)
+            }
+        }
+        raw::Tool::Lens {
+            radius,
+            bottom,
+            corner,
+            length,
+        } => {
+            let [radius, bottom, corner, length] = [radius, bottom, corner, length].map(|c| c * unit);
+            if corner == 0.0 {
+                Tool::lens(radius, bottom, length)
+            } else {
+                Tool::lens_with_corner(radius, bottom, corner, length)
+            }
+        }
+        raw::Tool::Oval {
+            radius,
+            tip,
+            flank,
+            length,
+        } => Tool::oval(radius * unit, tip * unit, flank * unit, length * unit),
+        raw::Tool::Taper {
+            radius,
+            tip,
+            flank,
+            angle,
+            length,
+        } => Tool::taper(radius * unit, tip * unit, flank * unit, angle, length * unit),
+        raw::Tool::Profile { start, ref segments } => profile(start, segments, unit),
         raw::Tool::Surface(ref name) => {
             return Err(Fault {
                 problem: Problem::syntax(format!("the surfaces of {name} are read from their file")),
@@ -72,7 +134,7 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             });
         }
     };
-    made.map_err(|error| {
+    made.map(Made::from).map_err(|error| {
         let field = match error {
             ProfileError::Measure { what, .. } => vec![what.into()],
             ProfileError::Open { which, .. } if which.contains("start") => vec!["start".into()],
@@ -81,6 +143,11 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
             | ProfileError::NoLength { segment }
             | ProfileError::NoArc { segment, .. }
             | ProfileError::SelfCrossing { second: segment, .. } => vec!["segments".into(), Step::Item(segment)],
+            ProfileError::Spline { segment, fault } => {
+                let mut place = vec!["segments".into(), Step::Item(segment)];
+                place.extend(in_spline(&fault));
+                place
+            }
             ProfileError::Open { .. } | ProfileError::UpsideDown { .. } => last(raw),
             _ => vec![],
         };
@@ -94,6 +161,21 @@ pub(crate) fn tool(number: u32, raw: &raw::Tool, unit: f64) -> Result<Tool, Faul
     })
 }
 
+/// The field of a spline that a fault is about.
+fn in_spline(fault: &SplineFault) -> Vec<Step> {
+    match *fault {
+        SplineFault::Degree { .. } => vec!["degree".into()],
+        SplineFault::Points { .. } => vec!["points".into()],
+        SplineFault::Start { .. } => vec!["points".into(), Step::Item(0)],
+        SplineFault::Weights { .. } => vec!["weights".into()],
+        SplineFault::Weight { index, .. } => vec!["weights".into(), Step::Item(index)],
+        SplineFault::KnotCount { .. } | SplineFault::Knots(_) | SplineFault::Clamped | SplineFault::Jump { .. } => {
+            vec!["knots".into()]
+        }
+        _ => vec![],
+    }
+}
+
 /// The last segment of a profile.
 fn last(raw: &raw::Tool) -> Vec<Step> {
     match raw {
@@ -101,6 +183,17 @@ fn last(raw: &raw::Tool) -> Vec<Step> {
             vec!["segments".into(), Step::Item(segments.len() - 1)]
         }
         _ => vec![],
+    }
+}
+
+/// A warning with its lengths as the job has them.
+fn in_units(warning: AptWarning, unit: f64) -> AptWarning {
+    match warning {
+        AptWarning::NotTangent { line, distance } => AptWarning::NotTangent {
+            line,
+            distance: distance / unit,
+        },
+        other => other,
     }
 }
 
@@ -112,14 +205,27 @@ fn unscaled(error: ProfileError, unit: f64) -> ProfileError {
             value: if what == "angle" { value } else { value / unit },
             expected,
         },
+        ProfileError::Spline { segment, fault } => ProfileError::Spline {
+            segment,
+            fault: match fault {
+                SplineFault::Start { found, expected } => SplineFault::Start {
+                    found: found.map(|c| c / unit),
+                    expected: expected.map(|c| c / unit),
+                },
+                SplineFault::Stops { near } => SplineFault::Stops {
+                    near: near.map(|c| c / unit),
+                },
+                other => other,
+            },
+        },
         other => other,
     }
 }
 
-fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Result<Tool, ProfileError>, Fault> {
+fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Tool, ProfileError> {
     let scaled = |point: [f64; 2]| point.map(|c| c * unit);
     let mut made = Vec::with_capacity(segments.len());
-    for (index, segment) in segments.iter().enumerate() {
+    for segment in segments {
         made.push(match *segment {
             raw::Segment::Line(to) => ProfileSegment::Line { to: scaled(to) },
             raw::Segment::Arc { to, centre, turn } => ProfileSegment::Arc {
@@ -130,13 +236,18 @@ fn profile(start: [f64; 2], segments: &[raw::Segment], unit: f64) -> Result<Resu
                     raw::Turn::Ccw => Turn::Ccw,
                 },
             },
-            raw::Segment::Spline(_) => {
-                return Err(Fault {
-                    problem: Problem::unsupported("spline segments of a profile are", "expected Line or Arc"),
-                    field: vec!["segments".into(), Step::Item(index)],
-                });
-            }
+            raw::Segment::Spline {
+                degree,
+                ref points,
+                ref knots,
+                ref weights,
+            } => ProfileSegment::Spline {
+                degree,
+                knots: knots.clone(),
+                points: points.iter().copied().map(scaled).collect(),
+                weights: weights.clone(),
+            },
         });
     }
-    Ok(Profile::new(scaled(start), made).map(Tool::from_profile))
+    Profile::new(scaled(start), made).map(Tool::from_profile)
 }

@@ -109,14 +109,15 @@ pub fn write_dexels_vtu(dexels: &Dexels, writer: &mut impl Write) -> io::Result<
         dexels.iter().flat_map(|(index, line)| {
             let (i, j) = grid.place(index);
             let both = line.iter().flat_map(|interval| [interval.lower, interval.upper]);
-            both.map(move |end| ([grid.x(i), grid.y(j), end.z], end))
+            both.map(move |end| (grid.frame().to_world([grid.x(i), grid.y(j), end.z]), end))
         })
     };
     let of_ends = |bytes: fn(&End) -> Vec<u8>| ends().flat_map(move |(_, end)| bytes(&end));
     let piece = format!("NumberOfPoints=\"{}\" NumberOfCells=\"{count}\"", 2 * count);
     let mut document = Document::new("UnstructuredGrid", &piece);
     document.open("PointData Normals=\"normal\"");
-    let normals = ends().flat_map(|(_, end)| end.normal).flat_map(f32::to_le_bytes);
+    let world = |end: &End| grid.frame().turn_to_world(end.normal.map(f64::from)).map(|c| c as f32);
+    let normals = ends().flat_map(|(_, end)| world(&end)).flat_map(f32::to_le_bytes);
     document.array("normal", "Float32", 3, normals);
     document.array("path", "UInt16", 1, of_ends(|end| end.source.path.to_le_bytes().into()));
     document.array(

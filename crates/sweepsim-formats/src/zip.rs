@@ -111,6 +111,11 @@ impl<'a> Archive<'a> {
         Ok(Self { files })
     }
 
+    /// Whether there is a file of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.files.iter().any(|(found, _)| *found == name.as_bytes())
+    }
+
     /// The content of a file.
     pub fn file(&self, name: &str) -> Result<&'a [u8], FormatError> {
         let found = self.files.iter().find(|(found, _)| *found == name.as_bytes());

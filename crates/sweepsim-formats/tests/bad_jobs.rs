@@ -64,6 +64,16 @@ fn one_message_with_its_place() {
     let tool = "Ball(radius: 2.0, length: 30.0)";
     let grid = "Grid(min: (0, 0), max: (10, 10), cells: (4, 5))";
     let poses = "poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]";
+    file(
+        "bad-motion.ron",
+        "Motion(\n    tip: Curve(degree: 2, points: [(0, 0, 0), (1, 0, 0)]),\n)\n",
+    );
+    let motion = |from: &str, to: &str| {
+        let good = "motion: Motion(tip: Curve(degree: 2, points: [(0, 0, 5), (1, 1, 5), (2, 0, 5)]), \
+                    orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)]))";
+        assert!(good.contains(from), "{from}");
+        good.replacen(from, to, 1)
+    };
     let profile = |segments: &str| format!("Profile(start: (0, 0), segments: [{segments}])");
     let cases: Vec<(&str, String, &str)> = vec![
         // Grammar.
@@ -176,6 +186,23 @@ fn one_message_with_its_place() {
         ),
         (
             tool,
+            profile(
+                "Line((2, 0)), Spline(degree: 2, points: [(2, 0), (3, 4), (2, 9)], weights: Some([1, 0, 1])), Line((0, 9))",
+            ),
+            "job.ron:7:121: tool 1: profile segment 1: weight 1 of the spline is 0",
+        ),
+        (
+            tool,
+            profile("Line((2, 0)), Spline(degree: 2, points: [(1, 0), (3, 4), (2, 9)]), Line((0, 9))"),
+            "job.ron:7:87: tool 1: profile segment 1: the spline begins at (1, 0), but the profile is at (2, 0)",
+        ),
+        (
+            tool,
+            profile("Line((2, 0)), Spline(degree: 3, points: [(2, 0), (3, 4), (2, 9)]), Line((0, 9))"),
+            "job.ron:7:86: tool 1: profile segment 1: the spline has 3 points, but its degree needs at least 4",
+        ),
+        (
+            tool,
             profile("Arc(to: (2, 3), centre: (0, 2), turn: Ccw), Line((0, 9))"),
             "job.ron:7:46: tool 1: profile segment 0 is no arc",
         ),
@@ -193,6 +220,26 @@ fn one_message_with_its_place() {
             tool,
             "Apt(d: 10, r: -1, e: 4, f: 1, a: 0, b: 0, h: 30)".into(),
             "job.ron:7:26: `r` of the APT cutter is -1",
+        ),
+        (
+            tool,
+            "Oval(radius: 4, tip: 5, flank: 85, length: 30)".into(),
+            "job.ron:7:33: tool 1: tip is 5, but must be positive and less than the radius",
+        ),
+        (
+            tool,
+            "Taper(radius: 4, tip: 1, flank: 85, angle: 95, length: 30)".into(),
+            "job.ron:7:55: tool 1: angle is 95",
+        ),
+        (
+            tool,
+            "Barrel(radius: 4, flank: 40, height: 10, corner: 5, length: 30)".into(),
+            "job.ron:7:61: tool 1: corner is 5, but must be positive and less than half the height",
+        ),
+        (
+            tool,
+            "Lens(radius: 4, bottom: 20, corner: -1, length: 30)".into(),
+            "job.ron:7:48: tool 1: corner is -1",
         ),
         (tool, format!("{tool}, 1: {tool}"), "job.ron:7:48: a second tool 1"),
         // Paths.
@@ -266,6 +313,93 @@ fn one_message_with_its_place() {
             poses,
             "file: \"bad.ngc\", arc_tolerance: -1".into(),
             "job.ron:10:55: arc_tolerance is -1",
+        ),
+        // Motions.
+        (
+            poses,
+            motion("degree: 2", "degree: 3"),
+            "job.ron:10:68: the number of points of the tip is 3",
+        ),
+        (poses, motion("(2, 0, 5)", "(2, 0)"), "job.ron:10:"),
+        (
+            poses,
+            motion("(2, 0, 5)", "(2, 0, NaN)"),
+            "job.ron:10:91: point 2 of the tip has a number that is not finite",
+        ),
+        (
+            poses,
+            motion("(2, 0, 5)]", "(2, 0, 5)], weights: [1, -1, 1]"),
+            "job.ron:10:112: the tip: ",
+        ),
+        (
+            poses,
+            motion("(2, 0, 5)]", "(2, 0, 5)], weights: [1, 1]"),
+            "job.ron:10:112: the number of weights of the tip is 2",
+        ),
+        (
+            poses,
+            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 1, 1]"),
+            "job.ron:10:110: the number of knots of the tip is 4, but must be 6",
+        ),
+        (
+            poses,
+            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 0, 1, 0, 1]"),
+            "job.ron:10:110: the knots of the tip: ",
+        ),
+        (
+            poses,
+            motion("(1, 0, 0, 0.1)]", "(-1, 0, 0, 0)]"),
+            "job.ron:10:148: the quaternion vanishes",
+        ),
+        (
+            poses,
+            motion("(1, 0, 0, 0.1)]", "(-1, 0, 0, 0)], knots: [0, 0, 2, 2]"),
+            "job.ron:10:148: the quaternion vanishes",
+        ),
+        (
+            poses,
+            motion(
+                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
+                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0.1, 1))])",
+            ),
+            "job.ron:10:145: the orientation is no rotation",
+        ),
+        (
+            poses,
+            motion(
+                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
+                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0, -1))])",
+            ),
+            "job.ron:10:145: the orientation is a reflection",
+        ),
+        (
+            poses,
+            motion(
+                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
+                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0, 1))], tolerance: 1)",
+            ),
+            "job.ron:10:193: the tolerance 1 is none",
+        ),
+        (
+            poses,
+            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 0, 1, 1, 1]")
+                .replace("0.1)]", "0.1)], knots: [0, 0, 2, 2]"),
+            "job.ron:10:214: the orientation runs over [0, 2] and the tip over [0, 1]",
+        ),
+        (
+            poses,
+            format!("{poses}, {}", motion("", "")),
+            "job.ron:10:88: `motion` with `poses`",
+        ),
+        (
+            poses,
+            "file: \"bad-motion.ron\"".into(),
+            "bad-motion.ron:2:35: the number of points of the tip is 2",
+        ),
+        (
+            poses,
+            "law: ConstantSpeed, file: \"bad-motion.ron\"".into(),
+            "job.ron:10:28: `law` with the file of a motion",
         ),
         // Target and limits.
         (

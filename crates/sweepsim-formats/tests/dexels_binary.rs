@@ -1,7 +1,7 @@
 //! The binary form of dexels: what is written is read, and nothing else.
 
 use proptest::prelude::*;
-use sweepsim_dexel::{Dexels, Grid, Interval, Source};
+use sweepsim_dexel::{Dexels, Frame, Grid, Interval, Source};
 use sweepsim_formats::{read_dexels_binary, write_dexels_binary};
 
 /// Any dexels on a few hundred lines.
@@ -15,9 +15,14 @@ fn dexels() -> impl Strategy<Value = Dexels> {
         0.0..=1.0_f32,
     );
     let line = prop_oneof![3 => Just(Vec::new()), 2 => proptest::collection::vec(piece, 1..5)];
-    (1..30_usize, proptest::collection::vec(line, 1..20)).prop_map(|(columns, lines)| {
+    let vector = || [-9.0..9.0_f64, -9.0..9.0, -9.0..9.0];
+    let frame = (vector(), vector(), vector()).prop_map(|(o, z, x)| Frame::new(o, z, x).unwrap_or_default());
+    let frame = prop_oneof![Just(Frame::WORLD), frame];
+    (1..30_usize, proptest::collection::vec(line, 1..20), frame).prop_map(|(columns, lines, frame)| {
         let rows = lines.len();
-        let grid = Grid::new([-1.0, 0.5], [1.0, 2.5], [columns, rows]).unwrap();
+        let grid = Grid::new([-1.0, 0.5], [1.0, 2.5], [columns, rows])
+            .unwrap()
+            .in_frame(frame);
         Dexels::from_fn(grid, |index, out| {
             let mut z = -3.0;
             for (gap, length, normal, segment, t) in &lines[index % rows] {
@@ -63,7 +68,7 @@ proptest! {
         let file = written(&dexels);
         let length = (file.len() as f64 * part) as usize;
         let error = read_dexels_binary(&mut &file[..length]).unwrap_err().to_string();
-        prop_assert!(error.contains("stops in the middle") || length < 70, "{}", error);
+        prop_assert!(error.contains("stops in the middle") || length < 70 + 96, "{}", error);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::path::Path;
-use sweepsim_dexel::{Dexels, Grid, Interval, Mesh, Source, Stock, TriDexels};
+use sweepsim_dexel::{Dexels, Frame, Grid, Interval, Mesh, Source, Stock, TriDexels};
 use sweepsim_formats::{
     Fixture, parse_stl, read_3mf, read_dexels_csv, read_dexels_file, read_dexels_npz, read_glb, read_mesh_file,
     read_ply, read_vtp, write_3mf, write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_glb,
@@ -45,6 +45,12 @@ fn what_is_written_is_read() {
     assert!(mesh.triangles.len() > 100);
     let npz = written(|file| write_dexels_npz(&dexels, file));
     assert_eq!(read_dexels_npz(&npz).unwrap(), dexels);
+    let side = Frame::new([1.0, 2.0, 3.0], [1.0, 0.2, 0.1], [0.0, 0.0, 1.0]).unwrap();
+    let framed = Dexels::from_fn(dexels.grid().in_frame(side), |index, line| {
+        line.extend(dexels.at(index))
+    });
+    let npz = written(|file| write_dexels_npz(&framed, file));
+    assert_eq!(read_dexels_npz(&npz).unwrap(), framed);
     let model = read_3mf(&written(|file| write_3mf(&mesh, file))).unwrap();
     assert_eq!((&model.vertices, &model.triangles), (&mesh.vertices, &mesh.triangles));
     let seen = read_glb(&written(|file| write_glb(&mesh, file))).unwrap();

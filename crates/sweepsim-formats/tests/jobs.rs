@@ -16,6 +16,10 @@ fn everything_that_a_job_may_have() {
         "a.csv",
         b"x,y,z,i,j,k,rapid,tool\n0,0,1,0,0,1,1,1\n1,0,0,0,0,1,0,1\n2,0,0,0,0,1,0,2\n3,0,0,0,1,0,0,2\n",
     );
+    write(
+        "motion.ron",
+        b"Motion(tip: Curve(degree: 1, points: [(0, 0, 0), (1, 0, 0)], weights: [1, 2]))",
+    );
     write("b.tap", b"G90\nT2 M6\nM428\nG0 X0 Y0 Z1 A0 C0\nG1 Z0\nX1 A90\n");
     let text = r#"
 Job(
@@ -30,11 +34,24 @@ Job(
         4: Apt(d: 10.0, r: 1.0, e: 4.0, f: 1.0, a: 0.0, b: 0.0, h: 30.0),
         5: Profile(start: (0.0, 0.0), segments: [
                Line((2.0, 0.0)), Line((2.0, 2.0)), Arc(to: (8.0, 8.0), centre: (8.0, 2.0), turn: Cw), Line((8.0, 30.0)), Line((0.0, 30.0)) ]),
+        6: Profile(start: (0.0, 0.0), segments: [
+               Spline(degree: 3, points: [(0, 0), (3, 0), (5, 2), (4, 6), (6, 9)], knots: Some([0, 0, 0, 0, 1, 2, 2, 2, 2])),
+               Spline(degree: 2, points: [(6, 9), (8, 9), (8, 11)], weights: Some([1.0, 0.7071067811865476, 1.0])), Line((8, 30)), Line((0, 30)) ]),
+        7: Oval(radius: 4, tip: 1, flank: 85, length: 40),
+        8: Taper(radius: 4, tip: 1, flank: 85, angle: 10, length: 40),
+        9: Barrel(radius: 4, flank: 40, height: 20, corner: 0.5, length: 40),
+        10: Lens(radius: 4, bottom: 20, corner: 0.5, length: 40),
+        11: Apt(d: 12, r: 20, e: -14, f: 10, a: 0, b: 0, h: 40),
     },
     paths: [
         Path(tool: 4, poses: [ ((-20.0, -10.0, 0.0), (0.0, 0.0, 1.0)), ((20.0, 10.0, 8.0), (0.1, 0.0, 1.0)) ]),
         Path(file: "a.csv"),
         Path(tool: 2, file: "b.tap", table: AC, arc_tolerance: 0.001),
+        Path(tool: 1, motion: Motion(
+            tip: Curve(degree: 2, points: [(0, 0, 5), (1, 1, 5), (2, 0, 5), (3, 0, 5)], knots: [0, 0, 0, 1, 4, 4, 4]),
+            orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)]),
+        )),
+        Path(tool: 1, file: "motion.ron"),
     ],
     target: Some(Mesh("part.stl")),
     limits: Some(Limits(gouge: 0.02, excess: 0.1)),
@@ -52,11 +69,20 @@ Job(
             ..
         }
     ));
-    assert_eq!(job.tools.len(), 5);
+    assert_eq!(job.tools.len(), 11);
+    let notes: Vec<String> = job.notes.iter().map(ToString::to_string).collect();
+    assert!(
+        matches!(&notes[..], [one] if one.starts_with("line 21: tool 11: the corner (r, e, f) is not tangent to the bottom line, which passes its centre at 10:")),
+        "{notes:?}"
+    );
     // The path of the table divides where its tool changes.
     let tools: Vec<u32> = job.paths.iter().map(|path| path.tool).collect();
-    assert_eq!(tools, [4, 1, 2, 2]);
-    assert_eq!(job.moves(), 1 + 1 + 1 + 2);
+    assert_eq!(tools, [4, 1, 2, 2, 1, 1]);
+    // The motion has a move between each two knots; the orientation's are over the range of the tip's.
+    assert_eq!(job.moves(), 1 + 1 + 1 + 2 + 2 + 1);
+    let knot = &job.paths[4].path.poses()[1];
+    assert!((knot.tip().x - 1.25 * 25.4).abs() < 1e-12, "{knot:?}");
+    assert_eq!(job.paths[5].path.poses()[1].tip().x, 25.4);
     assert_eq!(
         job.paths[0].path.poses()[1].tip().as_slice(),
         [20.0 * 25.4, 10.0 * 25.4, 8.0 * 25.4]

@@ -9,7 +9,8 @@
 //! Poles cost nothing where they can be avoided: a half ball at a tip has its own poles on its rim, and a disk is one
 //! patch that is singular only at four points of its rim. Both lie at an azimuth no machine axis favours.
 
-use crate::profile::{Arc, Piece, Profile};
+use crate::bezier::Bezier;
+use crate::profile::{Arc, Piece, Profile, Shape};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use sweepsim_spline::Bernstein;
@@ -153,6 +154,47 @@ impl Meridian {
         }
     }
 
+    /// A piece of a spline. With `P` the homogeneous points, `ω` the weight: the direction of travel is along `T = ω P′ − P ω′`, the normal
+    /// `(T_ζ, −T_ρ)`, and the moment (over `ω`) `P_ζ T_ζ + P_ρ T_ρ`. So `N` gets the factor `ω` unless that is 1.
+    ///
+    /// With `P = (1 − t) A + t B` and `ω = (1 − t) α + t β`, `T = n (α B − A β)`, which has degree `2n − 2` and does not cancel.
+    fn bezier(curve: &Bezier) -> Self {
+        let n = curve.points.len() - 1;
+        let weight = curve.weights.clone();
+        let homogeneous = |k: usize| -> Vec<f64> { curve.points.iter().zip(&weight).map(|(p, w)| p[k] * w).collect() };
+        let (rho, zeta) = (homogeneous(0), homogeneous(1));
+        let of = |list: &[f64]| form(&[list.len() - 1], list.to_vec());
+        let times = |a: &[f64], b: &[f64]| of(a).mul(&of(b));
+        let polynomial = curve.is_polynomial();
+        let travel = |p: &[f64]| -> Vec<f64> {
+            if polynomial {
+                p.windows(2).map(|p| p[1] - p[0]).collect()
+            } else {
+                let (ahead, behind) = (times(&weight[..n], &p[1..]), times(&p[..n], &weight[1..]));
+                ahead.sub(&behind).into_coefficients()
+            }
+        };
+        let (t_rho, t_zeta) = (travel(&rho), travel(&zeta));
+        let largest = t_rho.iter().chain(&t_zeta).fold(0.0_f64, |m, c| m.max(c.abs()));
+        let over = |list: Vec<f64>| -> Vec<f64> { list.into_iter().map(|c| c / largest).collect() };
+        let moment = times(&zeta, &t_zeta).add(&times(&rho, &t_rho));
+        let weighted = |list: &[f64]| {
+            if polynomial {
+                list.to_vec()
+            } else {
+                times(list, &weight).into_coefficients()
+            }
+        };
+        Self {
+            normal_rho: over(weighted(&t_zeta)),
+            normal_zeta: over(weighted(&t_rho).into_iter().map(|c| -c).collect()),
+            moment: over(moment.into_coefficients()),
+            rho,
+            zeta,
+            weight,
+        }
+    }
+
     /// The quarter `quarter` of its surface of revolution about the third axis.
     fn revolve(&self, quarter: &Quarter) -> Patch {
         let zero = || form(&[2, self.moment.len() - 1], vec![0.0; 3 * self.moment.len()]);
@@ -176,20 +218,28 @@ impl Meridian {
                     zero(),
                 ],
             },
-            revolved: Some(Revolved {
+            revolved: self.quadratics().map(|meridian| Revolved {
                 circle: [quarter.cosine, quarter.sine, QUARTER_WEIGHT],
-                meridian: [
-                    &self.rho,
-                    &self.zeta,
-                    &self.weight,
-                    &self.normal_rho,
-                    &self.normal_zeta,
-                    &self.moment,
-                ]
-                .map(|list| quadratic(list)),
+                meridian,
                 frame: None,
             }),
         }
+    }
+
+    /// All lists with three coefficients; `None` when one has more.
+    fn quadratics(&self) -> Option<[[f64; 3]; 6]> {
+        let lists = [
+            &self.rho,
+            &self.zeta,
+            &self.weight,
+            &self.normal_rho,
+            &self.normal_zeta,
+            &self.moment,
+        ];
+        lists
+            .iter()
+            .all(|list| list.len() <= 3)
+            .then(|| lists.map(|list| quadratic(list)))
     }
 }
 
@@ -306,18 +356,22 @@ fn quarters() -> [Quarter; 4] {
 pub(crate) fn patches(profile: &Profile) -> Vec<Patch> {
     let mut patches = Vec::new();
     for piece in profile.pieces() {
-        match piece.arc {
-            None if piece.from.y == piece.to.y && piece.from.x == 0.0 => {
+        match &piece.shape {
+            Shape::Line if piece.from.y == piece.to.y && piece.from.x == 0.0 => {
                 patches.push(disk(piece.to.x, piece.to.y, false));
             }
-            None if piece.from.y == piece.to.y && piece.to.x == 0.0 => {
+            Shape::Line if piece.from.y == piece.to.y && piece.to.x == 0.0 => {
                 patches.push(disk(piece.from.x, piece.to.y, true));
             }
-            None => {
+            Shape::Line => {
                 let meridian = Meridian::line(piece.from, piece.to);
                 patches.extend(quarters().iter().map(|q| meridian.revolve(q)));
             }
-            Some(arc) => patches.extend(arc_patches(&piece, &arc)),
+            Shape::Bezier(curve) => {
+                let meridian = Meridian::bezier(curve);
+                patches.extend(quarters().iter().map(|q| meridian.revolve(q)));
+            }
+            Shape::Arc(arc) => patches.extend(arc_patches(&piece, arc)),
         }
     }
     patches
@@ -366,8 +420,9 @@ pub(crate) fn edges(profile: &Profile) -> Vec<Edge> {
     let mut edges = Vec::new();
     for pair in pieces.windows(2) {
         let [before, after] = pair else { continue };
-        let (a, b) = (before.direction(1.0), after.direction(0.0));
-        if a.perp(&b).abs() <= SMOOTH && a.dot(&b) > 0.0 {
+        let (a, b) = (before.direction(true), after.direction(false));
+        let smooth = SMOOTH + before.direction_error(true) + after.direction_error(false);
+        if (after.smooth || a.perp(&b).abs() <= smooth) && a.dot(&b) > 0.0 {
             continue;
         }
         let point = after.from;

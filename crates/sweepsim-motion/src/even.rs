@@ -9,10 +9,14 @@
 //! - straight ways, which are cubic in `s`: the odd cubic that has the value and the slope of `f` at both ends. Hermite's error is
 //!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a way of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
 //!
+//! A tool that is symmetric about its axis may turn about it as it likes. Along an arc of the tip about (nearly) the direction of its axis it turns with the
+//! arc, so that it goes round as one rigid body: its velocity field, as it sees it, then stands (nearly) still, and what stays at the arc's centre stays
+//! at one point of the tool. Without that turn the centre line would run round the tool, with `g = 0` all along.
+//!
 //! Both fall with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
 //! `docs/algorithms/motions.md` has the derivations.
 
-use crate::lists::product;
+use crate::lists::{product, raised};
 use crate::moves::{Course, Move, TipArc, Turning};
 use crate::pose::Pose;
 use crate::rotary::{RotaryTable, turn, unit_axis};
@@ -103,7 +107,7 @@ impl Turns {
     }
 
     /// Part `n` of `m`: `Â`, `ŵ`, and the coefficients of `ŵ Ω`.
-    fn part(&self, n: usize, m: usize) -> (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>) {
+    fn part(&self, n: usize, m: usize) -> Turned {
         match *self {
             Self::None(start) => (vec![start], vec![1.0], vec![Vector3::zeros()]),
             Self::One { start, k, angle } => {
@@ -136,6 +140,46 @@ impl Turns {
             }
         }
     }
+}
+
+/// A part of the turns of a tool: `Â`, `ŵ`, and the coefficients of `ŵ Ω`.
+type Turned = (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>);
+
+/// A tool's axis is near that of an arc where the cosine of their angle is at least this: 1.8°. Farther away the turn costs more than it saves.
+const NEAR: f64 = 0.9995;
+
+/// The angle by which a symmetric tool turns about its own axis along an arc, and with it.
+fn own_turn(from: &Pose, to: &Pose, way: &Move) -> Option<f64> {
+    let Course::Arc(arc) = way.course else { return None };
+    if matches!(way.turning, Turning::Rotary { from, to, .. } if from[0] != to[0] || from[1] != to[1]) {
+        return None;
+    }
+    let along = [from, to].map(|pose| pose.axis().dot(&arc.normal()));
+    let near = along.iter().all(|cosine| cosine.abs() >= NEAR) && along[0] * along[1] > 0.0;
+    near.then(|| arc.angle().copysign(arc.angle() * along[0]))
+}
+
+/// Part `n` of `m` of turns, after a turn of the tool by `angle` about its own axis: `A R`, whose angular velocity is `Rᵀ Ω + ω z`.
+fn with_own_turn((turns, weights, spins): Turned, angle: f64, n: usize, m: usize) -> Turned {
+    let step = angle / m as f64;
+    let start = turn(Vector3::z(), step * n as f64);
+    let (own, own_weights, kappa) = rational_turn(Vector3::z(), step);
+    let own = own.map(|turn| turn * start);
+    let axial = Vector3::z() * kappa;
+    let spins = if spins.iter().all(|spin| *spin == Vector3::zeros()) {
+        weights.iter().map(|w| axial * *w).collect()
+    } else {
+        let carried = product(&spins, &own, |spin, own| own.tr_mul(spin));
+        let axial: Vec<Vector3<f64>> = weights.iter().map(|w| axial * *w).collect();
+        let degree = carried.len().max(axial.len()) - 1;
+        let (carried, axial) = (raised(&carried, degree), raised(&axial, degree));
+        carried.iter().zip(&axial).map(|(a, b)| a + b).collect()
+    };
+    (
+        product(&turns, &own, |turn, own| turn * own),
+        product(&weights, &own_weights, |a, b| a * b),
+        spins,
+    )
 }
 
 impl Tip {
@@ -218,9 +262,16 @@ fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
 }
 
 /// The parts of a move at constant speed, of equal shares of its time. No point within `reach` of the tip is off by more than
-/// `limit` at any time; no part turns by more than 90°.
-pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, reach: f64, limit: f64) -> Vec<Segment> {
+/// `limit` at any time; no part turns by more than 90°. How a `symmetric` tool turns about its axis is free.
+pub(crate) fn segments(
+    from: &Pose,
+    to: &Pose,
+    way: &Move,
+    (reach, symmetric): (f64, bool),
+    limit: f64,
+) -> Vec<Segment> {
     let tip = Tip::new(from, to, &way.course);
+    let own = if symmetric { own_turn(from, to, way) } else { None };
     let turns = Turns::new(from, to, &way.turning);
     let [first, second] = turns.angles();
     let largest = first.max(second).max(tip.angle());
@@ -256,15 +307,27 @@ pub(crate) fn segments(from: &Pose, to: &Pose, way: &Move, reach: f64, limit: f6
             let (k, step) = if step < 0.0 { (-k, -step) } else { (*k, step) };
             return Segment::turning(*ends, turn(k, step * n as f64) * start, k, step).with_clock(clock);
         }
-        let (points, point_weights) = tip.part(n, count, slope);
+        let (mut points, mut point_weights) = tip.part(n, count, slope);
         if let (Turns::None(start), [a, b]) = (&turns, &points[..]) {
             return Segment::turning([*a, *b], *start, Vector3::z(), 0.0);
         }
-        let (mut turns, mut weights, spins) = turns.part(n, count);
-        if weights.len() == 3 && point_weights.len() == 6 {
+        let (mut turns, mut weights, mut spins) = turns.part(n, count);
+        if let Some(own) = own {
+            if weights.len() == 3 {
+                // The tip's weights times those of the turn: those of both turns together.
+                points = product(&points, &weights, |point, w| *point * *w);
+                point_weights = product(&point_weights, &weights, |p, w| p * w);
+            }
+            (turns, weights, spins) = with_own_turn((turns, weights, spins), own, n, count);
+        }
+        if weights.len() > 1 && point_weights.len() == weights.len() + 3 {
             // In one degree both are bounded together.
             turns = product(&turns, &[1.0; 4], |turn, one| turn * *one);
             weights = product(&weights, &[1.0; 4], |w, one| w * one);
+        }
+        if own.is_some() {
+            // The same but for the order of sums: to the bit, they are bounded together.
+            point_weights.clone_from(&weights);
         }
         let curve = Curve {
             points,

@@ -6,7 +6,9 @@
 
 mod apt;
 mod assembly;
+mod bezier;
 mod boundary;
+mod circle_segment;
 mod even;
 mod freeform;
 mod lists;
@@ -27,7 +29,7 @@ pub use freeform::{PatchError, Side, ToolError};
 pub use moves::{ArcError, Course, Law, Move, TipArc, Turning};
 pub use path::{Path, PathError};
 pub use pose::{Pose, PoseError};
-pub use profile::{Profile, ProfileError, ProfileSegment, Turn};
+pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
 pub use rotary::{RotaryTable, UnknownTable};
 pub use segment::{End, Segment};
 pub use spline_motion::{MotionError, SplineMotion};

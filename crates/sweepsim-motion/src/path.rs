@@ -252,6 +252,34 @@ impl Path {
     /// When there is no such move.
     #[must_use]
     pub fn segments(&self, index: usize, reach: f64, deviation: f64) -> Vec<Segment> {
+        self.parts(index, (reach, false), deviation)
+    }
+
+    /// The same for a tool that is symmetric about its axis: how it turns about it is free, and chosen such that the motion is easiest to solve.
+    /// Along an arc of the tip that turns about (nearly) the direction of the tool's axis, the tool turns with it, as one rigid body.
+    ///
+    /// # Panics
+    /// When there is no such move.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Move, Path, Pose, TipArc};
+    /// let up = [0.0, 0.0, 1.0];
+    /// let arc = TipArc::between([2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0; 3], up, 1)?;
+    /// let poses = vec![Pose::new([2.0, 0.0, 0.0], up)?, Pose::new([0.0, 2.0, 0.0], up)?];
+    /// let path = Path::with_moves(poses, vec![Move::arc(arc)])?;
+    /// // The centre of the arc stays at one point of the tool.
+    /// for t in [0.0, 0.3, 1.0] {
+    ///     let (turn, tip) = path.segments_of_symmetric(0, 5.0, 1e-6)[0].at(t);
+    ///     assert!((turn.transpose() * -tip - nalgebra::Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-15);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn segments_of_symmetric(&self, index: usize, reach: f64, deviation: f64) -> Vec<Segment> {
+        self.parts(index, (reach, true), deviation)
+    }
+
+    fn parts(&self, index: usize, tool: (f64, bool), deviation: f64) -> Vec<Segment> {
         let (from, to) = (&self.poses[index], &self.poses[index + 1]);
         let way = match &self.ways {
             Ways::Slerp => return Segment::between(from, to),
@@ -261,7 +289,7 @@ impl Path {
         if *way == Move::default() {
             return Segment::between(from, to);
         }
-        even::segments(from, to, way, reach, deviation)
+        even::segments(from, to, way, tool, deviation)
     }
 
     /// A bound of the size of all coordinates of tips.

@@ -1,7 +1,9 @@
-//! The half outline of a tool of revolution: lines and arcs in the `(ρ, ζ)` half-plane.
+//! The half outline of a tool of revolution: lines, arcs and splines in the `(ρ, ζ)` half-plane.
 
+use crate::bezier::{self, Bezier, Outline};
 use nalgebra::Vector2;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
+use sweepsim_spline::{KnotError, SplineError};
 use thiserror::Error;
 
 /// Which way round an arc runs, seen with `ρ` to the right and `ζ` up.
@@ -14,7 +16,7 @@ pub enum Turn {
 }
 
 /// One piece of a [`Profile`], from where the one before ended. Lengths in `(ρ, ζ)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ProfileSegment {
     /// A straight line.
     Line {
@@ -30,10 +32,21 @@ pub enum ProfileSegment {
         /// Which way round.
         turn: Turn,
     },
+    /// A B-spline curve, rational when it has weights.
+    Spline {
+        /// Its degree, from 1 to 7.
+        degree: usize,
+        /// `degree + 1` more than points, clamped: the first and the last occur `degree + 1` times. `None` spaces them evenly.
+        knots: Option<Vec<f64>>,
+        /// Control points: the first is where the segment before ended, the last where this one ends.
+        points: Vec<[f64; 2]>,
+        /// One for each point, positive. `None` are all 1.
+        weights: Option<Vec<f64>>,
+    },
 }
 
 /// The outline of a solid of revolution, from the tip on the axis to the top on the axis, with the material on its left:
-/// what makes a tool of lines and arcs.
+/// what makes a tool of lines, arcs and splines.
 ///
 /// Invariants: finite; `ρ ≥ 0`, and `ρ = 0` at the two ends and nowhere else; starts below where it ends; no segment
 /// degenerate; does not cross or touch itself.
@@ -98,7 +111,15 @@ pub enum ProfileError {
         /// Distance of the end from the centre.
         to: f64,
     },
-    /// Two segments cross or touch other than at their common end.
+    /// A spline that is none, or not one of an outline.
+    #[error("profile segment {segment}: {fault}")]
+    Spline {
+        /// Which segment.
+        segment: usize,
+        /// What is wrong.
+        fault: SplineFault,
+    },
+    /// Two segments cross or touch other than at their common end. A spline may do so with itself.
     #[error("the profile crosses or touches itself: segments {first} and {second}")]
     SelfCrossing {
         /// The one segment.
@@ -118,15 +139,104 @@ pub enum ProfileError {
     },
 }
 
-/// A circular arc or a line with its start, ready for geometry.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
-    pub from: Vector2<f64>,
-    pub to: Vector2<f64>,
-    /// Centre, radius, start angle and signed sweep of an arc.
-    pub arc: Option<Arc>,
+/// Why a spline is no segment of a profile. Points, weights and knots count from 0.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SplineFault {
+    /// The degree is 0 or too high.
+    #[error("degree {degree} of a spline must be from 1 to {most}")]
+    Degree {
+        /// The degree.
+        degree: usize,
+        /// What is possible.
+        most: usize,
+    },
+    /// Fewer points than the degree needs.
+    #[error("the spline has {found} points, but its degree needs at least {least}")]
+    Points {
+        /// How many there must be.
+        least: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// Not one weight for each point.
+    #[error("the spline has {found} weights for {expected} points")]
+    Weights {
+        /// How many points there are.
+        expected: usize,
+        /// How many weights there are.
+        found: usize,
+    },
+    /// A weight is not positive, or so small that the normals would be lost in rounding.
+    #[error("weight {index} of the spline is {value}, but must be positive and at least 1e-4 of the largest")]
+    Weight {
+        /// Which weight.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// Not as many knots as points and degree need.
+    #[error("the spline has {found} knots, but needs {expected}: its points, its degree and one more")]
+    KnotCount {
+        /// How many there must be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// The knots are none.
+    #[error("the spline's knots: {0}")]
+    Knots(KnotError),
+    /// The first or last knot does not occur often enough.
+    #[error(
+        "the spline's first and last knot must each occur once more than its degree, so that it begins and ends at its points"
+    )]
+    Clamped,
+    /// The curve jumps at a knot.
+    #[error("the spline jumps at knot {knot}: it occurs more often than the degree")]
+    Jump {
+        /// Where.
+        knot: f64,
+    },
+    /// It begins elsewhere than the segment before ended.
+    #[error("the spline begins at ({}, {}), but the profile is at ({}, {}) there", .found[0], .found[1], .expected[0], .expected[1])]
+    Start {
+        /// Its first point.
+        found: [f64; 2],
+        /// Where the segment before ended.
+        expected: [f64; 2],
+    },
+    /// A cusp, a fold, or control points so close together that the curve has no direction.
+    #[error("the spline has no direction or turns back somewhere near ({}, {})", .near[0], .near[1])]
+    Stops {
+        /// The middle of the piece between knots.
+        near: [f64; 2],
+    },
+    /// The spline cannot be taken apart.
+    #[error("the spline: {0}")]
+    Other(SplineError),
 }
 
+/// A part of a segment with its start, ready for geometry.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// The segment it is of.
+    pub segment: usize,
+    pub from: Vector2<f64>,
+    pub to: Vector2<f64>,
+    pub shape: Shape,
+    /// It goes on smoothly from the one before because a spline's knots say so.
+    pub smooth: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    Line,
+    Arc(Arc),
+    /// A piece between knots, of degree 2 or more.
+    Bezier(Bezier),
+}
+
+/// Centre, radius, start angle and signed sweep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Arc {
     pub centre: Vector2<f64>,
@@ -139,9 +249,21 @@ pub(crate) struct Arc {
 const ARC_SLACK: f64 = 1e-6;
 
 impl Piece {
-    fn new(index: usize, from: [f64; 2], segment: &ProfileSegment) -> Result<Self, ProfileError> {
+    /// Adds the pieces of a segment.
+    fn add(
+        index: usize,
+        from: Vector2<f64>,
+        segment: &ProfileSegment,
+        pieces: &mut Vec<Self>,
+    ) -> Result<(), ProfileError> {
         let not_finite = ProfileError::NotFinite { segment: index };
-        let from = Vector2::from(from);
+        let simple = |to: Vector2<f64>, shape: Shape| Self {
+            segment: index,
+            from,
+            to,
+            shape,
+            smooth: false,
+        };
         let finite = |p: Vector2<f64>| p.iter().all(|c| c.is_finite() && c.abs() < 1e100);
         match *segment {
             ProfileSegment::Line { to } => {
@@ -152,7 +274,7 @@ impl Piece {
                 if from == to {
                     return Err(ProfileError::NoLength { segment: index });
                 }
-                Ok(Self { from, to, arc: None })
+                pieces.push(simple(to, Shape::Line));
             }
             ProfileSegment::Arc { to, centre, turn } => {
                 let (to, centre) = (Vector2::from(to), Vector2::from(centre));
@@ -183,39 +305,104 @@ impl Piece {
                     Turn::Cw if sweep >= 0.0 => sweep -= TAU,
                     _ => {}
                 }
-                Ok(Self {
-                    from,
+                let radius = 0.5 * (ra + rb);
+                pieces.push(simple(
                     to,
-                    arc: Some(Arc {
+                    Shape::Arc(Arc {
                         centre,
-                        radius: 0.5 * (ra + rb),
+                        radius,
                         start,
                         sweep,
                     }),
-                })
+                ));
+            }
+            ProfileSegment::Spline {
+                degree,
+                ref knots,
+                ref points,
+                ref weights,
+            } => {
+                if !finite(from) {
+                    return Err(not_finite);
+                }
+                for span in bezier::spans(index, from, degree, knots.as_deref(), points, weights.as_deref())? {
+                    let curve = span.curve;
+                    let (from, to) = (curve.points[0], curve.points[curve.points.len() - 1]);
+                    if degree == 1 && from == to {
+                        return Err(ProfileError::NoLength { segment: index });
+                    }
+                    pieces.push(Self {
+                        segment: index,
+                        from,
+                        to,
+                        shape: if degree == 1 { Shape::Line } else { Shape::Bezier(curve) },
+                        smooth: span.smooth,
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn arc(&self) -> Option<Arc> {
+        match self.shape {
+            Shape::Arc(arc) => Some(arc),
+            Shape::Line | Shape::Bezier(_) => None,
+        }
+    }
+
+    /// The same as curves, arcs in parts of at most a quarter.
+    fn curves(&self) -> Vec<Bezier> {
+        match &self.shape {
+            Shape::Line => vec![Bezier::line(self.from, self.to)],
+            Shape::Bezier(curve) => vec![curve.clone()],
+            Shape::Arc(arc) => {
+                let count = (arc.sweep.abs() / FRAC_PI_2).ceil().max(1.0);
+                let half = 0.5 * arc.sweep / count;
+                let on = |angle: f64, radius: f64| arc.centre + Vector2::new(angle.cos(), angle.sin()) * radius;
+                (0..count as usize)
+                    .map(|part| {
+                        let middle = arc.start + half * (2 * part + 1) as f64;
+                        let ends = [part as f64, (part + 1) as f64].map(|k| self.at(k / count));
+                        Bezier {
+                            points: vec![ends[0], on(middle, arc.radius / half.cos()), ends[1]],
+                            weights: vec![1.0, half.cos(), 1.0],
+                        }
+                    })
+                    .collect()
             }
         }
     }
 
     /// The point at `s` in `[0, 1]`.
     pub(crate) fn at(&self, s: f64) -> Vector2<f64> {
-        match self.arc {
-            None => self.from + (self.to - self.from) * s,
-            Some(arc) => {
+        match &self.shape {
+            Shape::Line => self.from + (self.to - self.from) * s,
+            Shape::Bezier(curve) => curve.at(s),
+            Shape::Arc(arc) => {
                 let angle = arc.start + s * arc.sweep;
                 arc.centre + Vector2::new(angle.cos(), angle.sin()) * arc.radius
             }
         }
     }
 
-    /// The unit direction of travel at `s`.
-    pub(crate) fn direction(&self, s: f64) -> Vector2<f64> {
-        match self.arc {
-            None => (self.to - self.from).normalize(),
-            Some(arc) => {
-                let angle = arc.start + s * arc.sweep;
+    /// The unit direction of travel where it begins or ends.
+    pub(crate) fn direction(&self, end: bool) -> Vector2<f64> {
+        match &self.shape {
+            Shape::Line => (self.to - self.from).normalize(),
+            Shape::Bezier(curve) => curve.direction(end),
+            Shape::Arc(arc) => {
+                let angle = if end { arc.start + arc.sweep } else { arc.start };
                 Vector2::new(-angle.sin(), angle.cos()) * arc.sweep.signum()
             }
+        }
+    }
+
+    /// How far rounding may have turned that direction.
+    pub(crate) fn direction_error(&self, end: bool) -> f64 {
+        match &self.shape {
+            Shape::Line | Shape::Arc(_) => 0.0,
+            Shape::Bezier(curve) => curve.direction_error(end),
         }
     }
 
@@ -231,7 +418,7 @@ impl Piece {
 
     fn smallest_rho(&self) -> f64 {
         let mut rho = self.from.x.min(self.to.x);
-        if let Some(arc) = self.arc
+        if let Some(arc) = self.arc()
             && Self::arc_parameter(&arc, std::f64::consts::PI) < 1.0
         {
             rho = rho.min(arc.centre.x - arc.radius);
@@ -240,9 +427,10 @@ impl Piece {
     }
 
     fn length(&self) -> f64 {
-        match self.arc {
-            None => (self.to - self.from).norm(),
-            Some(arc) => arc.radius * arc.sweep.abs(),
+        match &self.shape {
+            Shape::Line => (self.to - self.from).norm(),
+            Shape::Arc(arc) => arc.radius * arc.sweep.abs(),
+            Shape::Bezier(curve) => curve.length(),
         }
     }
 }
@@ -277,19 +465,38 @@ impl Profile {
             });
         }
         let scale = pieces.iter().map(Piece::length).sum::<f64>();
-        for (segment, piece) in pieces.iter().enumerate() {
+        for (number, piece) in pieces.iter().enumerate() {
+            let segment = piece.segment;
+            if let Shape::Bezier(curve) = &piece.shape {
+                if let Some(rho) = curve.reaches_axis(number == 0, number + 1 == pieces.len()) {
+                    return Err(ProfileError::AcrossAxis { segment, rho });
+                }
+                continue;
+            }
             // Away from the two ends the axis must stay clear; near them the piece must leave it.
-            let inner = (segment > 0 || piece.at(0.5).x <= 0.0, segment + 1 < pieces.len());
+            let inner = (number > 0 || piece.at(0.5).x <= 0.0, number + 1 < pieces.len());
             let rho = piece.smallest_rho();
-            let touches = (inner.0 && segment > 0 && piece.from.x <= 0.0) || (inner.1 && piece.to.x <= 0.0);
+            let touches = (inner.0 && number > 0 && piece.from.x <= 0.0) || (inner.1 && piece.to.x <= 0.0);
             if rho < -1e-12 * scale || touches || piece.at(0.5).x <= 0.0 {
                 return Err(ProfileError::AcrossAxis { segment, rho });
             }
         }
+        if pieces.iter().any(|piece| matches!(piece.shape, Shape::Bezier(_))) {
+            let curves = pieces
+                .iter()
+                .flat_map(|piece| piece.curves().into_iter().map(|curve| (piece.segment, curve)));
+            if let Some((first, second)) = Outline::new(curves, scale)?.crossing() {
+                return Err(ProfileError::SelfCrossing { first, second });
+            }
+            return Ok(profile);
+        }
         for second in 0..pieces.len() {
             for first in 0..second {
                 if crosses(&pieces[first], &pieces[second], second == first + 1, scale) {
-                    return Err(ProfileError::SelfCrossing { first, second });
+                    return Err(ProfileError::SelfCrossing {
+                        first: pieces[first].segment,
+                        second: pieces[second].segment,
+                    });
                 }
             }
         }
@@ -309,12 +516,11 @@ impl Profile {
     }
 
     fn try_pieces(&self) -> Result<Vec<Piece>, ProfileError> {
-        let mut from = self.start;
+        let mut from = Vector2::from(self.start);
         let mut pieces = Vec::with_capacity(self.segments.len());
         for (index, segment) in self.segments.iter().enumerate() {
-            let piece = Piece::new(index, from, segment)?;
-            from = piece.to.into();
-            pieces.push(piece);
+            Piece::add(index, from, segment, &mut pieces)?;
+            from = pieces.last().map_or(from, |piece| piece.to);
         }
         Ok(pieces)
     }
@@ -325,11 +531,11 @@ impl Profile {
     }
 }
 
-/// Whether two pieces have a point in common (other than the one where `consecutive` ones join).
+/// Whether two lines or arcs have a point in common (other than the one where `consecutive` ones join).
 fn crosses(a: &Piece, b: &Piece, consecutive: bool, scale: f64) -> bool {
     let near = 1e-9 * scale;
     let on = |piece: &Piece, p: Vector2<f64>| -> bool {
-        match piece.arc {
+        match piece.arc() {
             None => {
                 let d = piece.to - piece.from;
                 let s = (p - piece.from).dot(&d) / d.norm_squared();
@@ -344,7 +550,7 @@ fn crosses(a: &Piece, b: &Piece, consecutive: bool, scale: f64) -> bool {
         }
     };
     let mut meets: Vec<Vector2<f64>> = Vec::new();
-    match (a.arc, b.arc) {
+    match (a.arc(), b.arc()) {
         (None, None) => {
             let (d, e) = (a.to - a.from, b.to - b.from);
             let det = d.perp(&e);
@@ -356,7 +562,7 @@ fn crosses(a: &Piece, b: &Piece, consecutive: bool, scale: f64) -> bool {
             }
         }
         (Some(arc), None) | (None, Some(arc)) => {
-            let line = if a.arc.is_some() { b } else { a };
+            let line = if a.arc().is_some() { b } else { a };
             let d = (line.to - line.from).normalize();
             let foot = line.from + d * (arc.centre - line.from).dot(&d);
             let height = (foot - arc.centre).norm();

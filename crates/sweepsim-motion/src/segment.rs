@@ -249,7 +249,7 @@ impl Segment {
 
     /// The same motion in another place: turned by the rotation `turn` about the origin, then shifted.
     #[must_use]
-    pub(crate) fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Self {
+    pub fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Self {
         let place = |point: &Vector3<f64>, weight: f64| turn * point + shift * weight;
         let mut moved = self.clone();
         moved.tips = self.tips.map(|tip| place(&tip, 1.0));

@@ -15,7 +15,8 @@ pub struct Tool {
     edges: Vec<Edge>,
 }
 
-fn check(what: &'static str, value: f64, good: bool, expected: &'static str) -> Result<(), ProfileError> {
+/// A measure that must be good and finite.
+pub(crate) fn check(what: &'static str, value: f64, good: bool, expected: &'static str) -> Result<(), ProfileError> {
     if good && value.is_finite() {
         Ok(())
     } else {

@@ -92,6 +92,42 @@ fn move_of(kind: usize, from: [f64; 3], to: [f64; 3], angles: [[f64; 2]; 2], axe
     }
 }
 
+/// Rates against differences, and the twist against both.
+fn twist_is_the_rate_of(part: &Segment, t: f64) -> Result<(), TestCaseError> {
+    let h = 1e-5;
+    let ((a, p), (c, q)) = (part.at(t - h), part.at(t + h));
+    let over = |rate: (Vec<Vector3<f64>>, Vec<f64>)| bernstein(&rate.0, t) / bernstein(&rate.1, t);
+    prop_assert!((over(part.tip_rate()) - (q - p) / (2.0 * h)).norm() < 1e-4);
+    let (rate, weights) = part.turn_rate();
+    let slope = bernstein(&rate, t) / bernstein(&weights, t);
+    prop_assert!((slope - (c - a) / (2.0 * h)).norm() < 1e-4);
+    // The twist is the body velocity, times one positive factor.
+    let (turn, _) = part.at(t);
+    let own = turn.tr_mul(&slope);
+    let spin = Vector3::new(own[(2, 1)], own[(0, 2)], own[(1, 0)]);
+    let travel = turn.tr_mul(&over(part.tip_rate()));
+    let (spins, travels) = part.twist();
+    let (found_spin, found_travel) = (bernstein(&spins, t), bernstein(&travels, t));
+    let factor = (found_spin.norm() + found_travel.norm()) / (spin.norm() + travel.norm());
+    prop_assert!((found_spin - spin * factor).norm() < 1e-10 * factor);
+    prop_assert!((found_travel - travel * factor).norm() < 1e-10 * factor * (1.0 + travel.norm()));
+    Ok(())
+}
+
+/// Parts of one move join without a kink: the velocity after is a positive multiple of that before.
+fn smooth(parts: &[Segment]) -> Result<(), TestCaseError> {
+    for pair in parts.windows(2) {
+        prop_assert!((pair[0].tips()[1] - pair[1].tips()[0]).norm() < 1e-12);
+        let [before, after] = [pair[0].velocity(End::Finish), pair[1].velocity(End::Start)];
+        let size = |v: &[Vector3<f64>; 2]| v[0].norm() * REACH + v[1].norm();
+        let factor = size(&after) / size(&before);
+        for k in 0..2 {
+            prop_assert!((after[k] - before[k] * factor).norm() <= 1e-9 * size(&after));
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
@@ -115,24 +151,41 @@ proptest! {
         let path = move_of(kind, from, to, angles, axes);
         prop_assume!(path.is_some());
         let parts = path.unwrap().segments(0, REACH, 1e-1);
-        let part = &parts[parts.len() / 2];
-        let h = 1e-5;
-        let ((a, p), (c, q)) = (part.at(t - h), part.at(t + h));
-        let over = |rate: (Vec<Vector3<f64>>, Vec<f64>)| bernstein(&rate.0, t) / bernstein(&rate.1, t);
-        prop_assert!((over(part.tip_rate()) - (q - p) / (2.0 * h)).norm() < 1e-4);
-        let (rate, weights) = part.turn_rate();
-        let slope = bernstein(&rate, t) / bernstein(&weights, t);
-        prop_assert!((slope - (c - a) / (2.0 * h)).norm() < 1e-4);
-        // The twist is the body velocity, times one positive factor.
-        let (turn, _) = part.at(t);
-        let own = turn.tr_mul(&slope);
-        let spin = Vector3::new(own[(2, 1)], own[(0, 2)], own[(1, 0)]);
-        let travel = turn.tr_mul(&over(part.tip_rate()));
-        let (spins, travels) = part.twist();
-        let (found_spin, found_travel) = (bernstein(&spins, t), bernstein(&travels, t));
-        let factor = (found_spin.norm() + found_travel.norm()) / (spin.norm() + travel.norm());
-        prop_assert!((found_spin - spin * factor).norm() < 1e-10 * factor);
-        prop_assert!((found_travel - travel * factor).norm() < 1e-10 * factor * (1.0 + travel.norm()));
+        twist_is_the_rate_of(&parts[parts.len() / 2], t)?;
+    }
+
+    /// However a symmetric tool turns about its own axis: axis and tip are those of the law, rates are derivatives, parts join smoothly.
+    #[test]
+    fn a_symmetric_tool_goes_the_same_way(
+        from in tip(), to in tip(), tilts in [(0.0..0.015, -3.0..3.0), (0.0..0.015, -3.0..3.0)], down in any::<bool>(), change in 0_usize..3,
+        normal in (-0.01..0.01, -0.01..0.01), angle in prop_oneof![-7.0..-0.1, 0.1..7.0], limit in 1e-6..1e-2, t in 0.01..0.99,
+    ) {
+        let sign = if down { -1.0 } else { 1.0 };
+        let [a, b] = tilts.map(|(tilt, round): (f64, f64)| [tilt.sin() * round.cos(), tilt.sin() * round.sin(), sign * tilt.cos()]);
+        let arc = TipArc::new([1.0, 2.0, 0.5], [normal.0, normal.1, 1.0], angle).expect("an arc");
+        // Level, or rising by whatever the end is off.
+        let end = if change == 1 { to } else { (arc.centre() + Rotation3::from_axis_angle(&arc.normal(), angle) * (Vector3::from(from) - arc.centre())).into() };
+        let poses = vec![Pose::new(from, a).expect("a pose"), Pose::new(end, if change == 0 { a } else { b }).expect("a pose")];
+        let path = Path::with_moves(poses.clone(), vec![Move::arc(arc)]).expect("a path");
+        let parts = path.segments_of_symmetric(0, REACH, limit);
+        prop_assert_eq!(parts.len(), path.segments(0, REACH, limit).len());
+        let mut turned = 0;
+        for (n, part) in parts.iter().enumerate() {
+            // What lets both be bounded together.
+            prop_assert_eq!(part.weights(), &part.points().1[..]);
+            turned += usize::from(part.turns().len() > 1);
+            for step in 0..=10 {
+                let at = f64::from(step) / 10.0;
+                let (turn, tip) = part.at(at);
+                prop_assert!((turn.tr_mul(&turn) - Matrix3::identity()).norm() < 1e-13);
+                let (axis, expected) = law(&poses[0], &poses[1], &path.way(0), (n as f64 + part.time(at)) / parts.len() as f64);
+                let off = (tip - expected).norm() + (turn.column(2) - axis).norm() * REACH;
+                prop_assert!(off <= limit + 1e-11, "{off:e} {limit:e}");
+            }
+        }
+        prop_assert_eq!(turned, parts.len());
+        twist_is_the_rate_of(&parts[parts.len() / 2], t)?;
+        smooth(&parts)?;
     }
 
     /// Parts of one move join without a kink: the velocity after is a positive multiple of that before.
@@ -144,15 +197,7 @@ proptest! {
         let path = move_of(kind, from, to, angles, axes);
         prop_assume!(path.is_some());
         let parts = path.unwrap().segments(0, REACH, 1e-3);
-        for pair in parts.windows(2) {
-            prop_assert!((pair[0].tips()[1] - pair[1].tips()[0]).norm() < 1e-12);
-            let [before, after] = [pair[0].velocity(End::Finish), pair[1].velocity(End::Start)];
-            let size = |v: &[Vector3<f64>; 2]| v[0].norm() * REACH + v[1].norm();
-            let factor = size(&after) / size(&before);
-            for k in 0..2 {
-                prop_assert!((after[k] - before[k] * factor).norm() <= 1e-9 * size(&after));
-            }
-        }
+        smooth(&parts)?;
     }
 }
 

@@ -323,12 +323,16 @@ impl<'a, const N: usize> Chart<'a, N> {
                 return Outcome::Settled;
             }
             if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+                // As near as rounding lets it come: a smaller box would know no more.
+                let rests = |next: &SVector<f64, N>| {
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
+                };
                 return match next {
                     Some(next) if self.owns(&next) => {
                         found(next, from, sample.seen);
                         Outcome::Settled
                     }
-                    Some(_) if step <= self.accept[1] => Outcome::Settled,
+                    Some(next) if rests(&next) => Outcome::Settled,
                     _ => Outcome::Unclear,
                 };
             }

@@ -87,7 +87,7 @@ pub trait Targets<const N: usize> {
 }
 
 /// Rows that are wanted as they are.
-fn all_of<const N: usize>(_: &[f64; N]) -> Interval {
+pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Interval {
     Interval::new(f64::NEG_INFINITY, f64::INFINITY)
 }
 
@@ -419,7 +419,7 @@ fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
 ///
 /// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
 /// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
-fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
+pub(crate) fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N], axis: usize) -> bool {
     let half = bounds.map(Interval::radius);
     jacobian.iter().all(|row| {
         let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
@@ -428,12 +428,12 @@ fn collapses<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; 
     })
 }
 
-fn largest<const N: usize>(weights: &[f64; N]) -> usize {
+pub(crate) fn largest<const N: usize>(weights: &[f64; N]) -> usize {
     (0..N).fold(0, |best, j| if weights[j] > weights[best] { j } else { best })
 }
 
 /// The variable that moves the values most, measured in `scales`, over the box.
-fn widest<const N: usize>(
+pub(crate) fn widest<const N: usize>(
     bounds: &[Interval; N],
     domain: &[Interval; N],
     jacobian: &[[Interval; N]; N],

@@ -2,7 +2,7 @@
 //!
 //! A [`System`] is a number of equations in Bernstein form over a box. [`PointSolver`] finds all roots of square systems, [`CurveSolver`] the curves
 //! of systems with one equation fewer, [`SurfaceSolver`] the surface of one equation in three unknowns, [`ChartSolver`] the preimages of many
-//! targets under one map. [`Pieces`] makes systems of splines.
+//! targets under one map. [`BundleSolver`] solves many systems that differ in right-hand sides, root by root. [`Pieces`] makes systems of splines.
 //!
 //! Nothing is lost: what a solver cannot certify it returns as an open box with its [`Cause`]. Every decision by a sign carries a bound of its
 //! rounding, from the coefficients (which count as exact unless they come with an error bound) to the result.
@@ -13,6 +13,7 @@
 //! | `layout.rs`, `tensor.rs` | how coefficients lie, and what rounding does to them |
 //! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
 
+mod bundle;
 mod certify;
 mod chart;
 mod charts;
@@ -37,6 +38,7 @@ mod system;
 mod tensor;
 mod trail;
 
+pub use bundle::{Bundle, BundleError, BundleSolver};
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Target, Targets, Undecided,
 };

@@ -17,6 +17,9 @@ const SINGULAR: f64 = 1e-11;
 
 /// The inverse and the sign of the determinant; `None` if the matrix is nearly singular or not finite.
 pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
+    if n == 2 {
+        return inverse_of_two(matrix);
+    }
     let mut a = *matrix;
     let mut columns = [1.0; MAX_UNKNOWNS];
     let mut rows = [1.0; MAX_UNKNOWNS];
@@ -96,6 +99,31 @@ pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
     Some((k, sign))
 }
 
+/// As [`inverse`], for two rows and columns: most faces and graphs have two unknowns.
+fn inverse_of_two(matrix: &Square) -> Option<(Square, i8)> {
+    let [a, b] = [matrix[0][0], matrix[0][1]];
+    let [c, d] = [matrix[1][0], matrix[1][1]];
+    // Scaled as in general: columns first, rows then.
+    let (p, q) = (1.0 / a.abs().max(c.abs()), 1.0 / b.abs().max(d.abs()));
+    let (r, s) = (
+        1.0 / (a * p).abs().max((b * q).abs()),
+        1.0 / (c * p).abs().max((d * q).abs()),
+    );
+    let determinant = (a * p * r) * (d * q * s) - (b * q * r) * (c * p * s);
+    let regular = determinant.abs() > SINGULAR && determinant.is_finite();
+    if !regular {
+        return None;
+    }
+    let factor = 1.0 / determinant;
+    let mut k = ZERO;
+    k[0][0] = p * (factor * (d * q * s)) * r;
+    k[0][1] = -p * (factor * (b * q * r)) * s;
+    k[1][0] = -q * (factor * (c * p * s)) * r;
+    k[1][1] = q * (factor * (a * p * r)) * s;
+    let finite = k[..2].iter().all(|row| row[0].is_finite() && row[1].is_finite());
+    finite.then_some((k, if determinant > 0.0 { 1 } else { -1 }))
+}
+
 /// `A x`.
 pub(crate) fn apply(a: &Square, x: &Row, n: usize) -> Row {
     let mut out = [0.0; MAX_UNKNOWNS];
@@ -124,6 +152,30 @@ mod tests {
             for j in 0..5 {
                 let product: f64 = (0..5).map(|l| k[i][l] * a[l][j]).sum();
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn two_rows_are_inverted_as_many_are() {
+        let entries = [-3e200, -1.0, -1e-3, 0.0, 1e-250, 0.5, 2.0];
+        for number in 0..7usize.pow(4) {
+            let mut a = ZERO;
+            for k in 0..4 {
+                a[k / 2][k % 2] = entries[number / 7usize.pow(k as u32) % 7];
+            }
+            // A third row and column of its own take the general way.
+            a[2][2] = 1.0;
+            match (inverse(&a, 2), inverse(&a, 3)) {
+                (None, None) => {}
+                (Some((k, sign)), Some((l, other))) => {
+                    assert_eq!(sign, other);
+                    for i in 0..4 {
+                        let (x, y) = (k[i / 2][i % 2], l[i / 2][i % 2]);
+                        assert!((x - y).abs() <= 1e-4 * y.abs(), "{a:?}: {x:e} {y:e}");
+                    }
+                }
+                (one, other) => panic!("{a:?}: {one:?} {other:?}"),
             }
         }
     }

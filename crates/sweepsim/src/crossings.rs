@@ -5,6 +5,7 @@ use crate::envelope::{Face, Joint, Near, OnFace, OnJoint, OnRim, ROOT, Rim, Side
 use crate::generic::Part;
 use crate::instant::Motion;
 use crate::lattice::Lattice;
+use crate::lines::Bundles;
 use crate::placed::Placed;
 use crate::planes::Slicer;
 use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
@@ -13,8 +14,8 @@ use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{End, Segment, Tool};
 use sweepsim_solve::{
-    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions, SurfaceSolver, System,
-    SystemError, Undecided,
+    BundleSolver, ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions,
+    SurfaceSolver, System, SystemError, Undecided,
 };
 
 /// A tool, prepared.
@@ -49,6 +50,7 @@ pub(crate) struct Workspace {
     pub bricks: ChartSolver<(u32, u32)>,
     pub placed: ChartSolver<u32>,
     pub slicer: Slicer,
+    pub bundles: BundleSolver,
 }
 
 impl Workspace {
@@ -64,6 +66,7 @@ impl Workspace {
             bricks: ChartSolver::new(options),
             placed: ChartSolver::new(options),
             slicer: Slicer::new(),
+            bundles: BundleSolver::new(options),
         }
     }
 }
@@ -77,6 +80,16 @@ pub(crate) enum How<'a> {
     Planes(&'a [Forms]),
     /// By charts within the boxes of the envelope surfaces: Algorithm 1.
     Surface,
+    /// Line by line, in bundles: Algorithm 4. The systems of each part.
+    Lines(&'a [Bundles]),
+}
+
+/// What a part needs to be solved so.
+#[derive(Clone, Copy)]
+struct Means<'a> {
+    forms: Option<&'a Forms>,
+    bundles: Option<&'a Bundles>,
+    surface: Option<&'a Segment>,
 }
 
 /// A tool under one motion, and at rest at its start and end.
@@ -177,6 +190,19 @@ pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
     })
 }
 
+/// What moves before and after a placement of the part: that at its start (0), or that at its end (1), the last of the path.
+pub(crate) fn sides(parts: &[Part], at: usize, end: usize) -> [Side; 2] {
+    let segment = &parts[at].segment;
+    if end == 1 {
+        return [twist(segment, End::Finish, &segment.end()), Side::Beyond(true)];
+    }
+    let turn = segment.start();
+    let before = at
+        .checked_sub(1)
+        .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
+    [before, twist(segment, End::Start, &turn)]
+}
+
 /// A search of some lines along some segments.
 pub(crate) struct Search<'a> {
     pub tool: &'a Tool,
@@ -205,37 +231,41 @@ impl Search<'_> {
             t: start + share * segment.time(t) as f32,
         };
         let mut times = Times::new(segment);
-        let forms = match self.how {
-            How::Planes(forms) => Some(&forms[at]),
-            _ => None,
+        let mut means = Means {
+            forms: None,
+            bundles: None,
+            surface: None,
         };
-        let surface = matches!(self.how, How::Surface).then_some(segment);
-        self.faces(&mut times, (forms, surface), &source, space, harvest);
-        self.rims(&mut times, forms, &source, space, harvest);
+        match self.how {
+            How::Charts => {}
+            How::Planes(forms) => means.forms = Some(&forms[at]),
+            How::Lines(bundles) => means.bundles = Some(&bundles[at]),
+            How::Surface => means.surface = Some(segment),
+        }
+        self.faces(&mut times, means, &source, space, harvest);
+        self.rims(&mut times, means, &source, space, harvest);
         let turn = segment.start();
-        let before = at
-            .checked_sub(1)
-            .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
+        let [before, after] = sides(parts, at, 0);
         let placed = Placement {
             turn,
             tip: segment.tips()[0],
             before,
-            after: twist(segment, End::Start, &turn),
+            after,
             source: source(0.0),
             end: 0,
         };
-        self.joint(&placed, forms, space, harvest);
+        self.joint(&placed, means, space, harvest);
         if at + 1 == parts.len() {
-            let turn = segment.end();
+            let [before, after] = sides(parts, at, 1);
             let placed = Placement {
-                turn,
+                turn: segment.end(),
                 tip: segment.tips()[1],
-                before: twist(segment, End::Finish, &turn),
-                after: Side::Beyond(true),
+                before,
+                after,
                 source: source(1.0),
                 end: 1,
             };
-            self.joint(&placed, forms, space, harvest);
+            self.joint(&placed, means, space, harvest);
         }
         harvest.count_slices(&mut space.slicer);
         for cells in space.faces.iter_mut().chain(&mut space.rims) {
@@ -290,7 +320,7 @@ impl Search<'_> {
     fn faces(
         &self,
         times: &mut Times,
-        (forms, surface): (Option<&Forms>, Option<&Segment>),
+        means: Means,
         source: &dyn Fn(f64) -> Source,
         space: &mut Workspace,
         harvest: &mut Harvest,
@@ -311,10 +341,12 @@ impl Search<'_> {
                     source: source(found.x[2]),
                 })
             });
-            if let Some(forms) = forms {
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.face(number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
                 let system = || forms.faces[number].section(&self.plane());
                 self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
-            } else if let Some(segment) = surface {
+            } else if let Some(segment) = means.surface {
                 self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
             } else {
                 space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
@@ -370,7 +402,7 @@ impl Search<'_> {
     fn rims(
         &self,
         times: &mut Times,
-        forms: Option<&Forms>,
+        means: Means,
         source: &dyn Fn(f64) -> Source,
         space: &mut Workspace,
         harvest: &mut Harvest,
@@ -398,18 +430,19 @@ impl Search<'_> {
                     source: source(found.x[1]),
                 })
             });
-            match forms {
-                Some(forms) => {
-                    let system = || forms.rims[number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
-                }
-                None => space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink),
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.rim(number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
+                let system = || forms.rims[number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
+            } else {
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
         }
         harvest.count(&mut space.bricks.statistics);
     }
 
-    fn joint(&self, placed: &Placement, forms: Option<&Forms>, space: &mut Workspace, harvest: &mut Harvest) {
+    fn joint(&self, placed: &Placement, means: Means, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.faces.iter().zip(&mut space.faces).enumerate() {
             let pose = (placed.turn, placed.tip);
             let mut map = Joint::new(element, cells, pose, [placed.before, placed.after], self.size);
@@ -423,15 +456,17 @@ impl Search<'_> {
                     source: placed.source,
                 })
             });
-            match forms {
-                Some(forms) => {
-                    let system = || forms.placed[placed.end][number].section(&self.plane());
-                    self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
-                }
-                None => space.placed.solve(&mut map, 0, self.lattice, &mut sink),
+            if let Some(bundle) = means.bundles.and_then(|bundles| bundles.placed(placed.end, number)) {
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+            } else if let Some(forms) = means.forms {
+                let system = || forms.placed[placed.end][number].section(&self.plane());
+                self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
+            } else {
+                space.placed.solve(&mut map, 0, self.lattice, &mut sink);
             }
         }
         harvest.count(&mut space.placed.statistics);
+        harvest.count(&mut space.bundles.statistics);
     }
 }
 

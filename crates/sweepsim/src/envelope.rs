@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Interval, Sample};
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
-const ROUNDING: f64 = 32.0 * f64::EPSILON;
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
 fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {

@@ -203,31 +203,57 @@ fn cut_line(at: f64, lower: &mut [f64], upper: &mut [f64]) {
 /// The coefficients of forms of these degrees, one after the other in `source`, over the box from `lower` to `upper`: the values
 /// of their blossoms there.
 pub(crate) fn restrict(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
-    match degrees {
-        [2, 0] => restrict_small::<3, 1>(source, lower, upper, out),
-        [2, 1] => restrict_small::<3, 2>(source, lower, upper, out),
-        [2, 2] => restrict_small::<3, 3>(source, lower, upper, out),
-        [p, q] => {
-            let (rows, columns) = (
-                blossoms::<MOST>(p, lower[0], upper[0]),
-                blossoms::<MOST>(q, lower[1], upper[1]),
-            );
-            let mut line = [0.0; MOST];
-            let count = (p + 1) * (q + 1);
-            for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
-                for j in 0..=q {
-                    for i in 0..=p {
-                        out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
-                    }
-                }
-                for i in 0..=p {
-                    for (j, x) in line[..=q].iter_mut().enumerate() {
-                        *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
-                    }
-                    for (j, x) in line[..=q].iter().enumerate() {
-                        out[i + (p + 1) * j] = *x;
-                    }
-                }
+    let [p, q] = degrees;
+    match p {
+        0 => restrict_rows::<1>(source, q, lower, upper, out),
+        1 => restrict_rows::<2>(source, q, lower, upper, out),
+        2 => restrict_rows::<3>(source, q, lower, upper, out),
+        3 => restrict_rows::<4>(source, q, lower, upper, out),
+        4 => restrict_rows::<5>(source, q, lower, upper, out),
+        5..12 if q < 12 => restrict_large::<12>(source, degrees, lower, upper, out),
+        _ => restrict_large::<MOST>(source, degrees, lower, upper, out),
+    }
+}
+
+/// As [`restrict`], for a degree `P − 1` known to the compiler.
+fn restrict_rows<const P: usize>(source: &[f64], q: usize, lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
+    match q {
+        0 => restrict_small::<P, 1>(source, lower, upper, out),
+        1 => restrict_small::<P, 2>(source, lower, upper, out),
+        2 => restrict_small::<P, 3>(source, lower, upper, out),
+        3 => restrict_small::<P, 4>(source, lower, upper, out),
+        4 => restrict_small::<P, 5>(source, lower, upper, out),
+        5..12 => restrict_large::<12>(source, [P - 1, q], lower, upper, out),
+        _ => restrict_large::<MOST>(source, [P - 1, q], lower, upper, out),
+    }
+}
+
+/// As [`restrict`], for any degrees below `M`.
+fn restrict_large<const M: usize>(
+    source: &[f64],
+    [p, q]: [usize; 2],
+    lower: [f64; 2],
+    upper: [f64; 2],
+    out: &mut [f64],
+) {
+    let (rows, columns) = (
+        blossoms::<M>(p, lower[0], upper[0]),
+        blossoms::<M>(q, lower[1], upper[1]),
+    );
+    let mut line = [0.0; M];
+    let count = (p + 1) * (q + 1);
+    for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
+        for j in 0..=q {
+            for i in 0..=p {
+                out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
+            }
+        }
+        for i in 0..=p {
+            for (j, x) in line[..=q].iter_mut().enumerate() {
+                *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
+            }
+            for (j, x) in line[..=q].iter().enumerate() {
+                out[i + (p + 1) * j] = *x;
             }
         }
     }
@@ -337,6 +363,28 @@ mod tests {
             let (l, u) = (at(0.3 * 0.4), at(0.3 + 0.7 * 0.4));
             assert!((value(&part(&lower), at(0.4).0, at(0.4).1) - value(&f, l.0, l.1)).abs() < 1e-14);
             assert!((value(&part(&upper), at(0.4).0, at(0.4).1) - value(&f, u.0, u.1)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn restrictions_of_all_degrees_agree_with_values() {
+        for (p, q) in (0..16).flat_map(|p| (0..16).map(move |q| (p, q))) {
+            let count = (p + 1) * (q + 1);
+            let c: Vec<f64> = (0..2 * count).map(|i| ((i * 7 + 3) % 11) as f64 - 5.0).collect();
+            let (lower, upper) = ([0.2, 0.35], [0.7, 0.9]);
+            let mut out = vec![0.0; 2 * count];
+            restrict(&c, [p, q], lower, upper, &mut out);
+            for k in 0..2 {
+                let form = |c: &[f64]| Form {
+                    degrees: [p, q],
+                    c: c[k * count..][..count].to_vec(),
+                };
+                let at = |k: usize, x: f64| lower[k] + x * (upper[k] - lower[k]);
+                for (u, v) in [(0.0, 1.0), (0.3, 0.8)] {
+                    let error = value(&form(&out), u, v) - value(&form(&c), at(0, u), at(1, v));
+                    assert!(error.abs() < 1e-13, "{p} {q}: {error}");
+                }
+            }
         }
     }
 }

@@ -7,7 +7,8 @@
 //! Every tip is moved a little farther along one fixed direction than the one before it. So each translation changes by the
 //! *same* generic vector, the sign of `g` on a patch that it decides is the same for all moves, and no kink arises.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Segment};
 
 /// Tips move by at most this part of the tolerance.
@@ -50,12 +51,22 @@ pub(crate) struct Part {
     pub share: f32,
 }
 
-/// The motions along a path, tips displaced. Moves that do not move are left out.
+/// The motions along a path as seen from a frame, tips displaced. Moves that do not move are left out.
 ///
 /// A tool that is not `symmetric` about its axis is carried along without turning about it, where the poses do not say how it turns.
 /// Motions that are not exact are within [`LAW`] of the tolerance for a tool of this `reach`.
-pub(crate) fn parts(path: &Path, symmetric: bool, reach: f64, tolerance: f64) -> Vec<Part> {
+pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tolerance: f64) -> Vec<Part> {
     let poses = path.poses();
+    let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
+    let shift = -turn * Vector3::from(frame.origin());
+    let seen = |segment: Segment| {
+        if frame.is_world() {
+            segment
+        } else {
+            segment.moved(&turn, shift)
+        }
+    };
+    let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip().into()));
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| {
         let part = (k % PERIOD) as f64 / PERIOD as f64;
@@ -90,8 +101,13 @@ pub(crate) fn parts(path: &Path, symmetric: bool, reach: f64, tolerance: f64) ->
     let mut from = 0;
     for to in 1..poses.len() {
         if !path.rests(from, to) {
-            let segments = path.segments(to - 1, reach, LAW * tolerance);
-            let tips = [poses[from].tip(), poses[to].tip()];
+            let segments = if symmetric {
+                path.segments_of_symmetric(to - 1, reach, LAW * tolerance)
+            } else {
+                path.segments(to - 1, reach, LAW * tolerance)
+            };
+            let segments = segments.into_iter().map(seen).collect();
+            let tips = [tip(from), tip(to)];
             put(to - 1, segments, tips, [displaced(from), displaced(to)]);
             from = to;
         }
@@ -102,7 +118,8 @@ pub(crate) fn parts(path: &Path, symmetric: bool, reach: f64, tolerance: f64) ->
         // A tool that stands still: sweep it along the displacement.
         let by = displaced(0);
         let still = [by, by + direction() * (TIPS * tolerance)];
-        put(0, Segment::between(pose, pose), [pose.tip(); 2], still);
+        let segments = Segment::between(pose, pose).into_iter().map(seen);
+        put(0, segments.collect(), [tip(0); 2], still);
     }
     parts
 }

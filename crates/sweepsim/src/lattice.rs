@@ -31,8 +31,13 @@ impl<'a> Lattice<'a> {
 
     /// The lines of one column: those with one `x`.
     pub fn column(grid: &'a Grid, i: usize, shift: [f64; 2]) -> Self {
+        Self::columns(grid, [i, i], shift)
+    }
+
+    /// The lines of neighbouring columns, from the first to the last.
+    pub fn columns(grid: &'a Grid, i: [usize; 2], shift: [f64; 2]) -> Self {
         Self {
-            i: [i, i],
+            i,
             ..Self::all(grid, shift)
         }
     }

@@ -38,6 +38,7 @@ mod form;
 mod generic;
 mod instant;
 mod lattice;
+mod lines;
 mod piece;
 mod placed;
 mod planes;
@@ -49,6 +50,7 @@ mod surfaces;
 mod sweep;
 pub mod systems;
 mod time;
+mod tri;
 
 pub use boundary::{Boundary, UnknownBoundary};
 pub use piece::{Piece, PiecePoint};
@@ -56,6 +58,7 @@ pub use section::{Section, SectionCurve, section};
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};
 pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, probe, sweep};
+pub use tri::{TriSimulation, simulate_tri};
 
 /// The README's example is tested.
 #[cfg(doctest)]

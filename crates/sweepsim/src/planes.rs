@@ -20,6 +20,8 @@ use sweepsim_solve::{CurveSolver, Curves, Interval, Preimage, Sample, Sink, Solv
 const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
 /// Boxes of a section, and of each search on a face of one. Sections without trouble need some ten to a hundred.
 const BOXES: u64 = 4_000;
+/// Spans of a section, halves included. Sections without trouble need some hundred; where a curve almost touches itself there is no end to them.
+const SPANS: u32 = 4_000;
 /// Halvings of a span.
 const DEPTH: u32 = 44;
 /// Steps of Newton's method.
@@ -108,6 +110,7 @@ impl Slicer {
             accept,
             sink,
             slicer: self,
+            left: SPANS,
         };
         for curve in curves {
             let count = curve.points.len();
@@ -139,6 +142,25 @@ struct Vertex<const N: usize> {
     y: f64,
 }
 
+/// A crossing found, and its derivative with respect to `y`.
+#[derive(Clone, Copy, Debug)]
+struct Slope<const N: usize> {
+    at: Vertex<N>,
+    slope: [f64; N],
+}
+
+/// Where the next crossing should be, by the parabola with the slopes of the last two: the latest first.
+fn guess<const N: usize>(last: &[Option<Slope<N>>; 2], y: f64) -> Option<[f64; N]> {
+    let latest = last[0]?;
+    let step = y - latest.at.y;
+    Some(std::array::from_fn(|k| {
+        let bend = last[1].map_or(0.0, |before| {
+            (latest.slope[k] - before.slope[k]) / (latest.at.y - before.at.y)
+        });
+        latest.at.x[k] + step * (latest.slope[k] + 0.5 * step * bend)
+    }))
+}
+
 /// The curves of one section being cut by the lines.
 struct Cutting<'a, const N: usize, M: Placed<N>, K> {
     map: &'a mut M,
@@ -147,6 +169,8 @@ struct Cutting<'a, const N: usize, M: Placed<N>, K> {
     accept: f64,
     sink: &'a mut K,
     slicer: &'a mut Slicer,
+    /// Spans that may still be looked at.
+    left: u32,
 }
 
 /// What is seen of the equations without that of `Y`: row 0 is `X`, row 2 is `g`.
@@ -173,6 +197,10 @@ where
     /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
     fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) -> bool {
         self.slicer.boxes += 1;
+        let Some(left) = self.left.checked_sub(1) else {
+            return false;
+        };
+        self.left = left;
         let mark = self.map.mark();
         let cell = self.map.place(&within);
         // Where the map asks for nothing (an edge both of whose faces move in, …) no crossing counts.
@@ -199,6 +227,7 @@ where
     /// The crossings of a span along which `Y` is monotone.
     fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) -> bool {
         let mut from = *p;
+        let mut before: [Option<Slope<N>>; 2] = [None; 2];
         let forward = p.y < q.y;
         for n in 0..=last - first {
             let j = if forward { first + n } else { last - n };
@@ -207,10 +236,14 @@ where
                 continue;
             }
             let target = self.lattice.grid.index(self.lattice.i[0], j);
-            let Some(found) = self.root(&from, q, (target, y), within) else {
+            let part = ((y - from.y) / (q.y - from.y)).clamp(0.0, 1.0);
+            let between = std::array::from_fn(|k| from.x[k] + part * (q.x[k] - from.x[k]));
+            let guess = guess(&before, y).unwrap_or(between);
+            let Some((found, slope)) = self.root(guess, (target, y), within) else {
                 return false;
             };
             from = Vertex { x: found.x, y };
+            before = [Some(Slope { at: from, slope }), before[0]];
             // Beyond the domain another patch, or another segment, has the curve.
             if found.x.iter().all(|x| (0.0..=1.0).contains(x)) {
                 self.sink.found(found);
@@ -219,23 +252,22 @@ where
         true
     }
 
-    /// The point of the span where `Y = y`, by Newton's method from between `p` and `q`.
+    /// The point of the span where `Y = y`, by Newton's method, and how it moves with `y`.
     fn root(
         &mut self,
-        p: &Vertex<N>,
-        q: &Vertex<N>,
+        guess: [f64; N],
         (target, y): (usize, f64),
         within: &[Interval; N],
-    ) -> Option<Preimage<N, M::Seen>> {
-        let part = ((y - p.y) / (q.y - p.y)).clamp(0.0, 1.0);
-        let mut x: [f64; N] = std::array::from_fn(|k| p.x[k] + part * (q.x[k] - p.x[k]));
+    ) -> Option<(Preimage<N, M::Seen>, [f64; N])> {
+        let mut x: [f64; N] = std::array::from_fn(|k| guess[k].clamp(within[k].lo, within[k].hi));
         for _ in 0..STEPS {
             let sample = self.evaluate(&x);
             let wanted = [self.x, y, 0.0];
             let rest = nalgebra::SVector::<f64, N>::from_fn(|i, _| sample.value[i] - wanted[i]);
             let matrix = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, k| sample.jacobian[i][k]);
             let determinant = matrix.determinant();
-            let step = matrix.try_inverse()? * rest;
+            let inverse = matrix.try_inverse()?;
+            let step = inverse * rest;
             let next: [f64; N] = std::array::from_fn(|k| x[k] - step[k]);
             if !next.iter().all(|x| x.is_finite()) {
                 return None;
@@ -243,13 +275,14 @@ where
             if step.amax() <= self.accept {
                 // The box holds one point of the span with this Y: if Newton's method found it, it is in the box.
                 let inside = (0..N).all(|k| next[k] >= within[k].lo - 1e-9 && next[k] <= within[k].hi + 1e-9);
-                return inside.then_some(Preimage {
+                let found = Preimage {
                     target,
                     x: next,
                     from: x,
                     seen: sample.seen,
                     orientation: if determinant > 0.0 { 1 } else { -1 },
-                });
+                };
+                return inside.then(|| (found, std::array::from_fn(|k| inverse[(k, 1)])));
             }
             x = std::array::from_fn(|k| next[k].clamp(within[k].lo, within[k].hi));
         }

@@ -8,6 +8,7 @@ use crate::sweep::{Monitor, Options, Plan, SweepError, probe};
 use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
 use sweepsim_solve::{CurveSolver, SolveOptions, System, SystemError};
 
@@ -99,7 +100,7 @@ pub fn section(
         open: Vec::new(),
     };
     for (number, Cut { tool, path }) in cuts.iter().enumerate() {
-        let plan = Plan::new(tool, path, std::iter::once(plane.offset), options)?;
+        let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::once(plane.offset), options)?;
         let found: Vec<Found> = (0..plan.parts.len())
             .into_par_iter()
             .map(|at| {

@@ -10,6 +10,7 @@ use crate::systems::PatchMotion;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::HashMap;
+use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
 use sweepsim_solve::{SolveOptions, SurfaceSolver};
 
@@ -78,7 +79,7 @@ pub fn envelope_surfaces(
     }
     let mut all = EnvelopeSurfaces::default();
     for (number, Cut { tool, path }) in cuts.iter().enumerate() {
-        let plan = Plan::new(tool, path, std::iter::empty(), options)?;
+        let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::empty(), options)?;
         let found: Vec<EnvelopeSurfaces> = (0..plan.parts.len())
             .into_par_iter()
             .map(|at| {

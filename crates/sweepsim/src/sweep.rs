@@ -5,11 +5,12 @@ use crate::crossings::{Cutter, Forms, Harvest, How, Numbered, Search, Workspace}
 use crate::envelope::Size;
 use crate::generic::{self, Part};
 use crate::lattice::Lattice;
+use crate::lines::Bundles;
 use rayon::prelude::*;
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Mutex;
-use sweepsim_dexel::{AuditFailure, Dexels, Grid, Interval, Operation, cover};
+use sweepsim_dexel::{AuditFailure, Dexels, Frame, Grid, Interval, Operation, cover};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Reason;
 use thiserror::Error;
@@ -21,7 +22,7 @@ pub enum Method {
     /// One subdivision for all lines: boxes on which the envelope system is injective.
     #[default]
     Charts,
-    /// Every line for itself: the paper's Algorithm 4.
+    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision that leads there.
     Lines,
     /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
     Planes,
@@ -209,10 +210,12 @@ pub enum SweepError {
 const CHUNK: usize = 256;
 /// Segments that a worker takes at a time.
 const BLOCK: usize = 4;
+/// Columns of dexels whose lines make a bundle.
+const STRIP: usize = 128;
 /// Times that a line is solved again, each time moved elsewhere.
 const ATTEMPTS: usize = 5;
 
-/// The volume that `tool` sweeps along `path`, on the dexels of `grid`.
+/// The volume that `tool` sweeps along `path`, on the dexels of `grid`, in whatever frame they stand. The path is in the world.
 ///
 /// Runs in the current rayon pool; the result does not depend on the number of threads.
 ///
@@ -226,7 +229,7 @@ pub fn sweep(
     monitor: &dyn Monitor,
 ) -> Result<Sweep, SweepError> {
     let extent = grid.min().into_iter().chain(grid.max());
-    let plan = Plan::new(tool, path, extent, options)?;
+    let plan = Plan::new(tool, path, grid.frame(), extent, options)?;
     let job = plan.job(tool, grid, options, monitor);
     let parts = &plan.parts;
     let mut volume = Dexels::empty(*grid);
@@ -280,7 +283,7 @@ pub fn probe(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Vec<Option<Vec<Interval>>>, SweepError> {
-    let plan = Plan::new(tool, path, lines.iter().flatten().copied(), options)?;
+    let plan = Plan::new(tool, path, &Frame::WORLD, lines.iter().flatten().copied(), options)?;
     let space = Mutex::new(Vec::new());
     let half = 0.01 * plan.cutter.reach;
     let one = |[x, y]: &[f64; 2]| -> Option<Vec<Interval>> {
@@ -319,10 +322,11 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// `extent`: coordinates of the lines.
+    /// Everything as seen from `frame`. `extent`: coordinates of the lines.
     pub fn new(
         tool: &Tool,
         path: &Path,
+        frame: &Frame,
         extent: impl Iterator<Item = f64>,
         options: &Options,
     ) -> Result<Self, SweepError> {
@@ -331,13 +335,19 @@ impl Plan {
             return Err(SweepError::Tolerance(tolerance));
         }
         let cutter = Cutter::new(tool);
-        let size = extent.map(f64::abs).fold(cutter.reach.max(path.size()), f64::max);
+        // Turned by any angle, and moved.
+        let far = if frame.is_world() {
+            path.size()
+        } else {
+            3.0_f64.sqrt() * path.size() + frame.origin().iter().map(|c| c.abs()).sum::<f64>()
+        };
+        let size = extent.map(f64::abs).fold(cutter.reach.max(far), f64::max);
         let least = 2e4 * f64::EPSILON * size;
         if tolerance < least {
             return Err(SweepError::TooFine { tolerance, size, least });
         }
         Ok(Self {
-            parts: generic::parts(path, tool.is_revolved(), cutter.reach, tolerance),
+            parts: generic::parts(path, frame, tool.is_revolved(), cutter.reach, tolerance),
             // The square of the last step, times lengths of the tool's size, is a small part of the tolerance.
             accept: (1e-3 * tolerance / size).sqrt().clamp(1e-9, 1e-5),
             cutter,
@@ -441,11 +451,26 @@ impl Job<'_> {
                     }
                 })
             }
-            Method::Lines => self.gather(self.grid.len(), |line, space, harvest| {
-                if !self.monitor.cancelled() {
-                    self.line(chunk, line, 0, space, harvest);
-                }
-            }),
+            Method::Lines => {
+                let bundles: Vec<Bundles> = (0..chunk.len())
+                    .into_par_iter()
+                    .map(|at| Bundles::new(self.tool, chunk, at))
+                    .collect();
+                let blocks = chunk.len().div_ceil(BLOCK);
+                let strips = self.grid.cells()[0].div_ceil(STRIP);
+                self.gather(blocks * strips, |number, space, harvest| {
+                    let (block, strip) = (number / strips, number % strips);
+                    let columns = [strip * STRIP, ((strip + 1) * STRIP).min(self.grid.cells()[0]) - 1];
+                    let lattice = Lattice::columns(self.grid, columns, shift);
+                    let search = self.search(&lattice, How::Lines(&bundles));
+                    for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
+                        if self.monitor.cancelled() {
+                            break;
+                        }
+                        search.part(chunk, at, space, harvest);
+                    }
+                })
+            }
         }
     }
 

@@ -39,18 +39,32 @@ impl Outline {
         let mut pieces = Vec::new();
         let mut from = Vector2::from(profile.start());
         for segment in profile.segments() {
-            match *segment {
+            match segment {
                 ProfileSegment::Line { to } => {
-                    pieces.push(Piece::Line { from, to: to.into() });
-                    from = to.into();
+                    let to = Vector2::from(*to);
+                    pieces.push(Piece::Line { from, to });
+                    from = to;
                 }
-                ProfileSegment::Arc { to, centre, turn } => {
+                &ProfileSegment::Arc { to, centre, turn } => {
                     let to = Vector2::from(to);
                     match turn {
                         Turn::Ccw => split_arc(centre.into(), from, to, &mut pieces),
                         Turn::Cw => split_arc(centre.into(), to, from, &mut pieces),
                     }
                     from = to;
+                }
+                ProfileSegment::Spline {
+                    degree,
+                    knots,
+                    points,
+                    weights,
+                } => {
+                    let at = curve(*degree, knots.as_deref(), points, weights.as_deref());
+                    for k in 1..=CHORDS {
+                        let to = at(k as f64 / CHORDS as f64);
+                        pieces.push(Piece::Line { from, to });
+                        from = to;
+                    }
                 }
             }
         }
@@ -115,6 +129,42 @@ impl Outline {
             .map(|piece| piece.distance(p))
             .fold(f64::INFINITY, f64::min);
         if self.contains(rho, zeta) { -distance } else { distance }
+    }
+}
+
+/// A spline becomes so many chords: of a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/4096)²/8`.
+const CHORDS: usize = 4096;
+
+/// The point of a spline at a part of its domain, by de Boor's algorithm.
+fn curve<'a>(
+    degree: usize,
+    knots: Option<&[f64]>,
+    points: &'a [[f64; 2]],
+    weights: Option<&'a [f64]>,
+) -> impl Fn(f64) -> Vector2<f64> + 'a {
+    let count = points.len();
+    let even = |i: usize| i.clamp(degree, count) as f64;
+    let knots = knots.map_or_else(|| (0..=count + degree).map(even).collect(), <[f64]>::to_vec);
+    move |part| {
+        let x = knots[degree] + (knots[count] - knots[degree]) * part;
+        let span = (degree..count)
+            .rfind(|k| knots[*k] <= x && knots[*k] < knots[k + 1])
+            .unwrap_or(degree);
+        let mut row: Vec<(Vector2<f64>, f64)> = (span - degree..=span)
+            .map(|i| (weights.map_or(1.0, |w| w[i]), i))
+            .map(|(w, i)| (Vector2::from(points[i]) * w, w))
+            .collect();
+        for level in 1..=degree {
+            for j in (level..=degree).rev() {
+                let i = span - degree + j;
+                let s = (x - knots[i]) / (knots[i + degree + 1 - level] - knots[i]);
+                row[j] = (
+                    row[j - 1].0 * (1.0 - s) + row[j].0 * s,
+                    row[j - 1].1 * (1.0 - s) + row[j].1 * s,
+                );
+            }
+        }
+        row[degree].0 / row[degree].1
     }
 }
 

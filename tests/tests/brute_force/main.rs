@@ -9,11 +9,16 @@
 //! therefore takes the signed distance of the true swept volume at the points where the two answers differ, and demands |D| ≤ ε (plus its own
 //! error of 1e-8). That is neither looser nor tighter than what is promised, at any slope.
 
+mod about_a_line;
 mod cases;
+mod circle_segments;
 mod corpus;
 mod degenerate;
 mod generic;
+mod jobs;
 mod judge;
 mod metamorphic;
 mod motions;
+mod random;
 mod relations;
+mod splines;

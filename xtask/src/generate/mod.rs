@@ -1,5 +1,6 @@
 //! `cargo xtask generate`: writes the jobs and paths under `fixtures/` that are computed rather than written by hand.
 
+mod cavity;
 mod impeller;
 mod router;
 mod teapot;
@@ -11,6 +12,7 @@ use std::{fs, io};
 /// Every generated file: its place under `fixtures/` and its text.
 fn files() -> Vec<(&'static str, String)> {
     let mut files = teapot::files();
+    files.extend(cavity::files());
     files.extend(impeller::files());
     files.extend(router::files());
     files

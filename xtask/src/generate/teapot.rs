@@ -12,7 +12,7 @@ use super::toolpath::{Accuracy, Placement, csv, decimals, sample};
 use nalgebra::{Vector2, Vector3};
 
 /// Newell's profile of the body, `(radius, height)`, from the rim to the foot; three cubics.
-const PROFILE: [[[f64; 2]; 4]; 3] = [
+pub(super) const PROFILE: [[[f64; 2]; 4]; 3] = [
     [[1.4, 2.25], [1.3375, 2.38125], [1.4375, 2.38125], [1.5, 2.25]],
     [[1.5, 2.25], [1.75, 1.725], [2.0, 1.2], [2.0, 0.75]],
     [[2.0, 0.75], [2.0, 0.3], [1.5, 0.075], [1.5, 0.0]],
@@ -22,7 +22,7 @@ const PROFILE: [[[f64; 2]; 4]; 3] = [
 const QUARTER: f64 = 0.56;
 
 /// Millimetres per unit of Newell's.
-const SCALE: f64 = 15.0;
+pub(super) const SCALE: f64 = 15.0;
 
 /// The flat end.
 const RADIUS: f64 = 2.5;
@@ -88,12 +88,12 @@ Job(
     )
 }
 
-fn with_point(value: f64) -> String {
+pub(super) fn with_point(value: f64) -> String {
     format!("{value:?}")
 }
 
 /// A point of the profile as `(x along the body, radius)` in mm, and the unit normal out of the body in the same plane.
-fn profile(parameter: f64) -> (Vector2<f64>, Vector2<f64>) {
+pub(super) fn profile(parameter: f64) -> (Vector2<f64>, Vector2<f64>) {
     let piece = (parameter as usize).min(PROFILE.len() - 1);
     let (point, derivative) = cubic(PROFILE[piece].map(Vector2::from), parameter - piece as f64);
     // The profile runs from the rim down to the foot: outside is on its left, seen with the radius to the right, the height up.
@@ -102,7 +102,7 @@ fn profile(parameter: f64) -> (Vector2<f64>, Vector2<f64>) {
 }
 
 /// The quarter circle's point and its normal, `(y, z)`, radius 1: `u` runs over `[0, 2]` from `+y` over `+z` to `−y`.
-fn around(u: f64) -> (Vector2<f64>, Vector2<f64>) {
+pub(super) fn around(u: f64) -> (Vector2<f64>, Vector2<f64>) {
     let quarter = [
         Vector2::new(1.0, 0.0),
         Vector2::new(1.0, QUARTER),

@@ -222,17 +222,18 @@ impl Hits {
         hits.binary_search_by_key(&edge, |hit| hit.edge).ok().map(|k| &hits[k])
     }
 
-    /// All, with the points where their edges begin.
-    pub fn iter(&self, lattice: &Lattice<'_>) -> impl Iterator<Item = ([usize; 3], &Hit)> {
+    /// Those on lines with a given first number, with the points where their edges begin.
+    pub fn slab(&self, lattice: &Lattice<'_>, number: usize) -> impl Iterator<Item = ([usize; 3], &Hit)> {
         let across = lattice.points[(self.axis + 2) % 3];
-        (0..self.first.len() - 1).flat_map(move |line| {
+        (0..across).flat_map(move |other| {
+            let line = number * across + other;
             self.hits[self.first[line]..self.first[line + 1]]
                 .iter()
                 .map(move |hit| {
                     let mut at = [0; 3];
                     at[self.axis] = hit.edge as usize;
-                    at[(self.axis + 1) % 3] = line / across;
-                    at[(self.axis + 2) % 3] = line % across;
+                    at[(self.axis + 1) % 3] = number;
+                    at[(self.axis + 2) % 3] = other;
                     (at, hit)
                 })
         })

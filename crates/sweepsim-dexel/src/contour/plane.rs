@@ -1,11 +1,12 @@
 //! Where tangent planes meet.
 
 use super::lattice::Hit;
+use smallvec::SmallVec;
 
 /// Points of a surface with their tangent planes.
 #[derive(Default)]
 pub(super) struct Planes {
-    points: Vec<([f64; 3], [f64; 3])>,
+    points: SmallVec<[([f64; 3], [f64; 3]); 8]>,
     /// Points whose normal is not known.
     bare: Vec<[f64; 3]>,
     cut: bool,
@@ -113,15 +114,21 @@ fn within(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> 
 /// Eigenvalues of a symmetric matrix from the largest down, with unit vectors: by Jacobi's rotations.
 fn eigen(mut a: [[f64; 3]; 3]) -> [(f64, [f64; 3]); 3] {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    // What is this small beside the trace of a positive semidefinite matrix is rounding.
+    let small = f64::EPSILON * (a[0][0] + a[1][1] + a[2][2]) / 4.0;
     // Convergence is quadratic: five sweeps are enough for double precision.
     for _ in 0..8 {
+        if [a[0][1], a[0][2], a[1][2]].iter().all(|off| off.abs() <= small) {
+            break;
+        }
         for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if a[p][q].abs() <= 1e-300 {
+            if a[p][q].abs() <= small {
                 continue;
             }
+            // Below 1/small, so that the square does not overflow.
             let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
             for row in &mut a {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);

@@ -321,6 +321,7 @@ proptest! {
         };
         let set = |axis: usize| {
             let grid = crate::Grid::new([0.0; 2], [N as f64; 2], [N; 2]).unwrap();
+            let grid = grid.in_frame(crate::Frame::cyclic(axis));
             Dexels::from_fn(grid, |index, line| {
                 let (i, j) = grid.place(index);
                 for n in 0..N {

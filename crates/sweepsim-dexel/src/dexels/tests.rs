@@ -62,7 +62,7 @@ proptest! {
         let mut combined = first.clone();
         combined.combine(operation, &second).unwrap();
         let mut updated = first.clone();
-        updated.update(operation, &mut b.clone());
+        updated.update(operation, &b);
         let mut one_by_one = first.clone();
         for index in 0..grid.len() {
             let line = second.at(index).to_vec();
@@ -122,7 +122,7 @@ fn the_same_at_any_thread_count() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut dexels = Dexels::empty(grid);
-            dexels.update(Operation::Union, &mut many.clone());
+            dexels.update(Operation::Union, &many);
             dexels
         })
     };
@@ -140,7 +140,7 @@ fn beyond_the_grid_there_is_nothing() {
         dexels.subtract(index, &[piece]);
         assert!(dexels.at(index).is_empty());
     }
-    dexels.update(Operation::Union, &mut [(9, piece), (u32::MAX, piece)]);
+    dexels.update(Operation::Union, &[(9, piece), (u32::MAX, piece)]);
     assert_eq!(dexels, Dexels::empty(grid([3, 3])));
     assert_eq!(
         dexels.combine(Operation::Union, &Dexels::empty(grid([3, 2]))),

@@ -1,0 +1,230 @@
+//! Places and directions of one's own.
+
+use thiserror::Error;
+
+/// A right-handed frame of three perpendicular unit vectors.
+///
+/// ```
+/// use sweepsim_dexel::Frame;
+/// let frame = Frame::new([1.0, 2.0, 3.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
+/// assert_eq!(frame.to_world([0.0, 0.0, 5.0]), [6.0, 2.0, 3.0]);
+/// assert_eq!(frame.from_world([6.0, 2.0, 3.0]), [0.0, 0.0, 5.0]);
+/// # Ok::<(), sweepsim_dexel::FrameError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    origin: [f64; 3],
+    axes: [[f64; 3]; 3],
+}
+
+/// Why vectors make no frame.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum FrameError {
+    /// A number is not finite.
+    #[error("the frame is not finite")]
+    Infinite,
+    /// The direction of z is no direction.
+    #[error("the frame's z is zero")]
+    Zero,
+    /// The direction of x says nothing beside z.
+    #[error("the frame's x is zero or parallel to its z")]
+    Parallel,
+    /// Axes that are not perpendicular unit vectors, or left-handed.
+    #[error("the frame's axes are not perpendicular unit vectors of a right-handed frame")]
+    Skewed,
+}
+
+/// How far from 1 and 0 the products of axes may be that are taken as they are.
+const SKEW: f64 = 1e-12;
+/// Sine below which x is parallel to z.
+const LEAST: f64 = 1e-9;
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
+}
+
+/// Scaled by its largest number first, so that no square overflows.
+fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
+    let most = a.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+    if most == 0.0 {
+        return None;
+    }
+    let a = a.map(|c| c / most);
+    let length = dot(a, a).sqrt();
+    Some(a.map(|c| c / length))
+}
+
+impl Default for Frame {
+    fn default() -> Self {
+        Self::WORLD
+    }
+}
+
+impl Frame {
+    /// That of all coordinates where nothing else is said.
+    pub const WORLD: Self = Self {
+        origin: [0.0; 3],
+        axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+
+    /// A frame at a point, whose z points along `z`, and whose x along what of `x` is perpendicular to that. Of any lengths.
+    ///
+    /// # Errors
+    /// [`FrameError`]: a number is not finite, `z` is zero, or `x` is parallel to it.
+    pub fn new(origin: [f64; 3], z: [f64; 3], x: [f64; 3]) -> Result<Self, FrameError> {
+        if !origin.iter().chain(&z).chain(&x).all(|c| c.is_finite()) {
+            return Err(FrameError::Infinite);
+        }
+        let z = unit(z).ok_or(FrameError::Zero)?;
+        let x = unit(x).ok_or(FrameError::Parallel)?;
+        let y = cross(z, x);
+        if dot(y, y) < LEAST * LEAST {
+            return Err(FrameError::Parallel);
+        }
+        let y = unit(y).ok_or(FrameError::Parallel)?;
+        // A product of perpendicular unit vectors.
+        let x = unit(cross(y, z)).ok_or(FrameError::Parallel)?;
+        Ok(Self {
+            origin,
+            axes: [x, y, z],
+        })
+    }
+
+    /// A frame from its axes, which are kept to the bit.
+    ///
+    /// # Errors
+    /// [`FrameError`]: not finite, or not perpendicular unit vectors (by more than 1e-12), or left-handed.
+    pub fn from_axes(origin: [f64; 3], axes: [[f64; 3]; 3]) -> Result<Self, FrameError> {
+        if !origin.iter().chain(axes.iter().flatten()).all(|c| c.is_finite()) {
+            return Err(FrameError::Infinite);
+        }
+        let good = (0..3).all(|k| {
+            let (a, b) = (axes[k], axes[(k + 1) % 3]);
+            (dot(a, a) - 1.0).abs() <= SKEW && dot(a, b).abs() <= SKEW
+        });
+        if good && dot(cross(axes[0], axes[1]), axes[2]) > 0.0 {
+            Ok(Self { origin, axes })
+        } else {
+            Err(FrameError::Skewed)
+        }
+    }
+
+    /// The world as seen along one of its axes: x, y, z are the world's with the numbers `axis + 1`, `axis + 2` and `axis` (mod 3).
+    #[must_use]
+    pub fn cyclic(axis: usize) -> Self {
+        let world = Self::WORLD.axes;
+        Self {
+            origin: [0.0; 3],
+            axes: [1, 2, 0].map(|k| world[(axis + k) % 3]),
+        }
+    }
+
+    /// Where its own origin is.
+    #[must_use]
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// Its axes, as unit vectors of the world.
+    #[must_use]
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        self.axes
+    }
+
+    /// Whether it is that of the world.
+    #[must_use]
+    pub fn is_world(&self) -> bool {
+        *self == Self::WORLD
+    }
+
+    /// A point of the frame, in the world.
+    #[must_use]
+    pub fn to_world(&self, p: [f64; 3]) -> [f64; 3] {
+        let turned = self.turn_to_world(p);
+        [0, 1, 2].map(|k| self.origin[k] + turned[k])
+    }
+
+    /// A point of the world, in the frame.
+    #[must_use]
+    pub fn from_world(&self, p: [f64; 3]) -> [f64; 3] {
+        self.turn_from_world([0, 1, 2].map(|k| p[k] - self.origin[k]))
+    }
+
+    /// A direction in the frame, in the world.
+    #[must_use]
+    pub fn turn_to_world(&self, v: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = self.axes;
+        [0, 1, 2].map(|k| v[0] * x[k] + v[1] * y[k] + v[2] * z[k])
+    }
+
+    /// A direction of the world, in the frame.
+    #[must_use]
+    pub fn turn_from_world(&self, v: [f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| dot(axis, v))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = [f64; 3]> {
+        proptest::array::uniform3(-10.0..10.0)
+    }
+
+    proptest! {
+        #[test]
+        fn there_and_back_is_where_it_was(origin in vector(), z in vector(), x in vector(), p in vector()) {
+            let y = cross(z, x);
+            prop_assume!(dot(y, y) > 1e-2);
+            let frame = Frame::new(origin, z, x).unwrap();
+            prop_assert_eq!(Frame::from_axes(frame.origin(), frame.axes()), Ok(frame));
+            let back = frame.from_world(frame.to_world(p));
+            // A few roundings of numbers up to 40.
+            prop_assert!((0..3).all(|k| (back[k] - p[k]).abs() < 1e-13), "{:?} {:?}", back, p);
+            // Distances stay, and z is along the given one.
+            let far = frame.turn_to_world(p);
+            prop_assert!((dot(far, far) - dot(p, p)).abs() < 1e-12 * (1.0 + dot(p, p)));
+            let along = dot(frame.axes()[2], z);
+            prop_assert!((along * along - dot(z, z)).abs() < 1e-12 * dot(z, z) && along > 0.0);
+        }
+    }
+
+    #[test]
+    fn frames_along_axes_are_exact() {
+        for axis in 0..3 {
+            let frame = Frame::cyclic(axis);
+            assert_eq!(Frame::from_axes([0.0; 3], frame.axes()), Ok(frame));
+            let p = [0.1, 0.2, 0.3];
+            assert_eq!(frame.from_world(p), [p[(axis + 1) % 3], p[(axis + 2) % 3], p[axis]]);
+            assert_eq!(frame.to_world(frame.from_world(p)), p);
+        }
+        assert!(Frame::cyclic(2).is_world() && Frame::default().is_world());
+        assert_eq!(
+            Frame::new([0.0; 3], [0.0, 0.0, 3.0], [1e-3, 0.0, 5.0]),
+            Ok(Frame::WORLD)
+        );
+        let huge = Frame::new([0.0; 3], [0.0, 0.0, 1e300], [1e-300, 0.0, 0.0]);
+        assert_eq!(huge, Ok(Frame::WORLD));
+    }
+
+    #[test]
+    fn what_is_no_frame_is_refused() {
+        let frame = |z, x| Frame::new([0.0; 3], z, x);
+        assert_eq!(frame([0.0; 3], [1.0, 0.0, 0.0]), Err(FrameError::Zero));
+        assert_eq!(frame([0.0, 0.0, 1.0], [0.0; 3]), Err(FrameError::Parallel));
+        assert_eq!(frame([1.0, 1.0, 1.0], [-2.0, -2.0, -2.0]), Err(FrameError::Parallel));
+        assert_eq!(frame([f64::NAN, 0.0, 1.0], [1.0, 0.0, 0.0]), Err(FrameError::Infinite));
+        let mut axes = Frame::WORLD.axes();
+        axes[0][0] = -1.0;
+        assert_eq!(Frame::from_axes([0.0; 3], axes), Err(FrameError::Skewed));
+        axes[0] = [1.0, 1e-6, 0.0];
+        assert_eq!(Frame::from_axes([0.0; 3], axes), Err(FrameError::Skewed));
+    }
+}

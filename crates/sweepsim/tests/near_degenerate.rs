@@ -1,0 +1,194 @@
+//! What almost degenerate input costs: in boxes of the subdivision, which no clock disturbs. It may cost three times its generic
+//! neighbour, whatever the distance from degeneracy, but for the exceptions that are named.
+//!
+//! `cargo test -p sweepsim --release --test near_degenerate -- --nocapture` prints the table of the docs.
+
+use sweepsim::{Options, Statistics, sweep};
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{Apt, Course, Law, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
+
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+/// From far to none at all.
+const DISTANCES: [f64; 11] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-12, 1e-15, 0.0];
+/// The neighbour that is generic.
+const GENERIC: f64 = 0.23;
+const MOST: f64 = 3.0;
+/// Where it is more, as it is now: the cost grows with the logarithm of the distance, and the generic neighbour's is small.
+const EXCEPTIONS: [(&str, f64); 4] = [
+    ("tilt on an arc about a line", 3.4),
+    ("line from the wall", 6.5),
+    ("turn about the tip over a line", 6.5),
+    ("tool's radius from that of the arc", 4.6),
+];
+
+fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+    Pose::new(tip, axis).expect("a pose")
+}
+
+/// An axis `angle` away from z, in a direction that is none of the grid's.
+fn leaning(angle: f64) -> [f64; 3] {
+    let (s, c) = angle.sin_cos();
+    [0.6_f64.cos() * s, 0.6_f64.sin() * s, c]
+}
+
+fn through(poses: Vec<Pose>, law: Law) -> Path {
+    Path::with_law(poses, law).expect("a path")
+}
+
+/// An arc of the tip of 100° about the origin, of this radius, rising by `rise`.
+fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
+    let (s, c) = 1.745_f64.sin_cos();
+    let (from, to) = ([radius, 0.0, 0.0], [radius * c, radius * s, rise]);
+    let course = Course::Arc(TipArc::between(from, to, [0.0; 3], UP, 1).expect("an arc"));
+    let poses = vec![pose(from, axes[0]), pose(to, axes[1])];
+    Path::with_moves(poses, vec![Move { course, turning }]).expect("a path")
+}
+
+/// 15 × 15 lines, the middle one at a place.
+fn around([x, y]: [f64; 2]) -> Grid {
+    Grid::new([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], [15, 15]).expect("a grid")
+}
+
+/// A family of inputs by their distance from degeneracy: the path and the grid of a distance.
+type Family = (&'static str, fn(f64) -> (Path, Grid));
+
+fn families() -> Vec<Family> {
+    const SIDE: [f64; 2] = [0.0137, -0.0211];
+    vec![
+        ("line from the centre of a level arc", |d| {
+            (arc(1.3, 0.0, [UP; 2], Turning::Even), around([0.8 * d, 0.6 * d]))
+        }),
+        ("rise of a helix about a line", |d| {
+            (arc(1.3, d, [UP; 2], Turning::Even), around([0.0; 2]))
+        }),
+        ("tilt on an arc about a line", |d| {
+            (arc(1.3, 0.0, [leaning(d); 2], Turning::Even), around([0.0; 2]))
+        }),
+        ("axis change on an arc about a line", |d| {
+            (arc(1.3, 0.0, [UP, leaning(d)], Turning::Even), around([0.0; 2]))
+        }),
+        ("both, and a rise", |d| {
+            (arc(1.3, d, [leaning(d), leaning(-d)], Turning::Even), around([0.0; 2]))
+        }),
+        ("tool's radius from that of the arc", |d| {
+            (arc(2.0 - d, 0.0, [UP; 2], Turning::Even), around([0.0; 2]))
+        }),
+        ("tilt of a level move", |d| {
+            let axis = leaning(d);
+            let poses = vec![pose([-2.0, -0.7, 0.0], axis), pose([2.0, 0.9, 0.0], axis)];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("tilt of a plunge", |d| {
+            let axis = leaning(d);
+            let poses = vec![pose([0.3, 0.2, 2.0], axis), pose([0.3, 0.2, -1.0], axis)];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("axis change of a level move", |d| {
+            let poses = vec![pose([-2.0, -0.7, 0.0], UP), pose([2.0, 0.9, 0.0], leaning(d))];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("height difference of a level move", |d| {
+            let poses = vec![pose([-2.0, -0.7, 0.0], UP), pose([2.0, 0.9, d], UP)];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("length of a move", |d| {
+            let axis = leaning(0.3);
+            let poses = vec![pose([0.0; 3], axis), pose([0.5 * d, 0.3 * d, 0.2 * d], axis)];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("turn about the tip", |d| {
+            let poses = vec![pose([0.0; 3], leaning(0.4)), pose([0.0; 3], leaning(0.4 + d))];
+            (through(poses, Law::Slerp), around(SIDE))
+        }),
+        ("turn about the tip over a line", |d| {
+            let poses = vec![pose([0.0; 3], UP), pose([0.0; 3], leaning(0.7))];
+            (through(poses, Law::ConstantSpeed), around([0.8 * d, 0.6 * d]))
+        }),
+        ("tilt while turning about the own axis", |d| {
+            let (table, tilt) = (RotaryTable::Ac, d.to_degrees());
+            let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
+            let poses = vec![pose([0.0; 3], table.axis(from)), pose([0.0; 3], table.axis(to))];
+            let way = Move::straight(Turning::Rotary { table, from, to });
+            (Path::with_moves(poses, vec![way]).expect("a path"), around([0.0; 2]))
+        }),
+        ("tilt while turning about the own axis on the way", |d| {
+            let (table, tilt) = (RotaryTable::Ac, d.to_degrees());
+            let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
+            let poses = vec![
+                pose([-1.0, -0.4, 0.0], table.axis(from)),
+                pose([1.0, 0.5, 0.0], table.axis(to)),
+            ];
+            let way = Move::straight(Turning::Rotary { table, from, to });
+            (Path::with_moves(poses, vec![way]).expect("a path"), around(SIDE))
+        }),
+        ("line from the wall", |d| {
+            let poses = vec![pose([-2.0, 0.0, 0.0], UP), pose([2.0, 0.0, 0.0], UP)];
+            (through(poses, Law::Slerp), around([0.0137, 2.0 - d]))
+        }),
+        ("line from the wall of a plunge", |d| {
+            let poses = vec![pose([0.0, 0.0, 2.0], UP), pose([0.0, 0.0, -1.0], UP)];
+            (through(poses, Law::Slerp), around([0.0137, 2.0 - d]))
+        }),
+        ("line from the axis", |d| {
+            let poses = vec![pose([-2.0, 0.0, 0.0], UP), pose([2.0, 0.0, 0.3], UP)];
+            (through(poses, Law::Slerp), around([0.0137, d]))
+        }),
+    ]
+}
+
+fn tools() -> Vec<(&'static str, Tool)> {
+    let drill = Apt {
+        d: 4.0,
+        r: 0.0,
+        e: 2.0,
+        f: 0.0,
+        a: 31.0,
+        b: 0.0,
+        h: 7.0,
+    };
+    vec![
+        ("ball", Tool::ball(2.0, 7.0).expect("a tool")),
+        ("flat", Tool::flat(2.0, 7.0).expect("a tool")),
+        ("bull", Tool::bull(2.0, 0.5, 7.0).expect("a tool")),
+        ("drill", Tool::apt(&drill).expect("a tool").0),
+    ]
+}
+
+fn cost(tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
+    sweep(tool, path, grid, &Options::default(), &())
+        .expect("a sweep")
+        .statistics
+}
+
+#[test]
+fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
+    let mut wrong = Vec::new();
+    println!("| boxes for a generic neighbour, then times | {:?} |", DISTANCES);
+    for (what, family) in families() {
+        for (name, tool) in tools() {
+            let generic = cost(&tool, &family(GENERIC));
+            let ratio = |d: &f64| {
+                let found = cost(&tool, &family(*d));
+                let trouble = found.repaired + found.unresolved.len();
+                (found.boxes as f64 / generic.boxes as f64, trouble)
+            };
+            let ratios: Vec<(f64, usize)> = DISTANCES.iter().map(ratio).collect();
+            let cells: Vec<String> = ratios
+                .iter()
+                .map(|(ratio, trouble)| match trouble {
+                    0 => format!("{ratio:.2}"),
+                    _ => format!("{ratio:.2} ({trouble} solved again)"),
+                })
+                .collect();
+            println!("| {what}, {name}: {} | {} |", generic.boxes, cells.join(" | "));
+            let most = EXCEPTIONS
+                .iter()
+                .find(|(named, _)| *named == what)
+                .map_or(MOST, |(_, most)| *most);
+            if ratios.iter().any(|(ratio, trouble)| !(*ratio <= most) || *trouble > 0) {
+                wrong.push(format!("{what}, {name}: {}", cells.join(" ")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
