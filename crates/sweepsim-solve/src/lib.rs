@@ -15,6 +15,7 @@
 
 mod bundle;
 mod certify;
+mod chart;
 mod charts;
 mod curves;
 mod double;
