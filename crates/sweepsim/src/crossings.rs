@@ -340,6 +340,7 @@ impl Search<'_> {
             } else {
                 space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
+            harvest.crossings.reserve(sink.found.len());
             for found in sink.found {
                 let crossing = Crossing {
                     z: found.seen.height.at(&found.x, &found.from),
@@ -422,6 +423,7 @@ impl Search<'_> {
             } else {
                 space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
             }
+            harvest.crossings.reserve(sink.found.len());
             for found in sink.found {
                 let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
                 if (a < 0.0) == (b < 0.0) {
@@ -463,6 +465,7 @@ impl Search<'_> {
             } else {
                 space.placed.solve(&mut map, 0, self.lattice, &mut sink);
             }
+            harvest.crossings.reserve(sink.found.len());
             for found in sink.found {
                 let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
                 let change = negative(found.seen.after) - negative(found.seen.before);
