@@ -500,6 +500,8 @@ impl Job<'_> {
             return Err(SweepError::Cancelled);
         }
         let mut all = Harvest::default();
+        all.crossings
+            .reserve(parts.iter().map(|part| part.crossings.len()).sum());
         for part in parts {
             all.crossings.extend(part.crossings);
             all.open.extend(part.open);
