@@ -229,7 +229,6 @@ where
         let mut from = *p;
         let mut before: [Option<Slope<N>>; 2] = [None; 2];
         let forward = p.y < q.y;
-        self.sink.found.reserve(last - first + 1);
         for n in 0..=last - first {
             let j = if forward { first + n } else { last - n };
             let y = self.lattice.coordinate(1, j);
