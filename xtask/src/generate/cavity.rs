@@ -6,8 +6,8 @@
 //!
 //! Only `+ − × ÷ √` are used, so that every machine writes the same bytes.
 
-use super::teapot::{PROFILE, SCALE, around, profile, with_point};
-use super::toolpath::{Accuracy, Placement, csv, decimals, sample};
+use super::teapot::{PROFILE, SCALE, around, profile};
+use super::toolpath::{Accuracy, BlockJob, Placement, csv, sample};
 use nalgebra::{Vector2, Vector3};
 
 /// The ball end.
@@ -43,33 +43,16 @@ pub fn files() -> Vec<(&'static str, String)> {
 }
 
 fn job() -> String {
-    let [min, max] = STOCK.map(|corner| corner.map(decimals));
-    format!(
-        "\
+    BlockJob {
+        heading: "\
 // The inside of half the body of the Utah teapot, lying on its side, by a ball end whose axis always passes one point before the
-// opening: the paper's second example. Written by `cargo xtask generate` (xtask/src/generate/cavity.rs).
-Job(
-    units: Mm,
-    tolerance: 1e-6,
-    grid: Grid(min: ({}, {}), max: ({}, {}), cells: (180, 300)),
-    stock: Block(min: ({}), max: ({})),
-    tools: {{
-        1: Ball(radius: {}, length: {}),
-    }},
-    paths: [
-        Path(tool: 1, file: \"../paths/teapot-interior.csv\"),
-    ],
-)
-",
-        with_point(STOCK[0][0]),
-        with_point(STOCK[0][1]),
-        with_point(STOCK[1][0]),
-        with_point(STOCK[1][1]),
-        min.join(", "),
-        max.join(", "),
-        with_point(RADIUS),
-        with_point(LENGTH),
-    )
+// opening: the paper's second example. Written by `cargo xtask generate` (xtask/src/generate/cavity.rs).",
+        stock: STOCK,
+        cells: [180, 300],
+        tool: format!("Ball(radius: {RADIUS:?}, length: {LENGTH:?})"),
+        path: "../paths/teapot-interior.csv",
+    }
+    .text()
 }
 
 /// The point that all axes pass.

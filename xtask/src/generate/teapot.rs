@@ -8,7 +8,7 @@
 //!
 //! Only `+ − × ÷ √` are used, so that every machine writes the same bytes.
 
-use super::toolpath::{Accuracy, Placement, csv, decimals, sample};
+use super::toolpath::{Accuracy, BlockJob, Placement, csv, sample};
 use nalgebra::{Vector2, Vector3};
 
 /// Newell's profile of the body, `(radius, height)`, from the rim to the foot; three cubics.
@@ -59,37 +59,16 @@ pub fn files() -> Vec<(&'static str, String)> {
 }
 
 fn job() -> String {
-    let [min, max] = STOCK.map(|corner| corner.map(decimals));
-    format!(
-        "\
+    BlockJob {
+        heading: "\
 // Half the body of the Utah teapot, lying on its side, out of a block, by a flat end: the paper's first example.
-// Written by `cargo xtask generate` (xtask/src/generate/teapot.rs).
-Job(
-    units: Mm,
-    tolerance: 1e-6,
-    grid: Grid(min: ({}, {}), max: ({}, {}), cells: (300, 300)),
-    stock: Block(min: ({}), max: ({})),
-    tools: {{
-        1: Flat(radius: {}, length: {}),
-    }},
-    paths: [
-        Path(tool: 1, file: \"../paths/teapot-exterior.csv\"),
-    ],
-)
-",
-        with_point(STOCK[0][0]),
-        with_point(STOCK[0][1]),
-        with_point(STOCK[1][0]),
-        with_point(STOCK[1][1]),
-        min.join(", "),
-        max.join(", "),
-        with_point(RADIUS),
-        with_point(LENGTH),
-    )
-}
-
-pub(super) fn with_point(value: f64) -> String {
-    format!("{value:?}")
+// Written by `cargo xtask generate` (xtask/src/generate/teapot.rs).",
+        stock: STOCK,
+        cells: [300, 300],
+        tool: format!("Flat(radius: {RADIUS:?}, length: {LENGTH:?})"),
+        path: "../paths/teapot-exterior.csv",
+    }
+    .text()
 }
 
 /// A point of the profile as `(x along the body, radius)` in mm, and the unit normal out of the body in the same plane.

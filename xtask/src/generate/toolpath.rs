@@ -83,6 +83,51 @@ fn halve(
     }
 }
 
+/// A job that cuts a block along one path, on dexels over the block.
+pub struct BlockJob {
+    /// Comments at the top.
+    pub heading: &'static str,
+    /// The block: `(min, max)`.
+    pub stock: [[f64; 3]; 2],
+    /// Dexels.
+    pub cells: [usize; 2],
+    /// The tool.
+    pub tool: String,
+    /// The file of the path.
+    pub path: &'static str,
+}
+
+impl BlockJob {
+    /// Its text.
+    pub fn text(&self) -> String {
+        let [min, max] = self.stock.map(|corner| corner.map(decimals).join(", "));
+        let [[x0, y0, _], [x1, y1, _]] = self.stock;
+        let (
+            [nx, ny],
+            Self {
+                heading, tool, path, ..
+            },
+        ) = (self.cells, self);
+        format!(
+            "\
+{heading}
+Job(
+    units: Mm,
+    tolerance: 1e-6,
+    grid: Grid(min: ({x0:?}, {y0:?}), max: ({x1:?}, {y1:?}), cells: ({nx}, {ny})),
+    stock: Block(min: ({min}), max: ({max})),
+    tools: {{
+        1: {tool},
+    }},
+    paths: [
+        Path(tool: 1, file: \"{path}\"),
+    ],
+)
+"
+        )
+    }
+}
+
 /// The path as CSV with at most six decimals. Equal neighbours are written once.
 pub fn csv(path: &[Placement]) -> String {
     let mut text = String::from("x,y,z,i,j,k\n");
