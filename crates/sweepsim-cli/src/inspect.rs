@@ -72,6 +72,14 @@ impl Text {
                 measure(max[1])
             ),
         );
+        let frame = grid.frame();
+        if !frame.is_world() {
+            let [x, _, z] = frame.axes().map(point);
+            self.line(
+                "frame",
+                &format!("origin {}, dexels along {z}, x along {x}", point(frame.origin())),
+            );
+        }
     }
 
     fn notes<'a>(&mut self, notes: impl Iterator<Item = &'a Note>) {

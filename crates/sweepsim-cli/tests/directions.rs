@@ -108,6 +108,13 @@ fn dexels_stand_along_the_frame() {
     // Half a millimetre of lines, 20 long.
     let exact = 20.0 * 10.0 * 6.0 - REMOVED;
     assert!((dexels.volume() - exact).abs() < 0.05 * exact);
+    for file in ["job.ron", "out/part.dexels"] {
+        let said = String::from_utf8(place.run(&["inspect", file]).stdout).unwrap();
+        assert!(
+            said.contains("frame  origin (0, 0, 0), dexels along (1.0000, 0, 0)"),
+            "{said}"
+        );
+    }
     let mesh = read_mesh_file(&place.path("out/part.ply")).unwrap();
     let most = [0, 1, 2].map(|k| mesh.vertices.iter().map(|v| v[k]).fold(f64::MIN, f64::max));
     assert!(
