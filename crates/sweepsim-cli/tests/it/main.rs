@@ -1,0 +1,6 @@
+//! Integration tests of `sweepsim-cli`, in one binary: it links once.
+
+mod command;
+mod directions;
+mod exchange;
+mod picture;

@@ -1,0 +1,4 @@
+//! Integration tests of `sweepsim-dexel`, in one binary: it links once.
+
+mod frames;
+mod large;

@@ -1,0 +1,11 @@
+//! Integration tests of `sweepsim-formats`, in one binary: it links once.
+
+mod bad_jobs;
+mod dexels_binary;
+mod exchange;
+mod jobs;
+mod meshes;
+mod motions;
+mod programs;
+mod real_files;
+mod round_trips;

@@ -1,0 +1,5 @@
+//! Integration tests of `sweepsim-motion`, in one binary: it links once.
+
+mod boundary;
+mod motions;
+mod spline_profiles;

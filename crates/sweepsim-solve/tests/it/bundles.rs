@@ -1,0 +1,339 @@
+//! Bundles against the solver of single systems, target by target; roots on faces between boxes; what is not isolated is named.
+
+use crate::support;
+
+use support::planted::Random;
+use sweepsim_solve::{
+    Bundle, BundleSolver, ChartMap, ChartOptions, Interval, PointSolver, Preimage, Sample, Sink, System, Target,
+    Targets, Undecided,
+};
+use sweepsim_spline::Bernstein;
+
+/// A rational map by its forms: numerators over a weight, then forms that shall be zero.
+struct Forms<const N: usize> {
+    numerators: Vec<Bernstein>,
+    weight: Bernstein,
+    zeros: Vec<Bernstein>,
+}
+
+impl<const N: usize> Forms<N> {
+    fn bundle(&self) -> Bundle<N> {
+        Bundle::new(self.numerators.clone(), &self.weight, self.zeros.clone()).unwrap()
+    }
+
+    /// The system of one target.
+    fn system(&self, q: &[f64; N]) -> System {
+        let numerators = self.numerators.iter().zip(q);
+        let equations = numerators.map(|(p, q)| p.sub(&self.weight.scale(*q)));
+        System::new(
+            &[Interval::new(0.0, 1.0); N],
+            equations.chain(self.zeros.iter().cloned()),
+        )
+        .unwrap()
+    }
+}
+
+impl<const N: usize> ChartMap<N> for Forms<N> {
+    type Cell = ();
+    type Seen = ();
+
+    fn bounds(&self, (): &()) -> [Interval; N] {
+        [Interval::new(0.0, 1.0); N]
+    }
+
+    fn values(&mut self, (): &()) -> Option<[Interval; N]> {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn jacobian(&mut self, (): &()) -> [[Interval; N]; N] {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn split(&mut self, (): &(), _: usize) -> [(); 2] {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn evaluate(&self, x: &[f64; N]) -> Sample<N, ()> {
+        let w = self.weight.evaluate(x);
+        let mut sample = Sample {
+            value: [0.0; N],
+            jacobian: [[0.0; N]; N],
+            seen: (),
+        };
+        for (i, p) in self.numerators.iter().enumerate() {
+            sample.value[i] = p.evaluate(x) / w;
+            for j in 0..N {
+                let slope = p.derivative(j).evaluate(x) - sample.value[i] * self.weight.derivative(j).evaluate(x);
+                sample.jacobian[i][j] = slope / w;
+            }
+        }
+        for (i, zero) in (self.numerators.len()..).zip(&self.zeros) {
+            sample.value[i] = zero.evaluate(x);
+            sample.jacobian[i] = std::array::from_fn(|j| zero.derivative(j).evaluate(x));
+        }
+        sample
+    }
+
+    fn scales(&self) -> [f64; N] {
+        [1.0; N]
+    }
+
+    fn rounding(&self) -> [f64; N] {
+        [1e-14; N]
+    }
+}
+
+struct List<const N: usize>(Vec<[f64; N]>);
+
+impl<const N: usize> Targets<N> for List<N> {
+    fn count(&self, range: &[Interval; N]) -> usize {
+        let inside = |q: &&[f64; N]| (0..N).all(|i| range[i].contains(q[i]));
+        self.0.iter().filter(inside).count()
+    }
+
+    /// Each target is a row of its own.
+    fn visit(
+        &self,
+        range: &[Interval; N],
+        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    ) {
+        for (number, value) in self.0.iter().enumerate() {
+            let target = Target {
+                number,
+                place: [number, 0],
+                value: *value,
+            };
+            let wanted = (0..N).all(|i| range[i].contains(value[i])) && narrow(value).contains(value[1]);
+            if wanted && !visit(&target) {
+                return;
+            }
+        }
+    }
+}
+
+#[derive(Default)]
+struct Answer<const N: usize> {
+    found: Vec<Preimage<N>>,
+    open: Vec<Undecided<N>>,
+}
+
+impl<const N: usize> Sink<N> for Answer<N> {
+    fn found(&mut self, preimage: Preimage<N>) {
+        self.found.push(preimage);
+    }
+
+    fn mark(&self) -> usize {
+        self.found.len()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.found.truncate(mark);
+    }
+
+    fn undecided(&mut self, undecided: Undecided<N>) {
+        self.open.push(undecided);
+    }
+}
+
+fn solve<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64) -> Answer<N> {
+    let mut answer = Answer {
+        found: Vec::new(),
+        open: Vec::new(),
+    };
+    let options = ChartOptions {
+        boxes,
+        ..ChartOptions::default()
+    };
+    BundleSolver::new(options).solve(&forms.bundle(), forms, targets, &mut answer);
+    answer
+}
+
+fn form(degrees: &[usize], random: &mut Random) -> Bernstein {
+    Bernstein::from_fn(degrees, |_| 2.0 * random.unit() - 1.0).unwrap()
+}
+
+fn weight(degrees: &[usize], random: &mut Random) -> Bernstein {
+    Bernstein::from_fn(degrees, |_| 0.5 + random.unit()).unwrap()
+}
+
+/// Every target's roots, beside those of the single systems: as many, in the same places, of the same orientation.
+fn compare<const N: usize>(forms: &Forms<N>, targets: &List<N>) -> usize {
+    let answer = solve(forms, targets, 400_000);
+    assert!(answer.open.is_empty(), "{:?}", answer.open);
+    let mut count = 0;
+    for (number, q) in targets.0.iter().enumerate() {
+        let points = PointSolver::default().solve(&forms.system(q), &mut ()).unwrap();
+        assert!(points.unresolved.is_empty());
+        let own: Vec<_> = answer.found.iter().filter(|found| found.target == number).collect();
+        assert_eq!(own.len(), points.roots.len(), "target {q:?}");
+        for root in &points.roots {
+            // Steps of Newton's method of at most 1e-8 of a box leave the square of it, times the condition.
+            let near = |found: &&&Preimage<N>| (0..N).all(|j| (found.x[j] - root.point[j]).abs() < 1e-9);
+            let found = own
+                .iter()
+                .find(near)
+                .unwrap_or_else(|| panic!("{q:?}: {root:?} not among {own:?}"));
+            assert_eq!(found.orientation, root.orientation, "{q:?}");
+        }
+        count += own.len();
+    }
+    count
+}
+
+#[test]
+fn all_targets_of_random_maps_of_the_plane_have_their_roots() {
+    let mut random = Random(11);
+    let mut roots = 0;
+    for number in 0..60 {
+        let degrees = [[2, 2], [3, 1], [2, 4], [4, 4]][number % 4];
+        let forms = Forms::<2> {
+            numerators: vec![form(&degrees, &mut random), form(&degrees, &mut random)],
+            weight: if number % 3 == 0 {
+                Bernstein::constant(2, 1.0)
+            } else {
+                weight(&[2, 1], &mut random)
+            },
+            zeros: vec![],
+        };
+        let targets = List((0..40).map(|_| [0, 1].map(|_| 1.2 * random.unit() - 0.6)).collect());
+        roots += compare(&forms, &targets);
+    }
+    // Not vacuous.
+    assert!(roots > 1_000, "{roots}");
+}
+
+#[test]
+fn all_targets_of_random_maps_with_an_equation_have_their_roots() {
+    let mut random = Random(12);
+    let mut roots = 0;
+    for number in 0..40 {
+        let degrees = [[2, 2, 1], [2, 2, 3], [1, 3, 2]][number % 3];
+        let forms = Forms::<3> {
+            numerators: vec![form(&degrees, &mut random), form(&degrees, &mut random)],
+            weight: weight(&[2, 1, 2], &mut random),
+            zeros: vec![form(&[2, 2, 1], &mut random)],
+        };
+        let targets = List(
+            (0..25)
+                .map(|_| [1.0 * random.unit() - 0.5, 1.0 * random.unit() - 0.5, 0.0])
+                .collect(),
+        );
+        roots += compare(&forms, &targets);
+    }
+    assert!(roots > 200, "{roots}");
+}
+
+/// `(x², y) + a little of both`: boxes are split, and roots lie on the cuts exactly.
+#[test]
+fn roots_on_faces_between_boxes_are_found_once() {
+    // x ↦ 3 x² − 3 x has a fold at ½, so the domain must be split; its cuts are at 0.492 of what was there before.
+    let x = Bernstein::new(&[2, 0], vec![0.0, -1.5, 0.0]).unwrap();
+    let forms = Forms::<2> {
+        numerators: vec![x, Bernstein::variable(2, 1)],
+        weight: Bernstein::constant(2, 1.0),
+        zeros: vec![],
+    };
+    let mut cuts = vec![0.492];
+    for _ in 0..6 {
+        let (first, last) = (cuts[0], cuts[cuts.len() - 1]);
+        cuts.insert(0, 0.492 * first);
+        cuts.push(last + 0.492 * (1.0 - last));
+    }
+    let places: Vec<[f64; 2]> = cuts.iter().flat_map(|x| cuts.iter().map(move |y| [*x, *y])).collect();
+    let targets = List(places.iter().map(|[x, y]| [3.0 * x * x - 3.0 * x, *y]).collect());
+    let answer = solve(&forms, &targets, 400_000);
+    assert!(answer.open.is_empty(), "{:?}", answer.open);
+    for (number, [x, y]) in places.iter().enumerate() {
+        let mut own: Vec<_> = answer
+            .found
+            .iter()
+            .filter(|found| found.target == number)
+            .map(|f| f.x)
+            .collect();
+        own.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let expected = [x.min(1.0 - x), x.max(1.0 - x)];
+        assert_eq!(own.len(), 2, "{x} {y}: {own:?}");
+        for (found, x) in own.iter().zip(expected) {
+            assert!((found[0] - x).abs() < 1e-9 && (found[1] - y).abs() < 1e-9, "{found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_double_root_is_left_open() {
+    let forms = Forms::<2> {
+        numerators: vec![
+            Bernstein::new(&[2, 0], vec![0.0, -1.5, 0.0]).unwrap(),
+            Bernstein::variable(2, 1),
+        ],
+        weight: Bernstein::constant(2, 1.0),
+        zeros: vec![],
+    };
+    let answer = solve(&forms, &List(vec![[-0.75, 0.3], [-0.76, 0.3]]), 20_000);
+    assert!(answer.found.is_empty());
+    assert!(!answer.open.is_empty());
+    for open in &answer.open {
+        assert_eq!(open.target, 0);
+        assert!((open.bounds[0].mid() - 0.5).abs() < 1e-5 && open.bounds[1].radius() < 0.5);
+    }
+}
+
+/// Solutions where both conditions have one sign may be left out, others may not.
+#[test]
+fn conditions_leave_out_nothing_else() {
+    let mut random = Random(13);
+    let mut kept = 0;
+    for _ in 0..30 {
+        let forms = Forms::<2> {
+            numerators: vec![form(&[2, 2], &mut random), form(&[2, 2], &mut random)],
+            weight: weight(&[1, 1], &mut random),
+            zeros: vec![],
+        };
+        let conditions = [form(&[2, 2], &mut random), form(&[1, 2], &mut random)];
+        let targets = List((0..40).map(|_| [0, 1].map(|_| random.unit() - 0.5)).collect());
+        let all = solve(&forms, &targets, 400_000);
+        let mut some = Answer {
+            found: Vec::new(),
+            open: Vec::new(),
+        };
+        let [first, second] = conditions.clone();
+        let bundle = forms.bundle().where_signs_differ(first, second).unwrap();
+        BundleSolver::new(ChartOptions::default()).solve(&bundle, &forms, &targets, &mut some);
+        assert!(some.open.is_empty() && some.found.len() <= all.found.len());
+        for found in &all.found {
+            let [a, b] = [0, 1].map(|k| conditions[k].evaluate(&found.x));
+            let near = |other: &&Preimage<2>| {
+                other.target == found.target && (0..2).all(|j| (other.x[j] - found.x[j]).abs() < 1e-9)
+            };
+            if (a < 0.0) != (b < 0.0) {
+                assert_eq!(some.found.iter().filter(near).count(), 1, "{found:?}");
+                kept += 1;
+            }
+        }
+    }
+    assert!(kept > 50, "{kept}");
+}
+
+#[test]
+fn a_budget_leaves_targets_open() {
+    let mut random = Random(14);
+    let forms = Forms::<2> {
+        numerators: vec![form(&[4, 4], &mut random), form(&[4, 4], &mut random)],
+        weight: weight(&[2, 2], &mut random),
+        zeros: vec![],
+    };
+    let targets = List((0..40).map(|_| [0, 1].map(|_| random.unit() - 0.5)).collect());
+    let (all, few) = (solve(&forms, &targets, 400_000), solve(&forms, &targets, 5));
+    assert!(all.open.is_empty());
+    for found in &all.found {
+        let covered = few
+            .open
+            .iter()
+            .any(|open| open.target == found.target && (0..2).all(|j| open.bounds[j].contains(found.x[j])));
+        let near = |other: &Preimage<2>| {
+            other.target == found.target && (0..2).all(|j| (other.x[j] - found.x[j]).abs() < 1e-9)
+        };
+        assert!(covered || few.found.iter().any(near), "{found:?}");
+    }
+}

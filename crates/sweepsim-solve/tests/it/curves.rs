@@ -1,0 +1,332 @@
+//! Curves: the stored 1-D systems, random curves against marching squares, symmetries, and the polylines' distance.
+
+use crate::support;
+
+use std::time::{Duration, Instant};
+use support::stored::all;
+use sweepsim_solve::{CurveSolver, Curves, End, Interval, SolveOptions, System};
+use sweepsim_spline::Bernstein;
+
+fn solver(tolerance: f64) -> CurveSolver {
+    let mut solver = CurveSolver::new(tolerance);
+    solver.options.time = Some(Duration::from_secs(60));
+    solver
+}
+
+/// Tangents have unit length, vertices follow them, arcs end where they say.
+fn audit(curves: &Curves, region: &[Interval], name: &str) {
+    for curve in &curves.curves {
+        assert!(curve.points.len() >= 2, "{name}");
+        for pair in curve.points.windows(2) {
+            let along: f64 = (0..region.len())
+                .map(|j| (pair[1].point[j] - pair[0].point[j]) * pair[0].tangent[j])
+                .sum();
+            let length: f64 = (0..region.len())
+                .map(|j| (pair[1].point[j] - pair[0].point[j]).powi(2))
+                .sum::<f64>()
+                .sqrt();
+            // Short segments next to singular points turn quickly and have little precision.
+            assert!(along > 0.0 || length < 1e-6, "{name}: {pair:?}");
+            let unit: f64 = pair[0].tangent.iter().map(|t| t * t).sum();
+            assert!((unit - 1.0).abs() < 1e-9, "{name}: {pair:?}");
+        }
+        let Some(ends) = curve.ends else { continue };
+        for (end, point) in [
+            (ends[0], &curve.points[0]),
+            (ends[1], &curve.points[curve.points.len() - 1]),
+        ] {
+            let on_boundary = region.iter().zip(&point.point).any(|(r, x)| {
+                let slack = (1e-12 + 3.0 * curves.skin) * (r.hi - r.lo);
+                (x - r.lo).abs() <= slack || (x - r.hi).abs() <= slack
+            });
+            assert!(on_boundary || end != End::Boundary, "{name}: {point:?}");
+        }
+    }
+}
+
+#[test]
+fn stored_curves_have_their_known_topology() {
+    let Some(systems) = all() else { return };
+    println!(
+        "{:32} {:>5} {:>5} {:>5} {:>6} {:>9}  expected",
+        "system", "loops", "arcs", "sing", "boxes", "time"
+    );
+    let mut failures = Vec::new();
+    let only = std::env::var("SYSTEM").ok();
+    for stored in systems
+        .iter()
+        .filter(|s| s.dimension == 1 && only.as_ref().is_none_or(|o| *o == s.name))
+    {
+        let system = stored.system().unwrap();
+        let start = Instant::now();
+        let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let time = start.elapsed();
+        let (loops, arcs) = (curves.loops().count(), curves.arcs().count());
+        let branches: Vec<usize> = curves.singular.iter().map(|s| s.branches.len()).collect();
+        println!(
+            "{:32} {loops:5} {arcs:5} {branches:?} {:6} {:9.3} ms  {} skin {:e} vertices {}",
+            stored.name,
+            curves.statistics.boxes,
+            time.as_secs_f64() * 1e3,
+            stored.expected,
+            curves.skin,
+            curves.curves.iter().map(|c| c.points.len()).sum::<usize>(),
+        );
+        audit(&curves, &stored.bounds, &stored.name);
+        let expected = |key: &str| stored.expected[key].as_u64().unwrap() as usize;
+        let right = match stored.name.as_str() {
+            // Four half-lines at a node; a cusp joins two; a point of its own beside an arc; figures eight.
+            "c1_cross" => (loops, arcs, &branches[..]) == (0, 4, &[4]),
+            "c1_cusp" => (loops, arcs, &branches[..]) == (0, 2, &[2]),
+            "c1_isolated_point" => (loops, arcs, &branches[..]) == (0, 1, &[0]),
+            "c1_viviani" | "c1_torus_tangent_plane" => (loops, arcs, &branches[..]) == (0, 2, &[4]),
+            _ => (loops, arcs, branches.len()) == (expected("loops"), expected("arcs"), 0),
+        };
+        if !right {
+            failures.push(stored.name.clone());
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as f64 / f64::from(1u32 << 30) - 1.0
+    }
+}
+
+fn unit(n: usize) -> Vec<Interval> {
+    vec![Interval::new(0.0, 1.0); n]
+}
+
+/// Components by marching squares on a fine grid, saddles by the value in the middle: (loops, arcs); `None` where two grids disagree.
+fn marching(form: &Bernstein) -> Option<(usize, usize)> {
+    let count = |n: usize| {
+        let value: Vec<bool> = (0..=n)
+            .flat_map(|i| (0..=n).map(move |j| (i, j)))
+            .map(|(i, j)| form.evaluate(&[i as f64 / n as f64, j as f64 / n as f64]) > 0.0)
+            .collect();
+        let at = |i: usize, j: usize| value[i * (n + 1) + j];
+        // Edges: (i, j, 0) to the right of a grid point, (i, j, 1) above.
+        let id = |i: usize, j: usize, d: usize| (i * (n + 1) + j) * 2 + d;
+        let mut parent: Vec<usize> = (0..(n + 1) * (n + 1) * 2).collect();
+        fn find(p: &mut [usize], mut x: usize) -> usize {
+            while p[x] != x {
+                p[x] = p[p[x]];
+                x = p[x];
+            }
+            x
+        }
+        let mut crossed = Vec::new();
+        for i in 0..n {
+            for j in 0..n {
+                let edges = [
+                    (at(i, j) != at(i + 1, j), id(i, j, 0)),
+                    (at(i + 1, j) != at(i + 1, j + 1), id(i + 1, j, 1)),
+                    (at(i, j + 1) != at(i + 1, j + 1), id(i, j + 1, 0)),
+                    (at(i, j) != at(i, j + 1), id(i, j, 1)),
+                ];
+                let on: Vec<usize> = edges.iter().filter(|e| e.0).map(|e| e.1).collect();
+                let pairs: Vec<(usize, usize)> = match on[..] {
+                    [a, b] => vec![(a, b)],
+                    [a, b, c, d] => {
+                        let middle = form.evaluate(&[(i as f64 + 0.5) / n as f64, (j as f64 + 0.5) / n as f64]) > 0.0;
+                        // Bottom-right and top-left corners cut off, or the other two.
+                        if middle == at(i, j) {
+                            vec![(a, b), (c, d)]
+                        } else {
+                            vec![(a, d), (b, c)]
+                        }
+                    }
+                    _ => vec![],
+                };
+                for (a, b) in pairs {
+                    crossed.extend([a, b]);
+                    let (x, y) = (find(&mut parent, a), find(&mut parent, b));
+                    parent[x] = y;
+                }
+            }
+        }
+        // An edge that only one segment uses is an end.
+        let mut uses = std::collections::BTreeMap::new();
+        for e in &crossed {
+            *uses.entry(*e).or_insert(0) += 1;
+        }
+        let mut ends = std::collections::BTreeMap::new();
+        for (e, u) in &uses {
+            *ends.entry(find(&mut parent, *e)).or_insert(0) += usize::from(*u == 1);
+        }
+        let arcs = ends.values().filter(|e| **e > 0).count();
+        (ends.len() - arcs, arcs)
+    };
+    let (a, b) = (count(128), count(301));
+    (a == b).then_some(a)
+}
+
+#[test]
+fn random_plane_curves_agree_with_marching_squares() {
+    let mut random = Random(7);
+    let (mut compared, mut loops) = (0, 0);
+    for number in 0..120 {
+        let d = [2 + number % 5, 2 + number / 5 % 4];
+        let form = Bernstein::from_fn(&d, |_| random.unit()).unwrap();
+        let system = System::new(&unit(2), [&form]).unwrap();
+        let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
+        assert!(curves.singular.is_empty(), "{number}");
+        audit(&curves, &unit(2), &number.to_string());
+        let found = (curves.loops().count(), curves.arcs().count());
+        if let Some(expected) = marching(&form) {
+            assert_eq!(found, expected, "{number}");
+            compared += 1;
+            loops += found.0;
+        }
+        // Vertices on the curve; and the curve near the chords: the middle of each, moved onto the curve, moves little.
+        for p in curves.curves.iter().flat_map(|c| &c.points) {
+            assert!(form.evaluate(&p.point).abs() < 1e-12);
+        }
+        for pair in curves.curves.iter().flat_map(|c| c.points.windows(2)) {
+            let mut x = [0, 1].map(|j| 0.5 * (pair[0].point[j] + pair[1].point[j]));
+            let start = x;
+            for _ in 0..20 {
+                let mut g = [0.0; 2];
+                let f = form.evaluate_gradient(&x, &mut g);
+                let factor = f / (g[0] * g[0] + g[1] * g[1]);
+                x = [x[0] - factor * g[0], x[1] - factor * g[1]];
+            }
+            let moved = (x[0] - start[0]).hypot(x[1] - start[1]);
+            assert!(moved < 1.2e-3, "{number}: {moved}");
+        }
+    }
+    assert!(compared > 100 && loops > 3, "{compared}, {loops}");
+}
+
+#[test]
+fn symmetries_change_no_topology() {
+    let mut random = Random(8);
+    let topology = |forms: &[Bernstein], bounds: &[Interval]| {
+        let system = System::new(bounds, forms).unwrap();
+        let curves = solver(1e-2).solve(&system, &mut ()).unwrap();
+        (curves.loops().count(), curves.arcs().count(), curves.singular.len())
+    };
+    let mut all = 0;
+    for number in 0..40 {
+        let mut form = || Bernstein::from_fn(&[2, 2, 3], |_| random.unit()).unwrap();
+        let forms = [form(), form()];
+        let plain = topology(&forms, &unit(3));
+        assert_eq!(plain.2, 0, "{number}");
+        all += plain.0 + plain.1;
+        let exchanged = [forms[1].scale(3e5).assumed_exact(), forms[0].clone()];
+        assert_eq!(topology(&exchanged, &unit(3)), plain, "{number}: equations exchanged");
+        let cycled = forms
+            .clone()
+            .map(|f| Bernstein::from_fn(&[3, 2, 2], |i| f.coefficients()[i[1] + 3 * i[2] + 9 * i[0]]).unwrap());
+        assert_eq!(topology(&cycled, &unit(3)), plain, "{number}: variables permuted");
+        let mirrored = forms
+            .clone()
+            .map(|f| Bernstein::from_fn(&[2, 2, 3], |i| f.coefficients()[2 - i[0] + 3 * i[1] + 9 * i[2]]).unwrap());
+        assert_eq!(topology(&mirrored, &unit(3)), plain, "{number}: mirrored");
+        let far = [
+            Interval::new(-5.0, 400.0),
+            Interval::new(1e3, 1e3 + 1.0),
+            Interval::new(0.0, 1e-3),
+        ];
+        assert_eq!(topology(&forms, &far), plain, "{number}: another box");
+        let mixed = [
+            forms[0].sub(&forms[1]).assumed_exact(),
+            forms[0].add(&forms[1]).assumed_exact(),
+        ];
+        assert_eq!(topology(&mixed, &unit(3)), plain, "{number}: equations mixed");
+    }
+    assert!(all > 40, "{all}");
+}
+
+#[test]
+fn pieces_handed_over_join_to_the_same_curves() {
+    let mut random = Random(9);
+    let mut pieces_in_all = 0;
+    for number in 0..30 {
+        let form = Bernstein::from_fn(&[4, 3], |_| random.unit()).unwrap();
+        let system = System::new(&unit(2), [&form]).unwrap();
+        let whole = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let mut pieces = Vec::new();
+        let rest = solver(1e-3)
+            .for_each_piece(&system, &mut (), |p| pieces.push(p))
+            .unwrap();
+        assert!(rest.curves.is_empty() && rest.singular.is_empty(), "{number}");
+        pieces_in_all += pieces.len();
+        // Each number is the end of one piece and the start of at most one other; both have it at the same place.
+        let mut ends = std::collections::BTreeMap::new();
+        for p in &pieces {
+            ends.entry(p.ends[0]).or_insert([None, None])[0] = Some(&p.points[0].point);
+            ends.entry(p.ends[1]).or_insert([None, None])[1] = p.points.last().map(|q| &q.point);
+        }
+        let free = ends.values().filter(|e| e.contains(&None)).count();
+        assert_eq!(free, 2 * whole.arcs().count(), "{number}");
+        for pair in ends.values() {
+            if let [Some(a), Some(b)] = pair {
+                assert_eq!(a, b, "{number}");
+            }
+        }
+        let vertices: usize = pieces.iter().map(|p| p.points.len() - 1).sum();
+        let kept: usize = whole
+            .curves
+            .iter()
+            .map(|c| c.points.len() - usize::from(c.ends.is_some()))
+            .sum();
+        assert_eq!(vertices, kept, "{number}");
+    }
+    assert!(pieces_in_all > 60, "{pieces_in_all}");
+}
+
+#[test]
+fn loops_are_found_however_small() {
+    // (x − a)² + (y − b)² = r²
+    for exponent in 1..=7 {
+        let r = 10f64.powi(-exponent);
+        let (a, b) = (0.377, 0.581);
+        let x = Bernstein::variable(2, 0).sub(&Bernstein::constant(2, a));
+        let y = Bernstein::variable(2, 1).sub(&Bernstein::constant(2, b));
+        let circle = x
+            .mul(&x)
+            .add(&y.mul(&y))
+            .sub(&Bernstein::constant(2, r * r))
+            .assumed_exact();
+        let system = System::new(&unit(2), [&circle]).unwrap();
+        let curves = solver(1e-2 * r).solve(&system, &mut ()).unwrap();
+        assert_eq!((curves.loops().count(), curves.curves.len()), (1, 1), "{r}");
+        assert!(curves.singular.is_empty());
+    }
+}
+
+#[test]
+fn bad_input_is_an_error_or_open() {
+    let circle = Bernstein::from_fn(&[2, 2], |i| [0.25, -0.25, 0.25][i[0]] + [0.25, -0.25, 0.25][i[1]] - 0.1).unwrap();
+    let twice = System::new(&unit(2), [&circle, &circle]).unwrap();
+    assert!(solver(1e-3).solve(&twice, &mut ()).is_err());
+    let once = System::new(&unit(2), [&circle]).unwrap();
+    assert!(solver(f64::NAN).solve(&once, &mut ()).is_err());
+    assert!(solver(0.0).solve(&once, &mut ()).is_err());
+    let line = System::new(&unit(1), [Bernstein::variable(1, 0)]).unwrap();
+    assert!(solver(1e-3).solve(&line, &mut ()).is_err());
+    // An equation that is zero; a double circle: open, soon.
+    let start = Instant::now();
+    for form in [Bernstein::constant(2, 0.0), circle.mul(&circle).assumed_exact()] {
+        let system = System::new(&unit(2), [&form]).unwrap();
+        let mut solver = CurveSolver::with_options(
+            1e-3,
+            SolveOptions {
+                smallest: 1e-6,
+                ..SolveOptions::default()
+            },
+        );
+        let curves = solver.solve(&system, &mut ()).unwrap();
+        assert!(!curves.singular.is_empty());
+    }
+    assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
+}

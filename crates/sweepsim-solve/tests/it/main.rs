@@ -1,0 +1,16 @@
+//! Integration tests of `sweepsim-solve`, in one binary: it links once.
+
+mod bad_input;
+mod bundles;
+mod corpus;
+mod curves;
+mod expressions;
+mod extremes;
+mod invariance;
+mod limits;
+mod many;
+mod parallel;
+mod pieces;
+mod planted;
+mod support;
+mod surfaces;

@@ -1,0 +1,39 @@
+//! Circle-segment cutters, which touch tangentially where radii differ a hundredfold, judged by brute force.
+
+use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
+use crate::brute_force::motions::{grid, motions};
+use rayon::prelude::*;
+use sweepsim::Method;
+use sweepsim_motion::Tool;
+
+#[test]
+fn circle_segment_cutters_along_motions_of_every_kind() {
+    let tools = [
+        ("oval", Tool::oval(2.0, 0.5, 40.0, 14.0)),
+        ("oval, almost a ball", Tool::oval(2.0, 1.9999, 2.01, 9.0)),
+        ("taper", Tool::taper(2.0, 0.3, 150.0, 20.0, 9.0)),
+        ("barrel", Tool::barrel_with_corner(2.0, 15.0, 6.0, 0.4, 8.0)),
+        ("lens", Tool::lens_with_corner(2.0, 9.0, 0.3, 8.0)),
+    ]
+    .map(|(name, tool)| (name, tool.expect("a cutter")));
+    let motions = motions();
+    let cases: Vec<(usize, usize)> = (0..motions.len()).map(|m| (m % tools.len(), m)).collect();
+    let errors: Vec<String> = cases
+        .par_iter()
+        .filter_map(|&(t, m)| {
+            let ((name, tool), named) = (&tools[t], &motions[m]);
+            let grid = grid(m, &named.path);
+            let profile = tool.profile().expect("a solid of revolution");
+            let check = || {
+                let charts = swept_along(tool, &named.path, &grid, Method::Charts)?;
+                let lines = swept_along(tool, &named.path, &grid, Method::Lines)?;
+                let tally = judge_sweep(&charts, profile, &named.motion, &grid, Method::Charts)?;
+                same_sweeps(profile, &named.motion, &grid, &charts, &lines)?;
+                let enough = tally.covered > 10;
+                enough.then_some(()).ok_or(format!("{tally:?}"))
+            };
+            check().err().map(|error| format!("{name}: {}: {error}", named.name))
+        })
+        .collect();
+    assert!(errors.is_empty(), "{}", errors.join("\n"));
+}
