@@ -4,38 +4,23 @@
 //! [`Move`]s, or [along](Path::along) a [`SplineMotion`]. It is made of [`Segment`]s: orientation and tip as Bernstein forms in `t`, which is all that
 //! whoever bounds or solves the motion has to know.
 
-mod apt;
 mod assembly;
-mod bezier;
 mod boundary;
-mod circle_segment;
-mod even;
-mod freeform;
-mod joints;
-mod lists;
-mod moves;
 mod path;
 mod pose;
 mod profile;
-mod rotary;
 mod segment;
 mod spline_motion;
 mod tool;
-mod turned;
 
-pub use apt::{Apt, AptError, AptWarning};
 pub use assembly::{Assembly, Body, BodyKind};
-pub use boundary::{Edge, NormalField, Patch, Revolved};
-pub use freeform::{PatchError, Side, ToolError};
-pub use joints::Fold;
-pub use moves::{ArcError, Course, Law, Move, TipArc, Turning};
-pub use path::{Path, PathError};
+pub use boundary::{Edge, Fold, NormalField, Patch, PatchError, Revolved, Side, ToolError};
+pub use path::{ArcError, Course, Law, Move, Path, PathError, RotaryTable, TipArc, Turning, UnknownTable};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
-pub use rotary::{RotaryTable, UnknownTable};
-pub use segment::{End, Segment};
+pub use segment::{Segment, SegmentEnd};
 pub use spline_motion::{MotionError, SplineMotion};
-pub use tool::Tool;
+pub use tool::{Apt, AptError, AptWarning, Tool};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -69,7 +69,7 @@ pub use knots::{KnotError, KnotKind, KnotVector};
 pub use map::BernsteinMap;
 pub use rational::{RationalBernstein, RationalError};
 pub use rational_spline::{RationalPiece, RationalSpline};
-pub use spline::{BSpline, Piece, SplineError};
+pub use spline::{BSpline, SplineError, SplinePiece};
 
 /// The README's example compiles and holds.
 #[cfg(doctest)]

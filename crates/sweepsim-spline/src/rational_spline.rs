@@ -221,7 +221,7 @@ impl RationalSpline {
     ///
     /// As [`BSpline::pieces`]; [`Weight`](SplineError::Weight) if rounding makes one uncertain.
     pub fn pieces(&self) -> Result<Vec<RationalPiece>, SplineError> {
-        let rational = |piece: crate::Piece| {
+        let rational = |piece: crate::SplinePiece| {
             let map = RationalBernstein::from_homogeneous(piece.map)?;
             Ok(RationalPiece {
                 ranges: piece.ranges,

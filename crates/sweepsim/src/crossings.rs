@@ -12,7 +12,7 @@ use crate::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
 use crate::time::Times;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use sweepsim_dexel::{Crossing, Source};
-use sweepsim_motion::{End, Segment, Tool};
+use sweepsim_motion::{Segment, SegmentEnd, Tool};
 use sweepsim_solve::{
     BundleSolver, ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sink, SolveOptions,
     SurfaceSolver, System, SystemError, Undecided,
@@ -181,7 +181,7 @@ struct Placement {
 }
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
-pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
+pub(crate) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
     let back = turn.transpose();
     let [spin, travel] = segment.velocity(end);
     Side::Moving(Twist {
@@ -194,13 +194,13 @@ pub(crate) fn twist(segment: &Segment, end: End, turn: &Matrix3<f64>) -> Side {
 pub(crate) fn sides(parts: &[Part], at: usize, end: usize) -> [Side; 2] {
     let segment = &parts[at].segment;
     if end == 1 {
-        return [twist(segment, End::Finish, &segment.end()), Side::Beyond(true)];
+        return [twist(segment, SegmentEnd::Finish, &segment.end()), Side::Beyond(true)];
     }
     let turn = segment.start();
-    let before = at
-        .checked_sub(1)
-        .map_or(Side::Beyond(false), |k| twist(&parts[k].segment, End::Finish, &turn));
-    [before, twist(segment, End::Start, &turn)]
+    let before = at.checked_sub(1).map_or(Side::Beyond(false), |k| {
+        twist(&parts[k].segment, SegmentEnd::Finish, &turn)
+    });
+    [before, twist(segment, SegmentEnd::Start, &turn)]
 }
 
 /// A search of some lines along some segments.

@@ -148,7 +148,7 @@ mod tests {
                 let [a, b] = plane(motion.position(), &at);
                 prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
                 let [before, after] = [
-                    crate::crossings::twist(&segment, sweepsim_motion::End::Start, &segment.start()),
+                    crate::crossings::twist(&segment, sweepsim_motion::SegmentEnd::Start, &segment.start()),
                     Side::Beyond(true),
                 ];
                 let (turn, own_tip) = (segment.start(), segment.tips()[0]);

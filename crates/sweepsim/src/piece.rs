@@ -4,7 +4,7 @@ use crate::element::Element;
 use crate::generic::Part;
 use crate::time::Times;
 use nalgebra::Vector3;
-use sweepsim_motion::{End, Segment, Tool};
+use sweepsim_motion::{Segment, SegmentEnd, Tool};
 
 /// What a piece of a swept volume's boundary comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -75,9 +75,19 @@ impl<'a> Moving<'a> {
             Piece::Placed(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 0.0);
                 let before = self.at.checked_sub(1).map_or(1.0, |k| {
-                    condition(&self.parts[k].segment, End::Finish, self.part().segment.start(), &field)
+                    condition(
+                        &self.parts[k].segment,
+                        SegmentEnd::Finish,
+                        self.part().segment.start(),
+                        &field,
+                    )
                 });
-                let after = condition(&self.part().segment, End::Start, self.part().segment.start(), &field);
+                let after = condition(
+                    &self.part().segment,
+                    SegmentEnd::Start,
+                    self.part().segment.start(),
+                    &field,
+                );
                 Seen {
                     point,
                     sides: Some([before, after]),
@@ -85,7 +95,12 @@ impl<'a> Moving<'a> {
             }
             Piece::Last(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 1.0);
-                let before = condition(&self.part().segment, End::Finish, self.part().segment.end(), &field);
+                let before = condition(
+                    &self.part().segment,
+                    SegmentEnd::Finish,
+                    self.part().segment.end(),
+                    &field,
+                );
                 Seen {
                     point,
                     sides: Some([before, -1.0]),
@@ -154,7 +169,12 @@ impl<'a> Moving<'a> {
 }
 
 /// `g` of a normal and moment in the tool, under the motion at a placement.
-fn condition(segment: &Segment, end: End, turn: nalgebra::Matrix3<f64>, [normal, moment]: &[Vector3<f64>; 2]) -> f64 {
+fn condition(
+    segment: &Segment,
+    end: SegmentEnd,
+    turn: nalgebra::Matrix3<f64>,
+    [normal, moment]: &[Vector3<f64>; 2],
+) -> f64 {
     let back = turn.transpose();
     let [spin, travel] = segment.velocity(end);
     (back * spin).dot(moment) + (back * travel).dot(normal)

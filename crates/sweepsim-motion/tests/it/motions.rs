@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proptest::prelude::*;
 use sweepsim_motion::{
-    ArcError, Course, End, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SplineMotion, TipArc,
-    Turning,
+    ArcError, Course, Law, MotionError, Move, Path, PathError, Pose, RotaryTable, Segment, SegmentEnd, SplineMotion,
+    TipArc, Turning,
 };
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
@@ -118,7 +118,10 @@ fn twist_is_the_rate_of(part: &Segment, t: f64) -> Result<(), TestCaseError> {
 fn smooth(parts: &[Segment]) -> Result<(), TestCaseError> {
     for pair in parts.windows(2) {
         prop_assert!((pair[0].tips()[1] - pair[1].tips()[0]).norm() < 1e-12);
-        let [before, after] = [pair[0].velocity(End::Finish), pair[1].velocity(End::Start)];
+        let [before, after] = [
+            pair[0].velocity(SegmentEnd::Finish),
+            pair[1].velocity(SegmentEnd::Start),
+        ];
         let size = |v: &[Vector3<f64>; 2]| v[0].norm() * REACH + v[1].norm();
         let factor = size(&after) / size(&before);
         for k in 0..2 {

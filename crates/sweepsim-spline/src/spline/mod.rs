@@ -8,7 +8,7 @@ mod pieces;
 mod refine;
 mod values;
 
-pub use pieces::Piece;
+pub use pieces::SplinePiece;
 
 use crate::bernstein::{BernsteinError, MAX_COEFFICIENTS, MAX_VARIABLES};
 use crate::knots::{KnotError, KnotVector};

@@ -11,14 +11,14 @@ use smallvec::SmallVec;
 
 /// One polynomial piece of a spline: where it is, and what it is there.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Piece {
+pub struct SplinePiece {
     /// The box, one interval a variable.
     pub ranges: Vec<(f64, f64)>,
     /// The map, on `[0,1]ⁿ`: `0` and `1` are the ends of the intervals.
     pub map: BernsteinMap,
 }
 
-impl Piece {
+impl SplinePiece {
     /// The parameters in `[0,1]ⁿ` of a point of the box. Missing coordinates count as NaN.
     pub fn local(&self, point: &[f64]) -> Vec<f64> {
         let local =
@@ -140,7 +140,7 @@ impl BSpline {
     /// # Errors
     ///
     /// [`Size`](SplineError::Size) if there would be too many coefficients.
-    pub fn pieces(&self) -> Result<Vec<Piece>, SplineError> {
+    pub fn pieces(&self) -> Result<Vec<SplinePiece>, SplineError> {
         let tensor = self.piece_tensor(&self.breakpoints())?;
         let pieces = (0..tensor.cells()).map(|cell| {
             let places = tensor.places(cell);
@@ -148,7 +148,7 @@ impl BSpline {
                 let coefficients = places.iter().map(|&place| tensor.data[place + k]).collect();
                 Bernstein::computed(self.degrees(), coefficients, tensor.error)
             };
-            Piece {
+            SplinePiece {
                 ranges: tensor.ranges(cell),
                 map: BernsteinMap::new((0..self.dimension).map(component).collect()),
             }

@@ -1,59 +1,7 @@
-//! How a tool goes from one pose to the next.
+//! Circular arcs and helices of the tip.
 
-use crate::rotary::RotaryTable;
 use nalgebra::{Rotation3, Unit, Vector3};
 use thiserror::Error;
-
-/// How a tool goes from one pose to the next: the way of its tip, and how it turns meanwhile.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Move {
-    /// The way of the tip.
-    pub course: Course,
-    /// How the tool turns.
-    pub turning: Turning,
-}
-
-/// The way of the tip.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Course {
-    /// A straight line.
-    #[default]
-    Straight,
-    /// A circular arc or a helix, at constant speed.
-    Arc(TipArc),
-}
-
-/// How the tool turns from one pose to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Turning {
-    /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
-    /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).
-    #[default]
-    Slerp,
-    /// The same at constant angular speed: the tip and the angle stay in step.
-    Even,
-    /// Both rotary axes of a machine at constant speed, in step with the tip.
-    Rotary {
-        /// Which axes.
-        table: RotaryTable,
-        /// The angles `[tilt, C]` at the start, in degrees.
-        from: [f64; 2],
-        /// The angles at the end: not reduced, 720° from the start is two turns.
-        to: [f64; 2],
-    },
-}
-
-/// How the tool turns on the moves of a path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Law {
-    /// [`Turning::Slerp`].
-    #[default]
-    Slerp,
-    /// [`Turning::Even`].
-    ConstantSpeed,
-    /// [`Turning::Rotary`], with the angles that are next to those before.
-    Rotary(RotaryTable),
-}
 
 /// An arc of the tip: about an axis through `centre`. What is missing at its end to the end of the move is added evenly on the way
 /// (the rise of a helix, the small difference of two radii in a program).
@@ -201,44 +149,5 @@ impl TipArc {
     pub(crate) fn turned(&self, from: Vector3<f64>, part: f64) -> Vector3<f64> {
         let turn = Rotation3::from_axis_angle(&self.normal, self.angle * part);
         self.centre + turn * (from - self.centre)
-    }
-}
-
-impl Move {
-    /// Straight, turning like this.
-    #[must_use]
-    pub fn straight(turning: Turning) -> Self {
-        Self {
-            course: Course::Straight,
-            turning,
-        }
-    }
-
-    /// Along an arc or a helix, the axis turning evenly meanwhile.
-    #[must_use]
-    pub fn arc(arc: TipArc) -> Self {
-        Self {
-            course: Course::Arc(arc),
-            turning: Turning::Even,
-        }
-    }
-
-    /// The move back from its end to its start.
-    #[must_use]
-    pub fn reversed(&self) -> Self {
-        Self {
-            course: match self.course {
-                Course::Straight => Course::Straight,
-                Course::Arc(arc) => Course::Arc(arc.reversed()),
-            },
-            turning: match self.turning {
-                Turning::Rotary { table, from, to } => Turning::Rotary {
-                    table,
-                    from: to,
-                    to: from,
-                },
-                other => other,
-            },
-        }
     }
 }

@@ -9,8 +9,8 @@
 //!
 //! Two circles touch from inside where the distance of their centres is the difference of their radii; the point is on the line through both centres.
 
+use super::{Tool, check};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
-use crate::tool::{Tool, check};
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
     ProfileSegment::Line { to: [rho, zeta] }

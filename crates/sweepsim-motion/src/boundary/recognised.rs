@@ -4,7 +4,7 @@
 //! `N = (c n_ρ, s n_ρ, a n_ζ)` with `n_ρ = ζ′ω − ζω′` and `n_ζ = ρω′ − ρ′ω`, and `ω F × N = (−s m, c m, 0)` with `m = ζ n_ρ − ρ n_ζ`. `F_u × F_v` has many times
 //! the degree: what it has in common with `N`, a multiple of `ρ` among others, is left out, and with it the zeros at poles on the axis.
 
-use crate::boundary::NormalField;
+use super::NormalField;
 use sweepsim_spline::Bernstein;
 
 /// Coefficients are what they should be within so many roundings of the largest: what is found differs from the patch no more than that, which
@@ -144,7 +144,7 @@ impl Revolution {
 }
 
 /// The normals of a patch and their moments, where it is a piece of a surface of revolution about the third axis with circles in `u` or in `v`.
-pub(crate) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<NormalField> {
+pub(super) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<NormalField> {
     let alike = position.iter().all(|form| form.degrees() == weight.degrees());
     if !alike || weight.variables() != 2 {
         return None;
@@ -172,7 +172,7 @@ pub(crate) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<Nor
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::freeform::normals;
+    use crate::boundary::patch::normals;
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

@@ -16,11 +16,10 @@
 //! Both fall with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
 //! `docs/algorithms/motions.md` has the derivations.
 
-use crate::lists::{product, raised};
-use crate::moves::{Course, Move, TipArc, Turning};
+use super::rotary::{turn, unit_axis};
+use super::{Course, Move, RotaryTable, TipArc, Turning};
 use crate::pose::Pose;
-use crate::rotary::{RotaryTable, turn, unit_axis};
-use crate::segment::{Curve, Segment, frame, rational_turn, turn_between};
+use crate::segment::{Segment, SegmentCurve, frame, product, raised, rational_turn, turn_between};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
@@ -329,7 +328,7 @@ pub(crate) fn segments(
             // The same but for the order of sums: to the bit, they are bounded together.
             point_weights.clone_from(&weights);
         }
-        let curve = Curve {
+        let curve = SegmentCurve {
             points,
             point_weights,
             spins,

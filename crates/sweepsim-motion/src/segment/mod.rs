@@ -5,10 +5,16 @@
 //! `sin α = s/w`. Because `c s′ − s c′ = κ w` with the constant `κ = 2 sin(θ/2)`, a turn about one axis has the angular
 //! velocity `(κ/w) k`.
 
-use crate::lists::{derivative, product, raised, value, wronskian};
-use crate::pose::Pose;
-use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
-use std::f64::consts::FRAC_PI_2;
+mod between;
+mod forms;
+mod rates;
+
+pub(crate) use between::{frame, rational_turn, turn_between};
+pub(crate) use forms::{product, raised, wronskian};
+pub(crate) use rates::spins;
+
+use forms::value;
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// A rigid motion for `t` in `[0, 1]`: the tip on a polynomial or rational curve, the orientation a rational matrix.
 ///
@@ -26,15 +32,15 @@ pub struct Segment {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     /// `κ k`, in space.
     Arc(Vector3<f64>),
-    Curve(Curve),
+    Curve(SegmentCurve),
 }
 
 /// The tip and the angular velocity of a general motion.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Curve {
+pub(crate) struct SegmentCurve {
     /// Numerators of the tip.
     pub points: Vec<Vector3<f64>>,
     /// As many weights; none for a polynomial.
@@ -47,107 +53,14 @@ pub(crate) struct Curve {
 
 /// One end of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum SegmentEnd {
     /// `t = 0`.
     Start,
     /// `t = 1`.
     Finish,
 }
 
-/// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° either way, and `κ`.
-pub(crate) fn rational_turn(k: Vector3<f64>, angle: f64) -> ([Matrix3<f64>; 3], [f64; 3], f64) {
-    let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
-    let (w, c, s) = (
-        [1.0, half_cosine, 1.0],
-        [1.0, half_cosine, angle.cos()],
-        [0.0, half_sine, angle.sin()],
-    );
-    let along = k * k.transpose();
-    let across = Matrix3::identity() - along;
-    let turns = [0, 1, 2].map(|i| along * w[i] + across * c[i] + k.cross_matrix() * s[i]);
-    (turns, w, 2.0 * half_sine)
-}
-
-/// A right-handed frame whose third vector is `axis`: a function of the axis alone, continuous but at `−z`.
-pub(crate) fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
-    let z = axis.into_inner();
-    let (first, second) = if z.z > -0.5 {
-        let f = 1.0 / (1.0 + z.z);
-        (
-            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, -z.x),
-            Vector3::new(-z.x * z.y * f, 1.0 - z.y * z.y * f, -z.y),
-        )
-    } else {
-        let f = 1.0 / (1.0 - z.z);
-        (
-            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, z.x),
-            Vector3::new(z.x * z.y * f, z.y * z.y * f - 1.0, -z.y),
-        )
-    };
-    Matrix3::from_columns(&[first, second, z])
-}
-
-/// The axis and the angle (0 to π) of the turn between two poses that say all of their orientation.
-pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>, f64)> {
-    let quaternion = |pose: &Pose| {
-        Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
-            pose.orientation()?,
-        )))
-    };
-    let turn = quaternion(to)? * quaternion(from)?.inverse();
-    // The vector part has the length sin(θ/2): its sign is free, and θ is at most half a turn.
-    let vector = turn.imag() * if turn.w < 0.0 { -1.0 } else { 1.0 };
-    let angle = 2.0 * vector.norm().atan2(turn.w.abs());
-    Some((Unit::try_new(vector, 1e-300).unwrap_or(Vector3::z_axis()), angle))
-}
-
 impl Segment {
-    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis (or the orientation) turns by more than 90°.
-    ///
-    /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
-    #[must_use]
-    pub fn between(from: &Pose, to: &Pose) -> Vec<Self> {
-        if let (Some((k, angle)), Some(start)) = (turn_between(from, to), from.orientation()) {
-            let mut count = 1;
-            while angle > count as f64 * FRAC_PI_2 * (1.0 + 1e-12) {
-                count *= 2;
-            }
-            let step = angle / count as f64;
-            let tip = |n: usize| from.tip() + (to.tip() - from.tip()) * (n as f64 / count as f64);
-            let part = |n: usize| {
-                let turned = Rotation3::from_axis_angle(&k, step * n as f64) * start;
-                Self::turning([tip(n), tip(n + 1)], turned, k.into_inner(), step)
-            };
-            return (0..count).map(part).collect();
-        }
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
-        let cross = o0.cross(&o1);
-        let angle = cross.norm().atan2(o0.dot(&o1));
-        if angle <= FRAC_PI_2 * (1.0 + 1e-12) {
-            return vec![Self::arc(from, to)];
-        }
-        let k = cross.normalize();
-        let half = 0.5 * angle;
-        let axis = Unit::new_normalize(o0 * half.cos() + k.cross(&o0) * half.sin());
-        let middle = Pose::at(0.5 * (from.tip() + to.tip()), axis);
-        let mut parts = Self::between(from, &middle);
-        parts.extend(Self::between(&middle, to));
-        parts
-    }
-
-    fn arc(from: &Pose, to: &Pose) -> Self {
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
-        let start = frame(from.axis());
-        let tips = [from.tip(), to.tip()];
-        let cross = o0.cross(&o1);
-        let sine = cross.norm();
-        let angle = sine.atan2(o0.dot(&o1));
-        if sine < 1e-15 {
-            return Self::turning(tips, start, Vector3::z(), 0.0);
-        }
-        Self::turning(tips, start, cross / sine, angle)
-    }
-
     /// A turn by `angle`, at most 90°, about the unit vector `k`.
     pub(crate) fn turning(tips: [Vector3<f64>; 2], start: Matrix3<f64>, k: Vector3<f64>, angle: f64) -> Self {
         if angle < 1e-15 {
@@ -170,7 +83,7 @@ impl Segment {
     }
 
     /// A general motion: as many turns as weights, all positive; at least two points.
-    pub(crate) fn curve(turns: Vec<Matrix3<f64>>, weights: Vec<f64>, curve: Curve) -> Self {
+    pub(crate) fn curve(turns: Vec<Matrix3<f64>>, weights: Vec<f64>, curve: SegmentCurve) -> Self {
         let last = curve.points.len() - 1;
         let weight = |i: usize| curve.point_weights.get(i).copied().unwrap_or(1.0);
         Self {
@@ -284,7 +197,7 @@ impl Segment {
     pub fn spin(&self) -> Vector3<f64> {
         match &self.kind {
             Kind::Arc(spin) => *spin,
-            Kind::Curve(_) => self.velocity(End::Start)[0],
+            Kind::Curve(_) => self.velocity(SegmentEnd::Start)[0],
         }
     }
 
@@ -337,95 +250,5 @@ impl Segment {
             }
             Kind::Curve(curve) => (curve.points.clone(), curve.point_weights.clone()),
         }
-    }
-
-    /// Numerators of `b′`, and as many positive denominators.
-    #[must_use]
-    pub fn tip_rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
-        match &self.kind {
-            Kind::Arc(_) => (vec![self.travel()], vec![1.0]),
-            Kind::Curve(curve) => {
-                let (rate, factor) = curve.rate();
-                let degree = rate.len().max(factor.len()) - 1;
-                (raised(&rate, degree), raised(&factor, degree))
-            }
-        }
-    }
-
-    /// Numerators of `A′`, and as many positive denominators.
-    #[must_use]
-    pub fn turn_rate(&self) -> (Vec<Matrix3<f64>>, Vec<f64>) {
-        let (turns, weights) = (&self.turns, &self.weights);
-        let degree = turns.len() - 1;
-        if degree == 0 {
-            return (vec![Matrix3::zeros()], vec![1.0]);
-        }
-        let rate = wronskian(degree, |i, j| turns[j] * weights[i] - turns[i] * weights[j]);
-        (raised(&rate, 2 * degree), product(weights, weights, |a, b| a * b))
-    }
-
-    /// How the tool moves as it sees it itself: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times one positive factor.
-    /// The first is a single one where it does not change; else both have one degree.
-    ///
-    /// With a surface normal `N` and its moment `M`, `⟨Ω, M⟩ + ⟨Aᵀ b′, N⟩` is the envelope function times that factor.
-    #[must_use]
-    pub fn twist(&self) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
-        let curve = match &self.kind {
-            Kind::Arc(spin) => {
-                let travel = self.travel();
-                let back = |turn: &Matrix3<f64>| turn.tr_mul(&travel);
-                return (vec![self.start().tr_mul(spin)], self.turns.iter().map(back).collect());
-            }
-            Kind::Curve(curve) => curve,
-        };
-        // With b′ = B/f and Ω = S/σ the factor is f σ: f S and (σ/ŵ) Âᵀ B.
-        let (rate, factor) = curve.rate();
-        let mut travel = product(&self.turns, &rate, |turn, rate| turn.tr_mul(rate));
-        if curve.squared {
-            travel = product(&self.weights, &travel, |weight, travel| travel * *weight);
-        }
-        let spin = product(&factor, &curve.spins, |factor, spin| spin * *factor);
-        if spin.len() == 1 {
-            return (spin, travel);
-        }
-        let degree = spin.len().max(travel.len()) - 1;
-        (raised(&spin, degree), raised(&travel, degree))
-    }
-
-    /// At one end, in space: the angular velocity, and the velocity of the tip, both times one positive factor.
-    #[must_use]
-    pub fn velocity(&self, end: End) -> [Vector3<f64>; 2] {
-        if let Kind::Arc(spin) = &self.kind {
-            return [*spin, self.travel()];
-        }
-        let (spins, travels) = self.twist();
-        match end {
-            End::Start => [spins[0], travels[0]].map(|own| self.start() * own),
-            End::Finish => [spins[spins.len() - 1], travels[travels.len() - 1]].map(|own| self.end() * own),
-        }
-    }
-}
-
-impl Curve {
-    /// `B` and `f` with `b′ = B/f`.
-    fn rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
-        let (points, weights) = (&self.points, &self.point_weights);
-        if weights.is_empty() {
-            return (derivative(points), vec![1.0]);
-        }
-        let rate = wronskian(points.len() - 1, |i, j| points[j] * weights[i] - points[i] * weights[j]);
-        (rate, product(weights, weights, |a, b| a * b))
-    }
-}
-
-/// Coefficients of `ŵ² Ω` of a rational matrix: the antisymmetric part of `Âᵀ Â′`.
-pub(crate) fn spins(turns: &[Matrix3<f64>]) -> Vec<Vector3<f64>> {
-    let antisymmetric = |i: usize, j: usize| {
-        let m = turns[i].tr_mul(&turns[j]);
-        Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]) * 0.5
-    };
-    match turns.len() {
-        1 => vec![Vector3::zeros()],
-        n => wronskian(n - 1, antisymmetric),
     }
 }

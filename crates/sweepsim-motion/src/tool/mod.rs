@@ -1,9 +1,11 @@
 //! Tools and their boundary.
 
-use crate::apt::{Apt, AptError, AptWarning};
-use crate::boundary::{self, Edge, Patch};
-use crate::freeform::{self, ToolError};
-use crate::joints;
+mod apt;
+mod circle_segment;
+
+pub use apt::{Apt, AptError, AptWarning};
+
+use crate::boundary::{self, Edge, Patch, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
@@ -210,8 +212,8 @@ impl Tool {
     #[must_use]
     pub fn from_profile(profile: Profile) -> Self {
         Self {
-            patches: boundary::patches(&profile),
-            edges: boundary::edges(&profile),
+            patches: boundary::patches_of_profile(&profile),
+            edges: boundary::edges_of_profile(&profile),
             profile: Some(profile),
         }
     }
@@ -243,7 +245,7 @@ impl Tool {
     /// ```
     pub fn from_patches(patches: Vec<Patch>, tolerance: f64) -> Result<Self, ToolError> {
         Ok(Self {
-            edges: joints::edges(&patches, tolerance)?,
+            edges: boundary::edges_of_patches(&patches, tolerance)?,
             patches,
             profile: None,
         })
@@ -254,7 +256,7 @@ impl Tool {
     /// # Errors
     /// As [`Tool::from_patches`], and when a surface is none or has a fold.
     pub fn from_surfaces(surfaces: &[RationalSpline], tolerance: f64) -> Result<Self, ToolError> {
-        Self::from_patches(freeform::pieces(surfaces)?, tolerance)
+        Self::from_patches(boundary::patches_of_surfaces(surfaces)?, tolerance)
     }
 
     /// The outline of a solid of revolution; none for tools of other shapes.

@@ -1,0 +1,142 @@
+//! What can be wrong with a patch, or with patches that are to enclose a tool.
+
+use sweepsim_spline::SplineError;
+use thiserror::Error;
+
+/// Why a surface is no patch of a tool.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum PatchError {
+    /// A form does not depend on two variables.
+    #[error("a patch needs forms in two variables, but {what} has {found}")]
+    Variables {
+        /// Which form.
+        what: &'static str,
+        /// How many variables it has.
+        found: usize,
+    },
+    /// A degree is too high.
+    #[error("degree {degree} is too high: at most {most} can be used")]
+    Degree {
+        /// The degree.
+        degree: usize,
+        /// What is possible.
+        most: usize,
+    },
+    /// A coefficient is not finite.
+    #[error("a coefficient of {what} is not finite")]
+    NotFinite {
+        /// Of which form.
+        what: &'static str,
+    },
+    /// A weight is not positive.
+    #[error("weight {index} is {value}, but must be positive")]
+    Weight {
+        /// Which coefficient.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// The normal vanishes inside, or everywhere.
+    #[error("the surface has no normal near (u, v) = ({u}, {v}): it is folded or degenerate there")]
+    NoNormal {
+        /// Where.
+        u: f64,
+        /// Where.
+        v: f64,
+    },
+}
+
+/// Why patches enclose no tool.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ToolError {
+    /// There is none.
+    #[error("a tool needs at least one patch")]
+    Empty,
+    /// A side, or a part of one, lies at no other one.
+    #[error("side {side} of patch {patch} joins no other side near ({}, {}, {}): the boundary is open there", .place[0], .place[1], .place[2])]
+    Open {
+        /// The patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+        /// The middle of the part.
+        place: [f64; 3],
+    },
+    /// Two patches that join face opposite ways.
+    #[error(
+        "patches {patch} and {other} join at side {side} of the first, but one faces out of the tool and the other into it"
+    )]
+    Flipped {
+        /// A patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+        /// The other patch.
+        other: usize,
+    },
+    /// More than two sides lie at one place.
+    #[error("three or more sides join at side {side} of patch {patch}")]
+    Branching {
+        /// A patch, from 0.
+        patch: usize,
+        /// Its side.
+        side: Side,
+    },
+    /// All patches face inwards.
+    #[error("the patches face into the tool: swap u and v of each")]
+    InsideOut,
+    /// A surface is not one of two variables in space.
+    #[error("surface {surface} maps {variables} variables to {dimension} coordinates: expected 2 and 3")]
+    Surface {
+        /// The surface, from 0.
+        surface: usize,
+        /// Its variables.
+        variables: usize,
+        /// Its coordinates.
+        dimension: usize,
+    },
+    /// A surface cannot be taken apart.
+    #[error("surface {surface}: {source}")]
+    Spline {
+        /// The surface, from 0.
+        surface: usize,
+        /// Why.
+        source: SplineError,
+    },
+    /// A piece of a surface is no patch.
+    #[error("surface {surface}, where u is in [{}, {}] and v in [{}, {}]: {source}", .ranges[0].0, .ranges[0].1, .ranges[1].0, .ranges[1].1)]
+    Patch {
+        /// The surface, from 0.
+        surface: usize,
+        /// The piece between knots: its range of `u` and of `v`. The error counts `u` and `v` from 0 to 1 in it.
+        ranges: [(f64, f64); 2],
+        /// Why.
+        source: PatchError,
+    },
+}
+
+/// A side of a patch, counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// `v = 0`, `u` increasing.
+    Bottom,
+    /// `u = 1`, `v` increasing.
+    Right,
+    /// `v = 1`, `u` decreasing.
+    Top,
+    /// `u = 0`, `v` decreasing.
+    Left,
+}
+
+impl std::fmt::Display for Side {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Bottom => "v = 0",
+            Self::Right => "u = 1",
+            Self::Top => "v = 1",
+            Self::Left => "u = 0",
+        })
+    }
+}

@@ -1,0 +1,19 @@
+//! The boundary of a tool: patches, their normals, and the sharp edges between them.
+
+mod edge;
+mod error;
+mod joints;
+mod meridian;
+mod patch;
+mod recognised;
+mod revolution;
+mod side_curve;
+mod stretch;
+mod surfaces;
+
+pub use edge::{Edge, Fold};
+pub use error::{PatchError, Side, ToolError};
+pub(crate) use joints::edges as edges_of_patches;
+pub use patch::{NormalField, Patch, Revolved};
+pub(crate) use revolution::{edges as edges_of_profile, patches as patches_of_profile};
+pub(crate) use surfaces::patches as patches_of_surfaces;

@@ -1,0 +1,151 @@
+//! Parts of sides that join one to one, and the sharp edges of their joints.
+
+use super::edge::SMOOTH;
+use super::side_curve::{PLACES, SideCurve, part};
+use super::{Edge, NormalField};
+use nalgebra::{DMatrix, DVector, Vector3};
+use sweepsim_spline::Bernstein;
+
+/// Degree of normals that are carried over, how far they may be off, and how often the stretch is halved for that.
+const CARRIED: usize = 6;
+const CARRIED_ERROR: f64 = 1e-10;
+const HALVINGS: usize = 8;
+
+/// A part of a side that joins one other.
+pub(super) struct JointStretch<'a> {
+    pub(super) curve: &'a SideCurve,
+    pub(super) range: [f64; 2],
+    pub(super) ends: [Vector3<f64>; 2],
+}
+
+impl JointStretch<'_> {
+    fn parameter(&self, part: f64) -> f64 {
+        self.range[0] * (1.0 - part) + self.range[1] * part
+    }
+
+    pub(super) fn at(&self, part: f64) -> Vector3<f64> {
+        self.curve.at(self.parameter(part))
+    }
+
+    /// Whether it runs along the other, the other way or the same.
+    pub(super) fn runs_along(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
+        // Corners that cut a side are within the tolerance of it, and of the corner that is the other's end.
+        let gap = |end: usize| (self.ends[end] - other.ends[if backwards { 1 - end } else { end }]).norm();
+        if !(gap(0) <= 2.0 * tolerance && gap(1) <= 2.0 * tolerance) {
+            return false;
+        }
+        let covered = |one: &Self, two: &Self| {
+            (0..PLACES).all(|n| {
+                let (_, distance) = two.curve.nearest(&one.at(part(n)), two.range);
+                distance <= tolerance
+            })
+        };
+        self.keeps_pace(other, backwards, tolerance) || (covered(self, other) && covered(other, self))
+    }
+
+    /// Whether they are at the same places at the same parts of their parameters.
+    fn keeps_pace(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
+        (0..PLACES).all(|n| {
+            let there = if backwards { 1.0 - part(n) } else { part(n) };
+            (self.at(part(n)) - other.at(there)).norm() <= tolerance
+        })
+    }
+
+    /// Position, weight and normals between two parts of it, `from > to` for the other way.
+    fn forms(&self, from: f64, to: f64) -> ([Bernstein; 3], Bernstein, NormalField) {
+        let [from, to] = [from, to].map(|part| self.parameter(part));
+        let cut = |form: &Bernstein| form.restrict(0, from, to).assumed_exact();
+        let three = |forms: &[Bernstein; 3]| [0, 1, 2].map(|k| cut(&forms[k]));
+        let field = NormalField {
+            normal: three(&self.curve.field.normal),
+            moment: three(&self.curve.field.moment),
+        };
+        (three(&self.curve.position), cut(&self.curve.weight), field)
+    }
+
+    /// The sharp edges of its joint with another, which runs the other way.
+    pub(super) fn edges(&self, other: &Self, tolerance: f64) -> Vec<Edge> {
+        let pace = self.keeps_pace(other, true, tolerance);
+        let there = |part: f64| {
+            if pace {
+                other.parameter(1.0 - part)
+            } else {
+                other.curve.nearest(&self.at(part), other.range).0
+            }
+        };
+        let normals = |part: f64| {
+            Some((
+                self.curve.normal(self.parameter(part))?,
+                other.curve.normal(there(part))?,
+            ))
+        };
+        let smooth = (0..PLACES).all(|n| match normals(part(n)) {
+            Some((a, b)) => a.cross(&b).norm() <= SMOOTH && a.dot(&b) > 0.0,
+            // At a pole a normal may vanish.
+            None => true,
+        });
+        if smooth {
+            return Vec::new();
+        }
+        // Along this side its own patch is to the left; the edge's direction has face B there.
+        if pace {
+            let (position, weight, after) = self.forms(0.0, 1.0);
+            let (.., before) = other.forms(1.0, 0.0);
+            return vec![Edge {
+                position,
+                weight,
+                before,
+                after,
+            }];
+        }
+        let mut edges = Vec::new();
+        let mut open = vec![([0.0, 1.0], 0)];
+        while let Some(([from, to], depth)) = open.pop() {
+            let normal = |part: f64| other.curve.normal_or_beside(there(from + (to - from) * part));
+            let (carried, error) = fitted(normal);
+            if error > CARRIED_ERROR && depth < HALVINGS {
+                let middle = 0.5 * (from + to);
+                open.push(([middle, to], depth + 1));
+                open.push(([from, middle], depth + 1));
+                continue;
+            }
+            let (position, weight, after) = self.forms(from, to);
+            let cross = |k: usize| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                position[i].mul(&carried[j]).sub(&position[j].mul(&carried[i]))
+            };
+            // F × N and N, both times the weight.
+            let before = NormalField {
+                normal: [0, 1, 2].map(|k| weight.mul(&carried[k]).assumed_exact()),
+                moment: [0, 1, 2].map(|k| cross(k).assumed_exact()),
+            };
+            edges.push(Edge {
+                position,
+                weight,
+                before,
+                after,
+            });
+        }
+        edges
+    }
+}
+
+/// A polynomial through values at Chebyshev's places, and how far it is off between them.
+fn fitted(value: impl Fn(f64) -> Vector3<f64>) -> ([Bernstein; 3], f64) {
+    let count = CARRIED + 1;
+    let node = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / count as f64).cos();
+    let binomial = |j: usize| (0..j).fold(1.0, |b, k| b * (CARRIED - k) as f64 / (k + 1) as f64);
+    let basis = |j: usize, x: f64| binomial(j) * x.powi(j as i32) * (1.0 - x).powi((CARRIED - j) as i32);
+    let system = DMatrix::from_fn(count, count, |i, j| basis(j, node(i))).lu();
+    let values: Vec<Vector3<f64>> = (0..count).map(|i| value(node(i))).collect();
+    let forms = [0, 1, 2].map(|k| {
+        let side = DVector::from_fn(count, |i, _| values[i][k]);
+        let coefficients = system.solve(&side).expect("Bernstein polynomials are independent");
+        Bernstein::new(&[CARRIED], coefficients.as_slice().to_vec()).expect("finite values of unit normals")
+    });
+    let between = (0..=2 * count).map(|i| i as f64 / (2 * count) as f64);
+    let error = between
+        .map(|x| (Vector3::from([0, 1, 2].map(|k| forms[k].evaluate(&[x]))) - value(x)).norm())
+        .fold(0.0, f64::max);
+    (forms, error)
+}

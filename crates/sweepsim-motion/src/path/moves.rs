@@ -1,0 +1,93 @@
+//! How a tool goes from one pose to the next.
+
+use super::{RotaryTable, TipArc};
+
+/// How a tool goes from one pose to the next: the way of its tip, and how it turns meanwhile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Move {
+    /// The way of the tip.
+    pub course: Course,
+    /// How the tool turns.
+    pub turning: Turning,
+}
+
+/// The way of the tip.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Course {
+    /// A straight line.
+    #[default]
+    Straight,
+    /// A circular arc or a helix, at constant speed.
+    Arc(TipArc),
+}
+
+/// How the tool turns from one pose to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Turning {
+    /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
+    /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).
+    #[default]
+    Slerp,
+    /// The same at constant angular speed: the tip and the angle stay in step.
+    Even,
+    /// Both rotary axes of a machine at constant speed, in step with the tip.
+    Rotary {
+        /// Which axes.
+        table: RotaryTable,
+        /// The angles `[tilt, C]` at the start, in degrees.
+        from: [f64; 2],
+        /// The angles at the end: not reduced, 720° from the start is two turns.
+        to: [f64; 2],
+    },
+}
+
+/// How the tool turns on the moves of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Law {
+    /// [`Turning::Slerp`].
+    #[default]
+    Slerp,
+    /// [`Turning::Even`].
+    ConstantSpeed,
+    /// [`Turning::Rotary`], with the angles that are next to those before.
+    Rotary(RotaryTable),
+}
+
+impl Move {
+    /// Straight, turning like this.
+    #[must_use]
+    pub fn straight(turning: Turning) -> Self {
+        Self {
+            course: Course::Straight,
+            turning,
+        }
+    }
+
+    /// Along an arc or a helix, the axis turning evenly meanwhile.
+    #[must_use]
+    pub fn arc(arc: TipArc) -> Self {
+        Self {
+            course: Course::Arc(arc),
+            turning: Turning::Even,
+        }
+    }
+
+    /// The move back from its end to its start.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            course: match self.course {
+                Course::Straight => Course::Straight,
+                Course::Arc(arc) => Course::Arc(arc.reversed()),
+            },
+            turning: match self.turning {
+                Turning::Rotary { table, from, to } => Turning::Rotary {
+                    table,
+                    from: to,
+                    to: from,
+                },
+                other => other,
+            },
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! What can be wrong with a profile.
+
+use sweepsim_spline::{KnotError, SplineError};
+use thiserror::Error;
+
+/// Why a list of segments is no profile. `segment` counts from 0.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum ProfileError {
+    /// There is no segment.
+    #[error("a profile needs at least one segment")]
+    Empty,
+    /// A number is not finite.
+    #[error("profile segment {segment} has a number that is not finite")]
+    NotFinite {
+        /// Which segment.
+        segment: usize,
+    },
+    /// It does not begin or end on the axis.
+    #[error("the profile is open: it must begin and end on the axis (rho = 0), but {which} is at rho = {rho}")]
+    Open {
+        /// `"its start"` or `"its end"`.
+        which: &'static str,
+        /// The radius there.
+        rho: f64,
+    },
+    /// It ends below or at its start.
+    #[error(
+        "the profile must run upwards along the axis, from the tip at zeta = {start} to a top above it, but ends at zeta = {end}"
+    )]
+    UpsideDown {
+        /// `ζ` of the start.
+        start: f64,
+        /// `ζ` of the end.
+        end: f64,
+    },
+    /// A segment reaches the axis between the two ends, or crosses it.
+    #[error("profile segment {segment} reaches the axis (rho = {rho}) between the tip and the top")]
+    AcrossAxis {
+        /// Which segment.
+        segment: usize,
+        /// The smallest radius.
+        rho: f64,
+    },
+    /// A segment has no length.
+    #[error("profile segment {segment} has no length")]
+    NoLength {
+        /// Which segment.
+        segment: usize,
+    },
+    /// The two ends of an arc lie at different distances from its centre.
+    #[error("profile segment {segment} is no arc: its ends are {from} and {to} away from its centre")]
+    NoArc {
+        /// Which segment.
+        segment: usize,
+        /// Distance of the start from the centre.
+        from: f64,
+        /// Distance of the end from the centre.
+        to: f64,
+    },
+    /// A spline that is none, or not one of an outline.
+    #[error("profile segment {segment}: {fault}")]
+    Spline {
+        /// Which segment.
+        segment: usize,
+        /// What is wrong.
+        fault: SplineFault,
+    },
+    /// Two segments cross or touch other than at their common end. A spline may do so with itself.
+    #[error("the profile crosses or touches itself: segments {first} and {second}")]
+    SelfCrossing {
+        /// The one segment.
+        first: usize,
+        /// The other.
+        second: usize,
+    },
+    /// A measure of a built-in tool is not positive, or does not fit another.
+    #[error("{what} is {value}, but must be {expected}")]
+    Measure {
+        /// Which measure.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What was expected.
+        expected: &'static str,
+    },
+}
+
+/// Why a spline is no segment of a profile. Points, weights and knots count from 0.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SplineFault {
+    /// The degree is 0 or too high.
+    #[error("degree {degree} of a spline must be from 1 to {most}")]
+    Degree {
+        /// The degree.
+        degree: usize,
+        /// What is possible.
+        most: usize,
+    },
+    /// Fewer points than the degree needs.
+    #[error("the spline has {found} points, but its degree needs at least {least}")]
+    Points {
+        /// How many there must be.
+        least: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// Not one weight for each point.
+    #[error("the spline has {found} weights for {expected} points")]
+    Weights {
+        /// How many points there are.
+        expected: usize,
+        /// How many weights there are.
+        found: usize,
+    },
+    /// A weight is not positive, or so small that the normals would be lost in rounding.
+    #[error("weight {index} of the spline is {value}, but must be positive and at least 1e-4 of the largest")]
+    Weight {
+        /// Which weight.
+        index: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// Not as many knots as points and degree need.
+    #[error("the spline has {found} knots, but needs {expected}: its points, its degree and one more")]
+    KnotCount {
+        /// How many there must be.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// The knots are none.
+    #[error("the spline's knots: {0}")]
+    Knots(KnotError),
+    /// The first or last knot does not occur often enough.
+    #[error(
+        "the spline's first and last knot must each occur once more than its degree, so that it begins and ends at its points"
+    )]
+    Clamped,
+    /// The curve jumps at a knot.
+    #[error("the spline jumps at knot {knot}: it occurs more often than the degree")]
+    Jump {
+        /// Where.
+        knot: f64,
+    },
+    /// It begins elsewhere than the segment before ended.
+    #[error("the spline begins at ({}, {}), but the profile is at ({}, {}) there", .found[0], .found[1], .expected[0], .expected[1])]
+    Start {
+        /// Its first point.
+        found: [f64; 2],
+        /// Where the segment before ended.
+        expected: [f64; 2],
+    },
+    /// A cusp, a fold, or control points so close together that the curve has no direction.
+    #[error("the spline has no direction or turns back somewhere near ({}, {})", .near[0], .near[1])]
+    Stops {
+        /// The middle of the piece between knots.
+        near: [f64; 2],
+    },
+    /// The spline cannot be taken apart.
+    #[error("the spline: {0}")]
+    Other(SplineError),
+}

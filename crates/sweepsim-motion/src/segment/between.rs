@@ -1,0 +1,101 @@
+//! The turns from one pose to another, as rational arcs.
+
+use super::Segment;
+use crate::pose::Pose;
+use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
+use std::f64::consts::FRAC_PI_2;
+
+/// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° either way, and `κ`.
+pub(crate) fn rational_turn(k: Vector3<f64>, angle: f64) -> ([Matrix3<f64>; 3], [f64; 3], f64) {
+    let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
+    let (w, c, s) = (
+        [1.0, half_cosine, 1.0],
+        [1.0, half_cosine, angle.cos()],
+        [0.0, half_sine, angle.sin()],
+    );
+    let along = k * k.transpose();
+    let across = Matrix3::identity() - along;
+    let turns = [0, 1, 2].map(|i| along * w[i] + across * c[i] + k.cross_matrix() * s[i]);
+    (turns, w, 2.0 * half_sine)
+}
+
+/// A right-handed frame whose third vector is `axis`: a function of the axis alone, continuous but at `−z`.
+pub(crate) fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
+    let z = axis.into_inner();
+    let (first, second) = if z.z > -0.5 {
+        let f = 1.0 / (1.0 + z.z);
+        (
+            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, -z.x),
+            Vector3::new(-z.x * z.y * f, 1.0 - z.y * z.y * f, -z.y),
+        )
+    } else {
+        let f = 1.0 / (1.0 - z.z);
+        (
+            Vector3::new(1.0 - z.x * z.x * f, -z.x * z.y * f, z.x),
+            Vector3::new(z.x * z.y * f, z.y * z.y * f - 1.0, -z.y),
+        )
+    };
+    Matrix3::from_columns(&[first, second, z])
+}
+
+/// The axis and the angle (0 to π) of the turn between two poses that say all of their orientation.
+pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>, f64)> {
+    let quaternion = |pose: &Pose| {
+        Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
+            pose.orientation()?,
+        )))
+    };
+    let turn = quaternion(to)? * quaternion(from)?.inverse();
+    // The vector part has the length sin(θ/2): its sign is free, and θ is at most half a turn.
+    let vector = turn.imag() * if turn.w < 0.0 { -1.0 } else { 1.0 };
+    let angle = 2.0 * vector.norm().atan2(turn.w.abs());
+    Some((Unit::try_new(vector, 1e-300).unwrap_or(Vector3::z_axis()), angle))
+}
+
+impl Segment {
+    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis (or the orientation) turns by more than 90°.
+    ///
+    /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
+    #[must_use]
+    pub fn between(from: &Pose, to: &Pose) -> Vec<Self> {
+        if let (Some((k, angle)), Some(start)) = (turn_between(from, to), from.orientation()) {
+            let mut count = 1;
+            while angle > count as f64 * FRAC_PI_2 * (1.0 + 1e-12) {
+                count *= 2;
+            }
+            let step = angle / count as f64;
+            let tip = |n: usize| from.tip() + (to.tip() - from.tip()) * (n as f64 / count as f64);
+            let part = |n: usize| {
+                let turned = Rotation3::from_axis_angle(&k, step * n as f64) * start;
+                Self::turning([tip(n), tip(n + 1)], turned, k.into_inner(), step)
+            };
+            return (0..count).map(part).collect();
+        }
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let cross = o0.cross(&o1);
+        let angle = cross.norm().atan2(o0.dot(&o1));
+        if angle <= FRAC_PI_2 * (1.0 + 1e-12) {
+            return vec![Self::arc(from, to)];
+        }
+        let k = cross.normalize();
+        let half = 0.5 * angle;
+        let axis = Unit::new_normalize(o0 * half.cos() + k.cross(&o0) * half.sin());
+        let middle = Pose::at(0.5 * (from.tip() + to.tip()), axis);
+        let mut parts = Self::between(from, &middle);
+        parts.extend(Self::between(&middle, to));
+        parts
+    }
+
+    fn arc(from: &Pose, to: &Pose) -> Self {
+        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let start = frame(from.axis());
+        let tips = [from.tip(), to.tip()];
+        let cross = o0.cross(&o1);
+        let sine = cross.norm();
+        let angle = sine.atan2(o0.dot(&o1));
+        if sine < 1e-15 {
+            return Self::turning(tips, start, Vector3::z(), 0.0);
+        }
+        Self::turning(tips, start, cross / sine, angle)
+    }
+}

@@ -1,0 +1,97 @@
+//! Velocities: of the tip, of the orientation, and of the tool as it sees them itself.
+
+use super::forms::{derivative, product, raised, wronskian};
+use super::{Kind, Segment, SegmentCurve, SegmentEnd};
+use nalgebra::{Matrix3, Vector3};
+
+impl Segment {
+    /// Numerators of `b′`, and as many positive denominators.
+    #[must_use]
+    pub fn tip_rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
+        match &self.kind {
+            Kind::Arc(_) => (vec![self.travel()], vec![1.0]),
+            Kind::Curve(curve) => {
+                let (rate, factor) = curve.rate();
+                let degree = rate.len().max(factor.len()) - 1;
+                (raised(&rate, degree), raised(&factor, degree))
+            }
+        }
+    }
+
+    /// Numerators of `A′`, and as many positive denominators.
+    #[must_use]
+    pub fn turn_rate(&self) -> (Vec<Matrix3<f64>>, Vec<f64>) {
+        let (turns, weights) = (&self.turns, &self.weights);
+        let degree = turns.len() - 1;
+        if degree == 0 {
+            return (vec![Matrix3::zeros()], vec![1.0]);
+        }
+        let rate = wronskian(degree, |i, j| turns[j] * weights[i] - turns[i] * weights[j]);
+        (raised(&rate, 2 * degree), product(weights, weights, |a, b| a * b))
+    }
+
+    /// How the tool moves as it sees it itself: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times one positive factor.
+    /// The first is a single one where it does not change; else both have one degree.
+    ///
+    /// With a surface normal `N` and its moment `M`, `⟨Ω, M⟩ + ⟨Aᵀ b′, N⟩` is the envelope function times that factor.
+    #[must_use]
+    pub fn twist(&self) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
+        let curve = match &self.kind {
+            Kind::Arc(spin) => {
+                let travel = self.travel();
+                let back = |turn: &Matrix3<f64>| turn.tr_mul(&travel);
+                return (vec![self.start().tr_mul(spin)], self.turns.iter().map(back).collect());
+            }
+            Kind::Curve(curve) => curve,
+        };
+        // With b′ = B/f and Ω = S/σ the factor is f σ: f S and (σ/ŵ) Âᵀ B.
+        let (rate, factor) = curve.rate();
+        let mut travel = product(&self.turns, &rate, |turn, rate| turn.tr_mul(rate));
+        if curve.squared {
+            travel = product(&self.weights, &travel, |weight, travel| travel * *weight);
+        }
+        let spin = product(&factor, &curve.spins, |factor, spin| spin * *factor);
+        if spin.len() == 1 {
+            return (spin, travel);
+        }
+        let degree = spin.len().max(travel.len()) - 1;
+        (raised(&spin, degree), raised(&travel, degree))
+    }
+
+    /// At one end, in space: the angular velocity, and the velocity of the tip, both times one positive factor.
+    #[must_use]
+    pub fn velocity(&self, end: SegmentEnd) -> [Vector3<f64>; 2] {
+        if let Kind::Arc(spin) = &self.kind {
+            return [*spin, self.travel()];
+        }
+        let (spins, travels) = self.twist();
+        match end {
+            SegmentEnd::Start => [spins[0], travels[0]].map(|own| self.start() * own),
+            SegmentEnd::Finish => [spins[spins.len() - 1], travels[travels.len() - 1]].map(|own| self.end() * own),
+        }
+    }
+}
+
+impl SegmentCurve {
+    /// `B` and `f` with `b′ = B/f`.
+    fn rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
+        let (points, weights) = (&self.points, &self.point_weights);
+        if weights.is_empty() {
+            return (derivative(points), vec![1.0]);
+        }
+        let rate = wronskian(points.len() - 1, |i, j| points[j] * weights[i] - points[i] * weights[j]);
+        (rate, product(weights, weights, |a, b| a * b))
+    }
+}
+
+/// Coefficients of `ŵ² Ω` of a rational matrix: the antisymmetric part of `Âᵀ Â′`.
+pub(crate) fn spins(turns: &[Matrix3<f64>]) -> Vec<Vector3<f64>> {
+    let antisymmetric = |i: usize, j: usize| {
+        let m = turns[i].tr_mul(&turns[j]);
+        Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]) * 0.5
+    };
+    match turns.len() {
+        1 => vec![Vector3::zeros()],
+        n => wronskian(n - 1, antisymmetric),
+    }
+}

@@ -1,0 +1,101 @@
+//! What can be wrong with a motion given by splines.
+
+use crate::pose::PoseError;
+use sweepsim_spline::SplineError;
+use thiserror::Error;
+
+/// Why splines are no rigid motion.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// A spline is not a curve of the right dimension.
+    #[error("the {what} is a spline of {variables} variables and {dimension} coordinates: expected 1 and {expected}")]
+    Curve {
+        /// `"orientation"` or `"tip"`.
+        what: &'static str,
+        /// Its variables.
+        variables: usize,
+        /// Its coordinates.
+        dimension: usize,
+        /// The coordinates that were expected.
+        expected: usize,
+    },
+    /// A degree is too high.
+    #[error("the {what} has degree {degree}: at most {most} can be used")]
+    Degree {
+        /// `"orientation"` or `"tip"`.
+        what: &'static str,
+        /// Its degree.
+        degree: usize,
+        /// What is possible.
+        most: usize,
+    },
+    /// The two splines have different domains.
+    #[error("the orientation runs over [{}, {}] and the tip over [{}, {}]: expected the same", .orientation.0, .orientation.1, .tip.0, .tip.1)]
+    Domains {
+        /// That of the orientation.
+        orientation: (f64, f64),
+        /// That of the tip.
+        tip: (f64, f64),
+    },
+    /// A spline cannot be taken apart.
+    #[error("the {what}: {source}")]
+    Spline {
+        /// `"orientation"` or `"tip"`.
+        what: &'static str,
+        /// Why.
+        source: SplineError,
+    },
+    /// The tolerance is none.
+    #[error("the tolerance {0} is none: expected a positive number, at most 1e-6")]
+    Tolerance(f64),
+    /// A coefficient is not finite, or too large.
+    #[error("a coefficient of the {what} is not finite, or too large, near {at}")]
+    NotFinite {
+        /// `"orientation"` or `"tip"`.
+        what: &'static str,
+        /// The parameter.
+        at: f64,
+    },
+    /// A weight of the tip is not positive between two knots.
+    #[error("the weight of the tip is not positive near {at}")]
+    Weight {
+        /// The parameter.
+        at: f64,
+    },
+    /// The quaternion vanishes.
+    #[error("the quaternion vanishes, or nearly, near {at}: it has no orientation there")]
+    NoOrientation {
+        /// The parameter.
+        at: f64,
+    },
+    /// The matrix is not orthogonal.
+    #[error("the orientation is no rotation near {at}: AᵀA differs from 1 by {deviation:e}, more than {tolerance:e}")]
+    NoRotation {
+        /// The parameter.
+        at: f64,
+        /// A bound of the norm of `AᵀA − 1` there.
+        deviation: f64,
+        /// What was allowed.
+        tolerance: f64,
+    },
+    /// The matrix mirrors.
+    #[error("the orientation is a reflection, not a rotation: its determinant is negative")]
+    Mirrored,
+    /// The motion jumps at a knot.
+    #[error("the motion jumps at {at}, by {gap:e} (tip, or of the orientation's directions)")]
+    Jump {
+        /// The knot.
+        at: f64,
+        /// How far.
+        gap: f64,
+    },
+    /// The orientation at a knot is no pose.
+    #[error("at {at}: {source}")]
+    Pose {
+        /// The knot.
+        at: f64,
+        /// Why.
+        source: PoseError,
+    },
+}
