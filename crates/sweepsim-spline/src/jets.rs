@@ -1,6 +1,6 @@
 //! Values and derivatives by contraction: one basis (or derivative of it) a variable, the slowest variable first.
 
-use crate::tensor::accumulate;
+use crate::kernel::accumulate;
 use smallvec::SmallVec;
 
 pub(crate) type Buffer = SmallVec<[f64; 128]>;
@@ -115,7 +115,7 @@ impl Derivatives {
                 let choose: f64 = index
                     .iter()
                     .zip(&beta)
-                    .map(|(&i, &b)| crate::binomial::row(i)[b])
+                    .map(|(&i, &b)| crate::kernel::binomial::row(i)[b])
                     .product();
                 for k in 0..m {
                     own[k] -= choose * w * result.values[at * m + k];

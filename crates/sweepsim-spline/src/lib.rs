@@ -47,29 +47,24 @@
 //! `examples/operations.rs` shows every operation. Feature `serde`: all types are stored and, when read, checked.
 
 mod bernstein;
-mod binomial;
 mod bounds;
 mod construct;
 mod determinant;
 mod jets;
+mod kernel;
 mod knots;
-mod map;
-mod rational;
-mod rational_spline;
 mod rounding;
-mod rows;
 mod spline;
-mod tensor;
 
-pub use bernstein::{Bernstein, BernsteinError, MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
+pub use bernstein::{
+    Bernstein, BernsteinError, BernsteinMap, MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES, RationalBernstein,
+    RationalError,
+};
 pub use bounds::{Cone, LinearBound};
 pub use construct::Fit;
 pub use jets::Derivatives;
 pub use knots::{KnotError, KnotKind, KnotVector};
-pub use map::BernsteinMap;
-pub use rational::{RationalBernstein, RationalError};
-pub use rational_spline::{RationalPiece, RationalSpline};
-pub use spline::{BSpline, SplineError, SplinePiece};
+pub use spline::{BSpline, RationalPiece, RationalSpline, SplineError, SplinePiece};
 
 /// The README's example compiles and holds.
 #[cfg(doctest)]

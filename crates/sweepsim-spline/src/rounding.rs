@@ -50,6 +50,18 @@ pub(crate) fn magnitude(values: &[f64]) -> f64 {
     }
 }
 
+/// `[x − e, x + e] / [w − e, w + e]` for `w > e`, rounded outwards.
+pub(crate) fn quotient_range(x: f64, w: f64, e: f64) -> (f64, f64) {
+    let (low, high) = ((w - e).next_down(), (w + e).next_up());
+    let (a, b) = ((x - e).next_down(), (x + e).next_up());
+    if low.is_nan() || low <= 0.0 || !e.is_finite() {
+        return (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let lo = if a >= 0.0 { a / high } else { a / low };
+    let hi = if b >= 0.0 { b / low } else { b / high };
+    (lo.next_down(), hi.next_up())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,9 +5,9 @@
 //! pays, of the first two laid out with the product's stride, so that the inner loop is long and contiguous.
 
 use super::{Bernstein, Degrees, coefficient_count};
-use crate::binomial;
+use crate::kernel::binomial;
+use crate::kernel::{accumulate, along};
 use crate::rounding::{UNDERFLOW, UNIT, gamma, magnitude, up};
-use crate::tensor::{accumulate, along};
 use smallvec::SmallVec;
 use std::ops::{Add, Mul, Neg, Sub};
 

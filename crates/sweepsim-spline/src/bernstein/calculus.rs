@@ -1,8 +1,8 @@
 //! Derivatives and integrals.
 
 use super::{Bernstein, coefficient_count};
+use crate::kernel::along;
 use crate::rounding::{UNDERFLOW, UNIT, gamma, magnitude, up};
-use crate::tensor::along;
 
 impl Bernstein {
     /// The partial derivative by variable `axis`, of degree one less (0 stays 0).

@@ -1,7 +1,7 @@
 //! Composition: a form of forms.
 
 use super::{Bernstein, BernsteinError, MAX_VARIABLES};
-use crate::binomial;
+use crate::kernel::binomial;
 use crate::rounding::{UNDERFLOW, gamma, magnitude, up};
 
 impl Bernstein {
@@ -121,7 +121,7 @@ impl Bernstein {
             return self.clone();
         }
         let degree = self.degrees[axis];
-        let view = crate::tensor::along(self.degrees.iter().map(|d| d + 1), axis, 1);
+        let view = crate::kernel::along(self.degrees.iter().map(|d| d + 1), axis, 1);
         let mut degrees = self.degrees.clone();
         degrees.remove(axis);
         let line: Vec<Self> = (0..=degree)

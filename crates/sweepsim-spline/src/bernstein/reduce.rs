@@ -1,8 +1,8 @@
 //! Degree reduction, where it is exact, and the test whether it is.
 
 use super::{Bernstein, Degrees};
+use crate::kernel::along;
 use crate::rounding::{UNDERFLOW, gamma, magnitude, up};
-use crate::tensor::along;
 
 impl Bernstein {
     /// The same function with the degree in `axis` lower by one, or `None` if it certainly is not of that degree.

@@ -1,8 +1,8 @@
 //! de Casteljau's algorithm: splitting, restricting, reversing, and fixing a variable.
 
 use super::{Bernstein, Degrees};
+use crate::kernel::{Along, along, blend_rows};
 use crate::rounding::{UNDERFLOW, UNIT, up};
-use crate::tensor::{Along, along, blend_rows};
 
 impl Bernstein {
     /// The form on `x_axis ≤ at` and on `x_axis ≥ at`, each again on `[0,1]ⁿ`.

@@ -4,8 +4,8 @@
 //! `{v : |v − (v·a)a/|a|²| |a| ≤ τ (v·a)}` is convex for any `τ`, so `τ` is the largest over the coefficients, each with its
 //! ball of rounding error.
 
+use crate::bernstein::BernsteinMap;
 use crate::bernstein::{Bernstein, BernsteinError};
-use crate::map::BernsteinMap;
 use crate::rounding::{UNDERFLOW, gamma, up};
 use crate::spline::{BSpline, SplineError};
 

@@ -63,7 +63,7 @@ impl Bernstein {
             if degree == 0 {
                 continue;
             }
-            let view = crate::tensor::along(self.degrees().iter().map(|d| d + 1), axis, 1);
+            let view = crate::kernel::along(self.degrees().iter().map(|d| d + 1), axis, 1);
             let mut most: f64 = 0.0;
             for block in self.coefficients().chunks_exact(view.inner * view.len) {
                 let pairs = block.iter().zip(&block[view.inner..]);
@@ -99,7 +99,7 @@ impl Bernstein {
         if degree == 0 || !self.is_finite() {
             return Some((0.0, 1.0));
         }
-        let view = crate::tensor::along(self.degrees().iter().map(|d| d + 1), axis, 1);
+        let view = crate::kernel::along(self.degrees().iter().map(|d| d + 1), axis, 1);
         let mut hull = vec![(f64::INFINITY, f64::NEG_INFINITY); degree + 1];
         for block in self.coefficients().chunks_exact(view.inner * view.len) {
             for (slice, (lo, hi)) in block.chunks_exact(view.inner).zip(&mut hull) {

@@ -3,10 +3,10 @@
 //! On a grid of sites the tensor-product problem is one small linear system a variable, with many right-hand sides.
 //! The systems are solved as dense ones (pivoted LU, Householder QR): cubic in the number of coefficients a variable.
 
+use crate::kernel::along;
 use crate::knots::KnotVector;
 use crate::rounding::magnitude;
 use crate::spline::{BSpline, SplineError};
-use crate::tensor::along;
 use nalgebra::DMatrix;
 use smallvec::SmallVec;
 
@@ -261,7 +261,7 @@ fn is_singular(least: f64, most: f64) -> bool {
 const MAX_ENTRIES: usize = 1 << 26;
 
 /// Solves for the coefficients along one axis; `None` if they are not determined.
-fn solve(vector: &KnotVector, sites: &[f64], data: &[f64], view: crate::tensor::Along) -> Option<Vec<f64>> {
+fn solve(vector: &KnotVector, sites: &[f64], data: &[f64], view: crate::kernel::Along) -> Option<Vec<f64>> {
     let (rows, columns) = (sites.len(), vector.count());
     let mut matrix = DMatrix::zeros(rows, columns);
     for (i, &x) in sites.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! Lines, planes, arcs, and the surfaces swept by them.
 
 use crate::knots::KnotVector;
-use crate::rational_spline::RationalSpline;
 use crate::rounding::{UNIT, magnitude, up};
+use crate::spline::RationalSpline;
 use crate::spline::{BSpline, SplineError};
 
 fn unit_interval(degree: usize) -> Result<KnotVector, SplineError> {

@@ -1,10 +1,10 @@
 //! Derivatives and integrals.
 
+use super::rows::{self, Row};
 use super::{BSpline, SplineError};
+use crate::kernel::along;
 use crate::knots::KnotVector;
 use crate::rounding::{UNDERFLOW, gamma, up};
-use crate::rows::{self, Row};
-use crate::tensor::along;
 use smallvec::SmallVec;
 
 impl BSpline {

@@ -1,10 +1,10 @@
 //! Parts of the domain, more and fewer variables, and other parameters.
 
+use super::rows::{self, Row};
 use super::{BSpline, Knots, SplineError};
 use crate::bernstein::MAX_VARIABLES;
 use crate::knots::KnotVector;
 use crate::rounding::up;
-use crate::rows::{self, Row};
 use smallvec::SmallVec;
 
 impl BSpline {

@@ -1,12 +1,12 @@
 //! From a spline to its Bernstein pieces and back.
 
+use super::rows::{self, Row};
 use super::{BSpline, Knots, SplineError};
+use crate::bernstein::BernsteinMap;
 use crate::bernstein::{Bernstein, MAX_COEFFICIENTS};
+use crate::kernel::along;
 use crate::knots::KnotVector;
-use crate::map::BernsteinMap;
 use crate::rounding::{magnitude, up};
-use crate::rows::{self, Row};
-use crate::tensor::along;
 use smallvec::SmallVec;
 
 /// One polynomial piece of a spline: where it is, and what it is there.

@@ -1,11 +1,11 @@
 //! Other knots for the same function: insertion, removal, degree elevation and reduction.
 
 use super::pieces::largest_difference;
+use super::rows::{self, Row};
 use super::{BSpline, SplineError};
 use crate::bernstein::MAX_DEGREE;
 use crate::knots::{KnotError, KnotVector};
 use crate::rounding::up;
-use crate::rows::{self, Row};
 
 impl BSpline {
     /// The same spline with the knot `value` inserted `times` times in variable `axis` (Boehm's algorithm).

@@ -1,11 +1,11 @@
 //! Splines put together: components, affine maps of the values, products of separate variables, composition.
 
+use super::rows::{self, Row};
 use super::{BSpline, Knots, SplineError};
 use crate::bernstein::Bernstein;
-use crate::map::BernsteinMap;
+use crate::bernstein::BernsteinMap;
+use crate::kernel::along;
 use crate::rounding::{UNDERFLOW, UNIT, magnitude, up};
-use crate::rows::{self, Row};
-use crate::tensor::along;
 
 impl BSpline {
     /// The product of functions of *separate* variables: `(f ⊗ g)(x, y) = f(x) g(y)`, this spline's variables first.
@@ -151,7 +151,7 @@ impl BSpline {
             })
             .collect();
         let view = along([self.dimension].into_iter(), 0, 1);
-        let view = crate::tensor::Along {
+        let view = crate::kernel::Along {
             outer: self.coefficients.len() / self.dimension,
             ..view
         };

@@ -6,5 +6,6 @@ mod common;
 mod formats;
 mod rational;
 mod spline;
+mod spline_domains;
 mod stored;
 mod total;

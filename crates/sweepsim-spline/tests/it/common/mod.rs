@@ -1,6 +1,8 @@
 //! What the tests share: exact arithmetic on forms, and random forms.
 #![allow(dead_code, reason = "each test file uses its part")]
 
+pub mod splines;
+
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 use sweepsim_spline::Bernstein;

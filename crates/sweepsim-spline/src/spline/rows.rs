@@ -5,9 +5,9 @@
 //! elevation) on *rows* instead of on control points, starting from unit rows, and are then applied once, whatever the
 //! axis. A row carries what is needed to bound the error of the result; the proof is in `docs/error-bounds.md`.
 
+use crate::kernel::{Along, accumulate};
 use crate::knots::KnotVector;
 use crate::rounding::{UNDERFLOW, gamma, up};
-use crate::tensor::{Along, accumulate};
 use smallvec::SmallVec;
 
 /// One new coefficient: `Σ weights[j] · old[start + j]`.

@@ -1,9 +1,9 @@
 //! Rational Bernstein maps, and circular arcs as the first of them.
 
+use crate::bernstein::BernsteinMap;
 use crate::bernstein::{Bernstein, BernsteinError};
 use crate::jets::Derivatives;
-use crate::map::BernsteinMap;
-use crate::rational_spline::quotient_range;
+use crate::rounding::quotient_range;
 
 /// A rational map `[0,1]ⁿ → Rᵐ`: numerators `x₀, …, xₘ₋₁` over one positive weight.
 ///
