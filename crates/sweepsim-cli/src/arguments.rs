@@ -1,10 +1,10 @@
 //! What users type.
 
-use crate::picture::{Section, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{Boundary, Method};
+use sweepsim_picture::{Axis, Image, Section, View};
 
 /// Exact swept volumes of milling tools, and the simulation of NC programs with them.
 ///
@@ -215,7 +215,7 @@ fn cells(text: &str) -> Result<[usize; 2], String> {
 
 fn size(text: &str) -> Result<[usize; 2], String> {
     let size = cells(text)?;
-    let most = View::MOST;
+    let most = Image::MAX_SIDE;
     if size.iter().all(|n| (1..=most).contains(n)) {
         Ok(size)
     } else {
@@ -274,12 +274,14 @@ fn section(text: &str) -> Result<Section, String> {
     let parts = text
         .split_once('=')
         .map(|(axis, at)| (axis.trim(), at.trim().parse::<f64>()));
-    let axis = |name: &str| ["x", "y", "z"].iter().position(|axis| *axis == name);
-    match parts {
-        Some((name, Ok(at))) if at.is_finite() && axis(name).is_some() => Ok(Section {
-            axis: axis(name).unwrap_or_default(),
-            at,
-        }),
+    let axis = match parts {
+        Some(("x", _)) => Some(Axis::X),
+        Some(("y", _)) => Some(Axis::Y),
+        Some(("z", _)) => Some(Axis::Z),
+        _ => None,
+    };
+    match (axis, parts) {
+        (Some(axis), Some((_, Ok(at)))) if at.is_finite() => Ok(Section { axis, at }),
         _ => Err("expected an axis and a number, like z=5".to_owned()),
     }
 }
@@ -325,7 +327,7 @@ mod tests {
             assert!(camera(bad).is_err(), "{bad}");
         }
         let plane = section("y = -2.5").unwrap();
-        assert_eq!((plane.axis, plane.at), (1, -2.5));
+        assert_eq!((plane.axis, plane.at), (Axis::Y, -2.5));
         for bad in ["", "x", "x=", "w=1", "x=inf", "x=1=2"] {
             assert!(section(bad).is_err(), "{bad}");
         }

@@ -10,7 +10,6 @@ mod failure;
 mod inspect;
 mod outputs;
 mod page;
-pub mod picture;
 mod progress;
 mod run;
 mod section;

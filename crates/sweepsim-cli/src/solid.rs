@@ -2,11 +2,11 @@
 
 use crate::arguments::{GridOptions, ViewOptions};
 use crate::failure::Failure;
-use crate::picture::{self, Drawing, View, legend};
 use crate::words::measure;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriangleSoup, surface};
 use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
+use sweepsim_picture::{Drawing, legend};
 
 /// Dexels along the longer side of a mesh, where nothing else is said.
 const CELLS: f64 = 300.0;
@@ -150,30 +150,27 @@ impl GridOptions {
 pub(crate) fn picture(options: &ViewOptions, mesh: &Mesh, values: Option<(&[f32], f64)>) -> Result<Vec<u8>, Failure> {
     if let Some([low, high]) = bounds(mesh) {
         for section in &options.section {
-            let (from, to) = (low[section.axis], high[section.axis]);
+            let (from, to) = (low[section.axis.index()], high[section.axis.index()]);
             if !(from < section.at && section.at < to) {
-                let axis = ["x", "y", "z"][section.axis];
+                let axis = ["x", "y", "z"][section.axis.index()];
                 let [at, from, to] = [section.at, from, to].map(measure);
                 let message = format!("--section {axis}={at} does not meet the part, which is from {from} to {to}");
                 return Err(Failure::message(message));
             }
         }
     }
-    let view = View {
-        size: options.size,
-        aside: if values.is_some() { legend::WIDTH } else { 0.0 },
-        ..options.camera
-    };
-    let mut drawing = Drawing {
-        sections: &options.section,
-        ..Drawing::new(mesh)
-    };
+    let mut view = options.camera;
+    view.size = options.size;
+    let mut drawing = Drawing::new(mesh).sections(&options.section);
     if let Some((values, range)) = values {
-        (drawing.values, drawing.range) = (values, range as f32);
+        view.legend = legend::WIDTH;
+        drawing = drawing.values(values, range as f32);
     }
     let mut image = view.draw(&drawing);
     if let Some((_, range)) = values {
         legend::draw(&mut image, range as f32);
     }
-    picture::png(&image).map_err(|error| Failure::message(format!("cannot make the picture: {error}")))
+    image
+        .png()
+        .map_err(|error| Failure::message(format!("cannot make the picture: {error}")))
 }

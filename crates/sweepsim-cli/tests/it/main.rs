@@ -3,4 +3,3 @@
 mod command;
 mod directions;
 mod exchange;
-mod picture;

@@ -1,112 +1,37 @@
-//! From triangles to pixels.
+//! A band of rows: which triangle each sample sees, and the colours of its pixels.
 
-use super::Image;
-use super::camera::Camera;
-use super::light::{Around, Lights};
-use super::scene::Scene;
-use super::shade::{self, Matter, Spot};
-use super::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
-use rayon::prelude::*;
+use crate::camera::Camera;
+use crate::frame::{BAND, Point, RIM, SAMPLES, STEP, area};
+use crate::light::{Around, Lights};
+use crate::scene::Scene;
+use crate::shade::{self, Matter, Spot};
+use crate::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
 
-/// Samples across a pixel.
-const SAMPLES: usize = 3;
-/// Rows of pixels of a band.
-const BAND: usize = 16;
-/// Pixels beside a band whose samples are known as well.
-const RIM: usize = 1;
-/// Steps of the corners' places within a sample's distance.
-const STEP: f32 = 256.0;
+/// Marks a sample that sees no triangle.
 const EMPTY: u32 = u32::MAX;
-/// Stands for a triangle where a section is seen.
-const LAID_OPEN: u32 = u32::MAX - 1;
-
-/// A vertex in the picture: in steps from the top left sample; its depth, and its weight in means over a triangle.
-#[derive(Clone, Copy)]
-struct Point {
-    x: i64,
-    y: i64,
-    near: f32,
-    weight: f32,
-}
-
-/// Twice the area of a triangle, positive when counter-clockwise with `y` up, that is seen from its front.
-fn area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
-    (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1])
-}
-
-/// Draws a picture.
-pub(super) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usize; 2]) -> Image {
-    let samples = size.map(|n| (n * SAMPLES) as f32);
-    let points: Vec<Point> = scene
-        .positions
-        .par_iter()
-        .map(|p| {
-            let [x, y, near, weight] = camera.project(*p);
-            let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
-            Point {
-                x: place(x, samples[0]),
-                y: place(-y, samples[1]),
-                near,
-                weight,
-            }
-        })
-        .collect();
-    let bands = size[1].div_ceil(BAND);
-    let lists = sort_into_bands(scene, &points, bands);
-    let mut rgb = vec![0; size[0] * size[1] * 3];
-    rgb.par_chunks_mut(size[0] * 3 * BAND)
-        .zip(&lists)
-        .enumerate()
-        .for_each(|(band, (rows, list))| {
-            let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
-            band.paint(scene, camera, lights, rows);
-        });
-    Image { size, rgb }
-}
-
-/// The triangles that each band sees the front of, or any side if there are sections, in their order.
-fn sort_into_bands(scene: &Scene, points: &[Point], bands: usize) -> Vec<Vec<u32>> {
-    let step = STEP as i64;
-    let mut lists = vec![Vec::new(); bands];
-    for (number, t) in scene.triangles.iter().enumerate() {
-        let [a, b, c] = t.map(|v| points[v as usize]);
-        let seen = area([a.x, a.y], [b.x, b.y], [c.x, c.y]);
-        if seen == 0 || (seen < 0 && scene.sections.is_empty()) {
-            continue;
-        }
-        let row = |y: i64| y.div_euclid(step * SAMPLES as i64);
-        let rim = RIM as i64 + 1;
-        let first = (row(a.y.min(b.y).min(c.y)) - rim).div_euclid(BAND as i64).max(0);
-        let last = (row(a.y.max(b.y).max(c.y)) + rim)
-            .div_euclid(BAND as i64)
-            .min(bands as i64 - 1);
-        for band in first..=last {
-            lists[band as usize].push(number as u32);
-        }
-    }
-    lists
-}
+/// Marks a sample that sees a section.
+const CUT_OPEN: u32 = u32::MAX - 1;
 
 /// The samples of a band of rows.
-struct Band {
+pub(crate) struct Band {
     size: [usize; 2],
     /// The first row of pixels.
     top: usize,
-    /// Samples across, with those of the rim.
+    /// Samples across, including the rim.
     width: usize,
     triangles: Vec<u32>,
     near: Vec<f32>,
     normals: Vec<Vector>,
     around: Vec<Around>,
     values: Vec<f32>,
-    /// How often a line of sight leaves the part less how often it enters it, where there are sections.
+    /// How many more times a line of sight leaves the part than it enters it; empty without sections.
     depth: Vec<i32>,
-    /// Whether it is the inside of the part that is seen, laid open by a section.
+    /// Whether a sample sees the inside of the part through a section.
     inside: Vec<bool>,
 }
 
 impl Band {
-    fn new(
+    pub(crate) fn new(
         scene: &Scene,
         camera: &Camera,
         lights: &Lights,
@@ -141,7 +66,7 @@ impl Band {
         band.values = vec![0.0; count];
         band.inside = vec![false; count];
         for index in 0..count {
-            if band.depth.get(index).is_some_and(|depth| *depth > 0) && band.lay_open(scene, camera, index) {
+            if band.depth.get(index).is_some_and(|depth| *depth > 0) && band.cut_open(scene, camera, index) {
                 continue;
             }
             if band.triangles[index] != EMPTY {
@@ -151,7 +76,7 @@ impl Band {
         band
     }
 
-    /// Steps from the picture's first sample to the band's.
+    /// Steps from the image's first sample to the band's.
     fn origin(&self) -> [i64; 2] {
         let rim = (RIM * SAMPLES) as i64;
         [-rim, (self.top * SAMPLES) as i64 - rim].map(|n| n * STEP as i64)
@@ -183,7 +108,7 @@ impl Band {
             // Going right by one sample, `area(p, q, at)` grows by (q.y − p.y) steps.
             let mut weights = [area(b, c, first), area(c, a, first), area(a, b, first)];
             let grow = [c[1] - b[1], a[1] - c[1], b[1] - a[1]].map(|d| d * step);
-            // A sample on an edge is in one of the two triangles beside it: in the one to the right of it, or below.
+            // A sample on an edge belongs to one of its two triangles only: the one to the right, or below.
             let own = [[b, c], [c, a], [a, b]].map(|[p, q]| q[1] > p[1] || (q[1] == p[1] && q[0] < p[0]));
             let start = row as usize * self.width;
             for column in left..=right {
@@ -207,7 +132,7 @@ impl Band {
         }
     }
 
-    /// Between the corners of the triangle at a sample, as seen in perspective.
+    /// Interpolates between the corners of the triangle at a sample, with perspective correction.
     fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[Point], index: usize) {
         let corners = scene.triangles[self.triangles[index] as usize].map(|v| v as usize);
         let p = corners.map(|v| points[v]);
@@ -236,10 +161,9 @@ impl Band {
         self.values[index] = value;
     }
 
-    /// Where a line of sight leaves the part once more than it enters it, it has entered through a section: as the part is closed,
-    /// that is certain. The sections leave a convex piece of space, so the line enters through the last of them that it meets, and
-    /// nothing is in front.
-    fn lay_open(&mut self, scene: &Scene, camera: &Camera, index: usize) -> bool {
+    /// Where a line of sight leaves the closed part once more than it enters it, it must have entered through a section. What the
+    /// sections leave of space is convex, so it entered through the last section that it meets, and nothing is in front.
+    fn cut_open(&mut self, scene: &Scene, camera: &Camera, index: usize) -> bool {
         let [x, y] = self.place(index);
         let [from, ray] = camera.sight(x, y);
         let entered = scene.sections.iter().filter_map(|(normal, at)| {
@@ -253,7 +177,7 @@ impl Band {
         let Some((distance, normal)) = last.filter(|(distance, _)| *distance > 0.0) else {
             return false;
         };
-        self.triangles[index] = LAID_OPEN;
+        self.triangles[index] = CUT_OPEN;
         self.near[index] = camera.near(distance);
         self.normals[index] = normal;
         self.inside[index] = true;
@@ -264,7 +188,7 @@ impl Band {
         true
     }
 
-    /// The place of a sample in the picture, from −1 to 1 to the right and up.
+    /// The position of a sample in the image, from −1 to 1 to the right and up.
     fn place(&self, index: usize) -> [f32; 2] {
         let rim = (RIM * SAMPLES) as f32;
         let across = [
@@ -275,8 +199,8 @@ impl Band {
         [x, -y]
     }
 
-    /// The pixels of the band's rows.
-    fn paint(&self, scene: &Scene, camera: &Camera, lights: &Lights, rows: &mut [u8]) {
+    /// Colours the pixels of the band's rows.
+    pub(crate) fn paint(&self, scene: &Scene, camera: &Camera, lights: &Lights, rows: &mut [u8]) {
         let place = |pixel: f32, k: usize| 2.0 * pixel / self.size[k] as f32 - 1.0;
         for (row, pixels) in rows.chunks_mut(3 * self.size[0]).enumerate() {
             for (column, pixel) in pixels.chunks_mut(3).enumerate() {
@@ -288,14 +212,14 @@ impl Band {
                     self.pixel(scene, camera, lights, [column, row], behind)
                 };
                 for k in 0..3 {
-                    // Between two bytes, which one is decided by a fixed pattern: so the background has no visible steps.
+                    // A fixed dither pattern keeps visible steps out of the background.
                     pixel[k] = shade::srgb(colour[k], pattern(column, self.top + row));
                 }
             }
         }
     }
 
-    /// The mean of a pixel's samples.
+    /// The mean colour of a pixel's samples.
     fn pixel(
         &self,
         scene: &Scene,
@@ -369,7 +293,7 @@ impl Band {
         colour
     }
 
-    /// How much of an edge there is at a sample: where the depth jumps, or the normal does.
+    /// How strongly an edge is drawn at a sample: where the depth or the normal jumps.
     fn line(&self, camera: &Camera, index: usize) -> f32 {
         let centre = self.near[index];
         let mut line = 0.0_f32;
@@ -384,7 +308,7 @@ impl Band {
                 line = line.max(0.7);
                 continue;
             }
-            // Depth is linear on planes.
+            // Depth is linear across the image of a plane.
             let bend = (self.near[before] + self.near[after] - 2.0 * centre).abs();
             let bend = camera.difference(centre, bend);
             line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
@@ -395,7 +319,7 @@ impl Band {
     }
 }
 
-/// From −0.5 to 0.5, different for neighbouring pixels.
+/// Dither noise from −0.5 to 0.5.
 fn pattern(column: usize, row: usize) -> f32 {
     // Jimenez's interleaved gradient noise.
     let inner = 0.067_110_56 * (column % 4096) as f32 + 0.005_837_15 * (row % 4096) as f32;

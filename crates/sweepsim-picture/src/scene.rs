@@ -1,20 +1,20 @@
-//! A mesh made ready.
+//! The mesh to draw: checked, clipped at the sections, and scaled.
 
-use super::vector::{Vector, cross, sub, unit};
-use super::{Drawing, Section};
+use crate::vector::{Vector, cross, sub, unit};
+use crate::view::{Drawing, Section};
 use sweepsim_dexel::Mesh;
 
 /// Triangles in the unit ball.
 #[derive(Default)]
-pub(super) struct Scene {
+pub(crate) struct Scene {
     pub positions: Vec<Vector>,
     pub normals: Vec<Vector>,
-    /// 1 where a tool cut, 0 elsewhere; or the values of the drawing, from −1 to 1.
+    /// The drawing's values, from −1 to 1; without any, 1 where a tool cut and 0 elsewhere.
     pub values: Vec<f32>,
-    /// Whether they are those of the drawing.
+    /// Whether the drawing has values.
     pub valued: bool,
     pub triangles: Vec<[u32; 3]>,
-    /// Planes that the part is cut off at: normal, towards what is taken away, and distance from the middle.
+    /// The section planes: normal towards what is removed, and distance from the centre.
     pub sections: Vec<(Vector, f32)>,
     /// Height of the plane that the part lies on.
     pub ground: f32,
@@ -28,15 +28,15 @@ struct Vertex {
     value: f32,
 }
 
-/// A part of a mesh: triangles of vertices that are all in use.
+/// What is left of a mesh: triangles, and the vertices that they use.
 #[derive(Default)]
-struct Piece {
+struct ClippedMesh {
     vertices: Vec<Vertex>,
     triangles: Vec<[u32; 3]>,
 }
 
-impl Piece {
-    /// Keeps what can be drawn.
+impl ClippedMesh {
+    /// Keeps the triangles that can be drawn.
     fn new(drawing: &Drawing<'_>) -> Self {
         let mesh: &Mesh = drawing.mesh;
         let with_normals = mesh.normals.len() == mesh.vertices.len();
@@ -47,16 +47,16 @@ impl Piece {
                     .is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() < 1e150))
             })
         };
-        // Vertices without a triangle are no part of the picture.
+        // Vertices without a triangle must not affect the camera.
         let mut numbers = vec![u32::MAX; mesh.vertices.len()];
-        let mut piece = Self::default();
+        let mut clipped = Self::default();
         for t in mesh.triangles.iter().filter(|t| good(t)) {
             let corners = t.map(|v| {
                 let number = &mut numbers[v as usize];
                 if *number == u32::MAX {
-                    *number = piece.vertices.len() as u32;
+                    *number = clipped.vertices.len() as u32;
                     let cut = || f32::from(u8::from(mesh.cut.get(v as usize).copied().unwrap_or(false)));
-                    piece.vertices.push(Vertex {
+                    clipped.vertices.push(Vertex {
                         place: mesh.vertices[v as usize],
                         normal: with_normals.then(|| mesh.normals[v as usize]),
                         value: match drawing.values {
@@ -69,18 +69,18 @@ impl Piece {
                 }
                 *number
             });
-            piece.triangles.push(corners);
+            clipped.triangles.push(corners);
         }
-        piece
+        clipped
     }
 
-    /// What is not on the side of a section that is taken away: there `side · (place − at)` is positive.
+    /// Removes the side of a section where `side · (place − at)` is positive.
     fn cut_off(self, section: &Section, side: f64) -> Self {
-        let height = |v: u32| side * (self.vertices[v as usize].place[section.axis] - section.at);
+        let height = |v: u32| side * (self.vertices[v as usize].place[section.axis.index()] - section.at);
         let mut kept = Self::default();
         let mut numbers = vec![u32::MAX; self.vertices.len()];
         for t in &self.triangles {
-            // The corners of what is left of the triangle, going around.
+            // The corners of what is left of the triangle, in order.
             let mut polygon: [u32; 4] = [0; 4];
             let mut count = 0;
             for k in 0..3 {
@@ -100,7 +100,7 @@ impl Piece {
                 }
                 if (from <= 0.0) != (to <= 0.0) {
                     push(kept.vertices.len() as u32);
-                    // From the lower end, so that both triangles of an edge are cut in one place.
+                    // From the lower end, so that both triangles of an edge are cut at the same point.
                     let (a, b, s) = if from <= 0.0 {
                         (a, b, from / (from - to))
                     } else {
@@ -121,7 +121,7 @@ impl Piece {
 fn between(a: Vertex, b: Vertex, s: f64, section: &Section) -> Vertex {
     let t = s as f32;
     let mut place = [0, 1, 2].map(|k| a.place[k] + s * (b.place[k] - a.place[k]));
-    place[section.axis] = section.at;
+    place[section.axis.index()] = section.at;
     let normals = a.normal.zip(b.normal);
     Vertex {
         place,
@@ -131,59 +131,62 @@ fn between(a: Vertex, b: Vertex, s: f64, section: &Section) -> Vertex {
 }
 
 impl Scene {
-    /// `towards` is the direction of the viewer: what is between him and a section is taken away.
+    /// `towards` is the direction of the viewer; everything between the viewer and a section is removed.
     pub fn new(drawing: &Drawing<'_>, towards: [f64; 3]) -> Self {
-        let mut piece = Piece::new(drawing);
+        let mut clipped = ClippedMesh::new(drawing);
         let sections: Vec<(&Section, f64)> = drawing
             .sections
             .iter()
-            .filter(|section| section.axis < 3 && section.at.is_finite())
-            .map(|section| (section, if towards[section.axis] < 0.0 { -1.0 } else { 1.0 }))
+            .filter(|section| section.at.is_finite())
+            .map(|section| (section, if towards[section.axis.index()] < 0.0 { -1.0 } else { 1.0 }))
             .collect();
         for (section, side) in &sections {
-            piece = piece.cut_off(section, *side);
+            clipped = clipped.cut_off(section, *side);
         }
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in piece.vertices.iter().map(|v| v.place) {
+        for p in clipped.vertices.iter().map(|v| v.place) {
             for k in 0..3 {
                 low[k] = low[k].min(p[k]);
                 high[k] = high[k].max(p[k]);
             }
         }
-        if piece.triangles.is_empty() {
+        if clipped.triangles.is_empty() {
             return Self::default();
         }
         let centre = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let radius = 0.5 * (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt();
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let positions: Vec<Vector> = piece
+        let positions: Vec<Vector> = clipped
             .vertices
             .iter()
             .map(|v| [0, 1, 2].map(|k| ((v.place[k] - centre[k]) / radius) as f32))
             .collect();
         let mut flat = vec![[0.0, 0.0, 1.0]; positions.len()];
-        for t in &piece.triangles {
+        for t in &clipped.triangles {
             let [a, b, c] = t.map(|v| positions[v as usize]);
             for v in t {
                 flat[*v as usize] = unit(cross(sub(b, a), sub(c, a)));
             }
         }
-        let normals = piece.vertices.iter().zip(flat);
+        let normals = clipped.vertices.iter().zip(flat);
         Self {
             normals: normals.map(|(v, flat)| v.normal.map_or(flat, unit)).collect(),
-            values: piece.vertices.iter().map(|v| v.value).collect(),
+            values: clipped.vertices.iter().map(|v| v.value).collect(),
             valued: !drawing.values.is_empty(),
             ground: ((low[2] - centre[2]) / radius) as f32,
             sections: sections
                 .iter()
                 .map(|(section, side)| {
                     let mut normal = [0.0; 3];
-                    normal[section.axis] = *side as f32;
-                    (normal, (side * (section.at - centre[section.axis]) / radius) as f32)
+                    normal[section.axis.index()] = *side as f32;
+                    (
+                        normal,
+                        (side * (section.at - centre[section.axis.index()]) / radius) as f32,
+                    )
                 })
                 .collect(),
             positions,
-            triangles: piece.triangles,
+            triangles: clipped.triangles,
         }
     }
 }

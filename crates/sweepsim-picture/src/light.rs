@@ -1,31 +1,31 @@
-//! What light reaches where: depth maps seen from the light.
+//! Light and shadow, from depth maps seen from each light.
 
-use super::camera::Camera;
-use super::scene::Scene;
-use super::vector::{Vector, add, along, cross, dot, scale, unit};
+use crate::camera::Camera;
+use crate::scene::Scene;
+use crate::vector::{Vector, add, along, cross, dot, scale, unit};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Directions of the sky and the ground around the part.
+/// Directions sampled of the sky and the ground.
 const SKY: usize = 96;
-/// Fewest of them, for meshes that take long to draw.
+/// The fewest of them, for meshes that take long to draw.
 const FEWEST: usize = 32;
-/// So many triangles are drawn for them in all.
+/// About how many triangles are drawn for them in total.
 const WORK: usize = 60_000_000;
 /// Texels across their maps.
 const SKY_MAP: usize = 400;
-/// Maps of the lamp, and texels across.
+/// Depth maps of the lamp, and texels across.
 const LAMP: usize = 16;
 const LAMP_MAP: usize = 1024;
 /// Radius of the lamp at distance 1.
 const LAMP_SIZE: f32 = 0.16;
-/// Points across the ground's net, and how far it reaches.
+/// Points across the net on the ground, and its reach.
 const NET: usize = 320;
-pub(super) const NET_REACH: f32 = 2.4;
+pub(crate) const NET_REACH: f32 = 2.4;
 /// The golden angle.
 const GOLDEN: f32 = 2.399_963_2;
 
-/// Distances from a light far away to the nearest surface.
+/// Distances from a distant light to the nearest surface.
 struct Map {
     direction: Vector,
     across: [Vector; 2],
@@ -34,7 +34,7 @@ struct Map {
 }
 
 impl Map {
-    /// From a direction (towards the light).
+    /// `direction` points towards the light.
     fn new(scene: &Scene, direction: Vector, texels: usize) -> Self {
         let other = if direction[2].abs() < 0.9 {
             [0.0, 0.0, 1.0]
@@ -50,13 +50,13 @@ impl Map {
         };
         let points: Vec<Vector> = scene.positions.iter().map(|p| map.place(*p)).collect();
         for t in &scene.triangles {
-            // Light that comes in through a section gets as far as the back of the face behind.
+            // Light that enters through a section reaches the back of the face behind it.
             map.draw(t.map(|v| points[v as usize]), !scene.sections.is_empty());
         }
         map
     }
 
-    /// Column, row (texels' centres at whole numbers), depth: grows away from the light.
+    /// Column and row (texel centres are whole numbers), and depth, which grows away from the light.
     fn place(&self, p: Vector) -> Vector {
         let half = 0.5 * self.texels as f32;
         [
@@ -71,7 +71,7 @@ impl Map {
         if area < 0.0 && backs {
             (area, b, c) = (-area, c, b);
         }
-        // Seen from behind: there is a front before it.
+        // A back face: a front face is nearer to the light.
         if area.is_nan() || area <= 0.0 {
             return;
         }
@@ -84,7 +84,7 @@ impl Map {
         let from = low.map(|c| c as usize);
         let to = high.map(|c| c as usize);
         if from == to {
-            // One texel, likely covered by several such: the furthest corner makes no shadow on its neighbours.
+            // Several such triangles may share a texel: the furthest corner casts no shadow on its neighbours.
             let inside =
                 |p: Vector, q: Vector| (q[0] - p[0]) * (low[1] - p[1]) - (q[1] - p[1]) * (low[0] - p[0]) >= 0.0;
             if inside(a, b) && inside(b, c) && inside(c, a) {
@@ -110,7 +110,7 @@ impl Map {
         }
     }
 
-    /// The share of light that arrives, between four texels.
+    /// The share of light that reaches a point, interpolated between four texels.
     fn light(&self, p: Vector, bias: f32) -> f32 {
         let [x, y, z] = self.place(p);
         let last = self.texels as f32 - 2.0;
@@ -128,21 +128,21 @@ impl Map {
     }
 }
 
-/// Light of the surroundings at a point: what it sees of the sky and of the ground, weighted by the cosine, with 1 for all.
+/// How much of the sky and of the ground a point sees, weighted by the cosine: 1 is all.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Around {
+pub(crate) struct Around {
     pub sky: f32,
     pub ground: f32,
 }
 
-/// All light in a scene.
-pub(super) struct Lights {
-    /// Towards the lamp.
+/// The lights of a scene.
+pub(crate) struct Lights {
+    /// The direction of the lamp.
     pub lamp: Vector,
     maps: Vec<Map>,
-    /// At the vertices.
+    /// Sky and ground at each vertex.
     pub around: Vec<Around>,
-    /// Sky and lamp on a net of points of the ground.
+    /// Sky and lamp at the points of the net on the ground.
     net: Vec<[f32; 2]>,
 }
 
@@ -213,7 +213,7 @@ impl Lights {
         lights
     }
 
-    /// The share of the lamp that is seen from a point of a surface.
+    /// The share of the lamp that a point of a surface sees.
     pub fn lamp_at(&self, p: Vector, normal: Vector) -> f32 {
         let texel = 2.0 / LAMP_MAP as f32;
         let grazing = 1.0 - dot(normal, self.lamp).clamp(0.0, 1.0);
@@ -222,7 +222,7 @@ impl Lights {
         sum / self.maps.len().max(1) as f32
     }
 
-    /// Sky and lamp on the ground: 1 is all.
+    /// Sky and lamp at a point of the ground: 1 is all.
     pub fn ground(&self, x: f32, y: f32) -> [f32; 2] {
         let place = |c: f32| (c / NET_REACH + 1.0) * 0.5 * (NET as f32 - 1.0);
         let (x, y) = (place(x), place(y));
@@ -245,7 +245,7 @@ fn net_place(k: usize) -> f32 {
     (2.0 * k as f32 / (NET as f32 - 1.0) - 1.0) * NET_REACH
 }
 
-/// The mean with all neighbours on the net.
+/// The mean over each point and its neighbours.
 fn blurred(net: &[[f32; 2]]) -> Vec<[f32; 2]> {
     let around = |k: usize| k.saturating_sub(1)..=(k + 1).min(NET - 1);
     (0..NET * NET)
@@ -286,7 +286,7 @@ fn around(maps: &[Map], p: Vector, n: Vector, texel: f32) -> Around {
     }
 }
 
-/// Groups of vertices in one place with about the same normal: of each vertex, and the first vertex of each group.
+/// Groups vertices at the same point with nearly the same normal: the group of each vertex, and the first vertex of each group.
 fn same_places(scene: &Scene) -> (Vec<u32>, Vec<usize>) {
     // Only looked up, so its order does not matter.
     let mut known: HashMap<([u32; 3], [i8; 3]), u32> = HashMap::with_capacity(scene.positions.len());
@@ -307,7 +307,7 @@ fn same_places(scene: &Scene) -> (Vec<u32>, Vec<usize>) {
     (groups, firsts)
 }
 
-/// The mean over the triangles around each group.
+/// The mean over the triangles around each group of vertices.
 fn smoothed(scene: &Scene, groups: &[u32], values: &[Around]) -> Vec<Around> {
     let mut sums = vec![(0.0_f32, 0.0_f32, 0.0_f32); values.len()];
     for t in &scene.triangles {

@@ -1,7 +1,7 @@
-//! Pictures: the same at any number of threads, plausible, and whole.
+//! Pictures are deterministic, plausible, and complete.
 
-use sweepsim_cli::picture::{Drawing, Image, Section, View, legend, png, render};
 use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock, surface};
+use sweepsim_picture::{Axis, Drawing, Image, Section, View, legend, render};
 
 const SIZE: [usize; 2] = [160, 120];
 
@@ -30,8 +30,13 @@ fn block(cut: bool) -> Mesh {
 }
 
 fn pixel(image: &Image, x: usize, y: usize) -> [u8; 3] {
-    let at = 3 * (y * image.size[0] + x);
-    [image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]]
+    image.pixel(x, y).unwrap()
+}
+
+fn view_with(change: impl FnOnce(&mut View)) -> View {
+    let mut view = View::default();
+    change(&mut view);
+    view
 }
 
 #[test]
@@ -48,7 +53,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
 fn a_part_fills_the_picture() {
     let empty = render(&Mesh::default(), SIZE);
     let image = render(&block(false), SIZE);
-    assert_eq!(image.rgb.len(), 3 * SIZE[0] * SIZE[1]);
+    assert_eq!(image.rgb().len(), 3 * SIZE[0] * SIZE[1]);
     let differs = |x: usize, y: usize| {
         let (a, b) = (pixel(&image, x, y), pixel(&empty, x, y));
         (0..3).map(|k| a[k].abs_diff(b[k])).max() > Some(40)
@@ -96,24 +101,23 @@ fn odd_meshes_and_sizes_are_drawn() {
     };
     for size in [[1, 1], [0, 7], [3, 200]] {
         let image = render(&bad, size);
-        assert_eq!(image.rgb.len(), 3 * image.size[0] * image.size[1]);
+        assert_eq!(image.rgb().len(), 3 * image.size()[0] * image.size()[1]);
     }
 }
 
 #[test]
 fn a_png_has_the_pixels() {
     let image = render(&block(true), [64, 48]);
-    let bytes = png(&image).unwrap();
-    let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let bytes = image.png().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
     assert_eq!((info.width, info.height), (64, 48));
-    assert_eq!(pixels, image.rgb);
-    let wrong = Image {
-        size: [64, 49],
-        rgb: image.rgb,
-    };
-    assert!(png(&wrong).is_err());
+    assert_eq!(pixels, image.rgb());
+    let rgb = image.rgb().to_vec();
+    assert!(Image::new([64, 49], rgb.clone()).is_err());
+    assert!(Image::new([0, 0], Vec::new()).is_err());
+    assert_eq!(Image::new([64, 48], rgb), Ok(image));
 }
 
 /// A closed box: outside 40 × 30 × 12, with a cavity that is seen by a section only.
@@ -130,18 +134,14 @@ fn hollow() -> Mesh {
 #[test]
 fn sections_lay_open_the_inside() {
     let mesh = hollow();
-    let view = View {
-        size: SIZE,
-        azimuth: -90.0,
-        elevation: 90.0,
-        orthographic: true,
-        ..View::default()
-    };
-    let sections = [Section { axis: 2, at: 6.0 }];
-    let open = view.draw(&Drawing {
-        sections: &sections,
-        ..Drawing::new(&mesh)
+    let view = view_with(|view: &mut View| {
+        view.size = SIZE;
+        view.azimuth = -90.0;
+        view.elevation = 90.0;
+        view.orthographic = true;
     });
+    let sections = [Section { axis: Axis::Z, at: 6.0 }];
+    let open = view.draw(&Drawing::new(&mesh).sections(&sections));
     let closed = view.render(&mesh);
     let at = |image: &Image, x: f64, y: f64| {
         // The box fills the free part of the picture's width or height: 40 mm are 4/3 of 30.
@@ -164,26 +164,20 @@ fn sections_lay_open_the_inside() {
     // Below the cavity, and where there is nothing.
     let cut = |at: f64| {
         let sections = [
-            Section { axis: 2, at },
-            Section { axis: 7, at: 0.0 },
-            Section { axis: 0, at: f64::NAN },
+            Section { axis: Axis::Z, at },
+            Section {
+                axis: Axis::X,
+                at: f64::NAN,
+            },
         ];
-        view.draw(&Drawing {
-            sections: &sections,
-            ..Drawing::new(&mesh)
-        })
+        view.draw(&Drawing::new(&mesh).sections(&sections))
     };
     assert!(warm(at(&cut(2.0), 20.0, 15.0)));
     assert!(cut(-1.0) == view.render(&Mesh::default()));
     // From below it is the other half that is left.
-    let below = View {
-        elevation: -90.0,
-        ..view
-    };
-    let open = below.draw(&Drawing {
-        sections: &[Section { axis: 2, at: 2.0 }],
-        ..Drawing::new(&mesh)
-    });
+    let mut below = view;
+    below.elevation = -90.0;
+    let open = below.draw(&Drawing::new(&mesh).sections(&[Section { axis: Axis::Z, at: 2.0 }]));
     assert!(warm(at(&open, 20.0, 15.0)));
 }
 
@@ -192,14 +186,13 @@ fn parallel_lines_stay_parallel() {
     let mesh = hollow();
     // How wide the box is in each row of the picture, seen from the front and above: it is bluer than all around it.
     let widths = |orthographic: bool| -> Vec<usize> {
-        let view = View {
-            size: [400, 300],
-            azimuth: -90.0,
-            elevation: 30.0,
-            opening: 60.0,
-            orthographic,
-            ..View::default()
-        };
+        let view = view_with(|view: &mut View| {
+            view.size = [400, 300];
+            view.azimuth = -90.0;
+            view.elevation = 30.0;
+            view.field_of_view = 60.0;
+            view.orthographic = orthographic;
+        });
         let image = view.render(&mesh);
         let steel = |x: usize, y: usize| {
             let [red, _, blue] = pixel(&image, x, y);
@@ -220,21 +213,16 @@ fn parallel_lines_stay_parallel() {
 fn values_have_the_colours_of_the_scale() {
     let mesh = hollow();
     let picture = |value: f32, range: f32| {
-        let view = View {
-            size: SIZE,
-            aside: legend::WIDTH,
-            ..View::default()
-        };
-        let values = vec![value; mesh.vertices.len()];
-        let mut image = view.draw(&Drawing {
-            values: &values,
-            range,
-            ..Drawing::new(&mesh)
+        let view = view_with(|view: &mut View| {
+            view.size = SIZE;
+            view.legend = legend::WIDTH;
         });
+        let values = vec![value; mesh.vertices.len()];
+        let mut image = view.draw(&Drawing::new(&mesh).values(&values, range));
         let plain = image.clone();
         legend::draw(&mut image, range);
         // The scale is beside the part.
-        let changed = (0..SIZE[0] * SIZE[1]).filter(|k| image.rgb[3 * k..3 * k + 3] != plain.rgb[3 * k..3 * k + 3]);
+        let changed = (0..SIZE[0] * SIZE[1]).filter(|k| image.rgb()[3 * k..3 * k + 3] != plain.rgb()[3 * k..3 * k + 3]);
         assert!(changed.map(|k| k % SIZE[0]).min() > Some(SIZE[0] * 3 / 4));
         pixel(&image, SIZE[0] * 43 / 100, SIZE[1] / 2)
     };
@@ -249,8 +237,8 @@ fn values_have_the_colours_of_the_scale() {
 #[test]
 fn nothing_gives_a_background() {
     let image = render(&Mesh::default(), SIZE);
-    assert_eq!(image.rgb.len(), SIZE[0] * SIZE[1] * 3);
-    for pixel in image.rgb.chunks_exact(3) {
+    assert_eq!(image.rgb().len(), SIZE[0] * SIZE[1] * 3);
+    for pixel in image.rgb().chunks_exact(3) {
         assert!(pixel.iter().all(|c| *c > 150), "{pixel:?}");
         assert!(
             pixel.iter().max().unwrap() - pixel.iter().min().unwrap() < 30,
@@ -266,20 +254,18 @@ fn nothing_gives_a_background() {
 fn odd_views_do_no_harm() {
     let mut mesh = block(true);
     mesh.normals[20] = [f32::NAN; 3];
-    let view = View {
-        azimuth: f64::INFINITY,
-        elevation: f64::NAN,
-        opening: 1e9,
-        margin: -1.0,
-        size: [1, 300],
-        ..View::default()
-    };
-    assert_eq!(view.render(&mesh).rgb.len(), 900);
+    let view = view_with(|view: &mut View| {
+        view.azimuth = f64::INFINITY;
+        view.elevation = f64::NAN;
+        view.field_of_view = 1e9;
+        view.margin = -1.0;
+        view.size = [1, 300];
+    });
+    assert_eq!(view.render(&mesh).rgb().len(), 900);
     // From the other side the part is still seen.
-    let view = View {
-        size: SIZE,
-        azimuth: 120.0,
-        ..View::default()
-    };
+    let view = view_with(|view: &mut View| {
+        view.size = SIZE;
+        view.azimuth = 120.0;
+    });
     assert!(view.render(&block(true)) != render(&Mesh::default(), SIZE));
 }

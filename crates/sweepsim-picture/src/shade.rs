@@ -1,54 +1,54 @@
-//! Colours.
+//! Colours of surfaces and of the background.
 
-use super::camera::Camera;
-use super::legend;
-use super::light::{Around, Lights, NET_REACH};
-use super::vector::{Vector, add, along, dot, mix, scale, smooth_step, times, unit};
+use crate::camera::Camera;
+use crate::legend;
+use crate::light::{Around, Lights, NET_REACH};
+use crate::vector::{Vector, add, along, dot, mix, scale, smooth_step, times, unit};
 
-/// A piece of surface in a pixel.
+/// A patch of surface within a pixel.
 #[derive(Clone, Copy)]
-pub(super) struct Spot {
+pub(crate) struct Spot {
     pub at: Vector,
     pub normal: Vector,
     pub around: Around,
-    /// 1 for cut, 0 for stock; in pictures of values the value, from −1 to 1, or NaN where there is none.
+    /// 1 for cut, 0 for stock; in pictures of values the value from −1 to 1, or NaN if unknown.
     pub value: f32,
     pub matter: Matter,
 }
 
-/// What is seen.
+/// What a sample sees.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Matter {
-    /// A face, coloured by what made it.
+pub(crate) enum Matter {
+    /// A face coloured by what made it.
     Metal,
-    /// A face, coloured by its value.
+    /// A face coloured by its value.
     Value,
-    /// The inside, where a section lays it open.
+    /// The inside, cut open by a section.
     Section,
 }
 
-/// Of what a tool cut: bright bronze; of the stock: blue steel.
+/// Bronze for faces that a tool cut, steel for those of the stock.
 const CUT: Vector = [0.66, 0.345, 0.155];
 const STOCK: Vector = [0.135, 0.19, 0.26];
-/// The inside of a part: pale clay with fine stripes.
+/// Pale clay with fine stripes for the inside of a part.
 const CLAY: Vector = [0.60, 0.50, 0.43];
-/// Stripes in the length of the part's radius, and how much darker they are.
+/// Stripes per radius of the part, and their brightness.
 const STRIPES: f32 = 34.0;
 const STRIPE: f32 = 0.82;
-/// A face without a value.
+/// A face whose value is unknown.
 const UNKNOWN: Vector = [0.055, 0.05, 0.06];
 const LAMP: Vector = [2.75, 2.62, 2.42];
 const SKY: Vector = [0.78, 0.86, 1.0];
 const GROUND: Vector = [0.52, 0.50, 0.47];
 
-/// What a mirror sees in a direction, blurred.
+/// The blurred reflection of the surroundings in a direction.
 fn surroundings(d: Vector) -> Vector {
     let sky = mix([1.05, 1.05, 1.05], [0.36, 0.44, 0.58], smooth_step(0.05, 0.95, d[2]));
     mix([0.24, 0.23, 0.225], sky, smooth_step(-0.25, 0.22, d[2]))
 }
 
-/// Light from a spot to the eye, as the picture shows it: linear, from 0 to 1.
-pub(super) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
+/// The light from a spot to the eye: linear, tone-mapped to 0…1.
+pub(crate) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
     let n = unit(spot.normal);
     let view = camera.towards(spot.at);
     let (base, shine) = match spot.matter {
@@ -66,12 +66,12 @@ pub(super) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
             scale(SKY, 0.62 * spot.around.sky.powf(1.3)),
             add(
                 scale(GROUND, 0.5 * spot.around.ground),
-                // What comes from the part's own other faces.
+                // Light reflected by other faces of the part.
                 scale(base, 0.08 + 0.45 * (1.0 - open)),
             ),
         ),
     );
-    // Metal: its own colour in what it mirrors, white at grazing angles.
+    // Metal tints its reflections with its own colour, except at grazing angles.
     let facing = dot(n, view).clamp(0.0, 1.0);
     let mirrored = along(scale(view, -1.0), 2.0 * dot(n, view), n);
     let fresnel = (1.0 - facing).powi(5);
@@ -92,7 +92,7 @@ pub(super) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
 
 /// Diagonal stripes on a plane, with soft edges.
 fn stripes(p: Vector, n: Vector) -> f32 {
-    // Two directions in the plane that look alike on all three planes of the axes.
+    // Stripes look alike on planes across all three axes.
     let axis = (0..3).fold(0, |a, k| if n[k].abs() > n[a].abs() { k } else { a });
     let phase = (p[(axis + 1) % 3] + p[(axis + 2) % 3]) * STRIPES;
     let wave = (phase.fract() + 1.0).fract();
@@ -100,13 +100,13 @@ fn stripes(p: Vector, n: Vector) -> f32 {
     1.0 + edge * (STRIPE - 1.0)
 }
 
-/// The curve of film: dark parts a little darker, bright ones never cut off. After Narkowicz's fit of the ACES curve.
+/// Tone mapping: Narkowicz's fit of the ACES film curve, which never clips highlights.
 fn film(x: f32) -> f32 {
     ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
 }
 
-/// The background at a place of the picture, both from −1 to 1.
-pub(super) fn background(camera: &Camera, lights: &Lights, ground: f32, x: f32, y: f32) -> Vector {
+/// The background at a point of the image, from −1 to 1 to the right and up.
+pub(crate) fn background(camera: &Camera, lights: &Lights, ground: f32, x: f32, y: f32) -> Vector {
     let low = [0.64, 0.665, 0.69];
     let high = [0.90, 0.915, 0.93];
     let vignette = 1.0 - 0.10 * smooth_step(0.6, 1.9, x * x + y * y);
@@ -123,8 +123,8 @@ pub(super) fn background(camera: &Camera, lights: &Lights, ground: f32, x: f32, 
     times(colour, mix([0.12, 0.15, 0.20], [1.0; 3], shadow.clamp(0.0, 1.0)))
 }
 
-/// The byte of sRGB for a linear value, after `noise` (in bytes) is added.
-pub(super) fn srgb(x: f32, noise: f32) -> u8 {
+/// The sRGB byte of a linear value, after adding `noise` in bytes.
+pub(crate) fn srgb(x: f32, noise: f32) -> u8 {
     let x = x.clamp(0.0, 1.0);
     let y = if x <= 0.003_130_8 {
         12.92 * x

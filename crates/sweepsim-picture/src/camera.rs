@@ -1,26 +1,26 @@
-//! Where one looks from.
+//! The camera: its position, and the projection onto the image.
 
-use super::View;
-use super::scene::Scene;
-use super::vector::{Vector, add, along, cross, dot, scale, sub, unit};
+use crate::scene::Scene;
+use crate::vector::{Vector, add, along, cross, dot, scale, sub, unit};
+use crate::view::View;
 
-/// A camera with the scene in its view.
+/// A camera that sees the whole scene.
 ///
-/// Depth in a picture is a number that is linear on the picture's planes and grows towards the viewer: in perspective 1 / distance,
-/// else [`FAR`] less the distance.
-pub(super) struct Camera {
+/// Depth is a number that varies linearly across the image of a plane and grows towards the viewer: 1 / distance in perspective,
+/// [`FAR`] minus the distance in parallel projection.
+pub(crate) struct Camera {
     eye: Vector,
     pub right: Vector,
     pub up: Vector,
     pub forward: Vector,
-    /// Half the picture's width and height: at distance 1, or at all.
+    /// Half the image's width and height in the scene: at distance 1 in perspective, at any distance in parallel projection.
     half: [f32; 2],
     orthographic: bool,
-    /// Share of the picture's width at its right that the view leaves free.
+    /// The share of the image's width left free at the right.
     aside: f32,
 }
 
-/// Beyond all of a scene in the unit ball, seen from where an orthographic camera stands.
+/// Further than anything in the unit ball, seen from an orthographic camera.
 const FAR: f32 = 4.0;
 
 impl Camera {
@@ -28,8 +28,8 @@ impl Camera {
         let kept = |value: f64, from: f64, to: f64| if value.is_finite() { value.clamp(from, to) } else { from };
         let azimuth = kept(view.azimuth, -1e6, 1e6).to_radians();
         let elevation = kept(view.elevation, -90.0, 90.0).to_radians();
-        let longer = (0.5 * kept(view.opening, 5.0, 90.0).to_radians()).tan();
-        let aside = kept(view.aside, 0.0, 0.5);
+        let longer = (0.5 * kept(view.field_of_view, 5.0, 90.0).to_radians()).tan();
+        let aside = kept(view.legend, 0.0, 0.5);
         let size = [(1.0 - aside) * view.size[0] as f64, view.size[1] as f64];
         let shape = size.map(|n| n / size[0].max(size[1]));
         let (half, aside) = (shape.map(|n| (longer * n) as f32), aside as f32);
@@ -40,11 +40,11 @@ impl Camera {
         ]
         .map(|c| c as f32);
         let forward = scale(unit(towards), -1.0);
-        // Level, also for one who looks straight down.
+        // Horizontal even when looking straight down.
         let right = [-azimuth.sin() as f32, azimuth.cos() as f32, 0.0];
         let up = cross(right, forward);
-        // In the camera's directions, every point must be in the four half-spaces x − px ≤ h (z − pz), and so on:
-        // the nearest place where all hold.
+        // In camera axes every point must satisfy x − px ≤ h (z − pz) and its three mirror images: stand at the nearest position
+        // where all of them hold.
         let free = (1.0 - 2.0 * kept(view.margin, 0.0, 0.4)) as f32;
         if view.orthographic {
             let level = Self::level(scene, [right, up, forward], shape.map(|n| n as f32), free);
@@ -79,7 +79,7 @@ impl Camera {
         }
     }
 
-    /// An orthographic camera: the scene's box in its directions fills the free part of a picture of some shape.
+    /// An orthographic camera: the scene's bounding box along its axes fills the free part of the image.
     fn level(scene: &Scene, axes: [Vector; 3], shape: [f32; 2], free: f32) -> Self {
         let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
         for p in &scene.positions {
@@ -107,7 +107,7 @@ impl Camera {
         }
     }
 
-    /// Place in the picture, from −1 to 1 to the right and up; depth; and the weight of a corner there in means over a triangle.
+    /// A point's position in the image, from −1 to 1 to the right and up; its depth; and its weight in perspective-correct interpolation.
     pub fn project(&self, p: Vector) -> [f32; 4] {
         let d = sub(p, self.eye);
         let z = dot(d, self.forward);
@@ -120,7 +120,7 @@ impl Camera {
         [x * (1.0 - self.aside) - self.aside, y, near, weight]
     }
 
-    /// Where the line of sight at a place in the picture begins, and its direction, of length 1 along the axis.
+    /// The origin of the line of sight through a point of the image, and its direction, of length 1 along the camera's axis.
     pub fn sight(&self, x: f32, y: f32) -> [Vector; 2] {
         let x = (x + self.aside) / (1.0 - self.aside);
         let aside = add(scale(self.right, x * self.half[0]), scale(self.up, y * self.half[1]));
@@ -131,7 +131,7 @@ impl Camera {
         }
     }
 
-    /// How far along the axis a depth is.
+    /// The distance along the axis at a depth.
     pub fn distance(&self, near: f32) -> f32 {
         if self.orthographic { FAR - near } else { 1.0 / near }
     }
@@ -145,7 +145,7 @@ impl Camera {
         }
     }
 
-    /// What a difference of depths is as one of distances, about.
+    /// A difference of depths as a difference of distances, to first order.
     pub fn difference(&self, near: f32, difference: f32) -> f32 {
         if self.orthographic {
             difference
@@ -154,7 +154,7 @@ impl Camera {
         }
     }
 
-    /// Direction from a point to the viewer.
+    /// The direction from a point to the viewer.
     pub fn towards(&self, p: Vector) -> Vector {
         if self.orthographic {
             scale(self.forward, -1.0)

@@ -1,0 +1,85 @@
+//! From triangles to pixels.
+
+use crate::band::Band;
+use crate::camera::Camera;
+use crate::image::Image;
+use crate::light::Lights;
+use crate::scene::Scene;
+use rayon::prelude::*;
+
+/// Samples across a pixel.
+pub(crate) const SAMPLES: usize = 3;
+/// Rows of pixels in a band.
+pub(crate) const BAND: usize = 16;
+/// Pixels around a band whose samples it computes as well.
+pub(crate) const RIM: usize = 1;
+/// Fixed-point steps between neighbouring samples.
+pub(crate) const STEP: f32 = 256.0;
+/// A vertex in the image, in steps from the top left sample, with its depth and its interpolation weight.
+#[derive(Clone, Copy)]
+pub(crate) struct Point {
+    pub x: i64,
+    pub y: i64,
+    pub near: f32,
+    pub weight: f32,
+}
+
+/// Twice the area of a triangle: positive if it faces the viewer (counter-clockwise with `y` up).
+pub(crate) fn area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1])
+}
+
+/// Renders a scene.
+pub(crate) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usize; 2]) -> Image {
+    let samples = size.map(|n| (n * SAMPLES) as f32);
+    let points: Vec<Point> = scene
+        .positions
+        .par_iter()
+        .map(|p| {
+            let [x, y, near, weight] = camera.project(*p);
+            let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
+            Point {
+                x: place(x, samples[0]),
+                y: place(-y, samples[1]),
+                near,
+                weight,
+            }
+        })
+        .collect();
+    let bands = size[1].div_ceil(BAND);
+    let lists = sort_into_bands(scene, &points, bands);
+    let mut image = Image::black(size);
+    image
+        .rgb_mut()
+        .par_chunks_mut(size[0] * 3 * BAND)
+        .zip(&lists)
+        .enumerate()
+        .for_each(|(band, (rows, list))| {
+            let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
+            band.paint(scene, camera, lights, rows);
+        });
+    image
+}
+
+/// The triangles that each band sees, in their order: those that face the viewer, or all if there are sections.
+fn sort_into_bands(scene: &Scene, points: &[Point], bands: usize) -> Vec<Vec<u32>> {
+    let step = STEP as i64;
+    let mut lists = vec![Vec::new(); bands];
+    for (number, t) in scene.triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        let seen = area([a.x, a.y], [b.x, b.y], [c.x, c.y]);
+        if seen == 0 || (seen < 0 && scene.sections.is_empty()) {
+            continue;
+        }
+        let row = |y: i64| y.div_euclid(step * SAMPLES as i64);
+        let rim = RIM as i64 + 1;
+        let first = (row(a.y.min(b.y).min(c.y)) - rim).div_euclid(BAND as i64).max(0);
+        let last = (row(a.y.max(b.y).max(c.y)) + rim)
+            .div_euclid(BAND as i64)
+            .min(bands as i64 - 1);
+        for band in first..=last {
+            lists[band as usize].push(number as u32);
+        }
+    }
+    lists
+}

@@ -1,0 +1,47 @@
+//! Still pictures of triangle meshes, computed without a GPU.
+//!
+//! A [`Mesh`](sweepsim_dexel::Mesh) stands on a plane under a soft sky, with a large lamp to the viewer's left. Faces that tools cut
+//! are bronze, faces of the stock steel; or each vertex has a value, and a colour map and a [`legend`] show it. [Sections](Section)
+//! cut the part open. The same mesh gives the same bytes at any number of threads.
+//!
+//! ```
+//! use sweepsim_dexel::{Grid, Stock, surface};
+//! use sweepsim_picture::{Axis, Drawing, Section, View};
+//!
+//! let grid = Grid::new([-12.0, -12.0], [12.0, 12.0], [48, 48])?;
+//! let ball = Stock::Ball { centre: [0.0; 3], radius: 10.0 }.dexels(&grid)?;
+//! let mesh = surface(&ball);
+//!
+//! let mut view = View::default();
+//! view.size = [200, 150];
+//! let sections = [Section { axis: Axis::Y, at: 0.0 }];
+//! let image = view.draw(&Drawing::new(&mesh).sections(&sections));
+//! let png: Vec<u8> = image.png()?;
+//! assert!(png.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # How it works
+//!
+//! 1. `scene` clips the triangles at the sections and scales them into the unit ball; `camera` finds the distance at which they fill
+//!    the image.
+//! 2. `light` renders depth maps from many directions: each vertex then knows how much of the sky it sees, and each pixel how much
+//!    of the lamp. Sixteen maps spread over the lamp make its shadows sharp where they begin and soft further away.
+//! 3. `frame` divides the image into bands of rows that are rendered independently (`band`). Nine samples per pixel find the nearest
+//!    triangle in integer arithmetic, so that no gap opens between neighbours; samples of a pixel on the same piece of surface are
+//!    shaded (`shade`) together; edges get a fine line.
+
+mod band;
+mod camera;
+mod frame;
+mod glyphs;
+mod image;
+pub mod legend;
+mod light;
+mod scene;
+mod shade;
+mod vector;
+mod view;
+
+pub use image::{Image, ImageError};
+pub use view::{Axis, Drawing, Section, View, render};
