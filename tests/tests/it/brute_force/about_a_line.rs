@@ -2,6 +2,7 @@
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
 use crate::brute_force::motions::pose;
+use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
@@ -46,6 +47,7 @@ fn arcs_and_helices_about_a_dexel_line() {
     let all: Vec<(usize, usize)> = (0..cases.len())
         .flat_map(|case| (0..tools.len()).map(move |tool| (case, tool)))
         .collect();
+    let all = sample("about a line", &all, 10);
     let wrong: Vec<String> = all
         .par_iter()
         .filter_map(|&(case, number)| {

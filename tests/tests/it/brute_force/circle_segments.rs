@@ -2,6 +2,7 @@
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
 use crate::brute_force::motions::{grid, motions};
+use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use sweepsim::Method;
 use sweepsim_motion::Tool;
@@ -18,6 +19,7 @@ fn circle_segment_cutters_along_motions_of_every_kind() {
     .map(|(name, tool)| (name, tool.expect("a cutter")));
     let motions = motions();
     let cases: Vec<(usize, usize)> = (0..motions.len()).map(|m| (m % tools.len(), m)).collect();
+    let cases = sample("circle-segment cutters", &cases, 10);
     let errors: Vec<String> = cases
         .par_iter()
         .filter_map(|&(t, m)| {

@@ -3,6 +3,7 @@
 
 use crate::brute_force::cases::{Case, Cutter, Window};
 use crate::brute_force::judge::{TOLERANCE, Tally, judge, same_volume, swept};
+use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::{Boundary, Method, Options, sweep};
@@ -215,6 +216,7 @@ fn cases() -> Vec<(String, Case)> {
 fn all_methods_on_all_named_sweeps() {
     let cases = cases();
     assert!(cases.len() >= 200, "{}", cases.len());
+    let cases = sample("named sweeps", &cases, 60);
     let check = |(name, case): &(String, Case)| -> Result<Tally, String> {
         let grid = case.grid();
         let tally = judge(case, Method::Charts).map_err(|error| format!("{name}: {error}"))?;

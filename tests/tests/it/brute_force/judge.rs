@@ -1,6 +1,7 @@
 //! Has every dexel of a sweep judged.
 
 use crate::brute_force::cases::Case;
+use crate::brute_force::sample::times;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use rayon::prelude::*;
@@ -47,15 +48,14 @@ impl Tally {
     }
 }
 
-/// Draws `cases` cases (times `SWEEPSIM_ORACLE_CASES`) and checks each.
+/// Draws `cases` cases (times what `cargo xtask brute-force` asks for) and checks each.
 pub fn for_all(
     cases: u32,
     strategy: impl Strategy<Value = Case>,
     check: impl Fn(&Case) -> Result<Tally, String>,
 ) -> Tally {
-    let times = std::env::var("SWEEPSIM_ORACLE_CASES").map_or(1, |n| n.parse().expect("a number of times"));
     let config = Config {
-        cases: cases * times,
+        cases: cases * times(),
         rng_seed: RngSeed::Fixed(0x5eed),
         failure_persistence: None,
         max_shrink_iters: 60,

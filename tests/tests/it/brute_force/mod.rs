@@ -2,7 +2,7 @@
 //!
 //! Every test draws cases of one family (a tool, poses, a grid), sweeps them, and has each dexel judged by the oracle of this
 //! package, which shares no code with the solver. Cases are drawn from a fixed seed, so a failure is a failure everywhere; it prints a
-//! reproducer. More cases: `SWEEPSIM_ORACLE_CASES=20 cargo test -p sweepsim-tests --release --test brute_force` takes 20 times as many.
+//! reproducer. The gate runs a seeded sample (`SWEEPSIM_SEED=7` takes another), `cargo xtask brute-force` the whole suite.
 //!
 //! Tolerances. A sweep with tolerance ε is exact for an input within ε of the given one: its motion and its lines are moved by less
 //! than that to avoid degenerate positions. So an end may be off by ε *in space*, which along a steep wall is much more in z. The judge
@@ -21,4 +21,5 @@ mod metamorphic;
 mod motions;
 mod random;
 mod relations;
+mod sample;
 mod splines;

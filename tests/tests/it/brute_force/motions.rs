@@ -3,6 +3,7 @@
 
 use crate::brute_force::corpus::{lean, tools};
 use crate::brute_force::judge::{Tally, judge_sweep, same_sweeps, swept_along};
+use crate::brute_force::sample::sample;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -355,6 +356,7 @@ fn all_tools_along_all_motions() {
         .flat_map(|t| (0..motions.len()).map(move |m| (t, m)))
         .collect();
     assert!(cases.len() >= 200, "{}", cases.len());
+    let cases = sample("tools along motions", &cases, 40);
     let check = |&(t, m): &(usize, usize)| {
         let grid = grid(t + m, &motions[m].path);
         judged(tools[t].0, &tools[t].1, &motions[m], &grid, (t + m) % tools.len() == 0)

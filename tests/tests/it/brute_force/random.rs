@@ -1,10 +1,11 @@
 //! Random tools, outlines of splines among them, along random motions of every kind: all methods agree, and what must not change the volume
 //! does not.
 //!
-//! `cargo test -p sweepsim-tests --release --test brute_force random -- --ignored` draws many more.
+//! `cargo xtask brute-force random` draws many more.
 
 use crate::brute_force::cases::{Cutter, any_tool, axis, pose};
 use crate::brute_force::judge::{Tally, same_sweeps, swept_along};
+use crate::brute_force::sample::times;
 use crate::brute_force::splines::Splines;
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
@@ -290,9 +291,8 @@ fn for_all<S>(cases: u32, strategy: impl Strategy<Value = S>, check: impl Fn(&S)
 where
     S: fmt::Debug,
 {
-    let times = std::env::var("SWEEPSIM_ORACLE_CASES").map_or(1, |n| n.parse().expect("a number of times"));
     let config = Config {
-        cases: cases * times,
+        cases: cases * times(),
         rng_seed: RngSeed::Fixed(0xa11),
         failure_persistence: None,
         max_shrink_iters: 60,
@@ -390,7 +390,7 @@ fn union((tools, case): &([Tool; 3], Case)) -> Result<Tally, String> {
 
 #[test]
 fn the_methods_agree() {
-    for_all(10, cases(), Case::methods);
+    for_all(3, cases(), Case::methods);
 }
 
 #[test]
@@ -407,6 +407,6 @@ fn a_tool_of_two_parts_sweeps_their_union() {
 #[ignore = "takes many minutes"]
 fn many_more() {
     for_all(200, cases(), Case::relations);
-    for_all(150, cases(), Case::methods);
+    for_all(160, cases(), Case::methods);
     for_all(150, (spline_tools(), cases()), union);
 }
