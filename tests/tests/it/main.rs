@@ -1,6 +1,6 @@
 //! What crosses crates, in one binary.
 
 mod brute_force;
-mod real_programs;
 mod router_bit;
+mod shared_data;
 mod tidy;

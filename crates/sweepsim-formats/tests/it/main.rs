@@ -4,8 +4,6 @@ mod bad_jobs;
 mod dexels_binary;
 mod exchange;
 mod jobs;
-mod meshes;
 mod motions;
 mod programs;
-mod real_files;
 mod round_trips;

@@ -1,92 +1,16 @@
-//! Curves: the stored 1-D systems, random curves against marching squares, symmetries, and the polylines' distance.
+//! Curves: random curves against marching squares, symmetries, and the polylines' distance.
 
 use crate::support;
 
 use std::time::{Duration, Instant};
-use support::stored::all;
-use sweepsim_solve::{CurveSolver, Curves, End, Interval, SolveOptions, System};
+use support::audit::audit_curves;
+use sweepsim_solve::{CurveSolver, Interval, SolveOptions, System};
 use sweepsim_spline::Bernstein;
 
 fn solver(tolerance: f64) -> CurveSolver {
     let mut solver = CurveSolver::new(tolerance);
     solver.options.time = Some(Duration::from_secs(60));
     solver
-}
-
-/// Tangents have unit length, vertices follow them, arcs end where they say.
-fn audit(curves: &Curves, region: &[Interval], name: &str) {
-    for curve in &curves.curves {
-        assert!(curve.points.len() >= 2, "{name}");
-        for pair in curve.points.windows(2) {
-            let along: f64 = (0..region.len())
-                .map(|j| (pair[1].point[j] - pair[0].point[j]) * pair[0].tangent[j])
-                .sum();
-            let length: f64 = (0..region.len())
-                .map(|j| (pair[1].point[j] - pair[0].point[j]).powi(2))
-                .sum::<f64>()
-                .sqrt();
-            // Short segments next to singular points turn quickly and have little precision.
-            assert!(along > 0.0 || length < 1e-6, "{name}: {pair:?}");
-            let unit: f64 = pair[0].tangent.iter().map(|t| t * t).sum();
-            assert!((unit - 1.0).abs() < 1e-9, "{name}: {pair:?}");
-        }
-        let Some(ends) = curve.ends else { continue };
-        for (end, point) in [
-            (ends[0], &curve.points[0]),
-            (ends[1], &curve.points[curve.points.len() - 1]),
-        ] {
-            let on_boundary = region.iter().zip(&point.point).any(|(r, x)| {
-                let slack = (1e-12 + 3.0 * curves.skin) * (r.hi - r.lo);
-                (x - r.lo).abs() <= slack || (x - r.hi).abs() <= slack
-            });
-            assert!(on_boundary || end != End::Boundary, "{name}: {point:?}");
-        }
-    }
-}
-
-#[test]
-fn stored_curves_have_their_known_topology() {
-    let Some(systems) = all() else { return };
-    println!(
-        "{:32} {:>5} {:>5} {:>5} {:>6} {:>9}  expected",
-        "system", "loops", "arcs", "sing", "boxes", "time"
-    );
-    let mut failures = Vec::new();
-    let only = std::env::var("SYSTEM").ok();
-    for stored in systems
-        .iter()
-        .filter(|s| s.dimension == 1 && only.as_ref().is_none_or(|o| *o == s.name))
-    {
-        let system = stored.system().unwrap();
-        let start = Instant::now();
-        let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
-        let time = start.elapsed();
-        let (loops, arcs) = (curves.loops().count(), curves.arcs().count());
-        let branches: Vec<usize> = curves.singular.iter().map(|s| s.branches.len()).collect();
-        println!(
-            "{:32} {loops:5} {arcs:5} {branches:?} {:6} {:9.3} ms  {} skin {:e} vertices {}",
-            stored.name,
-            curves.statistics.boxes,
-            time.as_secs_f64() * 1e3,
-            stored.expected,
-            curves.skin,
-            curves.curves.iter().map(|c| c.points.len()).sum::<usize>(),
-        );
-        audit(&curves, &stored.bounds, &stored.name);
-        let expected = |key: &str| stored.expected[key].as_u64().unwrap() as usize;
-        let right = match stored.name.as_str() {
-            // Four half-lines at a node; a cusp joins two; a point of its own beside an arc; figures eight.
-            "c1_cross" => (loops, arcs, &branches[..]) == (0, 4, &[4]),
-            "c1_cusp" => (loops, arcs, &branches[..]) == (0, 2, &[2]),
-            "c1_isolated_point" => (loops, arcs, &branches[..]) == (0, 1, &[0]),
-            "c1_viviani" | "c1_torus_tangent_plane" => (loops, arcs, &branches[..]) == (0, 2, &[4]),
-            _ => (loops, arcs, branches.len()) == (expected("loops"), expected("arcs"), 0),
-        };
-        if !right {
-            failures.push(stored.name.clone());
-        }
-    }
-    assert!(failures.is_empty(), "{failures:?}");
 }
 
 struct Random(u64);
@@ -179,7 +103,7 @@ fn random_plane_curves_agree_with_marching_squares() {
         let system = System::new(&unit(2), [&form]).unwrap();
         let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
         assert!(curves.singular.is_empty(), "{number}");
-        audit(&curves, &unit(2), &number.to_string());
+        audit_curves(&curves, &unit(2), &number.to_string());
         let found = (curves.loops().count(), curves.arcs().count());
         if let Some(expected) = marching(&form) {
             assert_eq!(found, expected, "{number}");

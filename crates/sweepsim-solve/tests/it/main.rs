@@ -2,7 +2,6 @@
 
 mod bad_input;
 mod bundles;
-mod corpus;
 mod curves;
 mod expressions;
 mod extremes;

@@ -2,76 +2,15 @@
 
 use crate::support;
 
-use std::time::Instant;
+use support::audit::{audit_surface, solve_surface};
 use support::expression::{Polynomial, parse};
-use support::stored::all;
-use sweepsim_solve::{Interval, SolveOptions, Surface, SurfaceSolver, System};
+use sweepsim_solve::{Interval, SolveOptions, SurfaceSolver, System};
 
 fn system(expression: &str, half: f64) -> System {
     let names = ["x", "y", "z"].map(String::from);
     let bounds = [Interval::new(-half, half); 3];
     let polynomial = Polynomial::of(&parse(expression, &names), 3).unwrap();
     System::new(&bounds, [polynomial.equation(&bounds)]).unwrap()
-}
-
-/// Every directed edge once; its reverse at most once; only boundary edges without; no vertex unused, none pinched.
-fn audit(surface: &Surface, name: &str) {
-    let mut sides = Vec::new();
-    let mut used = vec![false; surface.vertices.len()];
-    for t in &surface.triangles {
-        sides.extend([(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
-        t.iter().for_each(|v| used[*v as usize] = true);
-    }
-    let count = sides.len();
-    sides.sort_unstable();
-    sides.dedup();
-    assert_eq!(sides.len(), count, "{name}: an edge twice in one direction");
-    assert!(used.iter().all(|u| *u), "{name}: an unused vertex");
-    // Around each vertex the triangles form one fan.
-    let mut next: std::collections::BTreeMap<u32, Vec<(u32, u32)>> = std::collections::BTreeMap::new();
-    for t in &surface.triangles {
-        for k in 0..3 {
-            next.entry(t[k]).or_default().push((t[(k + 1) % 3], t[(k + 2) % 3]));
-        }
-    }
-    for (vertex, fan) in next {
-        let starts = fan.iter().filter(|(a, _)| fan.iter().all(|(_, b)| a != b)).count();
-        assert!(starts <= 1, "{name}: vertex {vertex} is pinched");
-        let mut at = fan
-            .iter()
-            .find(|(a, _)| fan.iter().all(|(_, b)| a != b))
-            .unwrap_or(&fan[0])
-            .0;
-        let mut steps = 0;
-        while let Some((_, b)) = fan.iter().find(|(a, _)| *a == at) {
-            at = *b;
-            steps += 1;
-            if steps > fan.len() {
-                break;
-            }
-        }
-        assert!(steps >= fan.len(), "{name}: vertex {vertex} has several fans");
-    }
-}
-
-fn solve(system: &System, tolerance: f64, name: &str) -> Surface {
-    let start = Instant::now();
-    let surface = SurfaceSolver::new(tolerance).solve(system, &mut ()).unwrap();
-    println!(
-        "{name:16} χ {:3}, {} components, {:6} triangles, {:5} boundary edges, {:3} open, {:7} boxes, {:8.2} ms",
-        surface.euler_characteristic(),
-        surface.components(),
-        surface.triangles.len(),
-        surface.boundary().len(),
-        surface.unresolved.len(),
-        surface.statistics.boxes,
-        start.elapsed().as_secs_f64() * 1e3
-    );
-    for open in &surface.unresolved {
-        println!("{:16} open: {:?} ({} boxes)", "", open.bounds, open.boxes);
-    }
-    audit(&surface, name);
-    surface
 }
 
 #[test]
@@ -122,7 +61,7 @@ fn surfaces_have_their_known_topology() {
     ];
     for (name, equation, half, euler, components, bounded) in cases {
         let system = system(equation, half);
-        let surface = solve(&system, 0.05, name);
+        let surface = solve_surface(&system, 0.05, name);
         assert_eq!(
             (surface.euler_characteristic(), surface.components()),
             (euler, components),
@@ -141,7 +80,7 @@ fn surfaces_have_their_known_topology() {
 #[test]
 fn vertices_lie_on_the_surface_and_triangles_face_the_positive_side() {
     for tolerance in [0.1, 0.01, 0.001] {
-        let sphere = solve(&system("x**2+y**2+z**2-1", 1.5), tolerance, "sphere");
+        let sphere = solve_surface(&system("x**2+y**2+z**2-1", 1.5), tolerance, "sphere");
         let mut volume = 0.0;
         for t in &sphere.triangles {
             let p = t.map(|v| sphere.vertices[v as usize]);
@@ -167,7 +106,7 @@ fn vertices_lie_on_the_surface_and_triangles_face_the_positive_side() {
 
 #[test]
 fn singular_surfaces_are_named() {
-    let cone = solve(&system("x**2+y**2-1.7*z**2", 1.1), 0.05, "cone");
+    let cone = solve_surface(&system("x**2+y**2-1.7*z**2", 1.1), 0.05, "cone");
 
     assert_eq!(cone.unresolved.len(), 1);
     assert!(
@@ -187,23 +126,7 @@ fn singular_surfaces_are_named() {
         .solve(&planes, &mut ())
         .unwrap();
     assert!(!crossing.unresolved.is_empty());
-    audit(&crossing, "planes");
-}
-
-#[test]
-fn stored_surfaces_have_their_known_topology() {
-    let Some(systems) = all() else { return };
-    for stored in systems.iter().filter(|s| s.dimension == 2) {
-        let surface = solve(&stored.system().unwrap(), 0.02, &stored.name);
-        assert!(surface.unresolved.is_empty(), "{}", stored.name);
-        if let Some(euler) = stored.expected["euler"].as_i64() {
-            assert_eq!(surface.euler_characteristic(), euler);
-            assert_eq!(
-                surface.components() as u64,
-                stored.expected["components"].as_u64().unwrap()
-            );
-        }
-    }
+    audit_surface(&crossing, "planes");
 }
 
 #[test]

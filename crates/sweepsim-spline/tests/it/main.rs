@@ -3,7 +3,6 @@
 mod bernstein;
 mod bounds;
 mod common;
-mod formats;
 mod rational;
 mod spline;
 mod spline_domains;

@@ -9,7 +9,10 @@ const SEED: &str = "SWEEPSIM_SEED";
 
 fn number(variable: &str) -> Option<u64> {
     let text = std::env::var(variable).ok()?;
-    Some(text.parse().unwrap_or_else(|_| panic!("{variable}={text}: expected a number")))
+    Some(
+        text.parse()
+            .unwrap_or_else(|_| panic!("{variable}={text}: expected a number")),
+    )
 }
 
 /// How often the drawn cases of a test are drawn.

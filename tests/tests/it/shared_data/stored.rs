@@ -1,7 +1,7 @@
-//! The stored systems: polynomial systems with known answers, where they are present.
+//! The stored systems: polynomial systems with known answers.
 
-use super::expression::{Expression, Polynomial, parse};
-use std::path::PathBuf;
+use super::folder;
+use super::solver_support::expression::{Expression, Polynomial, parse};
 use sweepsim_solve::{Equation, Interval, System};
 use sweepsim_spline::Bernstein;
 
@@ -20,24 +20,11 @@ pub struct Stored {
     pub roots: Vec<Vec<f64>>,
 }
 
-/// All of them; `None`, with the reason printed, where they are absent.
-pub fn all() -> Option<Vec<Stored>> {
-    let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/systems/systems.json");
-    let file = if file.exists() {
-        file
-    } else {
-        // Work trees lie one folder deeper.
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data/systems/systems.json")
-    };
-    let text = match std::fs::read_to_string(&file) {
-        Ok(text) => text,
-        Err(error) => {
-            println!("skipped: {}: {error}", file.display());
-            return None;
-        }
-    };
+/// All of them.
+pub fn all() -> Vec<Stored> {
+    let text = std::fs::read_to_string(folder().join("systems/systems.json")).expect("the stored systems");
     let systems: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();
-    Some(systems.iter().map(read).collect())
+    systems.iter().map(read).collect()
 }
 
 fn read(json: &serde_json::Value) -> Stored {

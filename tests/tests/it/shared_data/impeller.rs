@@ -1,13 +1,13 @@
-//! Real 5-axis programs, which nobody here wrote, from the shared data folder (skipped with a note where it is absent).
+//! Real 5-axis programs, which nobody here wrote.
 //!
 //! The impeller of LinuxCNC's rotary-table simulator has seven blades, cut by passes that are turned copies of each other. So turning the whole
 //! job by a seventh of a turn must not change what is removed. The turned job has other axes, other lines, and other degenerate
 //! positions: nothing in the solver knows of the symmetry.
 
+use super::folder;
 use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 use sweepsim::{Options, Sweep, sweep};
 use sweepsim_dexel::{Dexels, Grid, Stock};
 use sweepsim_motion::{Path, Pose, Tool};
@@ -18,16 +18,9 @@ const STOCK_HEIGHTS: [f64; 2] = [-3.0, 40.0];
 
 /// The poses of `5axis/linuxcnc/impeller-7bl-xyzac.ngc`: after `M428` X Y Z is the tip in the part's frame in mm, and the axis is
 /// `(sin C sin A, cos C sin A, cos A)`.
-fn impeller() -> Option<Vec<Pose>> {
-    let file =
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/5axis/linuxcnc/impeller-7bl-xyzac.ngc");
-    let text = match std::fs::read_to_string(&file) {
-        Ok(text) => text,
-        Err(error) => {
-            println!("skipped: {}: {error}", file.display());
-            return None;
-        }
-    };
+fn impeller() -> Vec<Pose> {
+    let file = folder().join("5axis/linuxcnc/impeller-7bl-xyzac.ngc");
+    let text = std::fs::read_to_string(&file).expect("the program is there");
     let mut words = [0.0_f64; 5];
     let mut poses = Vec::new();
     for line in text.lines() {
@@ -50,7 +43,7 @@ fn impeller() -> Option<Vec<Pose>> {
         poses.push(Pose::new([x, y, z], axis).expect("a pose"));
     }
     assert_eq!(poses.len(), 4492, "the program has as many moves");
-    Some(poses)
+    poses
 }
 
 fn tool() -> Tool {
@@ -117,7 +110,7 @@ fn removed(sweep: &Sweep, grid: &Grid) -> (f64, f64) {
 }
 
 fn assert_sevenfold(lines: usize, turns: &[u32]) {
-    let Some(poses) = impeller() else { return };
+    let poses = impeller();
     let grid = grid(lines);
     let (volume, error) = removed(&swept(&poses, &grid), &grid);
     println!("{lines} × {lines}: {volume:.1} mm³ removed, standard error {error:.1}");
@@ -140,19 +133,21 @@ fn assert_sevenfold(lines: usize, turns: &[u32]) {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn the_impeller_turned_by_a_seventh_is_the_same() {
     assert_sevenfold(40, &[1]);
 }
 
 #[test]
-#[ignore = "a few minutes: cargo test -p sweepsim-tests --release --test real_programs -- --ignored"]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+#[cfg_attr(shared_data, ignore = "takes minutes: cargo xtask brute-force")]
 fn the_impeller_on_a_fine_grid() {
     assert_sevenfold(300, &[1, 2, 3, 4, 5, 6]);
 }
 
 /// Brute force on lines of the impeller: all of them where `stride` is 1.
 fn assert_brute_force(lines: usize, stride: usize) {
-    let Some(poses) = impeller() else { return };
+    let poses = impeller();
     let grid = grid(lines);
     let sweep = swept(&poses, &grid);
     let outline = Outline::new(tool().profile().expect("a solid of revolution"));
@@ -193,12 +188,14 @@ fn assert_brute_force(lines: usize, stride: usize) {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn brute_force_agrees_on_lines_of_the_impeller() {
     assert_brute_force(40, 13);
 }
 
 #[test]
-#[ignore = "a minute: cargo test -p sweepsim-tests --release --test real_programs -- --ignored"]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+#[cfg_attr(shared_data, ignore = "takes a minute: cargo xtask brute-force")]
 fn brute_force_agrees_on_all_lines_of_the_impeller() {
     assert_brute_force(80, 1);
 }

@@ -1,23 +1,7 @@
-//! Surfaces and volumes of others satisfy the identities. The files lie outside of the repository; without them, skipped.
+//! Surfaces and volumes of others satisfy the identities.
 
-use std::path::PathBuf;
+use super::folder;
 use sweepsim_spline::{BSpline, BernsteinMap, KnotVector, RationalSpline};
-
-fn data(path: &str) -> Option<PathBuf> {
-    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let root = if root.is_dir() {
-        root
-    } else {
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data")
-    };
-    let path = root.join(path);
-    if path.exists() {
-        Some(path)
-    } else {
-        println!("skipped: {} is not there", path.display());
-        None
-    }
-}
 
 fn numbers(text: &str) -> Vec<f64> {
     text.split(|c: char| c.is_whitespace() || c == ',' || c == ';')
@@ -233,8 +217,9 @@ fn check(spline: &RationalSpline) {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn gismo_files() {
-    let Some(folder) = data("splines/gismo") else { return };
+    let folder = folder().join("splines/gismo");
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -252,10 +237,11 @@ fn gismo_files() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn geopdes_files() {
-    let Some(folder) = data("splines/geopdes") else { return };
+    let files = folder().join("splines/geopdes");
     let mut count = 0;
-    for entry in std::fs::read_dir(folder).expect("a folder") {
+    for entry in std::fs::read_dir(files).expect("a folder") {
         let path = entry.expect("an entry").path();
         let name = path.file_name().and_then(|n| n.to_str()).unwrap_or("").to_owned();
         if name.ends_with(".txt") && !name.contains("specs") {
@@ -267,29 +253,25 @@ fn geopdes_files() {
     }
     assert!(count >= 20, "{count}");
     // A quarter of a ring: its area is 3π/4, by Gauss' rule over the Jacobian determinant.
-    let Some(path) = data("splines/geopdes/geo_ring.txt") else {
-        return;
-    };
+    let path = folder().join("splines/geopdes/geo_ring.txt");
     let ring = geopdes(&std::fs::read_to_string(path).expect("text")).swap_remove(0);
     let p = ring.evaluate(&[0.5, 0.3]);
     assert!((p[0].hypot(p[1]) - 1.5).abs() < 1e-14);
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn mfem_files() {
-    let Some(path) = data("splines/mfem/square-disc-nurbs-patch.mesh") else {
-        return;
-    };
+    let path = folder().join("splines/mfem/square-disc-nurbs-patch.mesh");
     let patches = mfem(&std::fs::read_to_string(path).expect("text"));
     assert_eq!(patches.len(), 5);
     patches.iter().for_each(check);
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn impeller() {
-    let Some(path) = data("geometry/impeller/impeller.igs") else {
-        return;
-    };
+    let path = folder().join("geometry/impeller/impeller.igs");
     let surfaces = iges(&std::fs::read_to_string(path).expect("text"));
     assert_eq!(surfaces.len(), 247);
     let rational = surfaces
@@ -301,10 +283,9 @@ fn impeller() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn splinelib_sphere() {
-    let Some(path) = data("splines/splinelib/test_one.iges") else {
-        return;
-    };
+    let path = folder().join("splines/splinelib/test_one.iges");
     let surfaces = iges(&std::fs::read_to_string(path).expect("text"));
     for surface in &surfaces {
         check(surface);
@@ -317,22 +298,21 @@ fn splinelib_sphere() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn teapots() {
-    if let Some(path) = data("geometry/teapot/fg_teapot_data.h") {
-        let patches = teapot(&std::fs::read_to_string(path).expect("text"));
-        assert_eq!(patches.len(), 10);
-        for patch in &patches {
-            check(&RationalSpline::from_polynomial(patch).expect("weights"));
-            // Exactly by the algebra: N · F_u vanishes within its bound.
-            let (fu, fv) = (patch.derivative(0).expect("u"), patch.derivative(1).expect("v"));
-            let normal = fu.cross(&fv).expect("in space");
-            assert!(normal.dot(&fu).expect("in space").may_vanish());
-            assert!(normal.dot(&fv).expect("in space").may_vanish());
-        }
+    let path = folder().join("geometry/teapot/fg_teapot_data.h");
+    let patches = teapot(&std::fs::read_to_string(path).expect("text"));
+    assert_eq!(patches.len(), 10);
+    for patch in &patches {
+        check(&RationalSpline::from_polynomial(patch).expect("weights"));
+        // Exactly by the algebra: N · F_u vanishes within its bound.
+        let (fu, fv) = (patch.derivative(0).expect("u"), patch.derivative(1).expect("v"));
+        let normal = fu.cross(&fv).expect("in space");
+        assert!(normal.dot(&fu).expect("in space").may_vanish());
+        assert!(normal.dot(&fv).expect("in space").may_vanish());
     }
-    if let Some(path) = data("geometry/teapot/gismo_teapot.xml") {
-        let patches = gismo(&std::fs::read_to_string(path).expect("text"));
-        assert_eq!(patches.len(), 32);
-        patches.iter().for_each(check);
-    }
+    let path = folder().join("geometry/teapot/gismo_teapot.xml");
+    let patches = gismo(&std::fs::read_to_string(path).expect("text"));
+    assert_eq!(patches.len(), 32);
+    patches.iter().for_each(check);
 }

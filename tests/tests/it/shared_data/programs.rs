@@ -1,19 +1,8 @@
-//! Programs that nobody here wrote (`../shared/data` beside the project's folder). Skipped where they are absent.
+//! Programs that nobody here wrote.
 
+use super::folder;
 use std::path::{Path, PathBuf};
-
 use sweepsim_formats::{PathOptions, Program, gcode, read_path_file};
-
-/// The folder of the data, or why not.
-fn data() -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../../shared/data");
-    let found = [folder, other].into_iter().find(|folder| folder.is_dir());
-    if found.is_none() {
-        println!("skipped: no folder ../shared/data beside the project");
-    }
-    found
-}
 
 fn tilt(pose: &sweepsim_motion::Pose) -> f64 {
     pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees()
@@ -24,8 +13,9 @@ fn read(file: &Path) -> Program {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn impeller() {
-    let Some(data) = data() else { return };
+    let data = folder();
     let program = read(&data.join("5axis/linuxcnc/impeller-7bl-xyzac.ngc"));
     let tilts: Vec<f64> = program.poses.iter().map(|pose| tilt(&pose.pose)).collect();
     let (low, high) = tilts
@@ -54,8 +44,9 @@ fn impeller() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn boats() {
-    let Some(data) = data() else { return };
+    let data = folder();
     for name in ["boat-xyzac.ngc", "boat-xyzbc.ngc"] {
         let program = read(&data.join("5axis/linuxcnc").join(name));
         println!("{name}: {} poses, {:#?}", program.poses.len(), program.notes);
@@ -66,8 +57,9 @@ fn boats() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn three_axes() {
-    let Some(data) = data() else { return };
+    let data = folder();
     let options = PathOptions {
         program: gcode::Options {
             arc_tolerance: 1e-2,
@@ -133,8 +125,9 @@ fn three_axes() {
 }
 
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn meshes() {
-    let Some(data) = data() else { return };
+    let data = folder();
     for (name, least) in [("Dem-target2.STL", 10), ("SupPetriLED.STL", 10)] {
         let soup = sweepsim_formats::read_stl(&data.join("3axis/solidworks_apt").join(name)).unwrap();
         assert!(soup.triangles.len() > least);

@@ -1,6 +1,6 @@
-//! Meshes of real parts and their dexels, at rising resolution (`../shared/data` beside the project's folder; skipped where absent).
+//! Meshes of real parts and their dexels, at rising resolution.
 
-use std::path::{Path, PathBuf};
+use super::folder;
 use sweepsim_dexel::{Grid, Stock, TriangleSoup, compare_with_mesh};
 use sweepsim_formats::read_stl;
 
@@ -10,16 +10,6 @@ const FILES: [&str; 4] = [
     "Dem-target2.STL",
     "SupPetriLED.STL",
 ];
-
-fn folder() -> Option<PathBuf> {
-    let above = ["../../..", "../../../.."].map(|up| Path::new(env!("CARGO_MANIFEST_DIR")).join(up));
-    let found = above.map(|up| up.join("shared/data/3axis/solidworks_apt"));
-    let found = found.into_iter().find(|folder| folder.is_dir());
-    if found.is_none() {
-        println!("skipped: no folder ../shared/data beside the project");
-    }
-    found
-}
 
 fn area(soup: &TriangleSoup) -> f64 {
     let of = |[a, b, c]: &[[f64; 3]; 3]| {
@@ -33,8 +23,9 @@ fn area(soup: &TriangleSoup) -> f64 {
 /// The lines of a grid are the midpoint rule. It errs in cells that a wall crosses, each by at most its area times the wall's
 /// height there: in all by the area of the surface times the diagonal of a cell.
 #[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn volumes_of_dexels_become_those_of_the_mesh() {
-    let Some(folder) = folder() else { return };
+    let folder = folder().join("3axis/solidworks_apt");
     for name in FILES {
         let soup = read_stl(&folder.join(name)).unwrap_or_else(|error| panic!("{}", error.render(false)));
         if let Err(error) = soup.check_closed() {
