@@ -28,37 +28,22 @@
 //! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
 //! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
 
-mod arc_time;
-mod boundary;
-mod crossings;
-mod curve_time;
-mod element;
+mod algebra;
+mod cutter;
 mod envelope;
-mod form;
-mod generic;
-mod instant;
-mod lattice;
-mod lines;
-mod piece;
-mod placed;
-mod planes;
-mod ranges;
-mod section;
-mod section_svg;
-mod simulate;
-mod surfaces;
+mod methods;
+mod sections;
 mod sweep;
-pub mod systems;
 mod time;
-mod tri;
 
-pub use boundary::{Boundary, UnknownBoundary};
-pub use piece::{Piece, PiecePoint};
-pub use section::{Section, SectionCurve, section};
-pub use simulate::{Cut, Simulation, simulate, sweep_all};
-pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};
-pub use sweep::{Method, Monitor, Options, Statistics, Sweep, SweepError, UnknownMethod, Unresolved, probe, sweep};
-pub use tri::{TriSimulation, simulate_tri};
+pub use envelope::systems;
+pub use sections::{
+    EnvelopeSurface, EnvelopeSurfaces, Piece, PiecePoint, Section, SectionCurve, envelope_surfaces, section,
+};
+pub use sweep::{
+    Boundary, Cut, Method, Monitor, Options, Simulation, Statistics, Sweep, SweepError, TriSimulation, UnknownBoundary,
+    UnknownMethod, Unresolved, probe, simulate, simulate_tri, sweep, sweep_all,
+};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -1,0 +1,203 @@
+//! Ranges of forms over boxes: the least and greatest of sums of products of control rows and control points.
+//!
+//! Four points are taken at a time, which compilers make vector instructions of.
+
+const LANES: usize = 4;
+
+/// A vector-valued list of coefficients: x, y and z apart.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Triples<'a> {
+    pub x: &'a [f64],
+    pub y: &'a [f64],
+    pub z: &'a [f64],
+}
+
+impl<'a> Triples<'a> {
+    #[inline]
+    pub fn new(list: &'a [f64], start: usize, len: usize) -> Self {
+        let (x, rest) = list[start..start + 3 * len].split_at(len);
+        let (y, z) = rest.split_at(len);
+        Self { x, y, z }
+    }
+
+    /// `⟨a, cᵢ⟩`.
+    #[inline]
+    pub fn dot(&self, a: &[f64; 3], i: usize) -> f64 {
+        a[0] * self.x[i] + a[1] * self.y[i] + a[2] * self.z[i]
+    }
+
+    #[inline]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+}
+
+/// Least and greatest of what was taken in.
+struct Band {
+    lo: [f64; LANES],
+    hi: [f64; LANES],
+}
+
+impl Band {
+    fn new() -> Self {
+        Self {
+            lo: [f64::INFINITY; LANES],
+            hi: [f64::NEG_INFINITY; LANES],
+        }
+    }
+
+    fn take(&mut self, values: &[f64; LANES]) {
+        for k in 0..LANES {
+            self.lo[k] = if values[k] < self.lo[k] { values[k] } else { self.lo[k] };
+            self.hi[k] = if values[k] > self.hi[k] { values[k] } else { self.hi[k] };
+        }
+    }
+
+    fn take_one(&mut self, value: f64) {
+        self.lo[0] = if value < self.lo[0] { value } else { self.lo[0] };
+        self.hi[0] = if value > self.hi[0] { value } else { self.hi[0] };
+    }
+
+    fn range(&self) -> (f64, f64) {
+        let lo = self.lo.iter().fold(f64::INFINITY, |a, b| if *b < a { *b } else { a });
+        let hi = self
+            .hi
+            .iter()
+            .fold(f64::NEG_INFINITY, |a, b| if *b > a { *b } else { a });
+        (lo, hi)
+    }
+}
+
+/// Four points, component by component.
+type Four<'a> = [&'a [f64; LANES]; 3];
+
+impl Triples<'_> {
+    /// The number of [fours](Self::four).
+    fn fours(&self) -> usize {
+        if self.len() < LANES {
+            0
+        } else {
+            self.len().div_ceil(LANES)
+        }
+    }
+
+    /// Points four by four; the last four may repeat some.
+    #[inline(always)]
+    fn four(&self, k: usize) -> Four<'_> {
+        let start = (LANES * k).min(self.len() - LANES);
+        [self.x, self.y, self.z].map(|list| list[start..].first_chunk().unwrap_or(&[f64::NAN; LANES]))
+    }
+
+    /// The points where there are fewer than four.
+    fn few(&self) -> std::ops::Range<usize> {
+        0..if self.len() < LANES { self.len() } else { 0 }
+    }
+}
+
+fn dots(row: &[f64; 3], [x, y, z]: Four) -> [f64; LANES] {
+    std::array::from_fn(|k| row[0] * x[k] + row[1] * y[k] + row[2] * z[k])
+}
+
+/// Range of `⟨row, point⟩` over all rows and points.
+pub(crate) fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
+    let mut band = Band::new();
+    for k in 0..points.fours() {
+        let four = points.four(k);
+        for row in rows {
+            band.take(&dots(row, four));
+        }
+    }
+    for i in points.few() {
+        for row in rows {
+            band.take_one(points.dot(row, i));
+        }
+    }
+    band.range()
+}
+
+/// Range of `⟨row, point⟩ + offset` over all rows with their offsets, and all points.
+pub(crate) fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Triples) -> (f64, f64) {
+    let mut band = Band::new();
+    for k in 0..points.fours() {
+        let four = points.four(k);
+        for (row, offset) in rows.iter().zip(offsets) {
+            band.take(&dots(row, four).map(|x| x + offset));
+        }
+    }
+    for i in points.few() {
+        for (row, offset) in rows.iter().zip(offsets) {
+            band.take_one(points.dot(row, i) + offset);
+        }
+    }
+    band.range()
+}
+
+/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; one spin alone goes with all rows.
+pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
+    let mut band = Band::new();
+    let add = |a: [f64; LANES], b: [f64; LANES]| std::array::from_fn(|k| a[k] + b[k]);
+    let [constant] = spins else {
+        for k in 0..n.fours() {
+            let (of_n, of_m) = (n.four(k), m.four(k));
+            for (spin, row) in spins.iter().zip(rows) {
+                band.take(&add(dots(spin, of_m), dots(row, of_n)));
+            }
+        }
+        for i in n.few() {
+            for (spin, row) in spins.iter().zip(rows) {
+                band.take_one(m.dot(spin, i) + n.dot(row, i));
+            }
+        }
+        return band.range();
+    };
+    for k in 0..n.fours() {
+        let (of_n, of_m) = (n.four(k), m.four(k));
+        let fixed = dots(constant, of_m);
+        for row in rows {
+            band.take(&add(fixed, dots(row, of_n)));
+        }
+    }
+    for i in n.few() {
+        let fixed = m.dot(constant, i);
+        for row in rows {
+            band.take_one(fixed + n.dot(row, i));
+        }
+    }
+    band.range()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Points in fours and the rest: the range is that of all, one by one.
+        #[test]
+        fn ranges_are_those_of_all_points(
+            points in proptest::collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..14),
+            rows in proptest::collection::vec((-9.0..9.0, -9.0..9.0, -9.0..9.0), 1..4),
+        ) {
+            let triple = |p: &(f64, f64, f64)| [p.0, p.1, p.2];
+            let list = |k: usize| points.iter().map(|p| triple(p)[k]).collect::<Vec<f64>>();
+            let (x, y, z) = (list(0), list(1), list(2));
+            let triples = Triples { x: &x, y: &y, z: &z };
+            let rows: Vec<[f64; 3]> = rows.iter().map(triple).collect();
+            let offsets: Vec<f64> = (0..rows.len()).map(|k| k as f64).collect();
+            let range = |value: &dyn Fn(usize, usize) -> f64| {
+                let all = (0..rows.len()).flat_map(|r| (0..points.len()).map(move |i| (r, i)));
+                let values: Vec<f64> = all.map(|(r, i)| value(r, i)).collect();
+                (values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+            };
+            prop_assert_eq!(products(&rows, &triples), range(&|r, i| triples.dot(&rows[r], i)));
+            prop_assert_eq!(shifted_products(&rows, &offsets, &triples), range(&|r, i| triples.dot(&rows[r], i) + offsets[r]));
+            let both = [triples, triples];
+            prop_assert_eq!(envelope(&rows, &rows, &both), range(&|r, i| {
+                // One spin goes with all rows, here the same one row.
+                triples.dot(&rows[r], i) + triples.dot(&rows[r], i)
+            }));
+            let one = [rows[0]];
+            prop_assert_eq!(envelope(&one, &rows, &both), range(&|r, i| triples.dot(&rows[0], i) + triples.dot(&rows[r], i)));
+        }
+    }
+}

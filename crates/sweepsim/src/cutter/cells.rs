@@ -1,0 +1,241 @@
+//! The cells that a patch or an edge is cut into, on demand.
+
+use crate::algebra::bivariate::{CUT, cut, restrict};
+use crate::algebra::ranges::Triples;
+use crate::cutter::patch_forms::PatchForms;
+
+const NONE: u32 = u32::MAX;
+
+#[derive(Clone, Debug)]
+struct CellNode {
+    lower: [f64; 2],
+    upper: [f64; 2],
+    /// First of the two parts, per axis.
+    parts: [u32; 2],
+    /// The homogeneous tensors.
+    c: Vec<f64>,
+    /// Control points of position and slopes, in the places of their numerators in `c`; derivatives of the fields.
+    points: Vec<f64>,
+}
+
+/// The lists of a cell.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    c: Vec<f64>,
+    points: Vec<f64>,
+}
+
+/// The cells of one element, made on demand and kept.
+#[derive(Clone, Debug)]
+pub(crate) struct Cells {
+    nodes: Vec<CellNode>,
+    /// Of released cells.
+    spare: Vec<Buffers>,
+    /// Per field and axis, where the derivatives of N and M stand in `points`, and how long each is.
+    derivatives: Vec<[(usize, usize); 2]>,
+    points: usize,
+}
+
+/// More cells than this are not kept for the next segment.
+const KEPT: usize = 4096;
+
+impl Cells {
+    pub fn new(element: &PatchForms) -> Self {
+        let layout = &element.layout;
+        let mut points = layout.fields.first().map_or(layout.len, |slot| slot.start);
+        let derivatives = layout
+            .fields
+            .iter()
+            .map(|slot| {
+                [0, 1].map(|axis| {
+                    let mut degrees = slot.degrees;
+                    degrees[axis] = degrees[axis].saturating_sub(1);
+                    let len = (degrees[0] + 1) * (degrees[1] + 1);
+                    let start = points;
+                    if axis < layout.slopes.len() {
+                        points += 6 * len;
+                    }
+                    (start, len)
+                })
+            })
+            .collect();
+        let mut cells = Self {
+            nodes: Vec::new(),
+            spare: Vec::new(),
+            derivatives,
+            points,
+        };
+        let whole = Buffers {
+            c: element.whole.clone(),
+            points: Vec::new(),
+        };
+        let root = cells.node(element, [0.0; 2], [1.0; 2], whole);
+        cells.nodes.push(root);
+        cells
+    }
+
+    /// Forgets cells when there are many.
+    pub fn trim(&mut self) {
+        if self.nodes.len() > KEPT {
+            self.nodes.truncate(1);
+            self.nodes[0].parts = [NONE; 2];
+        }
+    }
+
+    /// A cell of its own, over any box; it is kept until it is [released](Self::release).
+    pub fn place(&mut self, element: &PatchForms, lower: [f64; 2], upper: [f64; 2]) -> u32 {
+        let layout = &element.layout;
+        let mut spare = self.spare.pop().unwrap_or_default();
+        spare.c.resize(layout.len, 0.0);
+        let rational = std::iter::once(&layout.position)
+            .chain(&layout.slopes)
+            .map(|slot| (slot, 4));
+        for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
+            let range = slot.start..slot.start + count * slot.len();
+            restrict(
+                &element.whole[range.clone()],
+                slot.degrees,
+                lower,
+                upper,
+                &mut spare.c[range],
+            );
+        }
+        let node = self.node(element, lower, upper, spare);
+        self.nodes.push(node);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// How many cells there are, to release those that come after.
+    pub fn mark(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Forgets the cells made since the mark: placed ones, and what they were split into.
+    pub fn release(&mut self, mark: usize) {
+        let released = self.nodes.drain(mark..);
+        self.spare.extend(released.map(|node| Buffers {
+            c: node.c,
+            points: node.points,
+        }));
+    }
+
+    /// The cell with these homogeneous tensors, its control points put into the other buffer.
+    fn node(&self, element: &PatchForms, lower: [f64; 2], upper: [f64; 2], buffers: Buffers) -> CellNode {
+        let layout = &element.layout;
+        let Buffers { c, mut points } = buffers;
+        points.resize(self.points, 0.0);
+        for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
+            let len = slot.len();
+            let of = &c[slot.start..][..4 * len];
+            let out = &mut points[slot.start..][..3 * len];
+            let (x, rest) = out.split_at_mut(len);
+            let (y, z) = rest.split_at_mut(len);
+            for i in 0..len {
+                let inverse = 1.0 / of[3 * len + i];
+                x[i] = of[i] * inverse;
+                y[i] = of[len + i] * inverse;
+                z[i] = of[2 * len + i] * inverse;
+            }
+        }
+        for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
+            for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
+                let p = slot.degrees[0];
+                let n = slot.degrees[axis];
+                if n == 0 {
+                    continue;
+                }
+                let factor = n as f64 / (upper[axis] - lower[axis]);
+                let tensors = c[slot.start..][..6 * slot.len()].chunks_exact(slot.len());
+                for (tensor, out) in tensors.zip(points[*start..][..6 * len].chunks_exact_mut(*len)) {
+                    if axis == 0 {
+                        for (line, out) in tensor.chunks_exact(p + 1).zip(out.chunks_exact_mut(p)) {
+                            for (out, pair) in out.iter_mut().zip(line.windows(2)) {
+                                *out = factor * (pair[1] - pair[0]);
+                            }
+                        }
+                    } else {
+                        for ((out, next), this) in out.iter_mut().zip(&tensor[p + 1..]).zip(tensor) {
+                            *out = factor * (next - this);
+                        }
+                    }
+                }
+            }
+        }
+        CellNode {
+            lower,
+            upper,
+            parts: [NONE; 2],
+            c,
+            points,
+        }
+    }
+
+    pub fn bounds(&self, cell: u32, axis: usize) -> (f64, f64) {
+        let node = &self.nodes[cell as usize];
+        (node.lower[axis], node.upper[axis])
+    }
+
+    /// The two parts of a cell.
+    pub fn split(&mut self, element: &PatchForms, cell: u32, axis: usize) -> [u32; 2] {
+        let first = self.nodes[cell as usize].parts[axis];
+        if first != NONE {
+            return [first, first + 1];
+        }
+        let node = &self.nodes[cell as usize];
+        let (mut lower, mut upper) = (vec![0.0; node.c.len()], vec![0.0; node.c.len()]);
+        let buffers = |c| Buffers { c, points: Vec::new() };
+        let layout = &element.layout;
+        let rational = std::iter::once(&layout.position)
+            .chain(&layout.slopes)
+            .map(|slot| (slot, 4));
+        for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
+            let range = slot.start..slot.start + count * slot.len();
+            let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
+            cut(&node.c[range], slot.degrees, axis, CUT, low, high);
+        }
+        let at = node.lower[axis] + CUT * (node.upper[axis] - node.lower[axis]);
+        let (mut low_end, mut high_start) = (node.upper, node.lower);
+        low_end[axis] = at;
+        high_start[axis] = at;
+        let (start, end) = (node.lower, node.upper);
+        let low = self.node(element, start, low_end, buffers(lower));
+        let high = self.node(element, high_start, end, buffers(upper));
+        let first = self.nodes.len() as u32;
+        self.nodes.push(low);
+        self.nodes.push(high);
+        self.nodes[cell as usize].parts[axis] = first;
+        [first, first + 1]
+    }
+
+    /// Control points of the position.
+    pub fn position<'a>(&'a self, element: &PatchForms, cell: u32) -> Triples<'a> {
+        let slot = &element.layout.position;
+        Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
+    }
+
+    /// Control points of the derivative of the position.
+    pub fn slope<'a>(&'a self, element: &PatchForms, cell: u32, axis: usize) -> Triples<'a> {
+        let slot = &element.layout.slopes[axis];
+        Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
+    }
+
+    /// Coefficients of `N` and `M` of a field.
+    pub fn field<'a>(&'a self, element: &PatchForms, cell: u32, field: usize) -> [Triples<'a>; 2] {
+        let slot = &element.layout.fields[field];
+        let c = &self.nodes[cell as usize].c;
+        [
+            Triples::new(c, slot.start, slot.len()),
+            Triples::new(c, slot.start + 3 * slot.len(), slot.len()),
+        ]
+    }
+
+    /// Coefficients of the derivatives of `N` and `M` of a field.
+    pub fn field_slope(&self, cell: u32, field: usize, axis: usize) -> [Triples<'_>; 2] {
+        let (start, len) = self.derivatives[field][axis];
+        let points = &self.nodes[cell as usize].points;
+        [
+            Triples::new(points, start, len),
+            Triples::new(points, start + 3 * len, len),
+        ]
+    }
+}

@@ -1,0 +1,189 @@
+//! What is swept: patches and edges of a tool, prepared once per tool, and cut into cells on demand.
+//!
+//! Only the tool enters here, no motion: the cells of `(u, v)` serve all segments of a path. Each cell keeps the *control
+//! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the
+//! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
+
+use crate::algebra::bivariate::Form;
+use crate::algebra::quad::add;
+use crate::algebra::table::{Table, position};
+use crate::cutter::revolution::{Revolution, Spot};
+use crate::time::placement::{LocalFrame, Placing};
+use nalgebra::Vector3;
+use sweepsim_motion::{Edge, NormalField, Patch, Tool};
+
+/// Degrees and place of a coefficient tensor in a cell's list.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    pub degrees: [usize; 2],
+    pub start: usize,
+}
+
+impl Slot {
+    pub fn len(&self) -> usize {
+        (self.degrees[0] + 1) * (self.degrees[1] + 1)
+    }
+}
+
+/// A patch (two variables, one field of normals) or an edge (one variable, the normals of both its faces).
+#[derive(Clone, Debug)]
+pub(crate) struct PatchForms {
+    /// Homogeneous tensors of the whole element: see [`Layout`].
+    pub(super) whole: Vec<f64>,
+    pub(super) layout: Layout,
+    /// Largest coefficients of `N` and `M`.
+    pub largest_normal: f64,
+    pub largest_moment: f64,
+    /// A shorter way to its points, where there is one, arranged for the inner loop.
+    pub revolution: Option<Revolution>,
+    frame: Option<LocalFrame>,
+    /// Homogeneous position, arranged for it.
+    pub places: Table,
+    /// All fields one after another, arranged for it.
+    pub normals: Table,
+}
+
+/// The tensors of a cell: position x, y, z, weight; then per variable the same of the derivative; then per field N, M.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    pub position: Slot,
+    pub slopes: Vec<Slot>,
+    pub fields: Vec<Slot>,
+    pub len: usize,
+}
+
+impl PatchForms {
+    pub fn all(tool: &Tool) -> (Vec<Self>, Vec<Self>) {
+        (
+            tool.patches().iter().map(Self::patch).collect(),
+            tool.edges().iter().map(Self::edge).collect(),
+        )
+    }
+
+    fn patch(patch: &Patch) -> Self {
+        let element = Self::new(&patch.position, &patch.weight, &[&patch.field], 2);
+        Self {
+            revolution: patch.revolved.as_ref().map(Revolution::new),
+            frame: patch.revolved.as_ref().and_then(|revolved| revolved.frame),
+            ..element
+        }
+    }
+
+    fn edge(edge: &Edge) -> Self {
+        Self::new(&edge.position, &edge.weight, &[&edge.before, &edge.after], 1)
+    }
+
+    fn new(
+        position: &[sweepsim_spline::Bernstein; 3],
+        weight: &sweepsim_spline::Bernstein,
+        fields: &[&NormalField],
+        variables: usize,
+    ) -> Self {
+        let point = [0, 1, 2].map(|k| Form::of(&position[k]));
+        let weight = Form::of(weight);
+        let mut whole = Vec::new();
+        let mut put = |forms: &[Form]| {
+            let degrees = [0, 1].map(|a| forms.iter().map(|f| f.degrees[a]).max().unwrap_or(0));
+            let start = whole.len();
+            for form in forms {
+                whole.extend(form.raised(degrees).c);
+            }
+            Slot { degrees, start }
+        };
+        let [x, y, z] = point.clone();
+        let position = put(&[x, y, z, weight.clone()]);
+        let slopes = (0..variables)
+            .map(|axis| {
+                // With ω = ω₁(u) ω₂(v): F_u = (F̂_u ω₁ − F̂ ω₁′) / (ω₁² ω₂).
+                let (own, other) = match weight.factors() {
+                    Some([in_u, in_v]) if axis == 0 => (in_u, Some(in_v)),
+                    Some([in_u, in_v]) => (in_v, Some(in_u)),
+                    None => (weight.clone(), None),
+                };
+                let numerator = |f: &Form| f.derivative(axis).times(&own).minus(&f.times(&own.derivative(axis)));
+                let square = own.times(&own);
+                let denominator = other.map_or(square.clone(), |o| square.times(&o));
+                put(&[
+                    numerator(&point[0]),
+                    numerator(&point[1]),
+                    numerator(&point[2]),
+                    denominator,
+                ])
+            })
+            .collect();
+        let mut largest = [0.0_f64; 2];
+        let mut all: Vec<Form> = Vec::new();
+        let fields = fields
+            .iter()
+            .map(|field| {
+                let forms: Vec<Form> = field.normal.iter().chain(&field.moment).map(Form::of).collect();
+                for (k, form) in forms.iter().enumerate() {
+                    largest[k / 3] = largest[k / 3].max(form.largest());
+                }
+                all.extend_from_slice(&forms);
+                put(&forms)
+            })
+            .collect();
+        let layout = Layout {
+            position,
+            slopes,
+            fields,
+            len: whole.len(),
+        };
+        Self {
+            whole,
+            layout,
+            largest_normal: largest[0],
+            largest_moment: largest[1],
+            revolution: None,
+            frame: None,
+            places: table(point.iter().chain([&weight])),
+            normals: table(all.iter()),
+        }
+    }
+
+    /// A point of a patch in the tool, its normal and the moment of that.
+    pub fn face(&self, at: [f64; 2]) -> (Vector3<f64>, [Vector3<f64>; 2]) {
+        let [value, ..] = self.places.at::<4>(at);
+        let [fields, ..] = self.normals.at::<6>(at);
+        let [place] = position(&[value]);
+        (place, [0, 3].map(|k| triple(&fields[k..])))
+    }
+
+    /// A point of an edge in the tool, the normals of both faces and the moments of those.
+    pub fn rim(&self, r: f64) -> (Vector3<f64>, [[Vector3<f64>; 2]; 2]) {
+        let [value, _] = self.places.along::<4>(r);
+        let [fields, _] = self.normals.along::<12>(r);
+        let [place] = position(&[value]);
+        (place, [0, 6].map(|side| [side, side + 3].map(|k| triple(&fields[k..]))))
+    }
+
+    /// A point of a placed patch, and its fields: `N` and `M`, their derivatives in `u` and in `v`.
+    #[inline]
+    pub fn spot(&self, placing: &Placing, at: [f64; 2]) -> (Spot, [[f64; 6]; 3]) {
+        let [place, in_u, in_v] = position(&self.places.at::<4>(at));
+        let fields = self.normals.at::<6>(at);
+        let [x, y, z, ..] = fields[0];
+        let spot = Spot {
+            place: add(&placing.turned(&place), &placing.origin),
+            slopes: [placing.turned(&in_u), placing.turned(&in_v)],
+            normal: placing.turned(&Vector3::new(x, y, z)),
+        };
+        (spot, fields)
+    }
+
+    /// The frame of [`PatchForms::revolution`] in the tool; `None` when it is the tool's.
+    pub fn frame(&self) -> Option<&LocalFrame> {
+        self.frame.as_ref()
+    }
+}
+
+fn triple(list: &[f64]) -> Vector3<f64> {
+    Vector3::new(list[0], list[1], list[2])
+}
+
+/// Forms raised to common degrees.
+fn table<'a>(forms: impl Iterator<Item = &'a Form> + Clone) -> Table {
+    let degrees = [0, 1].map(|axis| forms.clone().map(|form| form.degrees[axis]).max().unwrap_or(0));
+    Table::new(&forms.map(|form| form.raised(degrees)).collect::<Vec<_>>(), degrees)
+}

@@ -1,0 +1,80 @@
+//! Maps over boxes of any place, besides those that subdivision makes.
+
+use crate::envelope::edge_map::EdgeMap;
+use crate::envelope::enclosures::ROOT;
+use crate::envelope::patch_map::PatchMap;
+use crate::envelope::placed_map::PlacedMap;
+use sweepsim_solve::{ChartMap, Interval};
+
+/// A map that can look at any box of its domain.
+pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
+    /// The cell over all of the domain.
+    fn root(&self) -> Self::Cell;
+
+    /// A cell over any box, kept until it is released.
+    fn place(&mut self, bounds: &[Interval; N]) -> Self::Cell;
+
+    /// What there is, to release what comes after.
+    fn mark(&self) -> [usize; 2];
+
+    /// Forgets the cells placed since the mark.
+    fn release(&mut self, mark: [usize; 2]);
+}
+
+impl AnyBox<3> for PatchMap<'_> {
+    fn root(&self) -> Self::Cell {
+        ROOT
+    }
+
+    fn place(&mut self, [u, v, t]: &[Interval; 3]) -> Self::Cell {
+        let cell = self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi]);
+        (cell, self.times.place(t.lo, t.hi))
+    }
+
+    fn mark(&self) -> [usize; 2] {
+        [self.cells.mark(), self.times.mark()]
+    }
+
+    fn release(&mut self, [cells, times]: [usize; 2]) {
+        self.cells.release(cells);
+        self.times.release(times);
+    }
+}
+
+impl AnyBox<2> for EdgeMap<'_> {
+    fn root(&self) -> Self::Cell {
+        ROOT
+    }
+
+    fn place(&mut self, [r, t]: &[Interval; 2]) -> Self::Cell {
+        let cell = self.cells.place(self.element, [r.lo, 0.0], [r.hi, 1.0]);
+        (cell, self.times.place(t.lo, t.hi))
+    }
+
+    fn mark(&self) -> [usize; 2] {
+        [self.cells.mark(), self.times.mark()]
+    }
+
+    fn release(&mut self, [cells, times]: [usize; 2]) {
+        self.cells.release(cells);
+        self.times.release(times);
+    }
+}
+
+impl AnyBox<2> for PlacedMap<'_> {
+    fn root(&self) -> Self::Cell {
+        0
+    }
+
+    fn place(&mut self, [u, v]: &[Interval; 2]) -> Self::Cell {
+        self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi])
+    }
+
+    fn mark(&self) -> [usize; 2] {
+        [self.cells.mark(), 0]
+    }
+
+    fn release(&mut self, [cells, _]: [usize; 2]) {
+        self.cells.release(cells);
+    }
+}

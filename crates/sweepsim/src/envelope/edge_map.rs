@@ -1,0 +1,110 @@
+//! Eq. 7 as a map: a sharp edge under a motion.
+
+use crate::algebra::quad::{Quad, vector};
+use crate::algebra::ranges::{envelope, products};
+use crate::algebra::table::position;
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::enclosures::{
+    Brick, Near, ROUNDING, Size, envelope_size, interval, negative, plane_values, turning,
+};
+use crate::time::framed::FramedMotion;
+use crate::time::pieces::Times;
+use nalgebra::Vector3;
+use sweepsim_solve::{ChartMap, Interval, Sample};
+
+/// What is seen on an edge: height, and of both faces `g` and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnEdge {
+    pub height: Near<2>,
+    pub sides: [Near<2>; 2],
+    pub normals: [Vector3<f64>; 2],
+}
+
+/// A sharp edge under a motion.
+pub(crate) struct EdgeMap<'a> {
+    pub element: &'a PatchForms,
+    pub cells: &'a mut Cells,
+    pub times: &'a mut Times,
+    pub motion: FramedMotion<'a>,
+    pub size: Size,
+}
+
+impl ChartMap<2> for EdgeMap<'_> {
+    type Cell = Brick;
+    type Seen = OnEdge;
+
+    fn bounds(&self, cell: &Brick) -> [Interval; 2] {
+        [
+            interval(self.cells.bounds(cell.0, 0)),
+            interval(self.times.bounds(cell.1)),
+        ]
+    }
+
+    fn values(&mut self, cell: &Brick) -> Option<[Interval; 2]> {
+        let error = ROUNDING * envelope_size(self.element, self.times);
+        let [a, b] = [0, 1].map(|side| {
+            let field = self.cells.field(self.element, cell.0, side);
+            let (spins, travels) = self.times.twist(cell.1);
+            negative(envelope(spins, travels, &field), error)
+        });
+        if a.is_some() && a == b {
+            return None;
+        }
+        Some(plane_values(self.element, self.cells, self.times, *cell, &self.size))
+    }
+
+    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 2]; 2] {
+        let slope = self.cells.slope(self.element, cell.0, 0);
+        let turning = turning(self.element, self.cells, self.times, *cell);
+        [0, 1].map(|r| [interval(products(self.times.rows(cell.1, r), &slope)), turning[r]])
+    }
+
+    fn split(&mut self, cell: &Brick, axis: usize) -> [Brick; 2] {
+        if axis == 1 {
+            self.times.split(cell.1).map(|piece| (cell.0, piece))
+        } else {
+            self.cells.split(self.element, cell.0, 0).map(|part| (part, cell.1))
+        }
+    }
+
+    fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnEdge> {
+        let instant = self.motion.at(self.times, x[1]);
+        let [position, slope] = position(&self.element.places.along::<4>(x[0]));
+        let [fields, in_r] = self.element.normals.along::<12>(x[0]);
+        let placing = &instant.placing;
+        let (arm, slope) = (placing.turned(&position), placing.turned(&slope));
+        let place: Quad = std::array::from_fn(|k| arm[k] + placing.origin[k]);
+        let moving = instant.moving(&place);
+        let side = |k: usize| {
+            let (field, in_r) = (&fields[6 * k..6 * k + 6], &in_r[6 * k..6 * k + 6]);
+            Near {
+                value: instant.own.dot(field),
+                slope: [instant.own.dot(in_r), instant.change.dot(field)],
+            }
+        };
+        Sample {
+            value: [place[0], place[1]],
+            jacobian: [[slope[0], moving[0]], [slope[1], moving[1]]],
+            seen: OnEdge {
+                height: Near {
+                    value: place[2],
+                    slope: [slope[2], moving[2]],
+                },
+                sides: [side(0), side(1)],
+                normals: [0, 6].map(|k| {
+                    let normal = Vector3::new(fields[k], fields[k + 1], fields[k + 2]);
+                    vector(&placing.turned(&normal))
+                }),
+            },
+        }
+    }
+
+    fn scales(&self) -> [f64; 2] {
+        self.size.spacing
+    }
+
+    fn rounding(&self) -> [f64; 2] {
+        [self.size.slack; 2]
+    }
+}

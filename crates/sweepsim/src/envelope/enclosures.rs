@@ -1,0 +1,102 @@
+//! Enclosures of `X`, `Y` and `g`, and of their derivatives, over a cell of a patch or an edge and a piece of time.
+
+use crate::algebra::ranges::{products, shifted_products};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::time::pieces::Times;
+use sweepsim_solve::Interval;
+
+/// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
+fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
+    (
+        if lo < 0.0 { lo * b } else { lo * a },
+        if hi > 0.0 { hi * b } else { hi * a },
+    )
+}
+
+#[inline]
+pub(super) fn interval((lo, hi): (f64, f64)) -> Interval {
+    Interval::new(lo, hi)
+}
+
+/// The size of things: what differences count as large, and how far rounding reaches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Size {
+    /// Distance of neighbouring lines.
+    pub spacing: [f64; 2],
+    /// Rounding of a coordinate.
+    pub slack: f64,
+}
+
+/// A function near a point: its value and its derivatives there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Near<const N: usize> {
+    pub value: f64,
+    pub slope: [f64; N],
+}
+
+impl<const N: usize> Near<N> {
+    /// The value at `x`, to first order from the point `from`.
+    pub fn at(&self, x: &[f64; N], from: &[f64; N]) -> f64 {
+        (0..N).fold(self.value, |sum, k| sum + self.slope[k] * (x[k] - from[k]))
+    }
+}
+
+/// A cell of an element in a piece of time.
+pub(crate) type Brick = (u32, u32);
+
+pub(crate) const ROOT: Brick = (0, 0);
+
+/// A bound of `|g|`, and so of its rounding.
+pub(super) fn envelope_size(element: &PatchForms, times: &Times) -> f64 {
+    let [spin, travel] = times.sizes();
+    spin * element.largest_moment + travel * element.largest_normal
+}
+
+/// Ranges of X and Y.
+pub(super) fn plane_values(
+    element: &PatchForms,
+    cells: &Cells,
+    times: &Times,
+    (cell, piece): Brick,
+    size: &Size,
+) -> [Interval; 2] {
+    let position = cells.position(element, cell);
+    [0, 1].map(|r| {
+        if let Some([offsets, _]) = times.offsets(piece, r) {
+            let (lo, hi) = shifted_products(times.rows(piece, r), offsets, &position);
+            return Interval::new(lo - size.slack, hi + size.slack);
+        }
+        let (lo, hi) = products(times.rows(piece, r), &position);
+        let (a, b) = times.tip(piece, r);
+        Interval::new(lo + a - size.slack, hi + b + size.slack)
+    })
+}
+
+/// Ranges of `∂X/∂t` and `∂Y/∂t`: `b′ + A′ F`.
+pub(super) fn turning(element: &PatchForms, cells: &Cells, times: &Times, (cell, piece): Brick) -> [Interval; 2] {
+    let position = cells.position(element, cell);
+    [0, 1].map(|r| {
+        let (rows, pace) = times.spin_rows(piece, r);
+        if let Some([_, offsets]) = times.offsets(piece, r) {
+            return interval(shifted_products(rows, offsets, &position));
+        }
+        let (lo, hi) = scaled(products(rows, &position), pace);
+        let (slowest, fastest) = times.velocity(piece, r);
+        Interval::new(lo + slowest, hi + fastest)
+    })
+}
+
+/// The sign of `g` over a cell: `Some(true)` negative, `Some(false)` not negative, `None` both or unclear.
+pub(super) fn negative((lo, hi): (f64, f64), error: f64) -> Option<bool> {
+    if hi < -error {
+        Some(true)
+    } else if lo > error || (lo == 0.0 && hi == 0.0) {
+        Some(false)
+    } else {
+        None
+    }
+}

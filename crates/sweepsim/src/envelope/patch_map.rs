@@ -1,0 +1,132 @@
+//! Eq. 6 as a map: a patch under a motion.
+
+use crate::algebra::quad::vector;
+use crate::algebra::ranges::{envelope, products};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::enclosures::{Brick, Near, ROUNDING, Size, envelope_size, interval, plane_values, turning};
+use crate::time::framed::FramedMotion;
+use crate::time::pieces::Times;
+use nalgebra::Vector3;
+use sweepsim_solve::{ChartMap, Interval, Sample};
+
+/// What is seen on a patch: height, and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnPatch {
+    pub height: Near<3>,
+    pub normal: Vector3<f64>,
+}
+
+/// A patch under a motion.
+pub(crate) struct PatchMap<'a> {
+    pub element: &'a PatchForms,
+    pub cells: &'a mut Cells,
+    pub times: &'a mut Times,
+    pub motion: FramedMotion<'a>,
+    pub size: Size,
+}
+
+impl ChartMap<3> for PatchMap<'_> {
+    type Cell = Brick;
+    type Seen = OnPatch;
+
+    fn bounds(&self, cell: &Brick) -> [Interval; 3] {
+        let of = |axis| interval(self.cells.bounds(cell.0, axis));
+        [of(0), of(1), interval(self.times.bounds(cell.1))]
+    }
+
+    fn values(&mut self, cell: &Brick) -> Option<[Interval; 3]> {
+        let field = self.cells.field(self.element, cell.0, 0);
+        let (spins, travels) = self.times.twist(cell.1);
+        let g = envelope(spins, travels, &field);
+        let error = ROUNDING * envelope_size(self.element, self.times);
+        if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
+            return None;
+        }
+        let [x, y] = plane_values(self.element, self.cells, self.times, *cell, &self.size);
+        Some([x, y, Interval::new(g.0 - error, g.1 + error)])
+    }
+
+    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 3]; 3] {
+        let zero = Interval::new(0.0, 0.0);
+        let mut jacobian = [[zero; 3]; 3];
+        for axis in 0..2 {
+            let slope = self.cells.slope(self.element, cell.0, axis);
+            for r in 0..2 {
+                jacobian[r][axis] = interval(products(self.times.rows(cell.1, r), &slope));
+            }
+            let slopes = self.cells.field_slope(cell.0, 0, axis);
+            let (spins, travels) = self.times.twist(cell.1);
+            jacobian[2][axis] = interval(envelope(spins, travels, &slopes));
+        }
+        let turning = turning(self.element, self.cells, self.times, *cell);
+        for r in 0..2 {
+            jacobian[r][2] = turning[r];
+        }
+        let (spins, travels) = self.times.twist_slope(cell.1);
+        if !travels.is_empty() {
+            let field = self.cells.field(self.element, cell.0, 0);
+            jacobian[2][2] = interval(if spins.is_empty() {
+                products(travels, &field[0])
+            } else {
+                envelope(spins, travels, &field)
+            });
+        }
+        jacobian
+    }
+
+    fn split(&mut self, cell: &Brick, axis: usize) -> [Brick; 2] {
+        if axis == 2 {
+            self.times.split(cell.1).map(|piece| (cell.0, piece))
+        } else {
+            self.cells.split(self.element, cell.0, axis).map(|part| (part, cell.1))
+        }
+    }
+
+    fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnPatch> {
+        let instant = self.motion.at(self.times, x[2]);
+        let (spot, [g, g_u, g_v], g_t) = match &self.element.revolution {
+            Some(revolution) => {
+                let turned = revolution.at(&instant.placing, [x[0], x[1]]);
+                let g_t = turned.envelope(&instant.change);
+                (turned.spot(), turned.envelopes(&instant.own), g_t)
+            }
+            None => {
+                let (spot, fields) = self.element.spot(&instant.placing, [x[0], x[1]]);
+                let g = fields.map(|field| instant.own.dot(&field));
+                (spot, g, instant.change.dot(&fields[0]))
+            }
+        };
+        let moving = instant.moving(&spot.place);
+        let [in_u, in_v] = &spot.slopes;
+        Sample {
+            value: [spot.place[0], spot.place[1], g],
+            jacobian: [
+                [in_u[0], in_v[0], moving[0]],
+                [in_u[1], in_v[1], moving[1]],
+                [g_u, g_v, g_t],
+            ],
+            seen: OnPatch {
+                height: Near {
+                    value: spot.place[2],
+                    slope: [in_u[2], in_v[2], moving[2]],
+                },
+                normal: vector(&spot.normal),
+            },
+        }
+    }
+
+    fn scales(&self) -> [f64; 3] {
+        let [x, y] = self.size.spacing;
+        [
+            x,
+            y,
+            0.25 * envelope_size(self.element, self.times).max(f64::MIN_POSITIVE),
+        ]
+    }
+
+    fn rounding(&self) -> [f64; 3] {
+        let slack = self.size.slack;
+        [slack, slack, ROUNDING * envelope_size(self.element, self.times)]
+    }
+}

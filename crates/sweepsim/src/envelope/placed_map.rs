@@ -1,0 +1,186 @@
+//! Caps and kinks as a map: a patch at rest between two motions.
+
+use crate::algebra::quad::vector;
+use crate::algebra::ranges::Triples;
+use crate::algebra::ranges::{envelope, products};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative};
+use crate::time::placement::{LocalFrame, Placing, Twisted};
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_solve::{ChartMap, Interval, Sample};
+
+/// What is seen on a placed patch: height, `g` before and after, and the normal in space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OnPlaced {
+    pub height: Near<2>,
+    pub before: Near<2>,
+    pub after: Near<2>,
+    pub normal: Vector3<f64>,
+}
+
+/// What the tool does just before or after a pose, as its velocity there: in the tool's coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Twist {
+    pub spin: [f64; 3],
+    pub travel: [f64; 3],
+}
+
+/// A side of a joint: the motion there, or none at the end of a path. The sign of `g` is then fixed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Side {
+    Moving(Twist),
+    /// Beyond the end: `true` counts as `g < 0`.
+    Beyond(bool),
+}
+
+impl Side {
+    fn negative(&self, field: &[Triples; 2], element: &PatchForms) -> Option<bool> {
+        match self {
+            Self::Beyond(negative) => Some(*negative),
+            Self::Moving(twist) => {
+                let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
+                let size = sum(&twist.spin) * element.largest_moment + sum(&twist.travel) * element.largest_normal;
+                negative(envelope(&[twist.spin], &[twist.travel], field), ROUNDING * size)
+            }
+        }
+    }
+
+    fn seen(&self, frame: Option<&LocalFrame>) -> Seen {
+        match self {
+            Self::Beyond(negative) => Seen::Beyond(*negative),
+            Self::Moving(twist) => Seen::Moving(Twisted::new(&twist.spin.into(), &twist.travel.into(), frame)),
+        }
+    }
+}
+
+/// A side of a joint as the frame of a patch sees it.
+enum Seen {
+    Moving(Twisted),
+    Beyond(bool),
+}
+
+/// A placed patch between two motions: a kink of the path, or a cap at its start or end.
+pub(crate) struct PlacedMap<'a> {
+    pub element: &'a PatchForms,
+    pub cells: &'a mut Cells,
+    turn: Matrix3<f64>,
+    tip: Vector3<f64>,
+    before: Side,
+    after: Side,
+    size: Size,
+    placing: Placing,
+    seen: [Seen; 2],
+}
+
+impl<'a> PlacedMap<'a> {
+    /// A patch turned by `turn`, its tip at `tip`.
+    pub fn new(
+        element: &'a PatchForms,
+        cells: &'a mut Cells,
+        (turn, tip): (Matrix3<f64>, Vector3<f64>),
+        [before, after]: [Side; 2],
+        size: Size,
+    ) -> Self {
+        let frame = element.frame();
+        Self {
+            placing: Placing::new(&turn, &tip, frame),
+            seen: [before.seen(frame), after.seen(frame)],
+            element,
+            cells,
+            turn,
+            tip,
+            before,
+            after,
+            size,
+        }
+    }
+
+    fn row(&self, r: usize) -> [[f64; 3]; 1] {
+        [[self.turn[(r, 0)], self.turn[(r, 1)], self.turn[(r, 2)]]]
+    }
+}
+
+impl ChartMap<2> for PlacedMap<'_> {
+    type Cell = u32;
+    type Seen = OnPlaced;
+
+    fn bounds(&self, cell: &u32) -> [Interval; 2] {
+        [0, 1].map(|axis| interval(self.cells.bounds(*cell, axis)))
+    }
+
+    fn values(&mut self, cell: &u32) -> Option<[Interval; 2]> {
+        let field = self.cells.field(self.element, *cell, 0);
+        let before = self.before.negative(&field, self.element);
+        if before.is_some() && before == self.after.negative(&field, self.element) {
+            return None;
+        }
+        let position = self.cells.position(self.element, *cell);
+        Some([0, 1].map(|r| {
+            let (lo, hi) = products(&self.row(r), &position);
+            Interval::new(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
+        }))
+    }
+
+    fn jacobian(&mut self, cell: &u32) -> [[Interval; 2]; 2] {
+        let slopes = [0, 1].map(|axis| self.cells.slope(self.element, *cell, axis));
+        [0, 1].map(|r| [0, 1].map(|axis| interval(products(&self.row(r), &slopes[axis]))))
+    }
+
+    fn split(&mut self, cell: &u32, axis: usize) -> [u32; 2] {
+        self.cells.split(self.element, *cell, axis)
+    }
+
+    fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnPlaced> {
+        let near = |side: &Seen, envelopes: &dyn Fn(&Twisted) -> [f64; 3]| match side {
+            Seen::Moving(twist) => {
+                let [value, in_u, in_v] = envelopes(twist);
+                Near {
+                    value,
+                    slope: [in_u, in_v],
+                }
+            }
+            Seen::Beyond(negative) => Near {
+                value: if *negative { -1.0 } else { 1.0 },
+                slope: [0.0; 2],
+            },
+        };
+        let (spot, [before, after]) = match &self.element.revolution {
+            Some(revolution) => {
+                let turned = revolution.at(&self.placing, *x);
+                let sides = self
+                    .seen
+                    .each_ref()
+                    .map(|side| near(side, &|twist| turned.envelopes(twist)));
+                (turned.spot(), sides)
+            }
+            None => {
+                let (spot, fields) = self.element.spot(&self.placing, *x);
+                let envelopes = |twist: &Twisted| fields.map(|field| twist.dot(&field));
+                (spot, self.seen.each_ref().map(|side| near(side, &envelopes)))
+            }
+        };
+        let [in_u, in_v] = &spot.slopes;
+        Sample {
+            value: [spot.place[0], spot.place[1]],
+            jacobian: [[in_u[0], in_v[0]], [in_u[1], in_v[1]]],
+            seen: OnPlaced {
+                height: Near {
+                    value: spot.place[2],
+                    slope: [in_u[2], in_v[2]],
+                },
+                before,
+                after,
+                normal: vector(&spot.normal),
+            },
+        }
+    }
+
+    fn scales(&self) -> [f64; 2] {
+        self.size.spacing
+    }
+
+    fn rounding(&self) -> [f64; 2] {
+        [self.size.slack; 2]
+    }
+}

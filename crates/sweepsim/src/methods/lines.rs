@@ -1,0 +1,180 @@
+//! Algorithm 4: for each line the systems of points, Eq. 6 of patches, Eq. 7 of edges, and those of caps and kinks.
+//!
+//! From line to line only `x` and `y` change, so the systems of one patch under one motion are a [`Bundle`]: they go down one subdivision, each as
+//! long as its box may hold a solution, and each root has a certificate of its own.
+
+use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
+use crate::envelope::{ROUNDING, Side};
+use crate::methods::search::sides;
+use crate::time::path_parts::PathPart;
+use sweepsim_motion::{NormalField, Patch, Tool};
+use sweepsim_solve::Bundle;
+use sweepsim_spline::Bernstein;
+
+/// The systems of one part of a path. Where there are none (numbers out of range), charts are used.
+#[derive(Clone, Debug)]
+pub(crate) struct Bundles {
+    faces: Vec<Option<Bundle<3>>>,
+    rims: Vec<Option<Bundle<2>>>,
+    /// At its start, and where it is the last one, at its end.
+    placed: [Vec<Option<Bundle<2>>>; 2],
+}
+
+impl Bundles {
+    /// Those of `parts[at]`.
+    pub fn new(tool: &Tool, parts: &[PathPart], at: usize) -> Self {
+        let segment = &parts[at].segment;
+        let face = |patch: &Patch| {
+            let motion = PatchMotion::new(patch, segment);
+            let ([x, y, _], weight) = motion.position();
+            Bundle::new(vec![x.clone(), y.clone()], weight, vec![motion.condition().clone()]).ok()
+        };
+        let rim = |edge| {
+            let motion = EdgeMotion::new(edge, segment);
+            let ([x, y, _], weight) = motion.position();
+            let [before, after] = motion.conditions().clone();
+            let bundle = Bundle::new(vec![x.clone(), y.clone()], weight, vec![]).ok()?;
+            bundle.where_signs_differ(before, after).ok()
+        };
+        let placed = |end: usize| {
+            let (turn, tip) = match end {
+                0 => (segment.start(), segment.tips()[0]),
+                _ => (segment.end(), segment.tips()[1]),
+            };
+            let [before, after] = sides(parts, at, end);
+            let bundle = |patch: &Patch| {
+                let place = PlacedPatch::new(patch, &turn, &tip);
+                let ([x, y, _], weight) = place.position();
+                let bundle = Bundle::new(vec![x.clone(), y.clone()], weight, vec![]).ok()?;
+                let [before, after] = [before, after].map(|side| condition(&side, &patch.field));
+                bundle.where_signs_differ(before?, after?).ok()
+            };
+            tool.patches().iter().map(bundle).collect()
+        };
+        Self {
+            faces: tool.patches().iter().map(face).collect(),
+            rims: tool.edges().iter().map(rim).collect(),
+            placed: [placed(0), if at + 1 == parts.len() { placed(1) } else { Vec::new() }],
+        }
+    }
+
+    pub fn face(&self, number: usize) -> Option<&Bundle<3>> {
+        self.faces[number].as_ref()
+    }
+
+    pub fn rim(&self, number: usize) -> Option<&Bundle<2>> {
+        self.rims[number].as_ref()
+    }
+
+    /// The patch at the start (0) or the end (1).
+    pub fn placed(&self, end: usize, number: usize) -> Option<&Bundle<2>> {
+        self.placed[end].get(number).and_then(Option::as_ref)
+    }
+}
+
+/// `g` at a placement, in the patch's parameters; beyond the ends of a path a constant of its sign.
+fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
+    let twist = match side {
+        Side::Beyond(negative) => return Some(Bernstein::constant(2, if *negative { -1.0 } else { 1.0 })),
+        Side::Moving(twist) => twist,
+    };
+    let pairs = || {
+        let turning = twist.spin.iter().zip(&field.moment);
+        turning.chain(twist.travel.iter().zip(&field.normal))
+    };
+    let sum = pairs().fold(Bernstein::constant(2, 0.0), |sum, (factor, form)| {
+        if *factor == 0.0 {
+            sum
+        } else {
+            sum.add(&form.scale(*factor))
+        }
+    });
+    // The velocity is rounded as well.
+    let size: f64 = pairs().map(|(factor, form)| factor.abs() * largest(form)).sum();
+    let zero = sum.coefficients().iter().all(|c| *c == 0.0);
+    let error = if zero { 0.0 } else { sum.error() + ROUNDING * size };
+    Bernstein::with_error(sum.degrees(), sum.coefficients().to_vec(), error).ok()
+}
+
+fn largest(form: &Bernstein) -> f64 {
+    form.coefficients().iter().fold(0.0, |m, c| m.max(c.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cutter::{cells::Cells, patch_forms::PatchForms};
+    use crate::envelope::{EdgeMap, PatchMap, PlacedMap, Size};
+    use crate::time::framed::FramedMotion;
+    use crate::time::pieces::Times;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Pose, Segment};
+    use sweepsim_solve::ChartMap;
+
+    const SIZE: Size = Size {
+        spacing: [1.0; 2],
+        slack: 1e-12,
+    };
+
+    /// `X`, `Y` of forms at a point.
+    fn plane(([x, y, _], weight): (&[Bernstein; 3], &Bernstein), at: &[f64]) -> [f64; 2] {
+        [x, y].map(|form| form.evaluate(at) / weight.evaluate(at))
+    }
+
+    proptest! {
+        /// Bundles take bounds from the forms and points from the maps: both must be of the same functions.
+        #[test]
+        fn maps_are_what_the_forms_say(
+            tool in 0..3usize,
+            lean in [-0.8..0.8, -0.8..0.8],
+            tip in [-20.0..20.0, -20.0..20.0, -20.0..20.0],
+            at in [0.0..1.0, 0.0..1.0, 0.0..1.0],
+            moves in proptest::bool::ANY,
+        ) {
+            let tool = [Tool::ball(5.0, 30.0), Tool::flat(5.0, 30.0), Tool::bull(5.0, 1.0, 30.0)][tool].clone().unwrap();
+            let start = Pose::new([0.0; 3], [0.1, 0.2, 1.0]).unwrap();
+            let axis = if moves { [lean[0], lean[1], 1.0] } else { [0.1, 0.2, 1.0] };
+            let segment: Segment = Segment::between(&start, &Pose::new(tip, axis).unwrap()).remove(0);
+            let mut times = Times::new(&segment);
+            let (faces, rims) = PatchForms::all(&tool);
+            // Some hundred roundings of numbers of up to a hundred, and of products of two.
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-10;
+            for (patch, element) in tool.patches().iter().zip(&faces) {
+                let motion = PatchMotion::new(patch, &segment);
+                let mut cells = Cells::new(element);
+                let own = FramedMotion::new(&times, element.frame());
+                let map = PatchMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
+                let [x, y, g] = map.evaluate(&at).value;
+                let [a, b] = plane(motion.position(), &at);
+                prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
+                let [before, after] = [
+                    crate::methods::search::twist(&segment, sweepsim_motion::SegmentEnd::Start, &segment.start()),
+                    Side::Beyond(true),
+                ];
+                let (turn, own_tip) = (segment.start(), segment.tips()[0]);
+                let map = PlacedMap::new(element, &mut cells, (turn, own_tip), [before, after], SIZE);
+                let sample = map.evaluate(&[at[0], at[1]]);
+                let [a, b] = plane(PlacedPatch::new(patch, &turn, &own_tip).position(), &at[..2]);
+                prop_assert!(near(sample.value[0], a) && near(sample.value[1], b));
+                let origin = [at[0], at[1]];
+                for (near_side, side) in [(sample.seen.before, before), (sample.seen.after, after)] {
+                    let form = condition(&side, &patch.field).unwrap();
+                    prop_assert!(near(near_side.at(&origin, &origin), form.evaluate(&origin)));
+                }
+            }
+            for (edge, element) in tool.edges().iter().zip(&rims) {
+                let motion = EdgeMotion::new(edge, &segment);
+                let mut cells = Cells::new(element);
+                let own = FramedMotion::new(&times, None);
+                let map = EdgeMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
+                let origin = [at[0], at[2]];
+                let sample = map.evaluate(&origin);
+                let [a, b] = plane(motion.position(), &origin);
+                prop_assert!(near(sample.value[0], a) && near(sample.value[1], b));
+                for (side, form) in sample.seen.sides.iter().zip(motion.conditions()) {
+                    prop_assert!(near(side.at(&origin, &origin), form.evaluate(&origin)));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The boundary of a sweep for itself: sections by planes, and surfaces.
+
+mod boundary_piece;
+mod section;
+mod surfaces;
+mod svg;
+
+pub use boundary_piece::{Piece, PiecePoint};
+pub use section::{Section, SectionCurve, section};
+pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};

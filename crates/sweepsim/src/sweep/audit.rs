@@ -1,0 +1,120 @@
+//! Crossings counted to intervals, audited, and repaired.
+
+use crate::methods::search::{Harvest, Numbered, Workspace};
+use crate::sweep::boundary_operator::{self, Boundary};
+use crate::sweep::report::{Statistics, SweepError, Unresolved};
+use crate::sweep::schedule::{ATTEMPTS, Job};
+use crate::time::path_parts::{self, PathPart};
+use rayon::prelude::*;
+use sweepsim_dexel::{AuditFailure, Dexels, Interval, Operation, cover};
+use sweepsim_solve::Reason;
+
+impl Job<'_> {
+    /// Counts the crossings of a chunk to intervals, repairs what does not add up, and unites the intervals with the volume.
+    pub fn count(
+        &self,
+        chunk: &[PathPart],
+        harvest: Harvest,
+        volume: &mut Dexels,
+        statistics: &mut Statistics,
+        failed: &mut Vec<Unresolved>,
+    ) -> Result<(), SweepError> {
+        let Harvest {
+            mut crossings,
+            mut open,
+            ..
+        } = harvest;
+        open.sort_by_key(|(line, _)| *line);
+        let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
+        bad.dedup();
+        if !bad.is_empty() {
+            crossings.retain(|(line, _)| bad.binary_search(line).is_err());
+        }
+        let mut wrong: Vec<u32> = match self.boundary {
+            Boundary::Coverage => {
+                let same = path_parts::same(self.tolerance);
+                let failures = volume.update_by_crossings(Operation::Union, &crossings, same);
+                failures.into_iter().map(|(line, _)| line).collect()
+            }
+            Boundary::Paper => {
+                crossings.sort_by_key(|(line, _)| *line);
+                for group in crossings.chunk_by(|a, b| a.0 == b.0) {
+                    let mut line: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
+                    volume.unite(group[0].0 as usize, &boundary_operator::by_normals(&mut line));
+                }
+                Vec::new()
+            }
+        };
+        wrong.extend(&bad);
+        wrong.sort_unstable();
+        wrong.dedup();
+        let repaired: Vec<Result<Vec<Interval>, String>> = wrong
+            .par_iter()
+            .map(|line| self.with_space(|space| self.repair(chunk, *line, 1, space)))
+            .collect();
+        if self.monitor.cancelled() {
+            return Err(SweepError::Cancelled);
+        }
+        for (line, result) in wrong.into_iter().zip(repaired) {
+            match result {
+                Ok(intervals) => {
+                    statistics.repaired += 1;
+                    volume.unite(line as usize, &intervals);
+                }
+                Err(reason) => {
+                    let (i, j) = self.grid.place(line as usize);
+                    failed.push(Unresolved { i, j, reason });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves one line, from the given attempt on each time moved elsewhere within the tolerance, until its audit closes.
+    pub fn repair(
+        &self,
+        chunk: &[PathPart],
+        line: u32,
+        first: usize,
+        space: &mut Workspace,
+    ) -> Result<Vec<Interval>, String> {
+        let mut reason = String::new();
+        for attempt in first..=ATTEMPTS {
+            if self.monitor.cancelled() {
+                break;
+            }
+            let mut harvest = Harvest::default();
+            self.line(chunk, line as usize, attempt, space, &mut harvest);
+            if let Some((_, why)) = harvest.open.first() {
+                reason = match why {
+                    Reason::Budget => "the budget of boxes is spent".to_owned(),
+                    _ => "a box could not be decided at the smallest size".to_owned(),
+                };
+                continue;
+            }
+            match self.intervals(&harvest.crossings) {
+                Ok(intervals) => return Ok(intervals),
+                Err(failure) => {
+                    reason = format!(
+                        "the coverage count does not close: sum {}, lowest {}, at z = {}",
+                        failure.sum, failure.lowest, failure.z
+                    );
+                }
+            }
+        }
+        Err(reason)
+    }
+
+    /// The intervals of one line.
+    fn intervals(&self, group: &[Numbered]) -> Result<Vec<Interval>, AuditFailure> {
+        let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
+        match self.boundary {
+            Boundary::Coverage => {
+                let mut intervals = Vec::new();
+                cover(&mut crossings, path_parts::same(self.tolerance), &mut intervals)?;
+                Ok(intervals)
+            }
+            Boundary::Paper => Ok(boundary_operator::by_normals(&mut crossings)),
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! How to sweep.
+
+use crate::sweep::boundary_operator::Boundary;
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// How crossings are found. All methods give the same intervals.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// One subdivision for all lines: boxes on which the envelope system is injective.
+    #[default]
+    Charts,
+    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision that leads there.
+    Lines,
+    /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
+    Planes,
+    /// The envelope as surfaces, cut by the lines: the paper's Algorithm 1.
+    Surface,
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Charts => "charts",
+            Self::Lines => "lines",
+            Self::Planes => "planes",
+            Self::Surface => "surface",
+        })
+    }
+}
+
+/// A name that is no method.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("unknown method `{0}`: expected `charts`, `planes`, `lines` or `surface`")]
+pub struct UnknownMethod(pub String);
+
+impl FromStr for Method {
+    type Err = UnknownMethod;
+
+    fn from_str(name: &str) -> Result<Self, UnknownMethod> {
+        match name {
+            "charts" => Ok(Self::Charts),
+            "lines" => Ok(Self::Lines),
+            "planes" => Ok(Self::Planes),
+            "surface" => Ok(Self::Surface),
+            _ => Err(UnknownMethod(name.to_owned())),
+        }
+    }
+}
+
+/// How to sweep.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// How far interval ends may be off, in the unit of all lengths (see the crate's page on generic position).
+    pub tolerance: f64,
+    /// How crossings are found.
+    pub method: Method,
+    /// How they become intervals.
+    pub boundary: Boundary,
+    /// What [`Source::path`](sweepsim_dexel::Source) says.
+    pub path_number: u16,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-6,
+            method: Method::Charts,
+            boundary: Boundary::Coverage,
+            path_number: 0,
+        }
+    }
+}
+
+impl Options {
+    /// The default with this tolerance.
+    #[must_use]
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            ..Self::default()
+        }
+    }
+
+    /// Chooses the method.
+    #[must_use]
+    pub fn method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// Chooses the boundary operator.
+    #[must_use]
+    pub fn boundary(mut self, boundary: Boundary) -> Self {
+        self.boundary = boundary;
+        self
+    }
+
+    /// Chooses the number of the path that sources carry.
+    #[must_use]
+    pub fn path_number(mut self, number: u16) -> Self {
+        self.path_number = number;
+        self
+    }
+}

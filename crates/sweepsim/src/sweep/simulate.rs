@@ -1,0 +1,136 @@
+//! Several cuts: what they take out of a stock, or sweep together.
+
+use crate::sweep::options::Options;
+use crate::sweep::report::{Monitor, Statistics, SweepError};
+use crate::sweep::sweep;
+use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_motion::{Path, Tool};
+
+/// A tool and where it goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut<'a> {
+    /// The tool.
+    pub tool: &'a Tool,
+    /// Its poses.
+    pub path: &'a Path,
+}
+
+/// What is left of a stock.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The material that no cut took away; ends made by a tool know which [cut](sweepsim_dexel::Source), move and time.
+    pub remaining: Dexels,
+    /// What was done, over all cuts.
+    pub statistics: Statistics,
+}
+
+/// Watches one cut of several: counts its moves after those before it.
+struct Share<'a> {
+    monitor: &'a dyn Monitor,
+    before: usize,
+    moves: usize,
+    total: usize,
+}
+
+impl Monitor for Share<'_> {
+    fn advance(&self, done: usize, total: usize) {
+        let part = (done as f64 / total.max(1) as f64 * self.moves as f64).round() as usize;
+        self.monitor.advance(self.before + part, self.total);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.monitor.cancelled()
+    }
+}
+
+/// Sweeps the cuts one after the other; the number of a cut becomes the path of its sources.
+fn each(
+    cuts: &[Cut],
+    grid: &Grid,
+    options: &Options,
+    monitor: &dyn Monitor,
+    mut take: impl FnMut(Dexels),
+) -> Result<Statistics, SweepError> {
+    let total = cuts.iter().map(|cut| cut.path.moves()).sum();
+    let mut statistics = Statistics::default();
+    let mut before = 0;
+    for (number, cut) in cuts.iter().enumerate() {
+        let moves = cut.path.moves();
+        let share = Share {
+            monitor,
+            before,
+            moves,
+            total,
+        };
+        let options = options
+            .clone()
+            .path_number(u16::try_from(number).unwrap_or(u16::MAX - 1));
+        let swept = sweep(cut.tool, cut.path, grid, &options, &share)?;
+        statistics.merge(&swept.statistics);
+        take(swept.volume);
+        before += moves;
+    }
+    // A dexel may stay open in several cuts: the first reason stands for all.
+    statistics.unresolved.sort_by_key(|open| (open.i, open.j));
+    statistics.unresolved.dedup_by_key(|open| (open.i, open.j));
+    Ok(statistics)
+}
+
+/// Takes what the cuts sweep, one after the other, out of `stock`.
+///
+/// [`Options::path_number`] is set to the number of each cut; sources tell 65,534 of them apart.
+///
+/// # Errors
+/// Those of [`sweep`](crate::sweep).
+///
+/// ```
+/// use sweepsim::{Cut, Options, simulate};
+/// use sweepsim_dexel::{Grid, Stock};
+/// use sweepsim_motion::{Path, Pose, Tool};
+///
+/// let grid = Grid::new([-10.0, -10.0], [10.0, 10.0], [40, 40])?;
+/// let stock = Stock::Block { min: [-10.0, -10.0, 0.0], max: [10.0, 10.0, 8.0] }.dexels(&grid)?;
+/// let tool = Tool::flat(3.0, 20.0)?;
+/// let up = [0.0, 0.0, 1.0];
+/// let path = Path::new(vec![Pose::new([-20.0, 0.0, 5.0], up)?, Pose::new([20.0, 0.0, 5.0], up)?])?;
+/// let part = simulate(stock, &[Cut { tool: &tool, path: &path }], &Options::default(), &())?;
+/// // A groove 6 wide (twelve rows of dexels, half a millimetre each) and 3 deep.
+/// let removed = 20.0 * 20.0 * 8.0 - part.remaining.volume();
+/// assert!((removed - 20.0 * 6.0 * 3.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn simulate(
+    stock: Dexels,
+    cuts: &[Cut],
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Simulation, SweepError> {
+    let mut remaining = stock;
+    let grid = *remaining.grid();
+    let mut statistics = each(cuts, &grid, options, monitor, |volume| {
+        remaining.subtract_all(&volume).expect("all on one grid");
+    })?;
+    statistics.covered = remaining.covered();
+    Ok(Simulation { remaining, statistics })
+}
+
+/// The volume that the cuts sweep together.
+///
+/// # Errors
+/// Those of [`sweep`](crate::sweep).
+pub fn sweep_all(
+    cuts: &[Cut],
+    grid: &Grid,
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<crate::Sweep, SweepError> {
+    let mut union = Dexels::empty(*grid);
+    let mut statistics = each(cuts, grid, options, monitor, |volume| {
+        union.unite_all(&volume).expect("all on one grid");
+    })?;
+    statistics.covered = union.covered();
+    Ok(crate::Sweep {
+        volume: union,
+        statistics,
+    })
+}

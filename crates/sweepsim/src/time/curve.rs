@@ -1,0 +1,292 @@
+//! A motion of any degree cut into pieces of `t`.
+//!
+//! Each piece keeps the Bernstein coefficients of `Â, ŵ`, of `b`, of the rates `A′, b′` as numerators and denominators, and of the twist
+//! (what the tool sees of its own velocity, times one positive factor). Coefficients over weights are control values: their least and greatest
+//! bound a rational form, because it is a convex combination of them.
+
+use crate::algebra::bivariate::CUT;
+use crate::algebra::bivariate::{MOST, basis};
+use crate::time::moment::{Moment, Rows};
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_motion::Segment;
+
+/// Coefficients of forms of one degree in `t`, one after another: `width` numbers each.
+#[derive(Clone, Debug)]
+struct Channel {
+    width: usize,
+    c: Vec<f64>,
+}
+
+impl Channel {
+    fn new<'a>(rows: impl Iterator<Item = (&'a [f64], Option<f64>)>) -> Self {
+        let (mut width, mut c) = (0, Vec::new());
+        for (row, weight) in rows {
+            let before = c.len();
+            c.extend_from_slice(row);
+            c.extend(weight);
+            width = c.len() - before;
+        }
+        Self { width, c }
+    }
+
+    fn len(&self) -> usize {
+        self.c.len() / self.width
+    }
+
+    fn row(&self, i: usize) -> &[f64] {
+        &self.c[i * self.width..][..self.width]
+    }
+
+    fn split(&self, at: f64) -> [Self; 2] {
+        let (mut lower, mut upper) = (self.clone(), self.clone());
+        let (n, width) = (self.len() - 1, self.width);
+        for level in 1..=n {
+            for k in 0..(n + 1 - level) * width {
+                upper.c[k] += at * (upper.c[k + width] - upper.c[k]);
+            }
+            lower.c[level * width..][..width].copy_from_slice(&upper.c[..width]);
+        }
+        [lower, upper]
+    }
+
+    /// Value and derivative of component `k`, given the polynomials of this degree.
+    fn at(&self, t: f64) -> [Vec<f64>; 2] {
+        let (mut values, mut slopes) = ([0.0; MOST], [0.0; MOST]);
+        basis(self.len() - 1, t, &mut values, &mut slopes);
+        [values, slopes].map(|factors| {
+            let mut sum = vec![0.0; self.width];
+            for i in 0..self.len() {
+                for (sum, c) in sum.iter_mut().zip(self.row(i)) {
+                    *sum += factors[i] * c;
+                }
+            }
+            sum
+        })
+    }
+}
+
+const TURN: usize = 0;
+const TURN_RATE: usize = 1;
+const TIP: usize = 2;
+const TIP_RATE: usize = 3;
+const SPIN: usize = 4;
+const TRAVEL: usize = 5;
+
+#[derive(Clone, Debug)]
+struct Node {
+    lower: f64,
+    upper: f64,
+    parts: u32,
+    channels: [Channel; 6],
+    rows: [Vec<[f64; 3]>; 2],
+    spin_rows: [Vec<[f64; 3]>; 2],
+    tip: [(f64, f64); 2],
+    velocity: [(f64, f64); 2],
+    /// Control values of `b` and of `b′`, where they go with those of `A` and `A′`.
+    offsets: Option<[[Vec<f64>; 2]; 2]>,
+    twist: [Vec<[f64; 3]>; 2],
+    twist_slope: [Vec<[f64; 3]>; 2],
+}
+
+/// The pieces of one segment, made on demand.
+#[derive(Clone, Debug)]
+pub(crate) struct CurveTimes {
+    nodes: Vec<Node>,
+    sizes: [f64; 2],
+    /// Whether orientation and tip have the same weights: then `X` is a convex combination of sums of control values.
+    joint: bool,
+}
+
+fn triples(channel: &Channel) -> Vec<[f64; 3]> {
+    let triple = |i: usize| [0, 1, 2].map(|k| channel.row(i)[k]);
+    (0..channel.len()).map(triple).collect()
+}
+
+fn slopes(channel: &Channel, width: f64) -> Vec<[f64; 3]> {
+    let factor = (channel.len() - 1) as f64 / width;
+    let slope = |i: usize| [0, 1, 2].map(|k| factor * (channel.row(i + 1)[k] - channel.row(i)[k]));
+    (0..channel.len() - 1).map(slope).collect()
+}
+
+/// Row `r` of matrices over their weights.
+fn control_rows(channel: &Channel, r: usize) -> Vec<[f64; 3]> {
+    let row = |i: usize| {
+        let c = channel.row(i);
+        [0, 1, 2].map(|k| c[r + 3 * k] / c[9])
+    };
+    (0..channel.len()).map(row).collect()
+}
+
+/// The range of component `r` of vectors over their weights.
+fn range(channel: &Channel, r: usize) -> (f64, f64) {
+    let values = values(channel, r).into_iter();
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+}
+
+impl CurveTimes {
+    pub fn new(segment: &Segment) -> Self {
+        let matrices = |turns: &[Matrix3<f64>], weights: &[f64]| {
+            Channel::new(
+                turns
+                    .iter()
+                    .map(Matrix3::as_slice)
+                    .zip(weights.iter().copied().map(Some)),
+            )
+        };
+        let vectors = |points: &[Vector3<f64>], weights: &[f64]| {
+            Channel::new(
+                points
+                    .iter()
+                    .map(Vector3::as_slice)
+                    .zip(weights.iter().copied().map(Some)),
+            )
+        };
+        let bare = |vectors: &[Vector3<f64>]| Channel::new(vectors.iter().map(|v| (v.as_slice(), None)));
+        let (turn_rate, tip, tip_rate) = (segment.turn_rate(), segment.points(), segment.tip_rate());
+        let (spins, travels) = segment.twist();
+        let channels = [
+            matrices(segment.turns(), segment.weights()),
+            matrices(&turn_rate.0, &turn_rate.1),
+            vectors(&tip.0, &tip.1),
+            vectors(&tip_rate.0, &tip_rate.1),
+            bare(&spins),
+            bare(&travels),
+        ];
+        let size = |list: &[Vector3<f64>]| list.iter().map(|v| v.abs().sum()).fold(0.0, f64::max);
+        let joint = segment.weights() == tip.1 && turn_rate.1 == tip_rate.1;
+        let mut times = Self {
+            joint,
+            nodes: Vec::with_capacity(32),
+
+            sizes: [size(&spins), size(&travels)],
+        };
+        times.nodes.push(node(0.0, 1.0, channels, joint));
+        times
+    }
+
+    pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
+        let channels = self.nodes[0].channels.each_ref().map(|channel| {
+            let [below, _] = channel.split(upper);
+            let [_, part] = below.split(lower / upper);
+            part
+        });
+        self.nodes.push(node(lower, upper, channels, self.joint));
+        self.nodes.len() as u32 - 1
+    }
+
+    pub fn mark(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn release(&mut self, mark: usize) {
+        self.nodes.truncate(mark);
+    }
+
+    pub fn bounds(&self, piece: u32) -> (f64, f64) {
+        let node = &self.nodes[piece as usize];
+        (node.lower, node.upper)
+    }
+
+    pub fn split(&mut self, piece: u32) -> [u32; 2] {
+        let source = &self.nodes[piece as usize];
+        if source.parts != u32::MAX {
+            return [source.parts, source.parts + 1];
+        }
+        let (lower, upper) = (source.lower, source.upper);
+        let at = lower + CUT * (upper - lower);
+        let halves = source.channels.each_ref().map(|channel| channel.split(CUT));
+        let [low, high] = [0, 1].map(|half| halves.each_ref().map(|pair| pair[half].clone()));
+        let first = self.nodes.len() as u32;
+        self.nodes.push(node(lower, at, low, self.joint));
+        self.nodes.push(node(at, upper, high, self.joint));
+        self.nodes[piece as usize].parts = first;
+        [first, first + 1]
+    }
+
+    pub fn rows(&self, piece: u32, r: usize) -> Rows<'_> {
+        &self.nodes[piece as usize].rows[r]
+    }
+
+    pub fn spin_rows(&self, piece: u32, r: usize) -> Rows<'_> {
+        &self.nodes[piece as usize].spin_rows[r]
+    }
+
+    pub fn twist(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
+        let [spins, travels] = &self.nodes[piece as usize].twist;
+        (spins, travels)
+    }
+
+    pub fn twist_slope(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
+        let [spins, travels] = &self.nodes[piece as usize].twist_slope;
+        (spins, travels)
+    }
+
+    pub fn sizes(&self) -> [f64; 2] {
+        self.sizes
+    }
+
+    pub fn tip(&self, piece: u32, r: usize) -> (f64, f64) {
+        self.nodes[piece as usize].tip[r]
+    }
+
+    pub fn velocity(&self, piece: u32, r: usize) -> (f64, f64) {
+        self.nodes[piece as usize].velocity[r]
+    }
+
+    /// Control values of the coordinate `r` of `b`, and of `b′`, that go with the rows of `A` and `A′`.
+    pub fn offsets(&self, piece: u32, r: usize) -> Option<[&[f64]; 2]> {
+        let offsets = self.nodes[piece as usize].offsets.as_ref()?;
+        Some([&offsets[0][r], &offsets[1][r]])
+    }
+
+    pub fn at(&self, t: f64) -> Moment {
+        let channels = &self.nodes[0].channels;
+        let vector = |c: &[f64]| Vector3::new(c[0], c[1], c[2]);
+        let over = |channel: usize| {
+            let [value, _] = channels[channel].at(t);
+            vector(&value) / value[3]
+        };
+        let [turn, _] = channels[TURN].at(t);
+        let turn = Matrix3::from_column_slice(&turn[..9]) / turn[9];
+        let [rate, _] = channels[TURN_RATE].at(t);
+        // [ω]× = A′ Aᵀ
+        let m = Matrix3::from_column_slice(&rate[..9]) / rate[9] * turn.transpose();
+        let spin = Vector3::new(m[(2, 1)] - m[(1, 2)], m[(0, 2)] - m[(2, 0)], m[(1, 0)] - m[(0, 1)]) * 0.5;
+        let [own_spin, own_spin_slope] = channels[SPIN].at(t);
+        let [travel, travel_slope] = channels[TRAVEL].at(t);
+        Moment {
+            turn,
+            tip: over(TIP),
+            spin,
+            velocity: over(TIP_RATE),
+            own_spin: vector(&own_spin),
+            own_spin_slope: (channels[SPIN].len() > 1).then(|| vector(&own_spin_slope)),
+            travel: vector(&travel),
+            travel_slope: vector(&travel_slope),
+        }
+    }
+}
+
+/// Component `r` of vectors over their weights.
+fn values(channel: &Channel, r: usize) -> Vec<f64> {
+    (0..channel.len())
+        .map(|i| channel.row(i)[r] / channel.row(i)[3])
+        .collect()
+}
+
+fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {
+    let width = upper - lower;
+    Node {
+        offsets: joint.then(|| [TIP, TIP_RATE].map(|k| [0, 1].map(|r| values(&channels[k], r)))),
+        rows: [0, 1].map(|r| control_rows(&channels[TURN], r)),
+        spin_rows: [0, 1].map(|r| control_rows(&channels[TURN_RATE], r)),
+        tip: [0, 1].map(|r| range(&channels[TIP], r)),
+        velocity: [0, 1].map(|r| range(&channels[TIP_RATE], r)),
+        twist: [SPIN, TRAVEL].map(|k| triples(&channels[k])),
+        twist_slope: [SPIN, TRAVEL].map(|k| slopes(&channels[k], width)),
+        lower,
+        upper,
+        parts: u32::MAX,
+        channels,
+    }
+}

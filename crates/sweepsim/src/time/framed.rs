@@ -1,0 +1,179 @@
+//! The inner loop: the motion at one time as a patch in a frame of its own sees it.
+
+use crate::algebra::quad::{Quad, add, blend, cross, mix, quad, quadratics, sub};
+use crate::time::moment::Moment;
+use crate::time::pieces::Times;
+use crate::time::placement::{LocalFrame, Placing, Twisted};
+use nalgebra::{Matrix3, Vector3};
+
+/// The motion at one time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    pub placing: Placing,
+    /// The angular velocity in space, about the pivot, and the pivot's velocity.
+    spin: Quad,
+    pivot: Quad,
+    velocity: Quad,
+    /// As the frame sees it, and the derivative of that in `t`.
+    pub own: Twisted,
+    pub change: Twisted,
+}
+
+impl Instant {
+    fn of(moment: &Moment, frame: Option<&LocalFrame>) -> Self {
+        let zero = Vector3::zeros();
+        let spin_slope = moment.own_spin_slope.unwrap_or(zero);
+        Self {
+            placing: Placing::new(&moment.turn, &moment.tip, frame),
+            spin: quad(&moment.spin),
+            pivot: quad(&moment.tip),
+            velocity: quad(&moment.velocity),
+            own: Twisted::new(&moment.own_spin, &moment.travel, frame),
+            change: Twisted::new(&spin_slope, &moment.travel_slope, frame),
+        }
+    }
+
+    /// The velocity of what is at `place`.
+    pub fn moving(&self, place: &Quad) -> Quad {
+        add(&cross(&self.spin, &sub(place, &self.pivot)), &self.velocity)
+    }
+}
+
+/// A motion as a frame in the tool sees it.
+pub(crate) enum FramedMotion<'a> {
+    /// In its lowest degrees: those of an arc.
+    FramedArc(Box<FramedArc>),
+    /// Of any degrees.
+    Any(&'a LocalFrame),
+    /// The same, in the tool's own frame.
+    AnyOwn,
+}
+
+/// An arc, whose tip goes straight, in a frame.
+pub(crate) struct FramedArc {
+    /// Of a translation, always the same but for the origin.
+    still: Option<Instant>,
+    /// Coefficients: the columns of the turn and the origin's arm, both times the weight; what the frame sees of `b′`; the weight.
+    c: [[f64; 16]; 3],
+    tip: Quad,
+    velocity: Quad,
+    pace: Quad,
+    spin: Quad,
+}
+
+const ARM: usize = 9;
+const TRAVEL: usize = 12;
+const WEIGHT: usize = 15;
+
+impl<'a> FramedMotion<'a> {
+    pub fn new(times: &Times, frame: Option<&'a LocalFrame>) -> Self {
+        let Times::Arc(arc) = times else {
+            return frame.map_or(Self::AnyOwn, Self::Any);
+        };
+        let still = (arc.count == 1).then(|| Instant::of(&arc.at(0.0), frame));
+        let mut c = [[0.0; 16]; 3];
+        for (c, (turn, weight, travel)) in c.iter_mut().zip(arc.coefficients()) {
+            let (own, shift) = frame.copied().unwrap_or((Matrix3::identity(), Vector3::zeros()));
+            let seen = Twisted::new(&Vector3::from(arc.spin[0]), &travel, frame).travel;
+            c[..ARM].copy_from_slice((turn * own).as_slice());
+            c[ARM..TRAVEL].copy_from_slice((turn * shift).as_slice());
+            c[TRAVEL..WEIGHT].copy_from_slice(&seen[..3]);
+            c[WEIGHT] = weight;
+        }
+        Self::FramedArc(Box::new(FramedArc {
+            still,
+            c,
+            tip: quad(&arc.tips[0]),
+            velocity: quad(&arc.velocity),
+            pace: quad(&arc.pace()),
+            spin: Twisted::new(&Vector3::from(arc.spin[0]), &Vector3::zeros(), frame).spin,
+        }))
+    }
+
+    /// The motion at `t`.
+    pub fn at(&self, times: &Times, t: f64) -> Instant {
+        match self {
+            Self::FramedArc(arc) => arc.at(t),
+            Self::Any(frame) => Instant::of(&times.at(t), Some(frame)),
+            Self::AnyOwn => Instant::of(&times.at(t), None),
+        }
+    }
+}
+
+impl FramedArc {
+    fn at(&self, t: f64) -> Instant {
+        let pivot = mix(1.0, &self.tip, t, &self.velocity);
+        if let Some(mut instant) = self.still {
+            instant.placing.origin = mix(1.0, &instant.placing.origin, t, &self.velocity);
+            instant.pivot = pivot;
+            return instant;
+        }
+        let [values, slopes] = quadratics(t);
+        let c = blend(&values, &self.c);
+        let pace = 1.0 / c[WEIGHT];
+        let over = |k: usize| [pace * c[k], pace * c[k + 1], pace * c[k + 2], 0.0];
+        let slope = |k: usize| slopes[0] * self.c[0][k] + slopes[1] * self.c[1][k] + slopes[2] * self.c[2][k];
+        Instant {
+            placing: Placing {
+                turn: [over(0), over(3), over(6)],
+                origin: add(&pivot, &over(ARM)),
+            },
+            spin: self.pace.map(|x| x * pace),
+            pivot,
+            velocity: self.velocity,
+            own: Twisted {
+                spin: self.spin,
+                travel: [c[TRAVEL], c[TRAVEL + 1], c[TRAVEL + 2], 0.0],
+            },
+            change: Twisted {
+                spin: [0.0; 4],
+                travel: [slope(TRAVEL), slope(TRAVEL + 1), slope(TRAVEL + 2), 0.0],
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::path_parts::parts;
+    use nalgebra::Rotation3;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Path, Pose};
+
+    fn near(a: &Quad, b: &Quad, error: f64) -> bool {
+        a.iter().zip(b).all(|(a, b)| (a - b).abs() <= error)
+    }
+
+    proptest! {
+        /// The motion of an arc from its table of coefficients is the motion; velocities are differences of places.
+        #[test]
+        fn arcs_agree_with_their_moments(t in 0.01..0.99, from in [-0.5..0.5, -0.5..0.5], to in [-0.5..0.5, -0.5..0.5], still in any::<bool>()) {
+            let pose = |tip: [f64; 3], lean: [f64; 2]| Pose::new(tip, [lean[0], lean[1], 1.0]).unwrap();
+            let path = Path::new(vec![pose([0.0, 1.0, 2.0], from), pose([30.0, -10.0, 5.0], if still { from } else { to })]).unwrap();
+            let own: LocalFrame = (Rotation3::new(Vector3::new(0.3, -0.7, 0.2)).into_inner(), Vector3::new(0.0, 0.0, 5.0));
+            for part in parts(&path, &sweepsim_dexel::Frame::WORLD, true, 40.0, 1e-6) {
+                let times = Times::new(&part.segment);
+                for frame in [None, Some(&own)] {
+                    let (motion, expected) = (FramedMotion::new(&times, frame), Instant::of(&times.at(t), frame));
+                    let found = motion.at(&times, t);
+                    for k in 0..3 {
+                        prop_assert!(near(&found.placing.turn[k], &expected.placing.turn[k], 1e-14));
+                    }
+                    prop_assert!(near(&found.placing.origin, &expected.placing.origin, 1e-13));
+                    for (a, b) in [(found.own, expected.own), (found.change, expected.change)] {
+                        prop_assert!(near(&a.spin, &b.spin, 1e-13) && near(&a.travel, &b.travel, 1e-12));
+                    }
+                    let point = Vector3::new(3.0, -4.0, 7.0);
+                    let place = |t: f64| {
+                        let placing = motion.at(&times, t).placing;
+                        add(&placing.turned(&point), &placing.origin)
+                    };
+                    let h = 1e-5;
+                    let difference = sub(&place(t + h), &place(t - h)).map(|x| x / (2.0 * h));
+                    prop_assert!(near(&found.moving(&place(t)), &difference, 1e-6));
+                }
+            }
+        }
+    }
+}
