@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let across = [q[0].sub(&p[0]), q[1].sub(&p[1])];
     let equation = dot(&x, &across).scale(2.0).sub(&w.mul(&dot(&q, &q).sub(&dot(&p, &p))));
     let system = System::new(&[Interval::new(0.0, 1.0); 2], [equation])?;
-    let curves = CurveSolver::new(1e-3).solve(&system, &mut ())?;
+    let curves = CurveSolver::new(1e-3).solve(&system, &())?;
     println!(
         "{} arcs, {} loops of feet",
         curves.arcs().count(),

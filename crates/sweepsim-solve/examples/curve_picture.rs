@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let cassini = around(1.0).mul(&around(-1.0)).sub(&constant(0.97));
     let system = System::new(&[Interval::new(-2.0, 2.0); 2], [&cassini])?;
     let mut picture = Picture::new([0, 1]);
-    let curves = CurveSolver::new(1e-3).solve(&system, &mut picture)?;
+    let curves = CurveSolver::new(1e-3).solve(&system, &picture)?;
     eprintln!(
         "{} loops, {} arcs, {:?}",
         curves.loops().count(),

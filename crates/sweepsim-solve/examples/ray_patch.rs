@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         spline(control.iter().map(value).collect())
     });
     let [first, second] = planes;
-    let points = PointSolver::default().solve_pieces(&Pieces::new(&[first?, second?])?, &mut ())?;
+    let points = PointSolver::default().solve_pieces(&Pieces::new(&[first?, second?])?, &())?;
     for root in &points.roots {
         println!(
             "(u, v) = {:?} at {:?}, crossing {}",

@@ -16,14 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         assert!(named.system.coefficients() > 0);
         let mut solver = PointSolver::default();
         for _ in 0..times {
-            found = solver.solve(&named.system, &mut ())?.roots.len();
+            found = solver.solve(&named.system, &())?.roots.len();
         }
         assert!(times == 0 || named.roots == 0 || named.roots == found);
     } else {
         let named = systems::sphere_section();
         let mut solver = CurveSolver::new(1e-3);
         for _ in 0..times {
-            found = solver.solve(&named.system, &mut ())?.curves.len();
+            found = solver.solve(&named.system, &())?.curves.len();
         }
     }
     println!("{name}: {found} solutions, {times} times");

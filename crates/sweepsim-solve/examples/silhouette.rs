@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let across = slopes.sub(&Bernstein::constant(2, c));
     let system = System::new(&[Interval::new(0.0, 1.0); 2], [across])?;
     let mut picture = Picture::new([0, 1]);
-    let curves = CurveSolver::new(1e-4).solve(&system, &mut picture)?;
+    let curves = CurveSolver::new(1e-4).solve(&system, &picture)?;
     eprintln!("{} loops, {} arcs", curves.loops().count(), curves.arcs().count());
     for curve in &curves.curves {
         let closing = curve.points.first().filter(|_| curve.ends.is_none());

@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     let equations = equations.collect::<Result<Vec<_>, _>>()?;
     let system = System::new(&[Interval::new(0.0, 1.0); 4], equations)?;
-    let curves = CurveSolver::new(1e-3).solve(&system, &mut ())?;
+    let curves = CurveSolver::new(1e-3).solve(&system, &())?;
     println!("{} arcs, {} loops", curves.arcs().count(), curves.loops().count());
     for curve in &curves.curves {
         for point in [&curve.points[0], &curve.points[curve.points.len() - 1]] {

@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         // z = height: at 0 the plane touches the window of Viviani where it crosses itself.
         let plane = x(2).sub(&constant(height));
         let system = System::new(&bounds, [&sphere, &cylinder, &plane])?;
-        let points = solver.solve(&system, &mut ())?;
+        let points = solver.solve(&system, &())?;
         println!("z = {height}: {} certified roots", points.roots.len());
         for root in &points.roots {
             println!("  {:?} ± {:.1e}", root.point, root.enclosure[0].radius());

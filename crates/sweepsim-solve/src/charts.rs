@@ -14,9 +14,9 @@
 //! What is *not* found: nothing. Boxes too small to split further are handed out as [`Undecided`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
-use crate::Interval;
 use crate::chart::{Chart, Contraction, Linear, Outcome, Region, Witness};
 use crate::trail::Trail;
+use crate::{Interval, Monitor};
 use nalgebra::{Const, DimMin, SVector, ToTypenum};
 
 /// A map `R^N → R^N` with enclosures over boxes.
@@ -114,6 +114,8 @@ pub enum Reason {
     Smallest,
     /// The budget of boxes is spent.
     Budget,
+    /// The [`Monitor`] asked to stop.
+    Cancelled,
 }
 
 /// A box that may hold solutions for a target: neither found nor excluded.
@@ -202,15 +204,21 @@ impl<C: Clone> ChartSolver<C> {
     /// Finds, for every target, all its preimages in the box `root`.
     ///
     /// Every preimage of every target is handed to `sink` once, or the box where it may hide is.
-    pub fn solve<const N: usize, M, T, S>(&mut self, map: &mut M, root: C, targets: &T, sink: &mut S)
-    where
+    pub fn solve<const N: usize, M, T, S>(
+        &mut self,
+        map: &mut M,
+        root: C,
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) where
         M: ChartMap<N, Cell = C>,
         T: Targets<N> + ?Sized,
         S: Sink<N, M::Seen>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         let domain = map.bounds(&root);
-        self.solve_part(map, root, &domain, targets, sink);
+        self.solve_part(map, root, &domain, targets, sink, monitor);
     }
 
     /// The same in one box of several that fill `domain`, and share nothing but faces: a preimage on a face is found in the
@@ -222,6 +230,7 @@ impl<C: Clone> ChartSolver<C> {
         domain: &[Interval; N],
         targets: &T,
         sink: &mut S,
+        monitor: &dyn Monitor,
     ) where
         M: ChartMap<N, Cell = C>,
         T: Targets<N> + ?Sized,
@@ -247,8 +256,14 @@ impl<C: Clone> ChartSolver<C> {
             let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
             let idle = |j: usize| (0..N).all(|i| jacobian[i][j].magnitude() == 0.0);
             let tiny = (0..N).all(|j| small(j) || idle(j));
-            if tiny || budget == 0 {
-                let reason = if tiny { Reason::Smallest } else { Reason::Budget };
+            let reason = if tiny {
+                Some(Reason::Smallest)
+            } else if budget == 0 {
+                Some(Reason::Budget)
+            } else {
+                monitor.cancelled().then_some(Reason::Cancelled)
+            };
+            if let Some(reason) = reason {
                 targets.visit(&values, &all_of, &mut |target| {
                     let target = target.number;
                     sink.undecided(Undecided { target, bounds, reason });
@@ -276,6 +291,7 @@ impl<C: Clone> ChartSolver<C> {
                         &values,
                         targets,
                         sink,
+                        monitor,
                     )
                 });
                 match all_clear {
@@ -323,6 +339,7 @@ impl<C: Clone> ChartSolver<C> {
         values: &[Interval; N],
         targets: &T,
         sink: &mut S,
+        monitor: &dyn Monitor,
     ) -> bool
     where
         M: ChartMap<N, Cell = C>,
@@ -348,6 +365,10 @@ impl<C: Clone> ChartSolver<C> {
         let mut row = usize::MAX;
         let window = |q: &[f64; N]| linear.window(value, q);
         targets.visit(values, &window, &mut |target| {
+            if monitor.cancelled() {
+                clear = false;
+                return false;
+            }
             let q = &target.value;
             if target.place[0] != row {
                 row = target.place[0];

@@ -24,6 +24,7 @@ mod interval;
 mod layout;
 mod matrix;
 mod mesh;
+mod monitor;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod part;
@@ -47,10 +48,11 @@ pub use expression::{Expression, MAX_FORMS};
 pub use interval::Interval;
 pub use layout::MAX_DEGREE;
 pub use matrix::MAX_UNKNOWNS;
+pub use monitor::{CancelOnly, Monitor};
 pub use picture::Picture;
 pub use pieces::{Pieces, PiecesError};
 pub use points::{Place, PointSolver, Points, Root, SolveError};
-pub use search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Unresolved};
+pub use search::{Cause, Fate, SolveOptions, SolveStatistics, Unresolved};
 pub use surface::{Surface, SurfaceSolver};
 pub use system::{Equation, MAX_SYSTEM, System, SystemError};
 

@@ -1,9 +1,9 @@
 //! From an octree of plain boxes to triangles: crossings on edges, arcs on faces, disks in boxes; and the check that there are no others.
 
-use crate::System;
 use crate::layout::Cell;
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use crate::surface::{FINEST, Node, State};
+use crate::{Monitor, System};
 use std::collections::BTreeMap;
 
 /// The lattice of the octree's planes over a system's region.
@@ -21,9 +21,13 @@ type Edge = ([u32; 3], u8, u32);
 pub(crate) struct Mesher<'a> {
     grid: &'a Grid<'a>,
     nodes: &'a [Node],
+    monitor: &'a dyn Monitor,
     signs: BTreeMap<[u32; 3], i8>,
     buffer: Vec<f64>,
 }
+
+/// Vertices, and the numbers of each triangle's.
+type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// The two axes along a face, in the order that makes (first, second, normal) right-handed.
 const ALONG: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
@@ -39,36 +43,44 @@ enum Cycle {
 }
 
 impl<'a> Mesher<'a> {
-    pub(crate) fn new(grid: &'a Grid<'a>, nodes: &'a [Node]) -> Self {
+    pub(crate) fn new(grid: &'a Grid<'a>, nodes: &'a [Node], monitor: &'a dyn Monitor) -> Self {
         Self {
             grid,
             nodes,
+            monitor,
             signs: BTreeMap::new(),
             buffer: Vec::new(),
         }
     }
 
-    /// Plain leaves whose surroundings are not as they must be.
-    pub(crate) fn check(&mut self) -> Vec<usize> {
-        let nodes = self.nodes;
-        let leaves = nodes
-            .iter()
-            .enumerate()
-            .filter(|(_, n)| matches!(n.state, State::Plain(_)));
-        leaves
-            .filter(|(_, n)| matches!(self.cycle(n), Cycle::Bad))
-            .map(|(number, _)| number)
-            .collect()
+    /// Plain leaves whose surroundings are not as they must be; `None` if cancelled.
+    pub(crate) fn check(&mut self) -> Option<Vec<usize>> {
+        let mut bad = Vec::new();
+        for (number, node) in self.nodes.iter().enumerate() {
+            if !matches!(node.state, State::Plain(_)) {
+                continue;
+            }
+            if self.monitor.cancelled() {
+                return None;
+            }
+            if matches!(self.cycle(node), Cycle::Bad) {
+                bad.push(number);
+            }
+        }
+        Some(bad)
     }
 
-    /// All triangles. The octree must have passed the check.
-    pub(crate) fn mesh(&mut self) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    /// All triangles; `None` if cancelled. The octree must have passed the check.
+    pub(crate) fn mesh(&mut self) -> Option<Triangles> {
         let nodes = self.nodes;
         let mut vertices: Vec<[f64; 3]> = Vec::new();
         let mut triangles = Vec::new();
         let mut known: BTreeMap<Edge, (u32, Row)> = BTreeMap::new();
         for node in nodes {
             let State::Plain(cell) = &node.state else { continue };
+            if self.monitor.cancelled() {
+                return None;
+            }
             let Cycle::One(cycle) = self.cycle(node) else { continue };
             let mut corners = Vec::with_capacity(cycle.len());
             for edge in cycle {
@@ -93,7 +105,7 @@ impl<'a> Mesher<'a> {
                 triangles.push([corners[k].0, corners[(k + 1) % corners.len()].0, middle]);
             }
         }
-        (vertices, triangles)
+        Some((vertices, triangles))
     }
 
     /// The leaf that holds a point, in half lattice units.

@@ -1,8 +1,12 @@
 //! Pictures of a subdivision: every box with its fate, as SVG.
 
-use crate::Interval;
-use crate::search::{Fate, Observer};
+use crate::search::Fate;
+use crate::{Interval, Monitor};
 use std::fmt::Write;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A box with the number of splits above it.
+type Drawn = ([Interval; 2], u32, Fate);
 
 /// Watches a search and draws two of its variables.
 ///
@@ -14,16 +18,16 @@ use std::fmt::Write;
 /// let diagonal = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
 /// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle, &diagonal])?;
 /// let mut picture = Picture::new([0, 1]);
-/// let points = PointSolver::default().solve(&system, &mut picture)?;
+/// let points = PointSolver::default().solve(&system, &picture)?;
 /// points.roots.iter().for_each(|root| picture.mark(&root.point));
 /// let svg = picture.svg(600.0);
 /// assert!(svg.starts_with("<svg") && svg.contains("<circle"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Picture {
     axes: [usize; 2],
-    boxes: Vec<([Interval; 2], u32, Fate)>,
+    boxes: Mutex<Vec<Drawn>>,
     marks: Vec<[f64; 2]>,
     lines: Vec<Vec<[f64; 2]>>,
 }
@@ -36,6 +40,11 @@ impl Picture {
             axes,
             ..Self::default()
         }
+    }
+
+    /// The boxes so far. A thread that panicked while it held the lock cannot have left half a box behind.
+    fn boxes(&self) -> MutexGuard<'_, Vec<Drawn>> {
+        self.boxes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Adds a dot.
@@ -57,7 +66,8 @@ impl Picture {
     #[must_use]
     pub fn svg(&self, size: f64) -> String {
         let mut span = [Interval::new(f64::INFINITY, f64::NEG_INFINITY); 2];
-        let all = self.boxes.iter().map(|b| b.0);
+        let boxes = self.boxes();
+        let all = boxes.iter().map(|b| b.0);
         let dots = self.marks.iter().chain(self.lines.iter().flatten());
         for b in all.chain(dots.map(|m| m.map(|x| Interval::new(x, x)))) {
             for (s, side) in span.iter_mut().zip(b) {
@@ -73,7 +83,7 @@ impl Picture {
             w + 8.0,
             h + 8.0
         );
-        for (bounds, depth, fate) in &self.boxes {
+        for (bounds, depth, fate) in boxes.iter() {
             let (x, y) = place(bounds[0].lo, bounds[1].hi);
             let (w, h) = (
                 (bounds[0].hi - bounds[0].lo) * scale,
@@ -118,15 +128,15 @@ impl Picture {
     }
 }
 
-impl Observer for Picture {
-    fn traces(&self) -> bool {
+impl Monitor for Picture {
+    fn visits(&self) -> bool {
         true
     }
 
-    fn visited(&mut self, bounds: &[Interval], depth: u32, fate: Fate) {
+    fn visit(&self, bounds: &[Interval], depth: u32, fate: Fate) {
         let [a, b] = self.axes;
         if let (Some(x), Some(y)) = (bounds.get(a), bounds.get(b)) {
-            self.boxes.push(([*x, *y], depth, fate));
+            self.boxes().push(([*x, *y], depth, fate));
         }
     }
 }

@@ -8,8 +8,8 @@
 
 use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO, inverse};
 use crate::points::{Place, PointSolver, Points, Root, SolveError};
-use crate::search::{Cause, Observer, Unresolved};
-use crate::{Equation, Interval, System, SystemError};
+use crate::search::{Cause, Unresolved};
+use crate::{Equation, Interval, Monitor, System, SystemError};
 use sweepsim_spline::{BSpline, RationalSpline, SplineError};
 use thiserror::Error;
 
@@ -160,12 +160,13 @@ impl PointSolver {
     /// # Errors
     ///
     /// As [`solve`](Self::solve).
-    pub fn solve_pieces(&mut self, pieces: &Pieces, observer: &mut dyn Observer) -> Result<Points, SolveError> {
+    pub fn solve_pieces(&mut self, pieces: &Pieces, monitor: &dyn Monitor) -> Result<Points, SolveError> {
         let mut points = Points::default();
         // Roots that may lie on planes between pieces.
         let mut between: Vec<Root> = Vec::new();
-        for system in &pieces.systems {
-            let found = self.solve(system, observer)?;
+        for (number, system) in pieces.systems.iter().enumerate() {
+            monitor.advance(number, pieces.systems.len());
+            let found = self.solve(system, monitor)?;
             points.unresolved.extend(found.unresolved);
             points.statistics.merge(&found.statistics);
             for mut root in found.roots {

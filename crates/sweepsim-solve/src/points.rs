@@ -18,8 +18,8 @@ use crate::certify::{Found, newton_box, unique_root};
 use crate::double::Double;
 use crate::layout::{Cell, EPSILON, Layout};
 use crate::matrix::{MAX_UNKNOWNS, Row, Square, inverse};
-use crate::search::{Cause, Fate, Observer, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
-use crate::{Interval, System};
+use crate::search::{Cause, Fate, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
+use crate::{Interval, Monitor, System};
 use thiserror::Error;
 
 /// Where a certified root lies.
@@ -133,7 +133,7 @@ enum Verdict {
 /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 1.0));
 /// let line = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
 /// let system = System::new(&[Interval::new(-2.0, 2.0); 2], [&circle, &line])?;
-/// let points = PointSolver::default().solve(&system, &mut ())?;
+/// let points = PointSolver::default().solve(&system, &())?;
 /// assert_eq!(points.roots.len(), 2);
 /// assert!(points.unresolved.is_empty());
 /// assert!(points.roots[1].enclosure[0].contains(0.5f64.sqrt()));
@@ -172,9 +172,9 @@ impl PointSolver {
     /// # Errors
     ///
     /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
-    pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Points, SolveError> {
+    pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Points, SolveError> {
         self.check(system)?;
-        self.run(system, observer);
+        self.run(system, monitor);
         Ok(self.points(system))
     }
 
@@ -218,10 +218,10 @@ impl PointSolver {
     }
 
     /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
-    pub(crate) fn run(&mut self, system: &System, observer: &mut dyn Observer) {
+    pub(crate) fn run(&mut self, system: &System, monitor: &dyn Monitor) {
         self.restart();
         let root = system.root();
-        self.search(system, &root, 0, observer);
+        self.search(system, &root, 0, monitor);
         self.finish(system.layout.n);
     }
 
@@ -249,14 +249,14 @@ impl PointSolver {
     }
 
     /// The depth-first search from one cell at some depth; adds to `found` and `open`.
-    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, observer: &mut dyn Observer) {
+    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, monitor: &dyn Monitor) {
         let layout = &system.layout;
         let mut watch = Watch::new(&self.options);
         push(&mut self.stack, first, layout);
         self.depths.push(depth);
         while let Some(depth) = self.depths.pop() {
             pop(&mut self.stack, &mut self.cell, layout);
-            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
             if let Some(cause) = stop {
                 self.leave(cause);
                 while self.depths.pop().is_some() {
@@ -266,14 +266,14 @@ impl PointSolver {
                 break;
             }
             let fate = self.visit(system, depth);
-            if observer.traces() {
+            if monitor.visits() {
                 // Where the cell was split, `cell` is the upper part by now and `lower` the other.
                 let lo = if fate == Fate::Split {
                     &self.lower.lo
                 } else {
                     &self.cell.lo
                 };
-                observer.visited(&system.outward(lo, &self.cell.hi), depth, fate);
+                monitor.visit(&system.outward(lo, &self.cell.hi), depth, fate);
             }
         }
     }

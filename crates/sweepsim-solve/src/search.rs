@@ -1,6 +1,6 @@
-//! What all subdivision searches share: limits, counts, observers, and what is left open.
+//! What all subdivision searches share: limits, counts, and what is left open.
 
-use crate::Interval;
+use crate::{Interval, Monitor};
 use std::time::{Duration, Instant};
 
 /// Limits of a search.
@@ -72,7 +72,7 @@ pub enum Cause {
     Flood,
     /// [`SolveOptions::time`] is spent.
     Time,
-    /// The observer asked to stop.
+    /// The [`Monitor`] asked to stop.
     Cancelled,
 }
 
@@ -104,7 +104,7 @@ pub struct Unresolved {
 /// How many boxes met which fate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SolveStatistics {
-    /// Boxes looked at: those of the subdivision itself, which an [`Observer`] sees.
+    /// Boxes looked at: those of the subdivision itself, which a [`Monitor`](crate::Monitor) sees.
     pub boxes: u64,
     /// Boxes of the searches on the faces of boxes (curves only). They have no fate here, but count towards the budget.
     pub faces: u64,
@@ -162,27 +162,6 @@ impl SolveStatistics {
     }
 }
 
-/// Watches a search: progress, cancellation, pictures. `()` watches nothing.
-pub trait Observer {
-    /// Called now and then (every few dozen boxes): `false` stops the search.
-    fn proceed(&mut self, statistics: &SolveStatistics) -> bool {
-        let _ = statistics;
-        true
-    }
-
-    /// Whether [`visited`](Self::visited) wants to be called.
-    fn traces(&self) -> bool {
-        false
-    }
-
-    /// A box, as it was when its fate was known (it may have been reduced), with the number of splits above it.
-    fn visited(&mut self, bounds: &[Interval], depth: u32, fate: Fate) {
-        let _ = (bounds, depth, fate);
-    }
-}
-
-impl Observer for () {}
-
 /// The budget's clock.
 #[derive(Debug)]
 pub(crate) struct Watch {
@@ -204,7 +183,7 @@ impl Watch {
         options: &SolveOptions,
         statistics: &SolveStatistics,
         open: usize,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
     ) -> Option<Cause> {
         if statistics.boxes + statistics.faces >= options.boxes {
             return Some(Cause::Boxes);
@@ -212,16 +191,13 @@ impl Watch {
         if open > options.unresolved {
             return Some(Cause::Flood);
         }
-        self.ticks += 1;
-        if self.ticks.is_multiple_of(32) {
-            if self.deadline.is_some_and(|d| Instant::now() >= d) {
-                return Some(Cause::Time);
-            }
-            if !observer.proceed(statistics) {
-                return Some(Cause::Cancelled);
-            }
+        if monitor.cancelled() {
+            return Some(Cause::Cancelled);
         }
-        None
+        // Asking the clock is not as cheap.
+        self.ticks += 1;
+        let late = self.ticks.is_multiple_of(32) && self.deadline.is_some_and(|d| Instant::now() >= d);
+        late.then_some(Cause::Time)
     }
 }
 

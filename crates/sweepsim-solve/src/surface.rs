@@ -19,8 +19,8 @@ use crate::layout::{Cell, EPSILON, Layout};
 use crate::matrix::MAX_UNKNOWNS;
 use crate::mesh::{Grid, Mesher};
 use crate::points::SolveError;
-use crate::search::{Cause, Fate, Observer, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
-use crate::{Interval, System};
+use crate::search::{Cause, Fate, Open, SolveOptions, SolveStatistics, Unresolved, Watch, unite};
+use crate::{Interval, Monitor, System};
 
 /// A surface as triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -93,7 +93,7 @@ impl Surface {
 /// let square = |axis| Bernstein::from_fn(&[2, 2, 2], |i| [0.25, -0.25, 0.25][i[axis]]).unwrap();
 /// let sphere = square(0).add(&square(1)).add(&square(2)).sub(&Bernstein::constant(3, 0.16));
 /// let system = System::new(&[Interval::new(0.0, 1.0); 3], [&sphere])?;
-/// let surface = SurfaceSolver::new(0.01).solve(&system, &mut ())?;
+/// let surface = SurfaceSolver::new(0.01).solve(&system, &())?;
 /// assert_eq!((surface.euler_characteristic(), surface.components()), (2, 1));
 /// assert!(surface.boundary().is_empty() && surface.unresolved.is_empty());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -161,7 +161,7 @@ impl SurfaceSolver {
     ///
     /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
     /// [`SolveError::Smallest`] for an impossible size or tolerance.
-    pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Surface, SolveError> {
+    pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if n != 3 {
             return Err(SolveError::Variables {
@@ -202,14 +202,22 @@ impl SurfaceSolver {
             level: 0,
             state: State::Plain(Box::new(root)),
         });
-        search.treat(0, observer);
-        while search.stopped.is_none() {
-            let failures = Mesher::new(&search.grid, &search.nodes).check();
-            if failures.is_empty() {
-                break;
+        search.treat(0, monitor);
+        let mut mesh = None;
+        while search.stopped.is_none() && mesh.is_none() {
+            let mut mesher = Mesher::new(&search.grid, &search.nodes, monitor);
+            match mesher.check() {
+                Some(failures) if failures.is_empty() => mesh = mesher.mesh(),
+                Some(failures) => {
+                    for node in failures {
+                        search.split(node, monitor);
+                    }
+                    continue;
+                }
+                None => {}
             }
-            for node in failures {
-                search.split(node, observer);
+            if mesh.is_none() {
+                search.stopped = Some(Cause::Cancelled);
             }
         }
         if let Some(cause) = search.stopped {
@@ -220,8 +228,7 @@ impl SurfaceSolver {
                 }
             }
         }
-        let mut mesher = Mesher::new(&search.grid, &search.nodes);
-        let (vertices, triangles) = mesher.mesh();
+        let (vertices, triangles) = mesh.unwrap_or_default();
         let mut open: Vec<Open> = Vec::new();
         let mut boxes = Vec::new();
         for node in &search.nodes {
@@ -280,13 +287,13 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Decides a new leaf; splits it as long as need be.
-    fn treat(&mut self, first: usize, observer: &mut dyn Observer) {
+    fn treat(&mut self, first: usize, monitor: &dyn Monitor) {
         let mut stack = vec![first];
         while let Some(number) = stack.pop() {
             let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
             let State::Plain(mut cell) = state else { continue };
             if self.stopped.is_none() {
-                self.stopped = self.watch.stop(self.options, &self.statistics, self.open, observer);
+                self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
             }
             if let Some(cause) = self.stopped {
                 self.leave(number, cause);
@@ -294,7 +301,7 @@ impl Search<'_> {
             }
             self.statistics.boxes += 1;
             self.statistics.depth = self.statistics.depth.max(self.nodes[number].level);
-            let bounds = observer.traces().then(|| self.system.outward(&cell.lo, &cell.hi));
+            let bounds = monitor.visits().then(|| self.system.outward(&cell.lo, &cell.hi));
             let layout = &self.system.layout;
             let mut totals = layout.ranges(&mut cell);
             let fate = if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
@@ -317,7 +324,7 @@ impl Search<'_> {
             };
             self.statistics.count(fate);
             if let Some(bounds) = bounds {
-                observer.visited(&bounds, self.nodes[number].level, fate);
+                monitor.visit(&bounds, self.nodes[number].level, fate);
             }
             match fate {
                 Fate::Sign => {}
@@ -337,13 +344,13 @@ impl Search<'_> {
     }
 
     /// Splits a plain leaf that does not fit its neighbours.
-    fn split(&mut self, number: usize, observer: &mut dyn Observer) {
+    fn split(&mut self, number: usize, monitor: &dyn Monitor) {
         let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
         match state {
             State::Plain(cell) if self.nodes[number].level < self.deepest => {
                 let children = self.divide(number, *cell);
                 for child in children..children + 8 {
-                    self.treat(child, observer);
+                    self.treat(child, monitor);
                 }
             }
             State::Plain(_) => self.leave(number, Cause::Smallest),

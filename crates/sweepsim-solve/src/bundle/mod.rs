@@ -28,10 +28,10 @@ mod cell;
 mod line;
 mod taylor;
 
-use crate::Interval;
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Target, Targets, Undecided};
 use crate::charts::{all_of, collapses, largest, widest};
 use crate::trail::Trail;
+use crate::{Interval, Monitor};
 use cell::{Blocks, Frame};
 use line::{Found, Outcome, Window};
 use sweepsim_spline::Bernstein;
@@ -168,8 +168,14 @@ impl BundleSolver {
     ///
     /// Of the map only values at points are asked for, and its scales: it must be the one that the bundle's forms say. Each solution is
     /// handed to `sink` once, or the box where it may hide is.
-    pub fn solve<const N: usize, M, T, S>(&mut self, bundle: &Bundle<N>, map: &M, targets: &T, sink: &mut S)
-    where
+    pub fn solve<const N: usize, M, T, S>(
+        &mut self,
+        bundle: &Bundle<N>,
+        map: &M,
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) where
         M: ChartMap<N>,
         T: Targets<N> + ?Sized,
         S: Sink<N, M::Seen>,
@@ -188,6 +194,7 @@ impl BundleSolver {
             blocks,
             map,
             targets,
+            monitor,
             options: self.options,
             statistics: &mut self.statistics,
             coefficients,
@@ -205,6 +212,7 @@ struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     blocks: &'a Blocks<N>,
     map: &'a M,
     targets: &'a T,
+    monitor: &'a dyn Monitor,
     options: ChartOptions,
     statistics: &'a mut ChartStatistics,
     /// Of the boxes on the stack, one after another.
@@ -264,8 +272,14 @@ where
         let small = |j: usize| frame.hi[j] - frame.lo[j] <= self.options.smallest;
         let idle = |j: usize| (0..N).all(|i| slopes[i][j].magnitude() == 0.0);
         let tiny = (0..N).all(|j| small(j) || idle(j));
-        if tiny || *budget == 0 {
-            let reason = if tiny { Reason::Smallest } else { Reason::Budget };
+        let reason = if tiny {
+            Some(Reason::Smallest)
+        } else if *budget == 0 {
+            Some(Reason::Budget)
+        } else {
+            self.monitor.cancelled().then_some(Reason::Cancelled)
+        };
+        if let Some(reason) = reason {
             self.each(frame, &values, &mut |_, target| {
                 sink.undecided(Undecided {
                     target: target.number,
@@ -333,6 +347,11 @@ where
         let before = self.lines.len();
         let mut trail = Trail::new();
         self.each(frame, values, &mut |search, target| {
+            if search.monitor.cancelled() {
+                // Left to the box's halves, which will not be looked at.
+                search.lines.push(target);
+                return true;
+            }
             let q = &target.value;
             let Some((window, first)) = taylor.window(q) else {
                 return true;

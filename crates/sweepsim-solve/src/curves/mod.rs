@@ -21,8 +21,8 @@ mod trace;
 
 use crate::matrix::MAX_UNKNOWNS;
 use crate::points::{PointSolver, SolveError};
-use crate::search::{Cause, Observer, SolveOptions, SolveStatistics};
-use crate::{Interval, System};
+use crate::search::{Cause, SolveOptions, SolveStatistics};
+use crate::{Interval, Monitor, System};
 use std::time::Instant;
 use subdivide::Search;
 use trace::Tracer;
@@ -113,7 +113,7 @@ impl Curves {
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
 /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
 /// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
-/// let curves = CurveSolver::new(1e-3).solve(&system, &mut ())?;
+/// let curves = CurveSolver::new(1e-3).solve(&system, &())?;
 /// assert_eq!((curves.loops().count(), curves.arcs().count()), (1, 0));
 /// for p in &curves.curves[0].points {
 ///     assert!((p.point[0].hypot(p.point[1]) - 0.5).abs() < 1e-14);
@@ -157,11 +157,11 @@ impl CurveSolver {
     ///
     /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
     /// there is one equation fewer, [`SolveError::Smallest`] for an impossible size or tolerance.
-    pub fn solve(&mut self, system: &System, observer: &mut dyn Observer) -> Result<Curves, SolveError> {
+    pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Curves, SolveError> {
         self.check(system)?;
-        let mut search = self.search(system);
-        let (root, first, skin) = search.boundary(observer);
-        search.run(root, first, observer, &mut |_, _| {});
+        let mut search = self.search(system, monitor);
+        let (root, first, skin) = search.boundary(monitor);
+        search.run(root, first, monitor, &mut |_, _| {});
         Ok(search.assemble(skin))
     }
 
@@ -189,7 +189,7 @@ impl CurveSolver {
         Ok(())
     }
 
-    fn search<'a>(&'a mut self, system: &'a System) -> Search<'a> {
+    fn search<'a>(&'a mut self, system: &'a System, monitor: &'a dyn Monitor) -> Search<'a> {
         self.points.options = SolveOptions {
             smallest: 1e-8,
             boxes: self.options.boxes.min(20_000),
@@ -200,7 +200,7 @@ impl CurveSolver {
             system,
             options: self.options.clone(),
             points: &mut self.points,
-            tracer: Tracer::new(system, self.tolerance),
+            tracer: Tracer::new(system, self.tolerance, monitor),
             crossings: Vec::new(),
             pieces: Vec::new(),
             open: Vec::new(),
@@ -218,10 +218,10 @@ impl CurveSolver {
     pub fn for_each(
         &mut self,
         system: &System,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
         mut visit: impl FnMut(&Curve),
     ) -> Result<Vec<Singular>, SolveError> {
-        let curves = self.solve(system, observer)?;
+        let curves = self.solve(system, monitor)?;
         curves.curves.iter().for_each(&mut visit);
         Ok(curves.singular)
     }
@@ -240,7 +240,7 @@ impl CurveSolver {
     /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
     /// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
     /// let mut length = 0.0;
-    /// let rest = CurveSolver::new(1e-4).for_each_piece(&system, &mut (), |piece| {
+    /// let rest = CurveSolver::new(1e-4).for_each_piece(&system, &(), |piece| {
     ///     for p in piece.points.windows(2) {
     ///         length += (p[0].point[0] - p[1].point[0]).hypot(p[0].point[1] - p[1].point[1]);
     ///     }
@@ -255,13 +255,13 @@ impl CurveSolver {
     pub fn for_each_piece(
         &mut self,
         system: &System,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
         mut visit: impl FnMut(CurvePiece),
     ) -> Result<Curves, SolveError> {
         self.check(system)?;
-        let mut search = self.search(system);
-        let (root, first, skin) = search.boundary(observer);
-        search.run(root, first, observer, &mut |tracer, pieces| {
+        let mut search = self.search(system, monitor);
+        let (root, first, skin) = search.boundary(monitor);
+        search.run(root, first, monitor, &mut |tracer, pieces| {
             for piece in pieces.drain(..) {
                 visit(CurvePiece {
                     ends: piece.ends,

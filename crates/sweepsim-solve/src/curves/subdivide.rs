@@ -2,11 +2,11 @@
 
 use super::graph::{graph, minor};
 use super::trace::{Tracer, Vertex};
-use crate::System;
 use crate::layout::{Cell, EPSILON};
 use crate::matrix::{MAX_UNKNOWNS, Row};
 use crate::points::{PointSolver, excluded, pop, push, within_domain};
-use crate::search::{Cause, Fate, Observer, SolveOptions, SolveStatistics, Watch};
+use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch};
+use crate::{CancelOnly, Monitor, System};
 use std::time::Instant;
 
 /// A crossing of a face, in inner coordinates.
@@ -42,13 +42,10 @@ const SHRINK: f64 = 1.0 / 32.0;
 /// A cut keeps so far, in sides of the cell, from known crossings, if it can.
 const CLEAR: f64 = 0.01;
 
-/// Passes on only whether to proceed: searches on faces are no boxes of their own.
-struct Faces<'a>(&'a mut dyn Observer);
-
-impl Observer for Faces<'_> {
-    fn proceed(&mut self, statistics: &SolveStatistics) -> bool {
-        self.0.proceed(statistics)
-    }
+/// Whether a search on a face was ended from outside: other cuts would fare no better.
+fn stopped(stuck: &[OpenCell]) -> Option<Cause> {
+    let causes = stuck.iter().map(|open| open.cause);
+    causes.into_iter().find(|c| matches!(c, Cause::Cancelled | Cause::Time))
 }
 
 pub(super) struct Search<'a> {
@@ -66,7 +63,7 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     /// The root cell, its crossings, and the skin that it took.
-    pub(super) fn boundary(&mut self, observer: &mut dyn Observer) -> (Cell, Vec<usize>, f64) {
+    pub(super) fn boundary(&mut self, monitor: &dyn Monitor) -> (Cell, Vec<usize>, f64) {
         let layout = &self.system.layout;
         let n = layout.n;
         let tries = if self.system.bounded() { 1 } else { SKINS.len() };
@@ -86,10 +83,10 @@ impl Search<'_> {
             let mut stuck = Vec::new();
             for j in 0..n {
                 for upper in [false, true] {
-                    clean &= self.cross(&root, j, upper, true, &mut stuck, observer);
+                    clean &= self.cross(&root, j, upper, true, &mut stuck, monitor);
                 }
             }
-            if clean || number + 1 == tries {
+            if clean || number + 1 == tries || stopped(&stuck).is_some() {
                 self.open.append(&mut stuck);
                 return (root, (0..self.crossings.len()).collect(), skin);
             }
@@ -105,12 +102,13 @@ impl Search<'_> {
         upper: bool,
         outer: bool,
         stuck: &mut Vec<OpenCell>,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
     ) -> bool {
         let n = self.system.layout.n;
         let face = self.system.on_face(cell, axis, upper);
         self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
-        self.points.run(&face, &mut Faces(observer));
+        // Searches on faces have no boxes that the monitor should see.
+        self.points.run(&face, &CancelOnly(monitor));
         // Boxes of faces count, else searches that find nothing certain on any face would have no end.
         self.statistics.faces += self.points.statistics.boxes;
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
@@ -152,7 +150,7 @@ impl Search<'_> {
         &mut self,
         root: Cell,
         first: Vec<usize>,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
         hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<Piece>),
     ) {
         let layout = &self.system.layout;
@@ -164,7 +162,7 @@ impl Search<'_> {
         let mut lower = Cell::default();
         while let Some((depth, crossings)) = frames.pop() {
             pop(&mut stack, &mut cell, layout);
-            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), observer);
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
             if let Some(cause) = stop {
                 self.leave(&cell, crossings, cause);
                 while let Some((_, crossings)) = frames.pop() {
@@ -178,7 +176,7 @@ impl Search<'_> {
             let (lo, hi) = (cell.lo, cell.hi);
             let fate = match self.settle(&mut cell, &crossings) {
                 Ok(fate) => fate,
-                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, observer) {
+                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, monitor) {
                     Some((below, above)) => {
                         push(&mut stack, &cell, layout);
                         frames.push((depth + 1, above));
@@ -191,8 +189,8 @@ impl Search<'_> {
             };
             self.statistics.count(fate);
             hand(&self.tracer, &mut self.pieces);
-            if observer.traces() {
-                observer.visited(&self.system.outward(&lo, &hi), depth, fate);
+            if monitor.visits() {
+                monitor.visit(&self.system.outward(&lo, &hi), depth, fate);
             }
         }
     }
@@ -366,7 +364,7 @@ impl Search<'_> {
         axis: usize,
         depth: u32,
         crossings: Vec<usize>,
-        observer: &mut dyn Observer,
+        monitor: &dyn Monitor,
     ) -> Option<(Vec<usize>, Vec<usize>)> {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -406,8 +404,12 @@ impl Search<'_> {
                     let mut stuck = Vec::new();
                     let mut face_cell = upper.clone();
                     layout.ranges(&mut face_cell);
-                    if !self.cross(&face_cell, axis, false, false, &mut stuck, observer) {
+                    if !self.cross(&face_cell, axis, false, false, &mut stuck, monitor) {
                         self.crossings.truncate(before);
+                        if let Some(cause) = stopped(&stuck) {
+                            self.leave(cell, crossings, cause);
+                            return None;
+                        }
                         continue;
                     }
                     *cell = upper;

@@ -8,10 +8,10 @@
 use super::CurvePoint;
 use super::graph::{Graph, Tube, minor, tube, without};
 use super::subdivide::Crossing;
-use crate::System;
 use crate::double::Double;
 use crate::layout::Cell;
 use crate::matrix::{MAX_UNKNOWNS, Row, apply, inverse};
+use crate::{Monitor, System};
 
 /// A vertex in inner coordinates, with the tangent (unit length in the domain's).
 #[derive(Clone, Copy, Debug)]
@@ -28,16 +28,18 @@ const HOPELESS: f64 = 16.0;
 pub(crate) struct Tracer<'a> {
     system: &'a System,
     tolerance: f64,
+    monitor: &'a dyn Monitor,
     buffer: Vec<f64>,
     doubles: Vec<Double>,
     parts: Vec<Cell>,
 }
 
 impl<'a> Tracer<'a> {
-    pub(crate) fn new(system: &'a System, tolerance: f64) -> Self {
+    pub(crate) fn new(system: &'a System, tolerance: f64, monitor: &'a dyn Monitor) -> Self {
         Self {
             system,
             tolerance,
+            monitor,
             buffer: Vec::new(),
             doubles: Vec::new(),
             parts: Vec::new(),
@@ -66,7 +68,7 @@ impl<'a> Tracer<'a> {
         done.map(|()| vertices)
     }
 
-    /// Adds the vertices after the first end. The part of the cell that the curve between the ends lies in is `parts[depth]`, made from the one
+    /// Adds the vertices after the first end; `None` if that fails or the search is cancelled. The part of the cell that the curve between the ends lies in is `parts[depth]`, made from the one
     /// before it.
     fn halve(
         &mut self,
@@ -77,6 +79,9 @@ impl<'a> Tracer<'a> {
         depth: usize,
         out: &mut Vec<Vertex>,
     ) -> Option<()> {
+        if self.monitor.cancelled() {
+            return None;
+        }
         let close = {
             let (before, after) = parts.split_at_mut(depth);
             after[0].clone_from(&before[depth - 1]);

@@ -3,10 +3,8 @@
 use crate::support;
 
 use support::planted::Random;
-use sweepsim_solve::{
-    Bundle, BundleSolver, ChartMap, ChartOptions, Interval, PointSolver, Preimage, Sample, Sink, System, Target,
-    Targets, Undecided,
-};
+use support::targets::{Answer, List};
+use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Interval, PointSolver, Preimage, Sample, System};
 use sweepsim_spline::Bernstein;
 
 /// A rational map by its forms: numerators over a weight, then forms that shall be zero.
@@ -83,59 +81,6 @@ impl<const N: usize> ChartMap<N> for Forms<N> {
     }
 }
 
-struct List<const N: usize>(Vec<[f64; N]>);
-
-impl<const N: usize> Targets<N> for List<N> {
-    fn count(&self, range: &[Interval; N]) -> usize {
-        let inside = |q: &&[f64; N]| (0..N).all(|i| range[i].contains(q[i]));
-        self.0.iter().filter(inside).count()
-    }
-
-    /// Each target is a row of its own.
-    fn visit(
-        &self,
-        range: &[Interval; N],
-        narrow: &dyn Fn(&[f64; N]) -> Interval,
-        visit: &mut dyn FnMut(&Target<N>) -> bool,
-    ) {
-        for (number, value) in self.0.iter().enumerate() {
-            let target = Target {
-                number,
-                place: [number, 0],
-                value: *value,
-            };
-            let wanted = (0..N).all(|i| range[i].contains(value[i])) && narrow(value).contains(value[1]);
-            if wanted && !visit(&target) {
-                return;
-            }
-        }
-    }
-}
-
-#[derive(Default)]
-struct Answer<const N: usize> {
-    found: Vec<Preimage<N>>,
-    open: Vec<Undecided<N>>,
-}
-
-impl<const N: usize> Sink<N> for Answer<N> {
-    fn found(&mut self, preimage: Preimage<N>) {
-        self.found.push(preimage);
-    }
-
-    fn mark(&self) -> usize {
-        self.found.len()
-    }
-
-    fn forget(&mut self, mark: usize) {
-        self.found.truncate(mark);
-    }
-
-    fn undecided(&mut self, undecided: Undecided<N>) {
-        self.open.push(undecided);
-    }
-}
-
 fn solve<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64) -> Answer<N> {
     let mut answer = Answer {
         found: Vec::new(),
@@ -145,7 +90,7 @@ fn solve<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64) -> Ans
         boxes,
         ..ChartOptions::default()
     };
-    BundleSolver::new(options).solve(&forms.bundle(), forms, targets, &mut answer);
+    BundleSolver::new(options).solve(&forms.bundle(), forms, targets, &mut answer, &());
     answer
 }
 
@@ -163,7 +108,7 @@ fn compare<const N: usize>(forms: &Forms<N>, targets: &List<N>) -> usize {
     assert!(answer.open.is_empty(), "{:?}", answer.open);
     let mut count = 0;
     for (number, q) in targets.0.iter().enumerate() {
-        let points = PointSolver::default().solve(&forms.system(q), &mut ()).unwrap();
+        let points = PointSolver::default().solve(&forms.system(q), &()).unwrap();
         assert!(points.unresolved.is_empty());
         let own: Vec<_> = answer.found.iter().filter(|found| found.target == number).collect();
         assert_eq!(own.len(), points.roots.len(), "target {q:?}");
@@ -299,7 +244,7 @@ fn conditions_leave_out_nothing_else() {
         };
         let [first, second] = conditions.clone();
         let bundle = forms.bundle().where_signs_differ(first, second).unwrap();
-        BundleSolver::new(ChartOptions::default()).solve(&bundle, &forms, &targets, &mut some);
+        BundleSolver::new(ChartOptions::default()).solve(&bundle, &forms, &targets, &mut some, &());
         assert!(some.open.is_empty() && some.found.len() <= all.found.len());
         for found in &all.found {
             let [a, b] = [0, 1].map(|k| conditions[k].evaluate(&found.x));

@@ -101,7 +101,7 @@ fn random_plane_curves_agree_with_marching_squares() {
         let d = [2 + number % 5, 2 + number / 5 % 4];
         let form = Bernstein::from_fn(&d, |_| random.unit()).unwrap();
         let system = System::new(&unit(2), [&form]).unwrap();
-        let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let curves = solver(1e-3).solve(&system, &()).unwrap();
         assert!(curves.singular.is_empty(), "{number}");
         audit_curves(&curves, &unit(2), &number.to_string());
         let found = (curves.loops().count(), curves.arcs().count());
@@ -135,7 +135,7 @@ fn symmetries_change_no_topology() {
     let mut random = Random(8);
     let topology = |forms: &[Bernstein], bounds: &[Interval]| {
         let system = System::new(bounds, forms).unwrap();
-        let curves = solver(1e-2).solve(&system, &mut ()).unwrap();
+        let curves = solver(1e-2).solve(&system, &()).unwrap();
         (curves.loops().count(), curves.arcs().count(), curves.singular.len())
     };
     let mut all = 0;
@@ -177,11 +177,9 @@ fn pieces_handed_over_join_to_the_same_curves() {
     for number in 0..30 {
         let form = Bernstein::from_fn(&[4, 3], |_| random.unit()).unwrap();
         let system = System::new(&unit(2), [&form]).unwrap();
-        let whole = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let whole = solver(1e-3).solve(&system, &()).unwrap();
         let mut pieces = Vec::new();
-        let rest = solver(1e-3)
-            .for_each_piece(&system, &mut (), |p| pieces.push(p))
-            .unwrap();
+        let rest = solver(1e-3).for_each_piece(&system, &(), |p| pieces.push(p)).unwrap();
         assert!(rest.curves.is_empty() && rest.singular.is_empty(), "{number}");
         pieces_in_all += pieces.len();
         // Each number is the end of one piece and the start of at most one other; both have it at the same place.
@@ -222,7 +220,7 @@ fn loops_are_found_however_small() {
             .sub(&Bernstein::constant(2, r * r))
             .assumed_exact();
         let system = System::new(&unit(2), [&circle]).unwrap();
-        let curves = solver(1e-2 * r).solve(&system, &mut ()).unwrap();
+        let curves = solver(1e-2 * r).solve(&system, &()).unwrap();
         assert_eq!((curves.loops().count(), curves.curves.len()), (1, 1), "{r}");
         assert!(curves.singular.is_empty());
     }
@@ -232,12 +230,12 @@ fn loops_are_found_however_small() {
 fn bad_input_is_an_error_or_open() {
     let circle = Bernstein::from_fn(&[2, 2], |i| [0.25, -0.25, 0.25][i[0]] + [0.25, -0.25, 0.25][i[1]] - 0.1).unwrap();
     let twice = System::new(&unit(2), [&circle, &circle]).unwrap();
-    assert!(solver(1e-3).solve(&twice, &mut ()).is_err());
+    assert!(solver(1e-3).solve(&twice, &()).is_err());
     let once = System::new(&unit(2), [&circle]).unwrap();
-    assert!(solver(f64::NAN).solve(&once, &mut ()).is_err());
-    assert!(solver(0.0).solve(&once, &mut ()).is_err());
+    assert!(solver(f64::NAN).solve(&once, &()).is_err());
+    assert!(solver(0.0).solve(&once, &()).is_err());
     let line = System::new(&unit(1), [Bernstein::variable(1, 0)]).unwrap();
-    assert!(solver(1e-3).solve(&line, &mut ()).is_err());
+    assert!(solver(1e-3).solve(&line, &()).is_err());
     // An equation that is zero; a double circle: open, soon.
     let start = Instant::now();
     for form in [Bernstein::constant(2, 0.0), circle.mul(&circle).assumed_exact()] {
@@ -249,7 +247,7 @@ fn bad_input_is_an_error_or_open() {
                 ..SolveOptions::default()
             },
         );
-        let curves = solver.solve(&system, &mut ()).unwrap();
+        let curves = solver.solve(&system, &()).unwrap();
         assert!(!curves.singular.is_empty());
     }
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());

@@ -14,7 +14,7 @@ fn unit(n: usize) -> Vec<Interval> {
 
 fn solve<E: Into<Equation>>(equations: Vec<E>) -> Points {
     let system = System::new(&unit(equations.len()), equations).unwrap();
-    PointSolver::default().solve(&system, &mut ()).unwrap()
+    PointSolver::default().solve(&system, &()).unwrap()
 }
 
 /// Roots match one to one, by enclosures.
@@ -96,18 +96,18 @@ fn curves_and_surfaces_of_products_have_their_topology() {
     // Two circles apart, never multiplied out; two nested spheres; a sphere as a quotient.
     let circles = Expression::from(ball(2, 0.3, 0.2)) * Expression::from(ball(2, 0.7, 0.25));
     let system = System::new(&unit(2), [circles]).unwrap();
-    let curves = CurveSolver::new(1e-3).solve(&system, &mut ()).unwrap();
+    let curves = CurveSolver::new(1e-3).solve(&system, &()).unwrap();
     assert_eq!((curves.loops().count(), curves.curves.len()), (2, 2));
     assert!(curves.singular.is_empty());
     let spheres = Expression::from(ball(3, 0.5, 0.2)) * Expression::from(ball(3, 0.5, 0.4));
     let system = System::new(&unit(3), [spheres]).unwrap();
-    let surface = SurfaceSolver::new(0.1).solve(&system, &mut ()).unwrap();
+    let surface = SurfaceSolver::new(0.1).solve(&system, &()).unwrap();
     assert_eq!((surface.euler_characteristic(), surface.components()), (4, 2));
     assert!(surface.unresolved.is_empty());
     let weight = Bernstein::constant(3, 1.0).add(&Bernstein::variable(3, 2));
     let sphere = Expression::from(ball(3, 0.5, 0.3)) / Expression::from(weight);
     let system = System::new(&unit(3), [sphere]).unwrap();
-    let surface = SurfaceSolver::new(0.1).solve(&system, &mut ()).unwrap();
+    let surface = SurfaceSolver::new(0.1).solve(&system, &()).unwrap();
     assert_eq!((surface.euler_characteristic(), surface.components()), (2, 1));
     assert!(surface.unresolved.is_empty());
 }

@@ -11,7 +11,7 @@ fn unit(n: usize) -> Vec<Interval> {
 }
 
 fn solve(system: &System) -> Points {
-    PointSolver::default().solve(system, &mut ()).unwrap()
+    PointSolver::default().solve(system, &()).unwrap()
 }
 
 /// `Π (x − rₖ)` as an exact polynomial in variable `axis` of `n`.
@@ -98,7 +98,7 @@ fn scales_do_not_matter() {
             );
         }
         let curve = System::new(&unit(2), [&forms[0]]).unwrap();
-        let curves = CurveSolver::new(1e-2).solve(&curve, &mut ()).unwrap();
+        let curves = CurveSolver::new(1e-2).solve(&curve, &()).unwrap();
         assert_eq!((curves.loops().count(), curves.curves.len()), (1, 1));
     }
 }

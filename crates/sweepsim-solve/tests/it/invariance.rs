@@ -123,7 +123,7 @@ const POSITIVE: [f64; 3] = [3.7e-6, 5.1e4, 0.3];
 
 fn points(polynomials: &[Polynomial], bounds: &[Interval], factors: &[f64]) -> Points {
     let system = System::new(bounds, equations(polynomials, bounds, factors)).unwrap();
-    PointSolver::default().solve(&system, &mut ()).unwrap()
+    PointSolver::default().solve(&system, &()).unwrap()
 }
 
 /// A random polynomial of total degree 3 with short coefficients.
@@ -194,7 +194,7 @@ fn curves_stay_the_same() {
         let topology = |p: &[Polynomial], bounds: &[Interval], factors: &[f64]| {
             let tolerance = 1e-2 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
             let system = System::new(bounds, equations(p, bounds, factors)).unwrap();
-            let curves = CurveSolver::new(tolerance).solve(&system, &mut ()).unwrap();
+            let curves = CurveSolver::new(tolerance).solve(&system, &()).unwrap();
             assert!(curves.singular.is_empty(), "{texts:?}");
             (curves.loops().count(), curves.arcs().count())
         };
@@ -228,7 +228,7 @@ fn surfaces_stay_the_same() {
         let topology = |p: &Polynomial, bounds: &[Interval], factor: f64| {
             let tolerance = 0.1 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
             let system = System::new(bounds, equations(std::slice::from_ref(p), bounds, &[factor])).unwrap();
-            let surface = SurfaceSolver::new(tolerance).solve(&system, &mut ()).unwrap();
+            let surface = SurfaceSolver::new(tolerance).solve(&system, &()).unwrap();
             assert!(surface.unresolved.is_empty(), "{text}");
             assert_eq!(surface.boundary().is_empty(), closed, "{text}");
             (surface.euler_characteristic(), surface.components())

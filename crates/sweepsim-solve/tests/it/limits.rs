@@ -1,9 +1,7 @@
 //! Budgets, cancellation and degenerate equations of curves and surfaces: what is left is named and covers what is lost.
 
 use std::time::{Duration, Instant};
-use sweepsim_solve::{
-    Cause, CurveSolver, Curves, Fate, Interval, Observer, SolveOptions, SolveStatistics, Surface, SurfaceSolver, System,
-};
+use sweepsim_solve::{Cause, CurveSolver, Curves, Interval, Monitor, SolveOptions, Surface, SurfaceSolver, System};
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Interval> {
@@ -20,9 +18,9 @@ fn ball(n: usize, r: f64) -> Bernstein {
 
 struct Stop;
 
-impl Observer for Stop {
-    fn proceed(&mut self, _: &SolveStatistics) -> bool {
-        false
+impl Monitor for Stop {
+    fn cancelled(&self) -> bool {
+        true
     }
 }
 
@@ -70,18 +68,16 @@ fn curves_keep_to_their_budgets() {
     let system = nested(2);
     let base = CurveSolver::new(1e-3).options;
     for (options, cause) in early(&base) {
-        let curves = CurveSolver::with_options(1e-3, options)
-            .solve(&system, &mut ())
-            .unwrap();
+        let curves = CurveSolver::with_options(1e-3, options).solve(&system, &()).unwrap();
         let named = curves.singular.iter().any(|s| s.cause == cause);
         // The time may already end the search on a face.
         assert!(named, "{cause}: {:?}", curves.singular);
         curve_covered(&curves, &cause.to_string());
     }
-    let curves = CurveSolver::new(1e-3).solve(&system, &mut Stop).unwrap();
+    let curves = CurveSolver::new(1e-3).solve(&system, &Stop).unwrap();
     assert!(curves.singular.iter().any(|s| s.cause == Cause::Cancelled));
     curve_covered(&curves, "cancelled");
-    let all = CurveSolver::new(1e-3).solve(&system, &mut ()).unwrap();
+    let all = CurveSolver::new(1e-3).solve(&system, &()).unwrap();
     assert_eq!((all.loops().count(), all.singular.len()), (2, 0));
 }
 
@@ -107,13 +103,11 @@ fn surfaces_keep_to_their_budgets() {
         }
     };
     for (options, cause) in early(&base) {
-        let surface = SurfaceSolver::with_options(0.05, options)
-            .solve(&system, &mut ())
-            .unwrap();
+        let surface = SurfaceSolver::with_options(0.05, options).solve(&system, &()).unwrap();
         assert!(surface.unresolved.iter().any(|u| u.cause == cause), "{cause}");
         covered(&surface, &cause.to_string());
     }
-    let surface = SurfaceSolver::new(0.05).solve(&system, &mut Stop).unwrap();
+    let surface = SurfaceSolver::new(0.05).solve(&system, &Stop).unwrap();
     assert!(surface.unresolved.iter().any(|u| u.cause == Cause::Cancelled));
     covered(&surface, "cancelled");
 }
@@ -133,40 +127,15 @@ fn equations_that_are_zero_up_to_rounding_do_not_flood() {
         for form in [Bernstein::constant(n, 0.0), noise] {
             let system = System::new(&unit(n), [form]).unwrap();
             if n == 2 {
-                let curves = CurveSolver::new(1e-2).solve(&system, &mut ()).unwrap();
+                let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
                 assert!(curves.curves.is_empty() && !curves.singular.is_empty());
                 assert!(curves.singular.len() < 20, "{}", curves.singular.len());
             } else {
-                let surface = SurfaceSolver::new(1e-1).solve(&system, &mut ()).unwrap();
+                let surface = SurfaceSolver::new(1e-1).solve(&system, &()).unwrap();
                 assert!(surface.triangles.is_empty() && !surface.unresolved.is_empty());
                 assert!(surface.unresolved.len() < 20, "{}", surface.unresolved.len());
             }
         }
     }
     assert!(start.elapsed() < Duration::from_secs(30), "{:?}", start.elapsed());
-}
-
-#[test]
-fn observers_see_every_box_of_curves_and_surfaces() {
-    #[derive(Default)]
-    struct Count(Vec<Fate>);
-    impl Observer for Count {
-        fn traces(&self) -> bool {
-            true
-        }
-        fn visited(&mut self, bounds: &[Interval], _: u32, fate: Fate) {
-            assert!(bounds.iter().all(|b| b.lo < b.hi));
-            self.0.push(fate);
-        }
-    }
-    let mut count = Count::default();
-    let curves = CurveSolver::new(1e-3).solve(&nested(2), &mut count).unwrap();
-    let SolveStatistics { boxes, faces, .. } = curves.statistics;
-    assert_eq!(count.0.len() as u64, boxes);
-    assert!(faces > 0, "splits are searched for crossings");
-    assert!(count.0.contains(&Fate::Certified));
-    let mut count = Count::default();
-    let surface = SurfaceSolver::new(0.05).solve(&nested(3), &mut count).unwrap();
-    assert_eq!(count.0.len() as u64, surface.statistics.boxes);
-    assert!(count.0.contains(&Fate::Certified));
 }

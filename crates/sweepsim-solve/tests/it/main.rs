@@ -8,6 +8,7 @@ mod extremes;
 mod invariance;
 mod limits;
 mod many;
+mod monitors;
 mod parallel;
 mod pieces;
 mod planted;

@@ -59,7 +59,7 @@ fn planted_points(number: u64) -> Outcome {
     };
     let case = case(&points, &mut random);
     let system = System::new(&unit(n), &case.forms).unwrap();
-    let found = PointSolver::default().solve(&system, &mut ()).unwrap();
+    let found = PointSolver::default().solve(&system, &()).unwrap();
     audit(&case, &found, &format!("case {number}"));
     if found.unresolved.is_empty() {
         Outcome::Settled
@@ -136,7 +136,7 @@ fn sturm_points(number: u64) -> Outcome {
     }
     let between = |a: &RBig, b: &RBig| sturm_changes(&sequence, a) - sturm_changes(&sequence, b);
     let system = System::new(&unit(1), [&form]).unwrap();
-    let found = PointSolver::default().solve(&system, &mut ()).unwrap();
+    let found = PointSolver::default().solve(&system, &()).unwrap();
     for root in &found.roots {
         for bounds in [root.enclosure[0], root.unique_in[0]] {
             let count = between(&exact(bounds.lo), &exact(bounds.hi));
@@ -160,7 +160,7 @@ fn winding_points(number: u64) -> Outcome {
     let mut form = || Bernstein::from_fn(&degrees, |_| 2.0 * random.unit() - 1.0).unwrap();
     let forms = [form(), form()];
     let system = System::new(&unit(2), &forms).unwrap();
-    let found = PointSolver::default().solve(&system, &mut ()).unwrap();
+    let found = PointSolver::default().solve(&system, &()).unwrap();
     let Some(turns) = winding(&forms, &unit(2)) else {
         return Outcome::Skipped;
     };
@@ -260,7 +260,7 @@ fn planted_curves(number: u64) -> Outcome {
     let one = Polynomial::constant(RBig::ONE, 2);
     let product = circles.iter().fold(one, |p, (c, r)| p.mul(&ball(c, *r)));
     let system = System::new(&unit(2), [product.bernstein(&unit(2))]).unwrap();
-    let curves = CurveSolver::new(1e-2).solve(&system, &mut ()).unwrap();
+    let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
     compare_curves(&curves, (loops, arcs), number)
 }
 
@@ -323,7 +323,7 @@ fn planted_space_curves(number: u64) -> Outcome {
     };
     let bounds = [Interval::new(-0.1, 1.1); 3];
     let system = System::new(&bounds, [sphere.equation(&bounds), other.equation(&bounds)]).unwrap();
-    let curves = CurveSolver::new(1e-2).solve(&system, &mut ()).unwrap();
+    let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
     compare_curves(&curves, (loops, 0), number)
 }
 
@@ -370,7 +370,7 @@ fn planted_surfaces(number: u64) -> Outcome {
         (product, 2 * spheres.len() as i64, spheres.len())
     };
     let system = System::new(&unit(3), [product.bernstein(&unit(3))]).unwrap();
-    let surface = SurfaceSolver::new(0.2).solve(&system, &mut ()).unwrap();
+    let surface = SurfaceSolver::new(0.2).solve(&system, &()).unwrap();
     assert!(surface.boundary().is_empty(), "case {number}");
     compare_surface(&surface, euler, number, Some(components))
 }
@@ -391,7 +391,7 @@ fn random_surfaces(number: u64) -> Outcome {
     let degrees = [0, 1, 2].map(|_| 1 + random.below(2) as usize);
     let form = Bernstein::from_fn(&degrees, |_| 2.0 * random.unit() - 1.0).unwrap();
     let system = System::new(&unit(3), [&form]).unwrap();
-    let surface = SurfaceSolver::new(1.0).solve(&system, &mut ()).unwrap();
+    let surface = SurfaceSolver::new(1.0).solve(&system, &()).unwrap();
     let own = surface.euler_characteristic();
     let mut euler = euler_on_grid(&form, 13);
     if euler != own || euler_on_grid(&form, 24) != own {

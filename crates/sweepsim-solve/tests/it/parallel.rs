@@ -4,7 +4,15 @@
 use crate::support;
 
 use support::planted::{Random, audit, case};
-use sweepsim_solve::{Cause, Interval, PointSolver, System};
+use sweepsim_solve::{Cause, Interval, Monitor, PointSolver, System};
+
+struct Stop;
+
+impl Monitor for Stop {
+    fn cancelled(&self) -> bool {
+        true
+    }
+}
 
 fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -22,16 +30,12 @@ fn threads_change_no_answer() {
             .collect();
         let case = case(&points, &mut random);
         let system = System::new(&vec![Interval::new(0.0, 1.0); n], &case.forms).unwrap();
-        let solve = |threads| {
-            in_pool(threads, || {
-                PointSolver::default().solve_parallel(&system, |_| true).unwrap()
-            })
-        };
+        let solve = |threads| in_pool(threads, || PointSolver::default().solve_parallel(&system, &()).unwrap());
         let [one, two, five] = [1, 2, 5].map(solve);
         assert_eq!(one, two, "{number}");
         assert_eq!(one, five, "{number}");
         audit(&case, &one, &number.to_string());
-        let serial = PointSolver::default().solve(&system, &mut ()).unwrap();
+        let serial = PointSolver::default().solve(&system, &()).unwrap();
         assert_eq!(serial.roots.len(), one.roots.len(), "{number}");
         roots += one.roots.len();
     }
@@ -44,7 +48,7 @@ fn stopping_leaves_boxes_open() {
     let points: Vec<Vec<f64>> = (0..5).map(|_| vec![random.unit(), random.unit()]).collect();
     let case = case(&points, &mut random);
     let system = System::new(&[Interval::new(0.0, 1.0); 2], &case.forms).unwrap();
-    let stopped = PointSolver::default().solve_parallel(&system, |_| false).unwrap();
+    let stopped = PointSolver::default().solve_parallel(&system, &Stop).unwrap();
     assert!(stopped.unresolved.iter().any(|u| u.cause == Cause::Cancelled));
     audit(&case, &stopped, "stopped");
 }

@@ -17,7 +17,7 @@ impl Random {
 
 fn solve(splines: &[BSpline]) -> Points {
     PointSolver::default()
-        .solve_pieces(&Pieces::new(splines).unwrap(), &mut ())
+        .solve_pieces(&Pieces::new(splines).unwrap(), &())
         .unwrap()
 }
 
@@ -127,7 +127,7 @@ fn rational_splines_are_solved_by_their_numerators() {
     let spline = RationalSpline::new(vec![t, s], 2, &points, &all_weights).unwrap();
     let pieces = Pieces::rational(&[spline]).unwrap();
     assert_eq!(pieces.systems().len(), 4);
-    let found = PointSolver::default().solve_pieces(&pieces, &mut ()).unwrap();
+    let found = PointSolver::default().solve_pieces(&pieces, &()).unwrap();
     assert_eq!((found.roots.len(), found.unresolved.len()), (1, 0));
     assert!((found.roots[0].point[1] - 1.0).abs() < 1e-14);
 }

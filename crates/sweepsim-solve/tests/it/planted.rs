@@ -10,9 +10,7 @@ use sweepsim_spline::Bernstein;
 fn solve(forms: &[Bernstein]) -> Points {
     let n = forms.len();
     let system = System::new(&vec![Interval::new(0.0, 1.0); n], forms).unwrap();
-    PointSolver::new(SolveOptions::default())
-        .solve(&system, &mut ())
-        .unwrap()
+    PointSolver::new(SolveOptions::default()).solve(&system, &()).unwrap()
 }
 
 #[test]
@@ -199,7 +197,7 @@ fn symmetries_change_no_answer() {
         // Another box.
         let far = [Interval::new(-1e3, 1e4), Interval::new(5.0, 5.5)];
         let system = System::new(&far, &forms).unwrap();
-        let moved = PointSolver::default().solve(&system, &mut ()).unwrap();
+        let moved = PointSolver::default().solve(&system, &()).unwrap();
         assert_eq!(counts(&moved), counts(&plain));
         // Equations mixed: a rotation of the values.
         let (c, s) = (0.6, 0.8);

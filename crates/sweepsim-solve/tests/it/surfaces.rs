@@ -122,9 +122,7 @@ fn singular_surfaces_are_named() {
         smallest: 1.0 / 64.0,
         ..SurfaceSolver::new(0.1).options
     };
-    let crossing = SurfaceSolver::with_options(0.1, options)
-        .solve(&planes, &mut ())
-        .unwrap();
+    let crossing = SurfaceSolver::with_options(0.1, options).solve(&planes, &()).unwrap();
     assert!(!crossing.unresolved.is_empty());
     audit_surface(&crossing, "planes");
 }
@@ -133,11 +131,11 @@ fn singular_surfaces_are_named() {
 fn bad_input_is_an_error() {
     let sphere = system("x**2+y**2+z**2-1", 1.5);
     for tolerance in [0.0, -1.0, f64::NAN] {
-        assert!(SurfaceSolver::new(tolerance).solve(&sphere, &mut ()).is_err());
+        assert!(SurfaceSolver::new(tolerance).solve(&sphere, &()).is_err());
     }
     let names = ["x", "y"].map(String::from);
     let bounds = [Interval::new(-1.0, 1.0); 2];
     let plane = Polynomial::of(&parse("x", &names), 2).unwrap().equation(&bounds);
     let flat = System::new(&bounds, [plane]).unwrap();
-    assert!(SurfaceSolver::new(0.1).solve(&flat, &mut ()).is_err());
+    assert!(SurfaceSolver::new(0.1).solve(&flat, &()).is_err());
 }

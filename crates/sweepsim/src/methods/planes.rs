@@ -73,7 +73,7 @@ impl Slicer {
         let mark = sink.mark();
         for tolerance in TOLERANCES {
             self.curves.tolerance = tolerance;
-            let Ok(curves) = self.curves.solve(&system, &mut ()) else {
+            let Ok(curves) = self.curves.solve(&system, &()) else {
                 return false;
             };
             if !curves.singular.is_empty() {

@@ -289,7 +289,7 @@ impl Search<'_> {
             self.lattice.numbers(0, values[0]).is_some() && self.lattice.numbers(1, values[1]).is_some()
         });
         if touches && !slicer.solve(map, system(), self.lattice, charts.options.accept, sink) {
-            charts.solve(map, root, self.lattice, sink);
+            charts.solve(map, root, self.lattice, sink, &());
         }
     }
 
@@ -318,14 +318,14 @@ impl Search<'_> {
                 })
             });
             if let Some(bundle) = means.bundles.and_then(|bundles| bundles.face(number)) {
-                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink, &());
             } else if let Some(forms) = means.forms {
                 let system = || forms.faces[number].section(&self.plane());
                 self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
             } else if let Some(segment) = means.surface {
                 self.within_surface(&mut map, number, segment, &mut space.bricks, &mut sink);
             } else {
-                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink, &());
             }
         }
         harvest.count(&mut space.bricks.statistics);
@@ -356,21 +356,17 @@ impl Search<'_> {
         let surface = motion
             .envelope()
             .ok()
-            .and_then(|system| {
-                SurfaceSolver::with_options(FLATNESS, options)
-                    .solve(&system, &mut ())
-                    .ok()
-            })
+            .and_then(|system| SurfaceSolver::with_options(FLATNESS, options).solve(&system, &()).ok())
             .filter(|surface| surface.unresolved.is_empty());
         let Some(surface) = surface else {
             // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
-            charts.solve(map, ROOT, self.lattice, sink);
+            charts.solve(map, ROOT, self.lattice, sink, &());
             return;
         };
         for bounds in surface.boxes {
             let mark = map.mark();
             let part = map.place(&bounds);
-            charts.solve_part(map, part, &domain, self.lattice, sink);
+            charts.solve_part(map, part, &domain, self.lattice, sink, &());
             map.release(mark);
         }
     }
@@ -407,12 +403,12 @@ impl Search<'_> {
                 })
             });
             if let Some(bundle) = means.bundles.and_then(|bundles| bundles.rim(number)) {
-                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink, &());
             } else if let Some(forms) = means.forms {
                 let system = || forms.rims[number].section(&self.plane());
                 self.slice(&mut map, system, (&mut space.slicer, &mut space.bricks), &mut sink);
             } else {
-                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink);
+                space.bricks.solve(&mut map, ROOT, self.lattice, &mut sink, &());
             }
         }
         harvest.count(&mut space.bricks.statistics);
@@ -433,12 +429,12 @@ impl Search<'_> {
                 })
             });
             if let Some(bundle) = means.bundles.and_then(|bundles| bundles.placed(placed.end, number)) {
-                space.bundles.solve(bundle, &map, self.lattice, &mut sink);
+                space.bundles.solve(bundle, &map, self.lattice, &mut sink, &());
             } else if let Some(forms) = means.forms {
                 let system = || forms.placed[placed.end][number].section(&self.plane());
                 self.slice(&mut map, system, (&mut space.slicer, &mut space.placed), &mut sink);
             } else {
-                space.placed.solve(&mut map, 0, self.lattice, &mut sink);
+                space.placed.solve(&mut map, 0, self.lattice, &mut sink, &());
             }
         }
         harvest.count(&mut space.placed.statistics);

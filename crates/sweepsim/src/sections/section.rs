@@ -193,7 +193,7 @@ fn of_part(
     let number = parts[at].number;
     for piece in moving.pieces(tool) {
         let system = system(piece, tool, segment, plane);
-        let Some(found) = system.ok().and_then(|system| solver.solve(&system, &mut ()).ok()) else {
+        let Some(found) = system.ok().and_then(|system| solver.solve(&system, &()).ok()) else {
             open.push((cut, piece, number));
             continue;
         };

@@ -125,11 +125,10 @@ fn of_part(
                     ..SurfaceSolver::new(0.1).options
                 };
                 let flatness = (chord / fastest).clamp(1e-6, 0.05);
-                let surface = PatchMotion::new(patch, segment).envelope().ok().and_then(|system| {
-                    SurfaceSolver::with_options(flatness, options)
-                        .solve(&system, &mut ())
-                        .ok()
-                });
+                let surface = PatchMotion::new(patch, segment)
+                    .envelope()
+                    .ok()
+                    .and_then(|system| SurfaceSolver::with_options(flatness, options).solve(&system, &()).ok());
                 let Some(surface) = surface else {
                     all.open.push((cut, piece, parts[at].number));
                     continue;

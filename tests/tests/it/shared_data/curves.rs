@@ -27,7 +27,7 @@ fn stored_curves_have_their_known_topology() {
     {
         let system = stored.system().unwrap();
         let start = Instant::now();
-        let curves = solver(1e-3).solve(&system, &mut ()).unwrap();
+        let curves = solver(1e-3).solve(&system, &()).unwrap();
         let time = start.elapsed();
         let (loops, arcs) = (curves.loops().count(), curves.arcs().count());
         let branches: Vec<usize> = curves.singular.iter().map(|s| s.branches.len()).collect();

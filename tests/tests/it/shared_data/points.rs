@@ -34,7 +34,7 @@ fn solve_in_cells(stored: &Stored, cells: usize) -> (Points, Duration) {
             let equations = stored.expressions.iter().map(|e| taylor::equation(e, &frame));
             let system = System::new(&frame, equations).unwrap().within(&cell).unwrap();
             let start = Instant::now();
-            let found = solver.solve(&system, &mut ()).unwrap();
+            let found = solver.solve(&system, &()).unwrap();
             time += start.elapsed();
             points.unresolved.extend(found.unresolved);
             points.statistics.boxes += found.statistics.boxes;
@@ -62,13 +62,13 @@ fn check(stored: &Stored) -> (String, Option<String>) {
         Some(system) => {
             let start = Instant::now();
             let mut solver = solver();
-            let points = solver.solve(&system, &mut ()).unwrap();
+            let points = solver.solve(&system, &()).unwrap();
             let first = start.elapsed();
             // Quick ones again, with warm memory.
             let mut best = first;
             for _ in 0..if first < Duration::from_millis(20) { 20 } else { 0 } {
                 let start = Instant::now();
-                let again = solver.solve(&system, &mut ()).unwrap();
+                let again = solver.solve(&system, &()).unwrap();
                 best = best.min(start.elapsed());
                 assert_eq!(again, points, "{}: the same again", stored.name);
             }

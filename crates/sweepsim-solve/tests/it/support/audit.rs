@@ -77,7 +77,7 @@ pub fn audit_surface(surface: &Surface, name: &str) {
 /// The surface, audited, with a line about it.
 pub fn solve_surface(system: &System, tolerance: f64, name: &str) -> Surface {
     let start = Instant::now();
-    let surface = SurfaceSolver::new(tolerance).solve(system, &mut ()).unwrap();
+    let surface = SurfaceSolver::new(tolerance).solve(system, &()).unwrap();
     println!(
         "{name:16} χ {:3}, {} components, {:6} triangles, {:5} boundary edges, {:3} open, {:7} boxes, {:8.2} ms",
         surface.euler_characteristic(),

@@ -5,4 +5,5 @@
 pub mod audit;
 pub mod expression;
 pub mod planted;
+pub mod targets;
 pub mod taylor;

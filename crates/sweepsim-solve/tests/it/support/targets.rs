@@ -1,0 +1,57 @@
+//! Targets of charts and bundles, and what is found of them.
+
+use sweepsim_solve::{Interval, Preimage, Sink, Target, Targets, Undecided};
+
+/// Targets, each a row of its own.
+pub struct List<const N: usize>(pub Vec<[f64; N]>);
+
+impl<const N: usize> Targets<N> for List<N> {
+    fn count(&self, range: &[Interval; N]) -> usize {
+        let inside = |q: &&[f64; N]| (0..N).all(|i| range[i].contains(q[i]));
+        self.0.iter().filter(inside).count()
+    }
+
+    fn visit(
+        &self,
+        range: &[Interval; N],
+        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    ) {
+        for (number, value) in self.0.iter().enumerate() {
+            let target = Target {
+                number,
+                place: [number, 0],
+                value: *value,
+            };
+            let wanted = (0..N).all(|i| range[i].contains(value[i])) && narrow(value).contains(value[1]);
+            if wanted && !visit(&target) {
+                return;
+            }
+        }
+    }
+}
+
+/// What a solver handed out.
+#[derive(Default)]
+pub struct Answer<const N: usize> {
+    pub found: Vec<Preimage<N>>,
+    pub open: Vec<Undecided<N>>,
+}
+
+impl<const N: usize> Sink<N> for Answer<N> {
+    fn found(&mut self, preimage: Preimage<N>) {
+        self.found.push(preimage);
+    }
+
+    fn mark(&self) -> usize {
+        self.found.len()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.found.truncate(mark);
+    }
+
+    fn undecided(&mut self, undecided: Undecided<N>) {
+        self.open.push(undecided);
+    }
+}
