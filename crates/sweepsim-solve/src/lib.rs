@@ -10,51 +10,30 @@
 //! | read | for |
 //! | --- | --- |
 //! | [`points`](PointSolver) | the tests of a box, and why they suffice |
-//! | `layout.rs`, `tensor.rs` | how coefficients lie, and what rounding does to them |
+//! | `coefficients/` | how coefficients lie, and what rounding does to them |
 //! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
 
-mod bundle;
-mod certify;
-mod chart;
+mod bundles;
 mod charts;
+mod coefficients;
 mod curves;
-mod double;
-mod expression;
-mod interval;
-mod layout;
-mod matrix;
-mod mesh;
-mod monitor;
-#[cfg(feature = "rayon")]
-mod parallel;
-mod part;
-mod picture;
-mod pieces;
+mod numbers;
 mod points;
-mod program;
 mod search;
-mod separate;
-mod surface;
-mod system;
-mod tensor;
-mod trail;
+mod surfaces;
+mod systems;
 
-pub use bundle::{Bundle, BundleError, BundleSolver};
+pub use bundles::{Bundle, BundleError, BundleSolver};
 pub use charts::{
     ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Target, Targets, Undecided,
 };
-pub use curves::{Curve, CurvePiece, CurvePoint, CurveSolver, Curves, End, Singular};
-pub use expression::{Expression, MAX_FORMS};
-pub use interval::Interval;
-pub use layout::MAX_DEGREE;
-pub use matrix::MAX_UNKNOWNS;
-pub use monitor::{CancelOnly, Monitor};
-pub use picture::Picture;
-pub use pieces::{Pieces, PiecesError};
-pub use points::{Place, PointSolver, Points, Root, SolveError};
-pub use search::{Cause, Fate, SolveOptions, SolveStatistics, Unresolved};
-pub use surface::{Surface, SurfaceSolver};
-pub use system::{Equation, MAX_SYSTEM, System, SystemError};
+pub use coefficients::MAX_DEGREE;
+pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveSolver, Curves, Singular};
+pub use numbers::{Enclosure, MAX_UNKNOWNS};
+pub use points::{PointSolver, Points, Root, RootLocation};
+pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOptions, SolveStatistics, UnresolvedBox};
+pub use surfaces::{Surface, SurfaceSolver};
+pub use systems::{Equation, Expression, MAX_FORMS, MAX_SYSTEM, Pieces, PiecesError, System, SystemError};
 
 /// The README's example is tested.
 #[cfg(doctest)]

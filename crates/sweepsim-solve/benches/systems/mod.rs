@@ -1,6 +1,6 @@
 //! Dense systems for timing, shared by benches and examples of the crate.
 
-use sweepsim_solve::{Interval, System};
+use sweepsim_solve::{Enclosure, System};
 use sweepsim_spline::Bernstein;
 
 /// A named system.
@@ -13,8 +13,8 @@ pub struct Named {
     pub roots: usize,
 }
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 /// The variable `lo + width·u` as a form.
@@ -68,7 +68,7 @@ pub fn chebyshev_3d() -> Named {
     };
     Named {
         name: "dense_cheb4_3d",
-        system: System::new(&[Interval::new(-1.0, 1.0); 3], [form(0), form(1), form(2)]).expect("a valid system"),
+        system: System::new(&[Enclosure::new(-1.0, 1.0); 3], [form(0), form(1), form(2)]).expect("a valid system"),
         roots: 64,
     }
 }
@@ -84,7 +84,7 @@ pub fn cyclohexane() -> Named {
     };
     Named {
         name: "cyclohexane",
-        system: System::new(&[Interval::new(-20.0, 20.0); 3], [form(1, 2), form(2, 0), form(0, 1)])
+        system: System::new(&[Enclosure::new(-20.0, 20.0); 3], [form(1, 2), form(2, 0), form(0, 1)])
             .expect("a valid system"),
         roots: 16,
     }

@@ -2,8 +2,8 @@
 
 use super::subdivide::{OpenCell, Search};
 use super::trace::Vertex;
-use super::{Curve, CurvePoint, Curves, End, Singular};
-use crate::matrix::{MAX_UNKNOWNS, Row};
+use super::{Curve, CurveEnd, CurvePoint, Curves, Singular};
+use crate::numbers::{MAX_UNKNOWNS, Row};
 
 /// Open cells near one another, with a box around them.
 struct Cluster {
@@ -150,13 +150,13 @@ impl Search<'_> {
                 }
             }
             let number = curves.len();
-            let mut end = |k: usize| -> End {
+            let mut end = |k: usize| -> CurveEnd {
                 match at_group[ends[k]] {
                     Some(group) if !self.crossings[ends[k]].outer => {
                         singular[group].branches.push((number, k == 1));
-                        End::Singular(group)
+                        CurveEnd::Singular(group)
                     }
-                    _ => End::Boundary,
+                    _ => CurveEnd::Boundary,
                 }
             };
             let ends = if closed { None } else { Some([end(0), end(1)]) };

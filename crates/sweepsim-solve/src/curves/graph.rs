@@ -1,7 +1,7 @@
 //! Cells in which the curve is a graph over one variable, and the tube that it runs in.
 
-use crate::layout::{Cell, EPSILON, Layout, Slopes};
-use crate::matrix::{MAX_UNKNOWNS, Row, Square, ZERO, inverse};
+use crate::coefficients::{Cell, Layout, Slopes};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, inverse};
 
 /// How a cell is a graph.
 pub(crate) struct Graph {

@@ -15,14 +15,15 @@
 //! Cells at the smallest size stay open: singular points (nodes, cusps, isolated points), with their branches: the crossings of their outside.
 
 mod assemble;
+mod faces;
 mod graph;
 mod subdivide;
 mod trace;
 
-use crate::matrix::MAX_UNKNOWNS;
-use crate::points::{PointSolver, SolveError};
-use crate::search::{Cause, SolveOptions, SolveStatistics};
-use crate::{Interval, Monitor, System};
+use crate::numbers::MAX_UNKNOWNS;
+use crate::points::PointSolver;
+use crate::search::{Cause, SolveError, SolveOptions, SolveStatistics};
+use crate::{Enclosure, Monitor, System};
 use std::time::Instant;
 use subdivide::Search;
 use trace::Tracer;
@@ -39,7 +40,7 @@ pub struct CurvePoint {
 /// Where an arc ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum End {
+pub enum CurveEnd {
     /// On the region's boundary.
     Boundary,
     /// At the singular (or otherwise open) box of this number.
@@ -55,7 +56,7 @@ pub struct Curve {
     /// The vertices, each on the curve up to rounding. A loop's first is not repeated at its end.
     pub points: Vec<CurvePoint>,
     /// `None` for a loop.
-    pub ends: Option<[End; 2]>,
+    pub ends: Option<[CurveEnd; 2]>,
 }
 
 /// A piece of the curve in one box of the subdivision.
@@ -71,7 +72,7 @@ pub struct CurvePiece {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Singular {
     /// The box; touching ones are united.
-    pub bounds: Vec<Interval>,
+    pub bounds: Vec<Enclosure>,
     /// Why it is open.
     pub cause: Cause,
     /// The arcs that end here: their numbers, with `true` for the last end. No arc: an isolated point, or nothing.
@@ -106,13 +107,13 @@ impl Curves {
 /// The 1-D solver.
 ///
 /// ```
-/// use sweepsim_solve::{CurveSolver, Interval, System};
+/// use sweepsim_solve::{CurveSolver, Enclosure, System};
 /// use sweepsim_spline::Bernstein;
 ///
 /// // x² + y² = 1/4 on [−1, 1]². In u = (x + 1)/2: x² = 4 u² − 4 u + 1 has coefficients 1, −1, 1.
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
 /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
-/// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
+/// let system = System::new(&[Enclosure::new(-1.0, 1.0); 2], [&circle])?;
 /// let curves = CurveSolver::new(1e-3).solve(&system, &())?;
 /// assert_eq!((curves.loops().count(), curves.arcs().count()), (1, 0));
 /// for p in &curves.curves[0].points {
@@ -233,12 +234,12 @@ impl CurveSolver {
     /// [`skin`](Curves::skin) is not 0, pieces may leave the region by so much.
     ///
     /// ```
-    /// use sweepsim_solve::{CurveSolver, Interval, System};
+    /// use sweepsim_solve::{CurveSolver, Enclosure, System};
     /// use sweepsim_spline::Bernstein;
     ///
     /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
     /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
-    /// let system = System::new(&[Interval::new(-1.0, 1.0); 2], [&circle])?;
+    /// let system = System::new(&[Enclosure::new(-1.0, 1.0); 2], [&circle])?;
     /// let mut length = 0.0;
     /// let rest = CurveSolver::new(1e-4).for_each_piece(&system, &(), |piece| {
     ///     for p in piece.points.windows(2) {

@@ -2,11 +2,11 @@
 
 use super::graph::{graph, minor};
 use super::trace::{Tracer, Vertex};
-use crate::layout::{Cell, EPSILON};
-use crate::matrix::{MAX_UNKNOWNS, Row};
-use crate::points::{PointSolver, excluded, pop, push, within_domain};
+use crate::coefficients::{Cell, excluded, pop, push, within_domain};
+use crate::numbers::{CUT, MAX_UNKNOWNS, Row};
+use crate::points::PointSolver;
 use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch};
-use crate::{CancelOnly, Monitor, System};
+use crate::{Monitor, System};
 use std::time::Instant;
 
 /// A crossing of a face, in inner coordinates.
@@ -20,7 +20,7 @@ pub(crate) struct Crossing {
 }
 
 /// A piece of the curve in a settled cell.
-pub(super) struct Piece {
+pub(super) struct GraphPiece {
     pub ends: [usize; 2],
     pub vertices: Vec<Vertex>,
 }
@@ -33,17 +33,15 @@ pub(super) struct OpenCell {
     pub crossings: Vec<usize>,
 }
 
-/// Skins that are tried, in parts of the domain's sides.
-const SKINS: [f64; 4] = [0.0, 1.0e-7, 2.3e-6, 4.1e-5];
 /// Where cells are cut, in order of preference.
-const CUTS: [f64; 9] = [0.492, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
+const CUTS: [f64; 9] = [CUT, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
 /// No side shrinks below this part at once.
 const SHRINK: f64 = 1.0 / 32.0;
 /// A cut keeps so far, in sides of the cell, from known crossings, if it can.
 const CLEAR: f64 = 0.01;
 
 /// Whether a search on a face was ended from outside: other cuts would fare no better.
-fn stopped(stuck: &[OpenCell]) -> Option<Cause> {
+pub(super) fn stopped(stuck: &[OpenCell]) -> Option<Cause> {
     let causes = stuck.iter().map(|open| open.cause);
     causes.into_iter().find(|c| matches!(c, Cause::Cancelled | Cause::Time))
 }
@@ -54,7 +52,7 @@ pub(super) struct Search<'a> {
     pub points: &'a mut PointSolver,
     pub tracer: Tracer<'a>,
     pub crossings: Vec<Crossing>,
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<GraphPiece>,
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,
     pub ranges: Vec<(f64, f64)>,
@@ -62,96 +60,13 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The root cell, its crossings, and the skin that it took.
-    pub(super) fn boundary(&mut self, monitor: &dyn Monitor) -> (Cell, Vec<usize>, f64) {
-        let layout = &self.system.layout;
-        let n = layout.n;
-        let tries = if self.system.bounded() { 1 } else { SKINS.len() };
-        for (number, &skin) in SKINS[..tries].iter().enumerate() {
-            let mut root = self.system.root();
-            if skin > 0.0 {
-                for j in 0..n {
-                    // Each face by another amount: no edge through the same point.
-                    let (below, above) = (1.0 + 0.113 * j as f64, 1.271 + 0.171 * j as f64);
-                    let (lo, hi) = (root.lo[j] - skin * below, root.hi[j] + skin * above);
-                    layout.restrict(&mut root, j, lo, hi);
-                }
-            }
-            layout.ranges(&mut root);
-            self.crossings.clear();
-            let mut clean = true;
-            let mut stuck = Vec::new();
-            for j in 0..n {
-                for upper in [false, true] {
-                    clean &= self.cross(&root, j, upper, true, &mut stuck, monitor);
-                }
-            }
-            if clean || number + 1 == tries || stopped(&stuck).is_some() {
-                self.open.append(&mut stuck);
-                return (root, (0..self.crossings.len()).collect(), skin);
-            }
-        }
-        (self.system.root(), Vec::new(), 0.0)
-    }
-
-    /// Adds the crossings of a face of the cell; `false`, with what is open, if some could not be certified or lie on the face's edge.
-    fn cross(
-        &mut self,
-        cell: &Cell,
-        axis: usize,
-        upper: bool,
-        outer: bool,
-        stuck: &mut Vec<OpenCell>,
-        monitor: &dyn Monitor,
-    ) -> bool {
-        let n = self.system.layout.n;
-        let face = self.system.on_face(cell, axis, upper);
-        self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
-        // Searches on faces have no boxes that the monitor should see.
-        self.points.run(&face, &CancelOnly(monitor));
-        // Boxes of faces count, else searches that find nothing certain on any face would have no end.
-        self.statistics.faces += self.points.statistics.boxes;
-        let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
-        let place = |s: &Row, outward: f64| -> Row {
-            let mut x = [0.0; MAX_UNKNOWNS];
-            for j in 0..n {
-                x[j] = if j == axis {
-                    at
-                } else {
-                    let side = cell.hi[j] - cell.lo[j];
-                    let value = cell.lo[j] + s[if j < axis { j } else { j - 1 }] * side;
-                    value + outward * 4.0 * EPSILON * (value.abs() + side)
-                };
-            }
-            x
-        };
-        let clean = self.points.open.is_empty() && self.points.found.iter().all(|f| !f.boundary);
-        for found in &self.points.found {
-            self.crossings.push(Crossing {
-                point: place(&found.point, 0.0),
-                lo: place(&found.lo, -1.0),
-                hi: place(&found.hi, 1.0),
-                outer,
-            });
-        }
-        for open in &self.points.open {
-            stuck.push(OpenCell {
-                lo: place(&open.lo, -1.0),
-                hi: place(&open.hi, 1.0),
-                cause: open.cause,
-                crossings: Vec::new(),
-            });
-        }
-        clean
-    }
-
     /// The search. After each cell, `hand` may take what pieces there are.
     pub(super) fn run(
         &mut self,
         root: Cell,
         first: Vec<usize>,
         monitor: &dyn Monitor,
-        hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<Piece>),
+        hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<GraphPiece>),
     ) {
         let layout = &self.system.layout;
         let mut watch = Watch::new(&self.options);
@@ -323,7 +238,7 @@ impl Search<'_> {
                                 v.tangent.iter_mut().for_each(|x| *x = -*x);
                             }
                         }
-                        traced.push(Piece { ends, vertices });
+                        traced.push(GraphPiece { ends, vertices });
                     }
                     None => break,
                 }

@@ -8,9 +8,9 @@
 use super::CurvePoint;
 use super::graph::{Graph, Tube, minor, tube, without};
 use super::subdivide::Crossing;
-use crate::double::Double;
-use crate::layout::Cell;
-use crate::matrix::{MAX_UNKNOWNS, Row, apply, inverse};
+use crate::coefficients::Cell;
+use crate::numbers::double::Double;
+use crate::numbers::{MAX_UNKNOWNS, Row, apply, inverse};
 use crate::{Monitor, System};
 
 /// A vertex in inner coordinates, with the tangent (unit length in the domain's).

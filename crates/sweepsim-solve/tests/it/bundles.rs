@@ -4,7 +4,7 @@ use crate::support;
 
 use support::planted::Random;
 use support::targets::{Answer, List};
-use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Interval, PointSolver, Preimage, Sample, System};
+use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Enclosure, PointSolver, Preimage, Sample, System};
 use sweepsim_spline::Bernstein;
 
 /// A rational map by its forms: numerators over a weight, then forms that shall be zero.
@@ -24,7 +24,7 @@ impl<const N: usize> Forms<N> {
         let numerators = self.numerators.iter().zip(q);
         let equations = numerators.map(|(p, q)| p.sub(&self.weight.scale(*q)));
         System::new(
-            &[Interval::new(0.0, 1.0); N],
+            &[Enclosure::new(0.0, 1.0); N],
             equations.chain(self.zeros.iter().cloned()),
         )
         .unwrap()
@@ -35,15 +35,15 @@ impl<const N: usize> ChartMap<N> for Forms<N> {
     type Cell = ();
     type Seen = ();
 
-    fn bounds(&self, (): &()) -> [Interval; N] {
-        [Interval::new(0.0, 1.0); N]
+    fn bounds(&self, (): &()) -> [Enclosure; N] {
+        [Enclosure::new(0.0, 1.0); N]
     }
 
-    fn values(&mut self, (): &()) -> Option<[Interval; N]> {
+    fn values(&mut self, (): &()) -> Option<[Enclosure; N]> {
         unreachable!("bundles ask for points only")
     }
 
-    fn jacobian(&mut self, (): &()) -> [[Interval; N]; N] {
+    fn jacobian(&mut self, (): &()) -> [[Enclosure; N]; N] {
         unreachable!("bundles ask for points only")
     }
 

@@ -4,7 +4,7 @@ use crate::support;
 
 use std::time::{Duration, Instant};
 use support::audit::audit_curves;
-use sweepsim_solve::{CurveSolver, Interval, SolveOptions, System};
+use sweepsim_solve::{CurveSolver, Enclosure, SolveOptions, System};
 use sweepsim_spline::Bernstein;
 
 fn solver(tolerance: f64) -> CurveSolver {
@@ -25,8 +25,8 @@ impl Random {
     }
 }
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 /// Components by marching squares on a fine grid, saddles by the value in the middle: (loops, arcs); `None` where two grids disagree.
@@ -133,7 +133,7 @@ fn random_plane_curves_agree_with_marching_squares() {
 #[test]
 fn symmetries_change_no_topology() {
     let mut random = Random(8);
-    let topology = |forms: &[Bernstein], bounds: &[Interval]| {
+    let topology = |forms: &[Bernstein], bounds: &[Enclosure]| {
         let system = System::new(bounds, forms).unwrap();
         let curves = solver(1e-2).solve(&system, &()).unwrap();
         (curves.loops().count(), curves.arcs().count(), curves.singular.len())
@@ -156,9 +156,9 @@ fn symmetries_change_no_topology() {
             .map(|f| Bernstein::from_fn(&[2, 2, 3], |i| f.coefficients()[2 - i[0] + 3 * i[1] + 9 * i[2]]).unwrap());
         assert_eq!(topology(&mirrored, &unit(3)), plain, "{number}: mirrored");
         let far = [
-            Interval::new(-5.0, 400.0),
-            Interval::new(1e3, 1e3 + 1.0),
-            Interval::new(0.0, 1e-3),
+            Enclosure::new(-5.0, 400.0),
+            Enclosure::new(1e3, 1e3 + 1.0),
+            Enclosure::new(0.0, 1e-3),
         ];
         assert_eq!(topology(&forms, &far), plain, "{number}: another box");
         let mixed = [

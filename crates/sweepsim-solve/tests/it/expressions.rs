@@ -4,12 +4,12 @@ use crate::support;
 
 use support::planted::Random;
 use sweepsim_solve::{
-    CurveSolver, Equation, Expression, Interval, MAX_FORMS, PointSolver, Points, SurfaceSolver, System, SystemError,
+    CurveSolver, Enclosure, Equation, Expression, MAX_FORMS, PointSolver, Points, SurfaceSolver, System, SystemError,
 };
 use sweepsim_spline::Bernstein;
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 fn solve<E: Into<Equation>>(equations: Vec<E>) -> Points {

@@ -5,7 +5,7 @@ use crate::support;
 use dashu_ratio::RBig;
 use support::expression::{Polynomial, exact, parse};
 use support::planted::Random;
-use sweepsim_solve::{CurveSolver, Equation, Interval, PointSolver, Points, SurfaceSolver, System};
+use sweepsim_solve::{CurveSolver, Enclosure, Equation, PointSolver, Points, SurfaceSolver, System};
 
 /// `p(x₀, x₁, …)` with polynomials for the variables.
 fn substitute(p: &Polynomial, x: &[Polynomial]) -> Polynomial {
@@ -87,9 +87,9 @@ impl Change {
     }
 
     /// The box of `y` with the image `[−1, 1]ⁿ`; for a rotation, `[−1, 1]ⁿ` again.
-    fn bounds(&self) -> Vec<Interval> {
+    fn bounds(&self) -> Vec<Enclosure> {
         let n = self.shift.len();
-        let unit = vec![Interval::new(-1.0, 1.0); n];
+        let unit = vec![Enclosure::new(-1.0, 1.0); n];
         if !self.keeps_boxes {
             return unit;
         }
@@ -99,7 +99,7 @@ impl Change {
                 let i = (0..n).find(|i| self.forward[*i][j] != RBig::ZERO).unwrap();
                 let end = |x: f64| ((exact(x) - &self.shift[i]) / &self.forward[i][j]).to_f64().value();
                 let (a, b) = (end(-1.0), end(1.0));
-                Interval::new(a.min(b), a.max(b))
+                Enclosure::new(a.min(b), a.max(b))
             })
             .collect()
     }
@@ -114,14 +114,14 @@ impl Change {
     }
 }
 
-fn equations(polynomials: &[Polynomial], bounds: &[Interval], factors: &[f64]) -> Vec<Equation> {
+fn equations(polynomials: &[Polynomial], bounds: &[Enclosure], factors: &[f64]) -> Vec<Equation> {
     let scaled = polynomials.iter().zip(factors).map(|(p, f)| p.scale(&exact(*f)));
     scaled.map(|p| p.equation(bounds)).collect()
 }
 
 const POSITIVE: [f64; 3] = [3.7e-6, 5.1e4, 0.3];
 
-fn points(polynomials: &[Polynomial], bounds: &[Interval], factors: &[f64]) -> Points {
+fn points(polynomials: &[Polynomial], bounds: &[Enclosure], factors: &[f64]) -> Points {
     let system = System::new(bounds, equations(polynomials, bounds, factors)).unwrap();
     PointSolver::default().solve(&system, &()).unwrap()
 }
@@ -145,7 +145,7 @@ fn points_stay_the_same() {
     for number in 0..60 {
         let n = 2 + usize::from(number % 3 == 2);
         let polynomials: Vec<Polynomial> = (0..n).map(|_| random_cubic(n, &mut random)).collect();
-        let plain = points(&polynomials, &vec![Interval::new(-1.0, 1.0); n], &[1.0; 3]);
+        let plain = points(&polynomials, &vec![Enclosure::new(-1.0, 1.0); n], &[1.0; 3]);
         assert!(plain.unresolved.is_empty(), "{number}");
         for change in Change::all(n) {
             let x = change.x();
@@ -191,14 +191,14 @@ fn curves_stay_the_same() {
     ];
     for (texts, n, closed) in cases {
         let polynomials: Vec<Polynomial> = texts.iter().map(|t| named(t, n)).collect();
-        let topology = |p: &[Polynomial], bounds: &[Interval], factors: &[f64]| {
+        let topology = |p: &[Polynomial], bounds: &[Enclosure], factors: &[f64]| {
             let tolerance = 1e-2 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
             let system = System::new(bounds, equations(p, bounds, factors)).unwrap();
             let curves = CurveSolver::new(tolerance).solve(&system, &()).unwrap();
             assert!(curves.singular.is_empty(), "{texts:?}");
             (curves.loops().count(), curves.arcs().count())
         };
-        let plain = topology(&polynomials, &vec![Interval::new(-1.0, 1.0); n], &[1.0; 3]);
+        let plain = topology(&polynomials, &vec![Enclosure::new(-1.0, 1.0); n], &[1.0; 3]);
         assert!(
             plain.0 + plain.1 > 0 && (plain.1 == 0) == closed,
             "{texts:?}: {plain:?}"
@@ -225,7 +225,7 @@ fn surfaces_stay_the_same() {
         ("x**2+y**2-z**2-0.1", false),
     ] {
         let polynomial = named(text, 3);
-        let topology = |p: &Polynomial, bounds: &[Interval], factor: f64| {
+        let topology = |p: &Polynomial, bounds: &[Enclosure], factor: f64| {
             let tolerance = 0.1 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
             let system = System::new(bounds, equations(std::slice::from_ref(p), bounds, &[factor])).unwrap();
             let surface = SurfaceSolver::new(tolerance).solve(&system, &()).unwrap();
@@ -233,7 +233,7 @@ fn surfaces_stay_the_same() {
             assert_eq!(surface.boundary().is_empty(), closed, "{text}");
             (surface.euler_characteristic(), surface.components())
         };
-        let plain = topology(&polynomial, &[Interval::new(-1.0, 1.0); 3], 1.0);
+        let plain = topology(&polynomial, &[Enclosure::new(-1.0, 1.0); 3], 1.0);
         for change in Change::all(3).iter().filter(|c| c.keeps_boxes || closed) {
             let moved = substitute(&polynomial, &change.x());
             for factor in POSITIVE {

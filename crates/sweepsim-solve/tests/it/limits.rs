@@ -1,11 +1,11 @@
 //! Budgets, cancellation and degenerate equations of curves and surfaces: what is left is named and covers what is lost.
 
 use std::time::{Duration, Instant};
-use sweepsim_solve::{Cause, CurveSolver, Curves, Interval, Monitor, SolveOptions, Surface, SurfaceSolver, System};
+use sweepsim_solve::{Cause, CurveSolver, Curves, Enclosure, Monitor, SolveOptions, Surface, SurfaceSolver, System};
 use sweepsim_spline::Bernstein;
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 /// `Σ (xⱼ − 1/2)² − r²`.

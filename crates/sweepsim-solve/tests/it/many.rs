@@ -8,11 +8,11 @@ use dashu_ratio::RBig;
 use std::time::Instant;
 use support::expression::{Polynomial, exact};
 use support::planted::{Random, audit, case};
-use sweepsim_solve::{CurveSolver, Curves, Interval, PointSolver, Surface, SurfaceSolver, System};
+use sweepsim_solve::{CurveSolver, Curves, Enclosure, PointSolver, Surface, SurfaceSolver, System};
 use sweepsim_spline::Bernstein;
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 /// Runs cases; prints and counts what went how.
@@ -176,7 +176,7 @@ fn winding_points(number: u64) -> Outcome {
 }
 
 /// Turns of `f` along a box's boundary; `None` if it turns too fast for the samples.
-fn winding(forms: &[Bernstein; 2], b: &[Interval]) -> Option<i32> {
+fn winding(forms: &[Bernstein; 2], b: &[Enclosure]) -> Option<i32> {
     let corners = [
         [b[0].lo, b[1].lo],
         [b[0].hi, b[1].lo],
@@ -321,7 +321,7 @@ fn planted_space_curves(number: u64) -> Outcome {
         };
         (cylinder, loops)
     };
-    let bounds = [Interval::new(-0.1, 1.1); 3];
+    let bounds = [Enclosure::new(-0.1, 1.1); 3];
     let system = System::new(&bounds, [sphere.equation(&bounds), other.equation(&bounds)]).unwrap();
     let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
     compare_curves(&curves, (loops, 0), number)

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use support::targets::{Answer, List};
 use sweepsim_solve::{
-    Bundle, BundleSolver, Cause, ChartMap, ChartOptions, ChartSolver, CurveSolver, Fate, Interval, Monitor,
+    Bundle, BundleSolver, Cause, ChartMap, ChartOptions, ChartSolver, CurveSolver, Enclosure, Fate, Monitor,
     PointSolver, Reason, Sample, SolveStatistics, SurfaceSolver, System,
 };
 use sweepsim_spline::Bernstein;
@@ -39,8 +39,8 @@ impl Monitor for After {
     }
 }
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 /// `Σ (xⱼ − 1/2)² − r²`.
@@ -154,21 +154,21 @@ fn surfaces_are_cancelled_soon() {
 struct Fold;
 
 impl ChartMap<2> for Fold {
-    type Cell = [Interval; 2];
+    type Cell = [Enclosure; 2];
     type Seen = ();
 
-    fn bounds(&self, cell: &Self::Cell) -> [Interval; 2] {
+    fn bounds(&self, cell: &Self::Cell) -> [Enclosure; 2] {
         *cell
     }
 
-    fn values(&mut self, [x, y]: &Self::Cell) -> Option<[Interval; 2]> {
-        let sum = Interval::new(x.lo * x.lo + y.lo - 1e-15, x.hi * x.hi + y.hi + 1e-15);
-        Some([sum, Interval::new(x.lo * y.lo - 1e-15, x.hi * y.hi + 1e-15)])
+    fn values(&mut self, [x, y]: &Self::Cell) -> Option<[Enclosure; 2]> {
+        let sum = Enclosure::new(x.lo * x.lo + y.lo - 1e-15, x.hi * x.hi + y.hi + 1e-15);
+        Some([sum, Enclosure::new(x.lo * y.lo - 1e-15, x.hi * y.hi + 1e-15)])
     }
 
-    fn jacobian(&mut self, [x, y]: &Self::Cell) -> [[Interval; 2]; 2] {
+    fn jacobian(&mut self, [x, y]: &Self::Cell) -> [[Enclosure; 2]; 2] {
         [
-            [Interval::new(2.0 * x.lo, 2.0 * x.hi), Interval::new(1.0, 1.0)],
+            [Enclosure::new(2.0 * x.lo, 2.0 * x.hi), Enclosure::new(1.0, 1.0)],
             [*y, *x],
         ]
     }
@@ -176,8 +176,8 @@ impl ChartMap<2> for Fold {
     fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2] {
         let middle = 0.5 * (cell[axis].lo + cell[axis].hi);
         let (mut lower, mut upper) = (*cell, *cell);
-        lower[axis] = Interval::new(cell[axis].lo, middle);
-        upper[axis] = Interval::new(middle, cell[axis].hi);
+        lower[axis] = Enclosure::new(cell[axis].lo, middle);
+        upper[axis] = Enclosure::new(middle, cell[axis].hi);
         [lower, upper]
     }
 
@@ -212,7 +212,7 @@ fn charts_are_cancelled_soon() {
     is_cancelled_soon(60, |monitor| {
         let mut answer = Answer::default();
         let mut solver = ChartSolver::new(ChartOptions::default());
-        solver.solve(&mut Fold, [Interval::new(0.0, 1.0); 2], &targets, &mut answer, monitor);
+        solver.solve(&mut Fold, [Enclosure::new(0.0, 1.0); 2], &targets, &mut answer, monitor);
         if monitor.patience == u64::MAX {
             assert!(answer.found.len() + answer.open.len() >= targets.0.len());
         }
@@ -223,7 +223,7 @@ fn charts_are_cancelled_soon() {
 #[test]
 fn a_chart_of_many_targets_is_cancelled_among_them() {
     // Where x is near 1 and y near 0, one box is a chart.
-    let corner = [Interval::new(0.9, 1.0), Interval::new(0.0, 0.1)];
+    let corner = [Enclosure::new(0.9, 1.0), Enclosure::new(0.0, 0.1)];
     let lattice =
         (0..90).flat_map(|i| (0..90).map(move |k| [0.9005 + 1e-3 * f64::from(i), 5e-4 + 1e-3 * f64::from(k)]));
     let targets = List(lattice.map(|x| Fold.evaluate(&x).value).collect());
@@ -275,7 +275,7 @@ impl Monitor for Count {
         true
     }
 
-    fn visit(&self, bounds: &[Interval], _: u32, fate: Fate) {
+    fn visit(&self, bounds: &[Enclosure], _: u32, fate: Fate) {
         assert!(bounds.iter().all(|b| b.lo < b.hi));
         self.0.lock().unwrap().push(fate);
     }

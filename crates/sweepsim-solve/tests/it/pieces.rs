@@ -1,6 +1,6 @@
 //! Splines: roots on knots counted once, knots inserted anywhere change nothing, kinks are handled.
 
-use sweepsim_solve::{Pieces, PiecesError, Place, PointSolver, Points};
+use sweepsim_solve::{Pieces, PiecesError, PointSolver, Points, RootLocation};
 use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
 struct Random(u64);
@@ -38,7 +38,7 @@ fn a_root_on_a_knot_is_one() {
     let found = solve(&[line]);
     assert_eq!((found.roots.len(), found.unresolved.len()), (1, 0), "{found:?}");
     assert!(found.roots[0].enclosure[0].contains(2.0));
-    assert_eq!(found.roots[0].place, Place::Inside);
+    assert_eq!(found.roots[0].location, RootLocation::Inside);
 }
 
 #[test]

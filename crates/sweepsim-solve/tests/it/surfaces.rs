@@ -4,11 +4,11 @@ use crate::support;
 
 use support::audit::{audit_surface, solve_surface};
 use support::expression::{Polynomial, parse};
-use sweepsim_solve::{Interval, SolveOptions, SurfaceSolver, System};
+use sweepsim_solve::{Enclosure, SolveOptions, SurfaceSolver, System};
 
 fn system(expression: &str, half: f64) -> System {
     let names = ["x", "y", "z"].map(String::from);
-    let bounds = [Interval::new(-half, half); 3];
+    let bounds = [Enclosure::new(-half, half); 3];
     let polynomial = Polynomial::of(&parse(expression, &names), 3).unwrap();
     System::new(&bounds, [polynomial.equation(&bounds)]).unwrap()
 }
@@ -134,7 +134,7 @@ fn bad_input_is_an_error() {
         assert!(SurfaceSolver::new(tolerance).solve(&sphere, &()).is_err());
     }
     let names = ["x", "y"].map(String::from);
-    let bounds = [Interval::new(-1.0, 1.0); 2];
+    let bounds = [Enclosure::new(-1.0, 1.0); 2];
     let plane = Polynomial::of(&parse("x", &names), 2).unwrap().equation(&bounds);
     let flat = System::new(&bounds, [plane]).unwrap();
     assert!(SurfaceSolver::new(0.1).solve(&flat, &()).is_err());

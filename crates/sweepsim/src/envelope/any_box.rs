@@ -4,7 +4,7 @@ use crate::envelope::edge_map::EdgeMap;
 use crate::envelope::enclosures::ROOT;
 use crate::envelope::patch_map::PatchMap;
 use crate::envelope::placed_map::PlacedMap;
-use sweepsim_solve::{ChartMap, Interval};
+use sweepsim_solve::{ChartMap, Enclosure};
 
 /// A map that can look at any box of its domain.
 pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
@@ -12,7 +12,7 @@ pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
     fn root(&self) -> Self::Cell;
 
     /// A cell over any box, kept until it is released.
-    fn place(&mut self, bounds: &[Interval; N]) -> Self::Cell;
+    fn place(&mut self, bounds: &[Enclosure; N]) -> Self::Cell;
 
     /// What there is, to release what comes after.
     fn mark(&self) -> [usize; 2];
@@ -26,7 +26,7 @@ impl AnyBox<3> for PatchMap<'_> {
         ROOT
     }
 
-    fn place(&mut self, [u, v, t]: &[Interval; 3]) -> Self::Cell {
+    fn place(&mut self, [u, v, t]: &[Enclosure; 3]) -> Self::Cell {
         let cell = self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi]);
         (cell, self.times.place(t.lo, t.hi))
     }
@@ -46,7 +46,7 @@ impl AnyBox<2> for EdgeMap<'_> {
         ROOT
     }
 
-    fn place(&mut self, [r, t]: &[Interval; 2]) -> Self::Cell {
+    fn place(&mut self, [r, t]: &[Enclosure; 2]) -> Self::Cell {
         let cell = self.cells.place(self.element, [r.lo, 0.0], [r.hi, 1.0]);
         (cell, self.times.place(t.lo, t.hi))
     }
@@ -66,7 +66,7 @@ impl AnyBox<2> for PlacedMap<'_> {
         0
     }
 
-    fn place(&mut self, [u, v]: &[Interval; 2]) -> Self::Cell {
+    fn place(&mut self, [u, v]: &[Enclosure; 2]) -> Self::Cell {
         self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi])
     }
 

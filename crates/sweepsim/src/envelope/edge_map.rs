@@ -11,7 +11,7 @@ use crate::envelope::enclosures::{
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
-use sweepsim_solve::{ChartMap, Interval, Sample};
+use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
 /// What is seen on an edge: height, and of both faces `g` and the normal in space.
 #[derive(Clone, Copy, Debug)]
@@ -34,14 +34,14 @@ impl ChartMap<2> for EdgeMap<'_> {
     type Cell = Brick;
     type Seen = OnEdge;
 
-    fn bounds(&self, cell: &Brick) -> [Interval; 2] {
+    fn bounds(&self, cell: &Brick) -> [Enclosure; 2] {
         [
             interval(self.cells.bounds(cell.0, 0)),
             interval(self.times.bounds(cell.1)),
         ]
     }
 
-    fn values(&mut self, cell: &Brick) -> Option<[Interval; 2]> {
+    fn values(&mut self, cell: &Brick) -> Option<[Enclosure; 2]> {
         let error = ROUNDING * envelope_size(self.element, self.times);
         let [a, b] = [0, 1].map(|side| {
             let field = self.cells.field(self.element, cell.0, side);
@@ -54,7 +54,7 @@ impl ChartMap<2> for EdgeMap<'_> {
         Some(plane_values(self.element, self.cells, self.times, *cell, &self.size))
     }
 
-    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 2]; 2] {
+    fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 2]; 2] {
         let slope = self.cells.slope(self.element, cell.0, 0);
         let turning = turning(self.element, self.cells, self.times, *cell);
         [0, 1].map(|r| [interval(products(self.times.rows(cell.1, r), &slope)), turning[r]])

@@ -4,7 +4,7 @@ use crate::algebra::ranges::{products, shifted_products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::pieces::Times;
-use sweepsim_solve::Interval;
+use sweepsim_solve::Enclosure;
 
 /// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
 pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -18,8 +18,8 @@ fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
 }
 
 #[inline]
-pub(super) fn interval((lo, hi): (f64, f64)) -> Interval {
-    Interval::new(lo, hi)
+pub(super) fn interval((lo, hi): (f64, f64)) -> Enclosure {
+    Enclosure::new(lo, hi)
 }
 
 /// The size of things: what differences count as large, and how far rounding reaches.
@@ -63,21 +63,21 @@ pub(super) fn plane_values(
     times: &Times,
     (cell, piece): Brick,
     size: &Size,
-) -> [Interval; 2] {
+) -> [Enclosure; 2] {
     let position = cells.position(element, cell);
     [0, 1].map(|r| {
         if let Some([offsets, _]) = times.offsets(piece, r) {
             let (lo, hi) = shifted_products(times.rows(piece, r), offsets, &position);
-            return Interval::new(lo - size.slack, hi + size.slack);
+            return Enclosure::new(lo - size.slack, hi + size.slack);
         }
         let (lo, hi) = products(times.rows(piece, r), &position);
         let (a, b) = times.tip(piece, r);
-        Interval::new(lo + a - size.slack, hi + b + size.slack)
+        Enclosure::new(lo + a - size.slack, hi + b + size.slack)
     })
 }
 
 /// Ranges of `∂X/∂t` and `∂Y/∂t`: `b′ + A′ F`.
-pub(super) fn turning(element: &PatchForms, cells: &Cells, times: &Times, (cell, piece): Brick) -> [Interval; 2] {
+pub(super) fn turning(element: &PatchForms, cells: &Cells, times: &Times, (cell, piece): Brick) -> [Enclosure; 2] {
     let position = cells.position(element, cell);
     [0, 1].map(|r| {
         let (rows, pace) = times.spin_rows(piece, r);
@@ -86,7 +86,7 @@ pub(super) fn turning(element: &PatchForms, cells: &Cells, times: &Times, (cell,
         }
         let (lo, hi) = scaled(products(rows, &position), pace);
         let (slowest, fastest) = times.velocity(piece, r);
-        Interval::new(lo + slowest, hi + fastest)
+        Enclosure::new(lo + slowest, hi + fastest)
     })
 }
 

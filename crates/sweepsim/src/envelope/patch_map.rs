@@ -8,7 +8,7 @@ use crate::envelope::enclosures::{Brick, Near, ROUNDING, Size, envelope_size, in
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
-use sweepsim_solve::{ChartMap, Interval, Sample};
+use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
 /// What is seen on a patch: height, and the normal in space.
 #[derive(Clone, Copy, Debug)]
@@ -30,12 +30,12 @@ impl ChartMap<3> for PatchMap<'_> {
     type Cell = Brick;
     type Seen = OnPatch;
 
-    fn bounds(&self, cell: &Brick) -> [Interval; 3] {
+    fn bounds(&self, cell: &Brick) -> [Enclosure; 3] {
         let of = |axis| interval(self.cells.bounds(cell.0, axis));
         [of(0), of(1), interval(self.times.bounds(cell.1))]
     }
 
-    fn values(&mut self, cell: &Brick) -> Option<[Interval; 3]> {
+    fn values(&mut self, cell: &Brick) -> Option<[Enclosure; 3]> {
         let field = self.cells.field(self.element, cell.0, 0);
         let (spins, travels) = self.times.twist(cell.1);
         let g = envelope(spins, travels, &field);
@@ -44,11 +44,11 @@ impl ChartMap<3> for PatchMap<'_> {
             return None;
         }
         let [x, y] = plane_values(self.element, self.cells, self.times, *cell, &self.size);
-        Some([x, y, Interval::new(g.0 - error, g.1 + error)])
+        Some([x, y, Enclosure::new(g.0 - error, g.1 + error)])
     }
 
-    fn jacobian(&mut self, cell: &Brick) -> [[Interval; 3]; 3] {
-        let zero = Interval::new(0.0, 0.0);
+    fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 3]; 3] {
+        let zero = Enclosure::new(0.0, 0.0);
         let mut jacobian = [[zero; 3]; 3];
         for axis in 0..2 {
             let slope = self.cells.slope(self.element, cell.0, axis);

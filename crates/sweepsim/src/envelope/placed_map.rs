@@ -8,7 +8,7 @@ use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative};
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
-use sweepsim_solve::{ChartMap, Interval, Sample};
+use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
 /// What is seen on a placed patch: height, `g` before and after, and the normal in space.
 #[derive(Clone, Copy, Debug)]
@@ -105,11 +105,11 @@ impl ChartMap<2> for PlacedMap<'_> {
     type Cell = u32;
     type Seen = OnPlaced;
 
-    fn bounds(&self, cell: &u32) -> [Interval; 2] {
+    fn bounds(&self, cell: &u32) -> [Enclosure; 2] {
         [0, 1].map(|axis| interval(self.cells.bounds(*cell, axis)))
     }
 
-    fn values(&mut self, cell: &u32) -> Option<[Interval; 2]> {
+    fn values(&mut self, cell: &u32) -> Option<[Enclosure; 2]> {
         let field = self.cells.field(self.element, *cell, 0);
         let before = self.before.negative(&field, self.element);
         if before.is_some() && before == self.after.negative(&field, self.element) {
@@ -118,11 +118,11 @@ impl ChartMap<2> for PlacedMap<'_> {
         let position = self.cells.position(self.element, *cell);
         Some([0, 1].map(|r| {
             let (lo, hi) = products(&self.row(r), &position);
-            Interval::new(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
+            Enclosure::new(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
         }))
     }
 
-    fn jacobian(&mut self, cell: &u32) -> [[Interval; 2]; 2] {
+    fn jacobian(&mut self, cell: &u32) -> [[Enclosure; 2]; 2] {
         let slopes = [0, 1].map(|axis| self.cells.slope(self.element, *cell, axis));
         [0, 1].map(|r| [0, 1].map(|axis| interval(products(&self.row(r), &slopes[axis]))))
     }

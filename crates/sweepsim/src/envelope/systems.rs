@@ -13,7 +13,7 @@
 pub use crate::envelope::plane::Plane;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Edge, NormalField, Patch, Segment};
-use sweepsim_solve::{Equation, Interval, System, SystemError};
+use sweepsim_solve::{Enclosure, Equation, System, SystemError};
 use sweepsim_spline::Bernstein;
 
 /// A moving point: homogeneous coordinates over one weight.
@@ -113,8 +113,8 @@ impl MotionForms {
     }
 }
 
-fn unit(n: usize) -> Vec<Interval> {
-    vec![Interval::new(0.0, 1.0); n]
+fn unit(n: usize) -> Vec<Enclosure> {
+    vec![Enclosure::new(0.0, 1.0); n]
 }
 
 fn system(n: usize, equations: Vec<Bernstein>) -> Result<System, SystemError> {

@@ -1,7 +1,7 @@
 //! The dexel lines as targets of the charts.
 
 use sweepsim_dexel::Grid;
-use sweepsim_solve::{Interval, Target, Targets};
+use sweepsim_solve::{Enclosure, Target, Targets};
 
 /// Dexel lines `i[0] ..= i[1]` × `j[0] ..= j[1]` of a grid, all moved by `shift`.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl<'a> Lattice<'a> {
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.
-    pub fn numbers(&self, axis: usize, range: Interval) -> Option<(usize, usize)> {
+    pub fn numbers(&self, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
         // NaN ranges hold everything.
         let number = |z: f64, otherwise: usize| {
@@ -89,22 +89,22 @@ impl<'a> Lattice<'a> {
             }
     }
 
-    fn range(&self, x: Interval, y: Interval) -> Option<[(usize, usize); 2]> {
+    fn range(&self, x: Enclosure, y: Enclosure) -> Option<[(usize, usize); 2]> {
         Some([self.numbers(0, x)?, self.numbers(1, y)?])
     }
 }
 
 /// The lines as targets of `(X, Y)`, or of `(X, Y, g)` with `g = 0`.
 impl<const N: usize> Targets<N> for Lattice<'_> {
-    fn count(&self, range: &[Interval; N]) -> usize {
+    fn count(&self, range: &[Enclosure; N]) -> usize {
         self.range(range[0], range[1])
             .map_or(0, |[is, js]| (is.1 - is.0 + 1) * (js.1 - js.0 + 1))
     }
 
     fn visit(
         &self,
-        range: &[Interval; N],
-        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        range: &[Enclosure; N],
+        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
         visit: &mut dyn FnMut(&Target<N>) -> bool,
     ) {
         let Some([is, js]) = self.range(range[0], range[1]) else {
@@ -115,7 +115,7 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
             value[0] = self.coordinate(0, i);
             value[1] = self.coordinate(1, js.0);
             let window = narrow(&value);
-            let ends = Interval::new(window.lo.max(range[1].lo), window.hi.min(range[1].hi));
+            let ends = Enclosure::new(window.lo.max(range[1].lo), window.hi.min(range[1].hi));
             let Some(wanted) = self.numbers(1, ends) else {
                 continue;
             };

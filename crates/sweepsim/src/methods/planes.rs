@@ -13,7 +13,7 @@
 use crate::envelope::AnyBox;
 use crate::methods::lattice::Lattice;
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum, Vector2};
-use sweepsim_solve::{CurveSolver, Curves, Interval, Preimage, Sample, Sink, SolveOptions, System, SystemError};
+use sweepsim_solve::{CurveSolver, Curves, Enclosure, Preimage, Sample, Sink, SolveOptions, System, SystemError};
 
 /// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
 /// is tried where a span of the one before could not be decided.
@@ -102,7 +102,7 @@ impl Slicer {
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         // With a skin, curves run on beyond the domain: at most this far.
-        let region = Interval::new(-2.0 * skin, 1.0 + 2.0 * skin);
+        let region = Enclosure::new(-2.0 * skin, 1.0 + 2.0 * skin);
         let mut cutting = Cutting {
             map,
             lattice,
@@ -122,7 +122,7 @@ impl Slicer {
                 if let Some(from) = from {
                     let within = std::array::from_fn(|j| {
                         let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
-                        Interval::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
+                        Enclosure::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
                     });
                     if !cutting.span(&from, &to, within, DEPTH) {
                         return false;
@@ -195,7 +195,7 @@ where
     }
 
     /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
-    fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) -> bool {
+    fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Enclosure; N], depth: u32) -> bool {
         self.slicer.boxes += 1;
         let Some(left) = self.left.checked_sub(1) else {
             return false;
@@ -225,7 +225,7 @@ where
     }
 
     /// The crossings of a span along which `Y` is monotone.
-    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) -> bool {
+    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Enclosure; N], [first, last]: [usize; 2]) -> bool {
         let mut from = *p;
         let mut before: [Option<Slope<N>>; 2] = [None; 2];
         let forward = p.y < q.y;
@@ -257,7 +257,7 @@ where
         &mut self,
         guess: [f64; N],
         (target, y): (usize, f64),
-        within: &[Interval; N],
+        within: &[Enclosure; N],
     ) -> Option<(Preimage<N, M::Seen>, [f64; N])> {
         let mut x: [f64; N] = std::array::from_fn(|k| guess[k].clamp(within[k].lo, within[k].hi));
         for _ in 0..STEPS {
@@ -296,9 +296,9 @@ where
         &mut self,
         p: &Vertex<N>,
         q: &Vertex<N>,
-        within: &[Interval; N],
-        jacobian: &[[Interval; N]; N],
-    ) -> Option<(Vertex<N>, [[Interval; N]; 2])> {
+        within: &[Enclosure; N],
+        jacobian: &[[Enclosure; N]; N],
+    ) -> Option<(Vertex<N>, [[Enclosure; N]; 2])> {
         let length = |k: usize| (q.x[k] - p.x[k]).abs();
         let over = (0..N)
             .filter(|k| minor_is_definite(jacobian, *k))
@@ -310,7 +310,7 @@ where
         let middle = self.on_curve(p, q, over, at, within)?;
         let parts = [p, q].map(|end| {
             let mut part = *within;
-            part[over] = Interval::new(end.x[over].min(at), end.x[over].max(at));
+            part[over] = Enclosure::new(end.x[over].min(at), end.x[over].max(at));
             part
         });
         let parts = parts.map(|part| self.shrunk(part, over));
@@ -324,7 +324,7 @@ where
         q: &Vertex<N>,
         over: usize,
         at: f64,
-        within: &[Interval; N],
+        within: &[Enclosure; N],
     ) -> Option<Vertex<N>> {
         let mut x: [f64; N] = std::array::from_fn(|k| 0.5 * (p.x[k] + q.x[k]));
         x[over] = at;
@@ -354,7 +354,7 @@ where
 
     /// A smaller box that holds all of the curve in `part`: by the mean value theorem around its middle, the other variables are
     /// affine functions of `over`, up to how much the Jacobian varies.
-    fn shrunk(&mut self, part: [Interval; N], over: usize) -> [Interval; N] {
+    fn shrunk(&mut self, part: [Enclosure; N], over: usize) -> [Enclosure; N] {
         let mark = self.map.mark();
         let cell = self.map.place(&part);
         let jacobian = self.map.jacobian(&cell);
@@ -386,7 +386,7 @@ where
                 reach += ((row[j] - unit).abs() + spread[j] + 1e-14) * part[j].radius();
             }
             let (lo, hi) = (centre[k] + shift - reach - 1e-15, centre[k] + shift + reach + 1e-15);
-            let cut = Interval::new(part[k].lo.max(lo), part[k].hi.min(hi));
+            let cut = Enclosure::new(part[k].lo.max(lo), part[k].hi.min(hi));
             if cut.lo < cut.hi {
                 smaller[k] = cut;
             }
@@ -407,7 +407,7 @@ fn without<const N: usize>(jacobian: &[[f64; N]; N], over: usize) -> Matrix2<f64
 }
 
 /// Whether the Jacobian of `X` (and `g`) with respect to the variables other than `over` has one sign of its determinant.
-fn minor_is_definite<const N: usize>(jacobian: &[[Interval; N]; N], over: usize) -> bool {
+fn minor_is_definite<const N: usize>(jacobian: &[[Enclosure; N]; N], over: usize) -> bool {
     let mut others = (0..N).filter(|k| *k != over);
     let (a, b) = (others.next(), others.next());
     let (lo, hi) = match (a, b) {
@@ -424,21 +424,21 @@ fn minor_is_definite<const N: usize>(jacobian: &[[Interval; N]; N], over: usize)
     lo > margin || hi < -margin
 }
 
-fn product(a: Interval, b: Interval) -> Interval {
+fn product(a: Enclosure, b: Enclosure) -> Enclosure {
     let all = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
-    Interval::new(
+    Enclosure::new(
         all.iter().fold(f64::INFINITY, |m, x| m.min(*x)),
         all.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)),
     )
 }
 
 /// Whether no matrix of the enclosure is singular: `‖I − K J‖∞ < 1`, `K` the inverse of its middle, in coordinates scaled to the box.
-fn regular<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N]) -> bool
+fn regular<const N: usize>(bounds: &[Enclosure; N], jacobian: &[[Enclosure; N]; N]) -> bool
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
     type Square<const N: usize> = nalgebra::SMatrix<f64, N, N>;
-    let half = bounds.map(Interval::radius);
+    let half = bounds.map(Enclosure::radius);
     let middle = Square::<N>::from_fn(|i, j| jacobian[i][j].mid() * half[j]);
     let radius = Square::<N>::from_fn(|i, j| jacobian[i][j].radius() * half[j]);
     let Some(inverse) = middle.try_inverse() else {

@@ -3,7 +3,7 @@
 use super::solver_support::taylor;
 use super::stored::{Stored, all};
 use std::time::{Duration, Instant};
-use sweepsim_solve::{Interval, PointSolver, Points, Root, SolveOptions, System};
+use sweepsim_solve::{Enclosure, PointSolver, Points, Root, SolveOptions, System};
 
 fn solver() -> PointSolver {
     PointSolver::new(SolveOptions {
@@ -17,20 +17,20 @@ fn solver() -> PointSolver {
 fn solve_in_cells(stored: &Stored, cells: usize) -> (Points, Duration) {
     let mut points = Points::default();
     let mut time = Duration::ZERO;
-    let sides: Vec<Vec<Interval>> = stored
+    let sides: Vec<Vec<Enclosure>> = stored
         .bounds
         .iter()
         .map(|b| {
             let step = (b.hi - b.lo) / cells as f64;
             let at = |i: usize| if i == cells { b.hi } else { b.lo + i as f64 * step };
-            (0..cells).map(|i| Interval::new(at(i), at(i + 1))).collect()
+            (0..cells).map(|i| Enclosure::new(at(i), at(i + 1))).collect()
         })
         .collect();
     let mut solver = solver();
     for x in &sides[0] {
         for y in &sides[1] {
             let cell = [*x, *y];
-            let frame = cell.map(|s| Interval::new(s.lo - 0.05 * s.radius(), s.hi + 0.05 * s.radius()));
+            let frame = cell.map(|s| Enclosure::new(s.lo - 0.05 * s.radius(), s.hi + 0.05 * s.radius()));
             let equations = stored.expressions.iter().map(|e| taylor::equation(e, &frame));
             let system = System::new(&frame, equations).unwrap().within(&cell).unwrap();
             let start = Instant::now();
@@ -98,7 +98,7 @@ fn check(stored: &Stored) -> (String, Option<String>) {
         wrong = Some("roots and clusters do not add up".to_owned());
     }
     for root in &stored.roots {
-        let near = |bounds: &[Interval]| {
+        let near = |bounds: &[Enclosure]| {
             root.iter().zip(bounds).all(|(x, b)| {
                 let slack = 1e-9 * (1.0 + x.abs());
                 b.lo - slack <= *x && *x <= b.hi + slack

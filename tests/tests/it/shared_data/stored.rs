@@ -2,14 +2,14 @@
 
 use super::folder;
 use super::solver_support::expression::{Expression, Polynomial, parse};
-use sweepsim_solve::{Equation, Interval, System};
+use sweepsim_solve::{Enclosure, Equation, System};
 use sweepsim_spline::Bernstein;
 
 /// One of the stored systems.
 #[derive(Clone, Debug)]
 pub struct Stored {
     pub name: String,
-    pub bounds: Vec<Interval>,
+    pub bounds: Vec<Enclosure>,
     /// Absent where the system is given by coefficients.
     pub expressions: Vec<Expression>,
     pub forms: Vec<Bernstein>,
@@ -37,7 +37,7 @@ fn read(json: &serde_json::Value) -> Stored {
         |v: &serde_json::Value| -> Vec<f64> { v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect() };
     let variables = strings(&json["vars"]);
     let bounds = json["box"].as_array().unwrap().iter().map(&numbers);
-    let bounds: Vec<Interval> = bounds.map(|b| Interval::new(b[0], b[1])).collect();
+    let bounds: Vec<Enclosure> = bounds.map(|b| Enclosure::new(b[0], b[1])).collect();
     let expressions = strings(&json["equations"])
         .iter()
         .map(|e| parse(e, &variables))

@@ -1,10 +1,10 @@
 //! What must hold of every curve and surface.
 
 use std::time::Instant;
-use sweepsim_solve::{Curves, End, Interval, Surface, SurfaceSolver, System};
+use sweepsim_solve::{CurveEnd, Curves, Enclosure, Surface, SurfaceSolver, System};
 
 /// Tangents have unit length, vertices follow them, arcs end where they say.
-pub fn audit_curves(curves: &Curves, region: &[Interval], name: &str) {
+pub fn audit_curves(curves: &Curves, region: &[Enclosure], name: &str) {
     for curve in &curves.curves {
         assert!(curve.points.len() >= 2, "{name}");
         for pair in curve.points.windows(2) {
@@ -29,7 +29,7 @@ pub fn audit_curves(curves: &Curves, region: &[Interval], name: &str) {
                 let slack = (1e-12 + 3.0 * curves.skin) * (r.hi - r.lo);
                 (x - r.lo).abs() <= slack || (x - r.hi).abs() <= slack
             });
-            assert!(on_boundary || end != End::Boundary, "{name}: {point:?}");
+            assert!(on_boundary || end != CurveEnd::Boundary, "{name}: {point:?}");
         }
     }
 }

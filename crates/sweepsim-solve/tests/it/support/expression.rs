@@ -2,7 +2,7 @@
 
 use dashu_ratio::RBig;
 use std::collections::BTreeMap;
-use sweepsim_solve::{Equation, Interval};
+use sweepsim_solve::{Enclosure, Equation};
 use sweepsim_spline::Bernstein;
 
 /// An expression in numbered variables.
@@ -256,7 +256,7 @@ impl Polynomial {
     }
 
     /// The polynomial in coordinates in which the box is `[0,1]ⁿ`, as Bernstein coefficients, exact until they are rounded once.
-    pub fn bernstein(&self, bounds: &[Interval]) -> Bernstein {
+    pub fn bernstein(&self, bounds: &[Enclosure]) -> Bernstein {
         let n = bounds.len();
         let degrees: Vec<usize> = (0..n)
             .map(|j| self.0.keys().map(|e| e[j]).max().unwrap_or(0) as usize)
@@ -301,7 +301,7 @@ impl Polynomial {
     }
 
     /// The same as a sum of forms in disjoint variables.
-    pub fn equation(&self, bounds: &[Interval]) -> Equation {
+    pub fn equation(&self, bounds: &[Enclosure]) -> Equation {
         Equation::sum(self.parts(bounds.len()).iter().map(|p| p.bernstein(bounds)).collect())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::expression::{Polynomial, exact};
 use dashu_ratio::RBig;
-use sweepsim_solve::{Interval, Place, Points};
+use sweepsim_solve::{Enclosure, Points, RootLocation};
 use sweepsim_spline::Bernstein;
 
 /// SplitMix64: seeded numbers.
@@ -104,7 +104,7 @@ pub fn case(points: &[Vec<f64>], random: &mut Random) -> Case {
     let planes: Vec<Vec<Plane>> = (0..n)
         .map(|_| points.iter().map(|p| Plane::through(p, random)).collect())
         .collect();
-    let unit = vec![Interval::new(0.0, 1.0); n];
+    let unit = vec![Enclosure::new(0.0, 1.0); n];
     let forms = planes
         .iter()
         .map(|factors| {
@@ -129,7 +129,7 @@ pub fn case(points: &[Vec<f64>], random: &mut Random) -> Case {
 }
 
 /// Whether the box holds the point, exactly.
-pub fn holds(bounds: &[Interval], x: &[RBig]) -> bool {
+pub fn holds(bounds: &[Enclosure], x: &[RBig]) -> bool {
     bounds
         .iter()
         .zip(x)
@@ -149,7 +149,7 @@ pub fn audit(case: &Case, points: &Points, what: &str) {
         let inside = case.roots.iter().filter(|(x, _)| holds(&root.unique_in, x)).count();
         let here = case.roots.iter().filter(|(x, _)| holds(&root.enclosure, x)).count();
         // A root in the enclosure may lie outside the region only where that is on the boundary.
-        let may_be_outside = root.place == Place::Boundary;
+        let may_be_outside = root.location == RootLocation::Boundary;
         assert!(inside <= 1, "{what}: {inside} roots in a box of uniqueness");
         assert!(
             here == 1 || (here == 0 && may_be_outside),

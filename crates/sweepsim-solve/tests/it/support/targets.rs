@@ -1,20 +1,20 @@
 //! Targets of charts and bundles, and what is found of them.
 
-use sweepsim_solve::{Interval, Preimage, Sink, Target, Targets, Undecided};
+use sweepsim_solve::{Enclosure, Preimage, Sink, Target, Targets, Undecided};
 
 /// Targets, each a row of its own.
 pub struct List<const N: usize>(pub Vec<[f64; N]>);
 
 impl<const N: usize> Targets<N> for List<N> {
-    fn count(&self, range: &[Interval; N]) -> usize {
+    fn count(&self, range: &[Enclosure; N]) -> usize {
         let inside = |q: &&[f64; N]| (0..N).all(|i| range[i].contains(q[i]));
         self.0.iter().filter(inside).count()
     }
 
     fn visit(
         &self,
-        range: &[Interval; N],
-        narrow: &dyn Fn(&[f64; N]) -> Interval,
+        range: &[Enclosure; N],
+        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
         visit: &mut dyn FnMut(&Target<N>) -> bool,
     ) {
         for (number, value) in self.0.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::expression::{Expression, exact};
 use dashu_ratio::RBig;
-use sweepsim_solve::{Equation, Interval};
+use sweepsim_solve::{Enclosure, Equation};
 use sweepsim_spline::Bernstein;
 
 /// Terms above this total degree go to the remainder.
@@ -97,7 +97,7 @@ impl Model {
         sum
     }
 
-    fn of(expression: &Expression, cell: &[Interval]) -> Self {
+    fn of(expression: &Expression, cell: &[Enclosure]) -> Self {
         match expression {
             Expression::Number(x) => {
                 let x = x.to_f64().value();
@@ -165,7 +165,7 @@ fn derivative(expression: &Expression, variable: usize) -> Expression {
 }
 
 /// The function over the cell as a form on `[0,1]²` with remainders.
-pub fn equation(expression: &Expression, cell: &[Interval]) -> Equation {
+pub fn equation(expression: &Expression, cell: &[Enclosure]) -> Equation {
     let model = Model::of(expression, cell);
     let mut slope_remainder: f64 = 0.0;
     for variable in 0..2 {

@@ -1,0 +1,232 @@
+//! One chart: Newton's method in it, and where preimages can be.
+
+use super::ChartMap;
+use super::linear::{Contraction, Linear};
+use crate::Enclosure;
+use nalgebra::{SMatrix, SVector, Vector3};
+
+/// Steps in a chart before the box is split instead.
+const STEPS: usize = 32;
+/// When a preimage can only be in so small a part of the box, in half sides (besides rounding), Newton's answer says whether it is.
+const ON_FACE: f64 = 1e-11;
+
+type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// A box of places, in coordinates scaled to that of a chart.
+#[derive(Clone, Copy)]
+pub(crate) struct Region<const N: usize> {
+    lo: SVector<f64, N>,
+    hi: SVector<f64, N>,
+}
+
+impl<const N: usize> Region<N> {
+    pub fn around(middle: &SVector<f64, N>, reach: &SVector<f64, N>) -> Self {
+        Self {
+            lo: middle - reach,
+            hi: middle + reach,
+        }
+    }
+
+    pub fn intersect(&mut self, other: &Self) {
+        for i in 0..N {
+            self.lo[i] = if other.lo[i] > self.lo[i] {
+                other.lo[i]
+            } else {
+                self.lo[i]
+            };
+            self.hi[i] = if other.hi[i] < self.hi[i] {
+                other.hi[i]
+            } else {
+                self.hi[i]
+            };
+        }
+    }
+
+    pub fn is_empty(&self) -> bool {
+        (0..N).any(|i| self.lo[i] > self.hi[i])
+    }
+
+    /// The nearest place; the middle for what is not a number.
+    fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| {
+            if s[i].is_nan() {
+                0.5 * (self.lo[i] + self.hi[i])
+            } else {
+                s[i].clamp(self.lo[i], self.hi[i])
+            }
+        })
+    }
+}
+
+/// A place in a chart, and `Φ` there.
+#[derive(Clone, Copy)]
+pub(crate) struct Witness<const N: usize> {
+    pub at: SVector<f64, N>,
+    pub value: [f64; N],
+}
+
+/// What became of a target in a chart.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    Settled,
+    Unclear,
+}
+
+/// A box on which the map is injective.
+pub(crate) struct Chart<'a, const N: usize> {
+    linear: &'a Linear<N>,
+    contraction: &'a Contraction<N>,
+    bounds: &'a [Enclosure; N],
+    domain: &'a [Enclosure; N],
+    /// The longest last step of Newton's method, in half sides: well inside the box, and near a face.
+    accept: [f64; 2],
+}
+
+/// So near a face, in half sides, Newton's method is as exact as if the box were the whole domain.
+const NEAR_FACE: f64 = 1e-4;
+/// No last step is longer than this.
+const LONGEST: f64 = 1e-3;
+
+impl<'a, const N: usize> Chart<'a, N> {
+    pub fn new(
+        linear: &'a Linear<N>,
+        contraction: &'a Contraction<N>,
+        bounds: &'a [Enclosure; N],
+        domain: &'a [Enclosure; N],
+        accept: f64,
+    ) -> Self {
+        // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; what else the
+        // map knows is off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
+        let part = (0..N)
+            .map(|i| bounds[i].radius() / domain[i].radius())
+            .fold(0.0, f64::max);
+        let scale = (part * part.max(linear.norm())).sqrt();
+        let inside = (accept / scale).min(LONGEST).max(accept);
+        Self {
+            linear,
+            contraction,
+            bounds,
+            domain,
+            accept: [inside, accept],
+        }
+    }
+
+    /// Where a preimage of `q` seems to be, seen from a place, and the region that it is in if it is in the box.
+    pub fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
+        let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
+        let reach = self.contraction.rest * step.abs() + self.contraction.slack;
+        let place = witness.at + step;
+        (place, Region::around(&place, &reach))
+    }
+
+    /// Newton's method from `guess`. Each point that it evaluates in the box also bounds, by the mean value theorem about it,
+    /// where in the box a preimage can be; when nothing is left, there is none.
+    #[allow(clippy::too_many_arguments)]
+    #[inline(always)]
+    pub fn solve<M: ChartMap<N>>(
+        &self,
+        map: &M,
+        guess: SVector<f64, N>,
+        mut region: Region<N>,
+        q: &[f64; N],
+        witness: &mut Option<Witness<N>>,
+        evaluations: &mut u64,
+        found: &mut impl FnMut(SVector<f64, N>, [f64; N], M::Seen),
+    ) -> Outcome {
+        let linear = self.linear;
+        let mut s = guess;
+        for _ in 0..STEPS {
+            s = region.clamp(&s);
+            let from = linear.point(&s);
+            let sample = map.evaluate(&from);
+            *evaluations += 1;
+            let here = Witness {
+                at: s,
+                value: sample.value,
+            };
+            *witness = Some(here);
+            let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
+            let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
+            let next = solve_linear(&scaled, &rest).map(|step| s - step);
+            let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
+            if let Some(next) = next {
+                let near_face = next.amax() > 1.0 - NEAR_FACE;
+                if step <= self.accept[usize::from(near_face)] && self.owns(&next) {
+                    found(next, from, sample.seen);
+                    return Outcome::Settled;
+                }
+            }
+            let (predicted, own) = self.region(&here, q);
+            let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - s[i], s[i] - region.lo[i]));
+            region.intersect(&own);
+            region.intersect(&Region::around(&predicted, &(linear.rest * far + linear.slack)));
+            if region.is_empty() {
+                return Outcome::Settled;
+            }
+            if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
+                // As near as rounding lets it come: a smaller box would know no more.
+                let rests = |next: &SVector<f64, N>| {
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
+                };
+                return match next {
+                    Some(next) if self.owns(&next) => {
+                        found(next, from, sample.seen);
+                        Outcome::Settled
+                    }
+                    Some(next) if rests(&next) => Outcome::Settled,
+                    _ => Outcome::Unclear,
+                };
+            }
+            s = next.unwrap_or(predicted);
+        }
+        Outcome::Unclear
+    }
+
+    /// Whether a point is in the box; of its faces only the lower ones, and upper ones of the domain, belong to it.
+    fn owns(&self, s: &SVector<f64, N>) -> bool {
+        let x = self.linear.point(s);
+        (0..N).all(|i| {
+            let (side, end) = (&self.bounds[i], self.domain[i].hi);
+            x[i] >= side.lo && (x[i] < side.hi || (x[i] <= side.hi && side.hi == end))
+        })
+    }
+}
+
+/// `A⁻¹ b` for a small matrix.
+fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Option<SVector<f64, N>> {
+    if N == 3 {
+        // Cramer's rule: Newton's method corrects what it loses.
+        let column = |j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
+        let (x, y, z, b) = (column(0), column(1), column(2), Vector3::new(b[0], b[1], b[2]));
+        let (yz, xb) = (y.cross(&z), x.cross(&b));
+        let determinant = x.dot(&yz);
+        let inverse = 1.0 / determinant;
+        let solution = [b.dot(&yz) * inverse, z.dot(&xb) * inverse, -y.dot(&xb) * inverse];
+        return (inverse.is_finite() && solution.iter().all(|x| x.is_finite()))
+            .then(|| SVector::from_fn(|i, _| solution[i]));
+    }
+    let mut a = *matrix;
+    let mut x = *b;
+    for k in 0..N {
+        let pivot = (k..N).max_by(|i, j| a[(*i, k)].abs().total_cmp(&a[(*j, k)].abs()))?;
+        if a[(pivot, k)] == 0.0 || !a[(pivot, k)].is_finite() {
+            return None;
+        }
+        a.swap_rows(k, pivot);
+        x.swap_rows(k, pivot);
+        for i in k + 1..N {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k..N {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+            x[i] -= factor * x[k];
+        }
+    }
+    for k in (0..N).rev() {
+        for j in k + 1..N {
+            x[k] -= a[(k, j)] * x[j];
+        }
+        x[k] /= a[(k, k)];
+    }
+    Some(x)
+}

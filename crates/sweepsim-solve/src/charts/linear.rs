@@ -1,0 +1,203 @@
+//! The linear picture of a map over a box, and how closely it encloses preimages.
+
+use crate::Enclosure;
+use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
+
+type Square<const N: usize> = SMatrix<f64, N, N>;
+
+/// The linear picture of `Φ` over a box, in coordinates `s ∈ [−1, 1]^N` scaled to it.
+pub(crate) struct Linear<const N: usize> {
+    pub centre: [f64; N],
+    pub half: [f64; N],
+    /// `K`: inverse of the scaled midpoint Jacobian.
+    pub inverse: Square<N>,
+    /// Entrywise bound of `|I − K J|`, rounding included.
+    pub rest: Square<N>,
+    /// Radius part of it alone, for the choice of the split.
+    pub smear: [f64; N],
+    /// Rounding of a prediction.
+    pub slack: SVector<f64, N>,
+    pub orientation: i8,
+}
+
+impl<const N: usize> Linear<N> {
+    /// The largest row sum of `rest`.
+    pub fn norm(&self) -> f64 {
+        (0..N).map(|i| self.rest.row(i).iter().sum::<f64>()).fold(0.0, f64::max)
+    }
+
+    pub fn new(bounds: &[Enclosure; N], jacobian: &[[Enclosure; N]; N], rounding: &[f64; N]) -> Option<Self>
+    where
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let half = bounds.map(Enclosure::radius);
+        let mid = Square::<N>::from_fn(|i, j| jacobian[i][j].mid() * half[j]);
+        // Columns of length one: how far the directions are from lying in a plane, whatever the box's sides.
+        let lengths: [f64; N] = std::array::from_fn(|j| mid.column(j).norm());
+        if lengths.iter().any(|l| !(*l > 0.0 && l.is_finite())) {
+            return None;
+        }
+        let directions = Square::<N>::from_fn(|i, j| mid[(i, j)] / lengths[j]);
+        let rows: [f64; N] = std::array::from_fn(|i| directions.row(i).iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+        if rows.contains(&0.0) {
+            return None;
+        }
+        let balanced = Square::<N>::from_fn(|i, j| directions[(i, j)] / rows[i]);
+        let determinant = balanced.determinant();
+        if determinant.abs() <= 1e-10 || determinant.is_nan() {
+            return None;
+        }
+        let inverse = balanced.try_inverse()?;
+        let inverse = Square::<N>::from_fn(|i, j| inverse[(i, j)] / (lengths[i] * rows[j]));
+        let mut rest = Square::<N>::zeros();
+        let mut smear = [0.0; N];
+        for i in 0..N {
+            for j in 0..N {
+                let (mut product, mut radius, mut rounding) = (0.0, 0.0, 0.0);
+                for k in 0..N {
+                    let factor = inverse[(i, k)];
+                    product += factor * mid[(k, j)];
+                    radius += factor.abs() * jacobian[k][j].radius() * half[j];
+                    rounding += factor.abs() * jacobian[k][j].magnitude() * half[j];
+                }
+                let unit = if i == j { 1.0 } else { 0.0 };
+                rest[(i, j)] = (product - unit).abs() + radius + 16.0 * f64::EPSILON * rounding;
+                smear[j] += radius;
+            }
+        }
+        if !rest.iter().all(|r| r.is_finite()) {
+            return None;
+        }
+        let slack = SVector::<f64, N>::from_fn(|i, _| {
+            let value: f64 = (0..N).map(|k| inverse[(i, k)].abs() * rounding[k]).sum();
+            value + 16.0 * f64::EPSILON
+        });
+        if !slack.iter().all(|s| s.is_finite()) {
+            return None;
+        }
+        let orientation = if determinant > 0.0 { 1 } else { -1 };
+        Some(Self {
+            centre: bounds.map(Enclosure::mid),
+            half,
+            inverse,
+            rest,
+            smear,
+            slack,
+            orientation,
+        })
+    }
+
+    /// How far a preimage in the box may be from what the centre predicts, in direction `i`.
+    pub fn reach(&self, i: usize) -> f64 {
+        self.rest.row(i).iter().sum::<f64>() + self.slack[i]
+    }
+
+    /// `s − K(Φ(x(s)) − q)`: where a preimage of `q` should be, seen from `s`.
+    pub fn predict(&self, s: &SVector<f64, N>, value: &[f64; N], q: &[f64; N]) -> SVector<f64, N> {
+        s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
+    }
+
+    /// The second values of targets with the other values of `q` that can have a preimage in the box, seen from the centre.
+    pub fn window(&self, value: &[f64; N], q: &[f64; N]) -> Enclosure {
+        let mut window = Enclosure::new(f64::NEG_INFINITY, f64::INFINITY);
+        if N < 2 {
+            return window;
+        }
+        for i in 0..N {
+            // |base + factor (q₁ − Φ₁)| ≤ 1 + reach; twice the slack is for the rounding here, of numbers no larger than those of Φ.
+            let factor = self.inverse[(i, 1)];
+            let base: f64 = (0..N)
+                .filter(|k| *k != 1)
+                .map(|k| self.inverse[(i, k)] * (q[k] - value[k]))
+                .sum();
+            let limit = 1.0 + self.reach(i) + 2.0 * self.slack[i];
+            let (a, b) = ((-limit - base) / factor, (limit - base) / factor);
+            let (lo, hi) = (a.min(b), a.max(b));
+            // With a factor of 0 the ends are infinite, or not numbers: they narrow nothing, and targets are tested one by one.
+            if lo.is_finite() && hi.is_finite() {
+                window = Enclosure::new(window.lo.max(value[1] + lo), window.hi.min(value[1] + hi));
+            }
+        }
+        window
+    }
+
+    pub fn point(&self, s: &SVector<f64, N>) -> [f64; N] {
+        std::array::from_fn(|i| self.centre[i] + s[i] * self.half[i])
+    }
+}
+
+/// The mean value theorem's bound, iterated to its end.
+///
+/// Seen from a point `c` of the box a preimage `s` is at `p = c − K(Φ(c) − q)`, but for `|s − p| ≤ R|s − c| + e` with the rounding `e`. So
+/// `|s − c| ≤ |p − c| + R|s − c| + e`, and as powers of `R` tend to 0, `|s − c| ≤ (I − R)⁻¹(|p − c| + e)`, and
+/// `|s − p| ≤ R(I − R)⁻¹|p − c| + (I − R)⁻¹e`: what is looked at near a preimage encloses it closely.
+pub(crate) struct Contraction<const N: usize> {
+    /// `R(I − R)⁻¹`.
+    pub rest: Square<N>,
+    /// `(I − R)⁻¹e`.
+    pub slack: SVector<f64, N>,
+}
+
+impl<const N: usize> Linear<N> {
+    /// For `‖R‖∞ < 1`.
+    pub fn contraction(&self) -> Option<Contraction<N>> {
+        // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of terms that are not negative. After k factors what is left out is, row by row,
+        // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large.
+        let norm = self.norm();
+        let (mut sum, mut power, mut left) = (Square::<N>::identity() + self.rest, self.rest, norm * norm);
+        while left > 1e-3 * (1.0 - norm) {
+            power *= power;
+            sum += sum * power;
+            left *= left;
+        }
+        // Besides, a few dozen roundings of terms of one sign.
+        let remainder = left / (1.0 - norm) + 64.0 * f64::EPSILON;
+        let spread = sum * self.rest;
+        let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);
+        let (own, of_slack) = (remainder * most(&spread), remainder * most(&sum));
+        let largest = self.slack.amax();
+        let contraction = Contraction {
+            rest: spread.map(|x| x + own),
+            slack: (sum * self.slack).map(|x| x + of_slack * largest),
+        };
+        let finite = contraction.rest.iter().chain(&contraction.slack).all(|x| x.is_finite());
+        finite.then_some(contraction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+
+    /// The bound of [`Contraction`] encloses `R(I − R)⁻¹`, and closely.
+    #[test]
+    fn contractions_are_the_limits_of_their_series() {
+        for norm in [0.0, 1e-3, 0.3, 0.9, 0.999] {
+            let rest = Matrix3::new(0.2, 0.5, 0.3, 0.1, 0.6, 0.2, 0.4, 0.0, 0.6) * norm;
+            let linear = Linear::<3> {
+                centre: [0.0; 3],
+                half: [1.0; 3],
+                inverse: Matrix3::identity(),
+                rest,
+                smear: [0.0; 3],
+                slack: Vector3::new(1e-12, 2e-12, 3e-12),
+                orientation: 1,
+            };
+            let found = linear.contraction().unwrap();
+            let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
+            let (exact, slack) = (rest * inverse, inverse * linear.slack);
+            let rounding = 1e-13 / (1.0 - norm);
+            for k in 0..9 {
+                assert!(
+                    found.rest[k] >= exact[k] - rounding && found.rest[k] <= exact[k] + 2e-3 * exact.amax() + rounding
+                );
+            }
+            for k in 0..3 {
+                assert!(
+                    found.slack[k] >= slack[k] * (1.0 - rounding) && found.slack[k] <= slack[k] + 2e-3 * slack.amax()
+                );
+            }
+        }
+    }
+}

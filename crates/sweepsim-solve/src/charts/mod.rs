@@ -1,0 +1,179 @@
+//! Charts: one subdivision for a whole family of systems `Φ(x) = q`.
+//!
+//! A box on which `Φ: R^N → R^N` is injective is a *chart*: it holds at most one preimage of each target `q`, and a
+//! certificate found once serves all targets. The search
+//!
+//! 1. drops a box whose image holds no target;
+//! 2. encloses the Jacobian over the box and preconditions it with the inverse `K` of its midpoint. With `R = |I − K J(box)|`
+//!    (entrywise bound, in coordinates scaled to the box) every preimage `x` in the box satisfies, by the mean value theorem
+//!    around the centre `m`, `|x − m + K(Φ(m) − q)| ≤ R·1` componentwise: targets that fail it have none;
+//! 3. if `‖R‖∞ < 1` the box is a chart: two preimages `p, q` of one target would give `(I − K J*)(p − q) = p − q`. Newton's
+//!    method finds the preimage, or the interval iteration of step 2 around better and better centres proves that there is none;
+//! 4. else it is split.
+//!
+//! What is *not* found: nothing. Boxes too small to split further are handed out as [`Undecided`] with their targets.
+//! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
+
+mod chart;
+mod linear;
+mod solver;
+mod trail;
+
+use crate::Enclosure;
+pub use solver::ChartSolver;
+pub(crate) use solver::{collapses, largest, widest};
+pub(crate) use trail::Trail;
+
+/// A map `R^N → R^N` with enclosures over boxes.
+pub trait ChartMap<const N: usize> {
+    /// A box, with whatever the map keeps of it.
+    type Cell: Clone;
+
+    /// What else is known at a point where the map was evaluated.
+    type Seen: Clone;
+
+    /// The box, an interval per variable.
+    fn bounds(&self, cell: &Self::Cell) -> [Enclosure; N];
+
+    /// Encloses `Φ` over the box; `None` when the box holds no solution that is asked for.
+    fn values(&mut self, cell: &Self::Cell) -> Option<[Enclosure; N]>;
+
+    /// Encloses `∂Φᵢ/∂xⱼ` over the box, as `[i][j]`.
+    fn jacobian(&mut self, cell: &Self::Cell) -> [[Enclosure; N]; N];
+
+    /// The two parts of the box, cut across `axis`; the first is the lower one.
+    fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2];
+
+    /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
+    fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;
+
+    /// What counts as a large difference of each value: for the choice of the direction to split.
+    fn scales(&self) -> [f64; N];
+
+    /// How far each value of [`ChartMap::evaluate`] may be off by rounding.
+    fn rounding(&self) -> [f64; N];
+}
+
+/// A map at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample<const N: usize, S> {
+    /// `Φ`.
+    pub value: [f64; N],
+    /// `∂Φᵢ/∂xⱼ` as `[i][j]`.
+    pub jacobian: [[f64; N]; N],
+    /// What else the map knows there.
+    pub seen: S,
+}
+
+/// A right-hand side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target<const N: usize> {
+    /// Its number.
+    pub number: usize,
+    /// Row and place in the row. Where neighbours differ evenly they are solved faster.
+    pub place: [usize; 2],
+    /// `q`.
+    pub value: [f64; N],
+}
+
+/// A set of right-hand sides with a range query, in rows: targets of a row differ in their second value alone.
+pub trait Targets<const N: usize> {
+    /// How many targets lie in the range.
+    fn count(&self, range: &[Enclosure; N]) -> usize;
+
+    /// Calls `visit` with each target in the range until that returns `false`: row by row, and in each upwards. Of a row, `narrow` is
+    /// shown the lowest, and says which second values are wanted.
+    fn visit(
+        &self,
+        range: &[Enclosure; N],
+        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
+        visit: &mut dyn FnMut(&Target<N>) -> bool,
+    );
+}
+
+/// Rows that are wanted as they are.
+pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Enclosure {
+    Enclosure::new(f64::NEG_INFINITY, f64::INFINITY)
+}
+
+/// A solution `Φ(x) = q` of one target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Preimage<const N: usize, S = ()> {
+    /// The target's number.
+    pub target: usize,
+    /// The solution.
+    pub x: [f64; N],
+    /// Where Newton's method came from in its last step.
+    pub from: [f64; N],
+    /// What the map saw there.
+    pub seen: S,
+    /// The sign of `det ∂Φ` there: 1 or −1.
+    pub orientation: i8,
+}
+
+/// Why a box could not be decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// It is as small as numbers allow.
+    Smallest,
+    /// The budget of boxes is spent.
+    Budget,
+    /// The [`Monitor`] asked to stop.
+    Cancelled,
+}
+
+/// A box that may hold solutions for a target: neither found nor excluded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undecided<const N: usize> {
+    /// The target's number.
+    pub target: usize,
+    /// The box.
+    pub bounds: [Enclosure; N],
+    /// Why.
+    pub reason: Reason,
+}
+
+/// Receives what the search finds.
+pub trait Sink<const N: usize, S = ()> {
+    /// A solution.
+    fn found(&mut self, preimage: Preimage<N, S>);
+    /// What was received so far, to [forget](Sink::forget) what comes after.
+    fn mark(&self) -> usize;
+    /// Takes back the solutions since the mark: their box is looked at again, in parts.
+    fn forget(&mut self, mark: usize);
+    /// A box and a target that remain open.
+    fn undecided(&mut self, undecided: Undecided<N>);
+}
+
+/// Limits of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChartOptions {
+    /// The most boxes that one call may look at.
+    pub boxes: u64,
+    /// A box whose sides are all at most this part of the domain is not split further.
+    pub smallest: f64,
+    /// Newton's method ends with a step that leaves an error of about the square of this, in parts of the domain.
+    pub accept: f64,
+}
+
+impl Default for ChartOptions {
+    fn default() -> Self {
+        Self {
+            boxes: 400_000,
+            smallest: 1e-14,
+            accept: 1e-8,
+        }
+    }
+}
+
+/// What a search did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ChartStatistics {
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// Of these, boxes that were charts.
+    pub charts: u64,
+    /// Evaluations of the map.
+    pub evaluations: u64,
+}

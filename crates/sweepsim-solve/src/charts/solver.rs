@@ -1,0 +1,304 @@
+//! The subdivision, and the charts on it.
+
+use super::chart::{Chart, Outcome, Region, Witness};
+use super::linear::{Contraction, Linear};
+use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Targets, Trail, Undecided, all_of};
+use crate::{Enclosure, Monitor};
+use nalgebra::{Const, DimMin, SVector, ToTypenum};
+
+/// The search, with its stack kept from one call to the next.
+#[derive(Debug)]
+pub struct ChartSolver<C> {
+    /// Limits.
+    pub options: ChartOptions,
+    /// What all calls together did.
+    pub statistics: ChartStatistics,
+    stack: Vec<(C, u32)>,
+}
+
+/// Boxes with at most this many targets have each of them tested before a split.
+const FEW: usize = 4;
+/// A box whose range holds so many targets is a chart only when it is [`CLOSE`] to linear.
+const MANY: usize = 1000;
+/// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
+const CLOSE: f64 = 0.4;
+
+impl<C: Clone> ChartSolver<C> {
+    /// A search with these limits.
+    #[must_use]
+    pub fn new(options: ChartOptions) -> Self {
+        Self {
+            options,
+            statistics: ChartStatistics::default(),
+            stack: Vec::new(),
+        }
+    }
+
+    /// Finds, for every target, all its preimages in the box `root`.
+    ///
+    /// Every preimage of every target is handed to `sink` once, or the box where it may hide is.
+    pub fn solve<const N: usize, M, T, S>(
+        &mut self,
+        map: &mut M,
+        root: C,
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, M::Seen>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let domain = map.bounds(&root);
+        self.solve_part(map, root, &domain, targets, sink, monitor);
+    }
+
+    /// The same in one box of several that fill `domain`, and share nothing but faces: a preimage on a face is found in the
+    /// box above it only.
+    pub fn solve_part<const N: usize, M, T, S>(
+        &mut self,
+        map: &mut M,
+        part: C,
+        domain: &[Enclosure; N],
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, M::Seen>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let mut budget = self.options.boxes;
+        self.stack.clear();
+        self.stack.push((part, 0));
+        while let Some((cell, depth)) = self.stack.pop() {
+            let Some(values) = map.values(&cell) else {
+                self.statistics.boxes += 1;
+                continue;
+            };
+            self.statistics.boxes += 1;
+            let count = targets.count(&values);
+            if count == 0 {
+                continue;
+            }
+            let bounds = map.bounds(&cell);
+            let jacobian = map.jacobian(&cell);
+            // Directions in which nothing changes need no splitting: a continuum of solutions must not flood the search.
+            let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
+            let idle = |j: usize| (0..N).all(|i| jacobian[i][j].magnitude() == 0.0);
+            let tiny = (0..N).all(|j| small(j) || idle(j));
+            let reason = if tiny {
+                Some(Reason::Smallest)
+            } else if budget == 0 {
+                Some(Reason::Budget)
+            } else {
+                monitor.cancelled().then_some(Reason::Cancelled)
+            };
+            if let Some(reason) = reason {
+                targets.visit(&values, &all_of, &mut |target| {
+                    let target = target.number;
+                    sink.undecided(Undecided { target, bounds, reason });
+                    true
+                });
+                continue;
+            }
+            budget -= 1;
+            let linear = Linear::new(&bounds, &jacobian, &map.rounding());
+            let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
+            if let Some(linear) = linear {
+                let value = map.evaluate(&linear.centre).value;
+                self.statistics.evaluations += 1;
+                // Many targets are worth smaller charts, on which they are settled at first sight.
+                let norm = linear.norm();
+                let chart = norm < 1.0 && (count < MANY || norm < CLOSE);
+                let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
+                    self.chart(
+                        map,
+                        &linear,
+                        &contraction,
+                        &bounds,
+                        domain,
+                        &value,
+                        &values,
+                        targets,
+                        sink,
+                        monitor,
+                    )
+                });
+                match all_clear {
+                    Some(true) => {
+                        self.statistics.charts += 1;
+                        continue;
+                    }
+                    // Newton's method went astray for some target: nothing of this box was handed out yet.
+                    Some(false) => {}
+                    None => {
+                        if count <= FEW && all_absent(&linear, &value, &values, targets) {
+                            continue;
+                        }
+                    }
+                }
+                let smear = largest(&linear.smear);
+                if depth % 3 != 2 && !collapses(&bounds, &jacobian, smear) {
+                    axis = smear;
+                }
+            }
+            if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
+                axis = (0..N)
+                    .max_by(|a, b| {
+                        let part = |j: usize| bounds[j].radius() / domain[j].radius();
+                        part(*a).total_cmp(&part(*b))
+                    })
+                    .unwrap_or(0);
+            }
+            let [lower, upper] = map.split(&cell, axis);
+            self.stack.push((upper, depth + 1));
+            self.stack.push((lower, depth + 1));
+        }
+    }
+
+    /// Solves all targets of a chart; `false` when one stayed unclear (then none was handed out).
+    #[allow(clippy::too_many_arguments)]
+    fn chart<const N: usize, M, T, S>(
+        &mut self,
+        map: &M,
+        linear: &Linear<N>,
+        contraction: &Contraction<N>,
+        bounds: &[Enclosure; N],
+        domain: &[Enclosure; N],
+        value: &[f64; N],
+        values: &[Enclosure; N],
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) -> bool
+    where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, M::Seen>,
+    {
+        let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
+        let centre = Witness {
+            at: SVector::zeros(),
+            value: *value,
+        };
+        let whole = Region::around(&centre.at, &SVector::repeat(1.0));
+        let close = linear.norm() < CLOSE;
+        let mark = sink.mark();
+        let mut trail = Trail::new();
+        let mut clear = true;
+        let Self {
+            options, statistics, ..
+        } = self;
+        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
+        // Of the last target looked at, and of the first one found in the row.
+        let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
+        let mut row = usize::MAX;
+        let window = |q: &[f64; N]| linear.window(value, q);
+        targets.visit(values, &window, &mut |target| {
+            if monitor.cancelled() {
+                clear = false;
+                return false;
+            }
+            let q = &target.value;
+            if target.place[0] != row {
+                row = target.place[0];
+                last = first.take().or(last);
+            }
+            let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
+            region.intersect(&whole);
+            // What is near needs no second view.
+            if (!close || last.is_none()) && !region.is_empty() {
+                let start = linear.predict(&centre.at, value, q);
+                region.intersect(&Region::around(&start, &reach));
+            }
+            if region.is_empty() {
+                return true;
+            }
+            let guess = trail.guess(target.place).map_or(near, SVector::from);
+            let (mut witness, mut hit) = (None, false);
+            let outcome = chart.solve(
+                map,
+                guess,
+                region,
+                q,
+                &mut witness,
+                &mut statistics.evaluations,
+                &mut |s, from, seen| {
+                    trail.push(target.place, s.into());
+                    sink.found(Preimage {
+                        target: target.number,
+                        x: linear.point(&s),
+                        from,
+                        seen,
+                        orientation: linear.orientation,
+                    });
+                    hit = true;
+                },
+            );
+            if hit {
+                first = first.or(witness);
+            }
+            last = witness.or(last);
+            clear = outcome == Outcome::Settled;
+            clear
+        });
+        if !clear {
+            sink.forget(mark);
+        }
+        clear
+    }
+}
+
+/// Whether the mean value test excludes each target in the range.
+fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
+    linear: &Linear<N>,
+    value: &[f64; N],
+    values: &[Enclosure; N],
+    targets: &T,
+) -> bool {
+    let mut absent = true;
+    let origin = SVector::<f64, N>::zeros();
+    targets.visit(values, &all_of, &mut |target| {
+        let start = linear.predict(&origin, value, &target.value);
+        absent = (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
+        absent
+    });
+    absent
+}
+
+/// Whether the direction `axis` may have almost no length in the box, and adds little to the range of each value.
+///
+/// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
+/// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
+pub(crate) fn collapses<const N: usize>(bounds: &[Enclosure; N], jacobian: &[[Enclosure; N]; N], axis: usize) -> bool {
+    let half = bounds.map(Enclosure::radius);
+    jacobian.iter().all(|row| {
+        let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
+        let least = row[axis].lo.max(-row[axis].hi).max(0.0);
+        row[axis].magnitude() * half[axis] < 0.25 * most && least * half[axis] < 1e-3 * most
+    })
+}
+
+pub(crate) fn largest<const N: usize>(weights: &[f64; N]) -> usize {
+    (0..N).fold(0, |best, j| if weights[j] > weights[best] { j } else { best })
+}
+
+/// The variable that moves the values most, measured in `scales`, over the box.
+pub(crate) fn widest<const N: usize>(
+    bounds: &[Enclosure; N],
+    domain: &[Enclosure; N],
+    jacobian: &[[Enclosure; N]; N],
+    scales: &[f64; N],
+) -> usize {
+    let weights: [f64; N] = std::array::from_fn(|j| {
+        let reach: f64 = (0..N).map(|i| jacobian[i][j].magnitude() / scales[i]).sum();
+        reach * bounds[j].radius()
+    });
+    if weights.iter().all(|w| *w == 0.0) {
+        return largest::<N>(&std::array::from_fn(|j| bounds[j].radius() / domain[j].radius()));
+    }
+    largest(&weights)
+}

@@ -1,0 +1,265 @@
+//! What a cell's coefficients say of its equations: ranges, affine enclosures, derivatives, values.
+
+use super::layout::{Affine, Cell, Layout, MAX_DEGREE, Slopes};
+use super::models::{AffineForm, Doubt, Jet, Range, Value};
+use super::summand::{evaluate_part, hull_zeros, rest_range};
+use super::tape::{Model, Tape};
+use super::tensor;
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO};
+
+impl Layout {
+    /// Enclosures of the equations' values; also brings the cell's `scale` up to date.
+    pub(crate) fn ranges(&self, cell: &mut Cell) -> (Row, Row) {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        cell.scale = [0.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            let (l, h) = tensor::range(part.of(&cell.c));
+            let e = part.equation;
+            lo[e] += l;
+            hi[e] += h;
+            cell.scale[e] += tensor::greater(l.abs(), h.abs());
+        }
+        for e in 0..self.rows() {
+            // Sums of a few parts: a rounding each.
+            let pad = cell.noise[e] + self.remainder[e] + 4.0 * EPSILON * cell.scale[e];
+            lo[e] -= pad;
+            hi[e] += pad;
+        }
+        match &self.tape {
+            Some(tape) => self.combined_ranges(tape, cell, &(lo, hi)),
+            None => (lo, hi),
+        }
+    }
+
+    /// The equations' ranges by those of their leaves, and by their affine enclosures.
+    fn combined_ranges(&self, tape: &Tape, cell: &Cell, rows: &(Row, Row)) -> (Row, Row) {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        let affine = self.affine(cell, ZERO);
+        for e in 0..self.m {
+            let range = tape.run(e, |row| Range {
+                lo: rows.0[row],
+                hi: rows.1[row],
+            });
+            let slopes: f64 = affine.slope[e].iter().map(|s| s.abs()).sum();
+            let size = affine.constant[e].abs() + slopes;
+            let reach = (0.5 * slopes + affine.radius[e]) * (1.0 + 16.0 * EPSILON) + 4.0 * EPSILON * size;
+            lo[e] = range.lo.max(affine.constant[e] - reach);
+            hi[e] = range.hi.min(affine.constant[e] + reach);
+        }
+        (lo, hi)
+    }
+
+    /// The mean of each derivative over the cell (not rigorous; what uses it bounds the rest).
+    pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
+        let rows = self.mean_row_slopes(c);
+        let Some(tape) = &self.tape else { return rows };
+        let mut means = [0.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            let values = part.of(c);
+            means[part.equation] += values.iter().sum::<f64>() / values.len() as f64;
+        }
+        let mut slope = ZERO;
+        for (e, row) in slope.iter_mut().enumerate().take(self.m) {
+            let leaf = |r: usize| Value {
+                value: means[r],
+                gradient: rows[r],
+            };
+            *row = tape.run(e, leaf).gradient;
+        }
+        slope
+    }
+
+    fn mean_row_slopes(&self, c: &[f64]) -> Square {
+        let mut slope = ZERO;
+        for part in &self.parts {
+            let values = part.of(c);
+            for axis in &part.axes {
+                slope[part.equation][axis.variable] = tensor::mean_slope(values, axis.degree, axis.inner);
+            }
+        }
+        slope
+    }
+
+    /// An affine enclosure of each equation, with the given slopes unless equations are combined of leaves.
+    pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
+        let Some(tape) = &self.tape else {
+            return self.affine_rows(cell, slope);
+        };
+        let rows = self.affine_rows(cell, self.mean_row_slopes(&cell.c));
+        let mut affine = Affine {
+            constant: [0.0; MAX_UNKNOWNS],
+            slope: ZERO,
+            radius: [0.0; MAX_UNKNOWNS],
+        };
+        for e in 0..self.m {
+            let form = tape.run(e, |r| AffineForm {
+                constant: rows.constant[r],
+                slope: rows.slope[r],
+                radius: rows.radius[r],
+            });
+            (affine.constant[e], affine.slope[e], affine.radius[e]) = (form.constant, form.slope, form.radius);
+        }
+        affine
+    }
+
+    fn affine_rows(&self, cell: &Cell, slope: Square) -> Affine {
+        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        for part in &self.parts {
+            let (l, h) = rest_range(part, part.of(&cell.c), &slope[part.equation]);
+            lo[part.equation] += l;
+            hi[part.equation] += h;
+        }
+        let (mut constant, mut radius) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+        for e in 0..self.rows() {
+            let slopes: f64 = slope[e][..self.n].iter().map(|s| s.abs()).sum();
+            // Slopes' shares round, their sum does, and the difference.
+            let rounding = EPSILON * (2 * self.n + 8) as f64 * (cell.scale[e] + slopes);
+            constant[e] = 0.5 * (lo[e] + hi[e]);
+            radius[e] = 0.5 * (hi[e] - lo[e]) + rounding + cell.noise[e] + self.remainder[e];
+        }
+        Affine {
+            constant,
+            slope,
+            radius,
+        }
+    }
+
+    /// Enclosures of all derivatives over the cell.
+    pub(crate) fn slopes(&self, cell: &Cell) -> Slopes {
+        let (mut lo, mut hi) = (ZERO, ZERO);
+        for part in &self.parts {
+            let values = part.of(&cell.c);
+            let e = part.equation;
+            for axis in &part.axes {
+                let (l, h) = tensor::slopes(values, axis.degree, axis.inner);
+                let pad = 2.0 * axis.degree as f64 * (cell.noise[e] + 2.0 * EPSILON * cell.scale[e]);
+                lo[e][axis.variable] = l - pad;
+                hi[e][axis.variable] = h + pad;
+            }
+        }
+        for e in 0..self.rows() {
+            if self.slope_remainder[e] > 0.0 {
+                for j in 0..self.n {
+                    let pad = self.slope_remainder[e] * (cell.hi[j] - cell.lo[j]) * (1.0 + 4.0 * EPSILON);
+                    lo[e][j] -= pad;
+                    hi[e][j] += pad;
+                }
+            }
+        }
+        let Some(tape) = &self.tape else {
+            return Slopes { lo, hi };
+        };
+        let rows = Slopes { lo, hi };
+        for e in 0..self.m {
+            let jet = tape.run(e, |r| Jet {
+                value: self.row_range(cell, r),
+                slopes: std::array::from_fn(|j| Range {
+                    lo: rows.lo[r][j],
+                    hi: rows.hi[r][j],
+                }),
+            });
+            for j in 0..self.n {
+                (lo[e][j], hi[e][j]) = (jet.slopes[j].lo, jet.slopes[j].hi);
+            }
+        }
+        Slopes { lo, hi }
+    }
+
+    /// The range of one row.
+    fn row_range(&self, cell: &Cell, row: usize) -> Range {
+        let mut range = Range::constant(0.0);
+        let mut size = 0.0;
+        for part in self.parts.iter().filter(|p| p.equation == row) {
+            let (l, h) = tensor::range(part.of(&cell.c));
+            range.lo += l;
+            range.hi += h;
+            size += tensor::greater(l.abs(), h.abs());
+        }
+        let pad = cell.noise[row] + self.remainder[row] + 4.0 * EPSILON * size;
+        Range {
+            lo: range.lo - pad,
+            hi: range.hi + pad,
+        }
+    }
+
+    /// Value and derivatives of each equation at `s` (in coordinates in which the cell is `[0,1]ⁿ`), without error bounds.
+    pub(crate) fn evaluate(&self, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (Row, Square) {
+        let mut value = [0.0; MAX_UNKNOWNS];
+        let mut jacobian = ZERO;
+        for part in &self.parts {
+            let (v, gradient) = evaluate_part(part, part.of(c), s, buffer);
+            value[part.equation] += v;
+            for (axis, g) in part.axes.iter().zip(gradient) {
+                jacobian[part.equation][axis.variable] += g;
+            }
+        }
+        let Some(tape) = &self.tape else {
+            return (value, jacobian);
+        };
+        let (rows, slopes) = (value, jacobian);
+        for e in 0..self.m {
+            let leaf = |r: usize| Value {
+                value: rows[r],
+                gradient: slopes[r],
+            };
+            let whole = tape.run(e, leaf);
+            (value[e], jacobian[e]) = (whole.value, whole.gradient);
+        }
+        (value, jacobian)
+    }
+
+    /// What [`evaluate`](Self::evaluate)'s values can be wrong by, for `s` within `[0,1]ⁿ`.
+    pub(crate) fn value_error(&self, cell: &Cell, equation: usize) -> f64 {
+        let steps = (4 * self.degrees + 8 * self.n + 8) as f64;
+        let own = |row: usize| cell.noise[row] + self.remainder[row] + EPSILON * steps * cell.scale[row];
+        match &self.tape {
+            Some(tape) => {
+                let leaf = |row: usize| Doubt {
+                    range: self.row_range(cell, row),
+                    error: own(row),
+                };
+                tape.run(equation, leaf).error
+            }
+            None => own(equation),
+        }
+    }
+
+    /// Where along `variable` an equation can vanish, by the convex hulls of its slabs' ranges: calls `found` with each
+    /// equation's interval in `[0,1]`, or `None` where it cannot.
+    pub(crate) fn project(
+        &self,
+        cell: &Cell,
+        part_ranges: &[(f64, f64)],
+        totals: &(Row, Row),
+        variable: usize,
+        window: &mut (f64, f64),
+    ) {
+        if self.tape.is_some() {
+            // Hulls of leaves do not make hulls of products.
+            return;
+        }
+        let (mut low, mut high) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
+        for (part, own) in self.parts.iter().zip(part_ranges) {
+            let Some(axis) = part.axis(variable) else { continue };
+            let e = part.equation;
+            tensor::envelope(part.of(&cell.c), axis.degree, axis.inner, &mut low, &mut high);
+            // The other parts' ranges: the equation's (padded) less this part's.
+            let pad = 8.0 * EPSILON * cell.scale[e];
+            let (below, above) = (totals.0[e] - own.0 - pad, totals.1[e] - own.1 + pad);
+            for k in 0..=axis.degree {
+                low[k] += below;
+                high[k] += above;
+            }
+            hull_zeros(&low[..=axis.degree], &high[..=axis.degree], window);
+            if window.0 > window.1 {
+                return;
+            }
+        }
+    }
+
+    /// Ranges of the parts, for [`project`](Self::project).
+    pub(crate) fn part_ranges(&self, cell: &Cell, out: &mut Vec<(f64, f64)>) {
+        out.clear();
+        out.extend(self.parts.iter().map(|p| tensor::range(p.of(&cell.c))));
+    }
+}

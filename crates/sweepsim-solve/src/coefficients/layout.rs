@@ -1,0 +1,189 @@
+//! Where the coefficients of a system lie, and what can be read off them: ranges, slopes, affine enclosures, values, each
+//! with its rounding.
+//!
+//! An equation is a sum of *parts* in disjoint sets of variables, each a flat tensor. Bounds of such a sum are sums of bounds
+//! and lose nothing, because the parts vary independently; `p(x) + q(y)` of degree 6 needs 14 coefficients, not 49.
+//!
+//! Errors come in two kinds. *Noise* bounds the difference of each equation's coefficients from those of a polynomial: a
+//! derivative then errs by at most `2 d · noise`. The *remainder* bounds the difference of the polynomial from the function that it
+//! stands for, and of its derivatives from that function's; it does not change under subdivision (but derivatives scale).
+
+use super::models::Range;
+use super::tape::Tape;
+use super::tensor;
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square};
+use smallvec::SmallVec;
+
+/// The highest degree in one variable.
+pub const MAX_DEGREE: usize = 63;
+
+/// A variable that a part depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    pub variable: usize,
+    pub degree: usize,
+    /// Coefficients between neighbours along this axis.
+    pub inner: usize,
+}
+
+/// One summand of an equation (or of a leaf of one).
+#[derive(Clone, Debug)]
+pub(crate) struct Summand {
+    /// The row that it belongs to: an equation, or where equations are combined from leaves, a leaf.
+    pub equation: usize,
+    pub offset: usize,
+    pub len: usize,
+    /// Fastest first.
+    pub axes: SmallVec<[Axis; 4]>,
+}
+
+impl Summand {
+    pub(super) fn of<'a>(&self, c: &'a [f64]) -> &'a [f64] {
+        &c[self.offset..self.offset + self.len]
+    }
+
+    pub(super) fn of_mut<'a>(&self, c: &'a mut [f64]) -> &'a mut [f64] {
+        &mut c[self.offset..self.offset + self.len]
+    }
+
+    pub(super) fn axis(&self, variable: usize) -> Option<Axis> {
+        self.axes.iter().copied().find(|a| a.variable == variable)
+    }
+}
+
+/// All parts of a system.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Layout {
+    /// Variables.
+    pub n: usize,
+    /// Equations.
+    pub m: usize,
+    pub parts: Vec<Summand>,
+    /// Coefficients in all.
+    pub len: usize,
+    /// Value remainder of each equation.
+    pub remainder: Row,
+    /// Remainder of each equation's derivatives with respect to coordinates in which the domain is `[0,1]ⁿ`.
+    pub slope_remainder: Row,
+    /// Largest degree sum of an equation: for the rounding of values.
+    pub degrees: usize,
+    /// The first coefficients, and their noise.
+    pub first: Vec<f64>,
+    pub first_noise: Row,
+    /// What each equation was multiplied by: a power of two.
+    pub factor: Row,
+    /// How rows make equations; absent where each row is one.
+    pub tape: Option<Tape>,
+}
+
+/// A box with the coefficients of all equations over it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cell {
+    /// In coordinates in which the domain is `[0,1]ⁿ`; exact.
+    pub lo: Row,
+    pub hi: Row,
+    /// Error of each equation's coefficients.
+    pub noise: Row,
+    /// Bound of their sizes.
+    pub scale: Row,
+    pub c: Vec<f64>,
+}
+
+/// An affine function with a bound of the rest, per equation: `fᵢ(z) ∈ constant + Σ slope·z ± radius` for `z ∈ [−½, ½]ⁿ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Affine {
+    pub constant: Row,
+    pub slope: Square,
+    pub radius: Row,
+}
+
+/// Ranges of all first derivatives over a cell, in coordinates in which it is `[0,1]ⁿ`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Slopes {
+    pub lo: Square,
+    pub hi: Square,
+}
+
+impl Layout {
+    /// Equations, or leaves of which these are combined: what has coefficients, noise, remainder.
+    pub(crate) fn rows(&self) -> usize {
+        self.tape.as_ref().map_or(self.m, |p| p.leaves)
+    }
+
+    /// A cell that holds the first coefficients.
+    pub(crate) fn root(&self) -> Cell {
+        let mut cell = Cell {
+            lo: [0.0; MAX_UNKNOWNS],
+            hi: [1.0; MAX_UNKNOWNS],
+            noise: self.first_noise,
+            scale: [0.0; MAX_UNKNOWNS],
+            c: self.first.clone(),
+        };
+        self.ranges(&mut cell);
+        cell
+    }
+
+    /// Whether some row's coefficients are mostly noise, and might be less so if computed anew.
+    pub(crate) fn noisy(&self, cell: &Cell, totals: &(Row, Row), share: f64) -> bool {
+        (0..self.rows()).any(|e| {
+            let size = match self.tape {
+                Some(_) => cell.scale[e],
+                None => totals.0[e].abs().max(totals.1[e].abs()),
+            };
+            cell.noise[e] > share * size && cell.noise[e] > 4.0 * self.first_noise[e]
+        })
+    }
+
+    /// Whether an equation is zero on the cell, up to noise.
+    pub(crate) fn vanishes(&self, cell: &Cell, totals: &(Row, Row), equation: usize) -> bool {
+        let size = totals.0[equation].abs().max(totals.1[equation].abs());
+        match self.tape {
+            Some(_) => size.is_finite() && size <= 2.5 * self.value_error(cell, equation),
+            None => {
+                let error = cell.noise[equation] + self.remainder[equation];
+                size <= 2.5 * error + 64.0 * EPSILON * cell.scale[equation]
+            }
+        }
+    }
+
+    /// A bound of an equation's size on the cell (if it is finite).
+    pub(crate) fn size(&self, cell: &Cell, equation: usize) -> f64 {
+        match &self.tape {
+            Some(tape) => tape
+                .run(equation, |row| Range {
+                    lo: -cell.scale[row],
+                    hi: cell.scale[row],
+                })
+                .magnitude(),
+            None => cell.scale[equation],
+        }
+    }
+
+    /// Whether an equation has a variable.
+    pub(crate) fn depends(&self, equation: usize, variable: usize) -> bool {
+        let has = |row: usize| {
+            let mut own = self.parts.iter().filter(|p| p.equation == row);
+            own.any(|p| p.axis(variable).is_some())
+        };
+        match &self.tape {
+            Some(tape) => tape.any(equation, has),
+            None => has(equation),
+        }
+    }
+
+    /// Whether an equation is zero on the whole domain, up to its noise.
+    pub(crate) fn nothing(&self, equation: usize) -> bool {
+        let zero = |row: usize| {
+            let own = self.parts.iter().filter(|p| p.equation == row);
+            let size: f64 = own
+                .map(|p| tensor::range(p.of(&self.first)))
+                .map(|(l, h)| tensor::greater(l.abs(), h.abs()))
+                .sum();
+            size <= 8.0 * (self.first_noise[row] + self.remainder[row])
+        };
+        match &self.tape {
+            Some(tape) => tape.any(equation, zero),
+            None => zero(equation),
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! The coefficients of a system: how they lie, how boxes are cut, and what can be read off them.
+
+mod enclose;
+mod layout;
+mod models;
+mod stack;
+mod subdivide;
+mod summand;
+mod tape;
+pub(crate) mod tensor;
+
+pub use layout::MAX_DEGREE;
+pub(crate) use layout::{Affine, Axis, Cell, Layout, Slopes, Summand};
+pub(crate) use stack::{excluded, pop, push, within_domain};
+pub(crate) use tape::{DEEPEST, Step, Tape};

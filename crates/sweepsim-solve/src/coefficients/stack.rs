@@ -1,0 +1,35 @@
+//! Cells on a stack of numbers, and the cheapest questions about them.
+
+use super::layout::{Cell, Layout};
+use crate::numbers::Row;
+
+pub(crate) fn within_domain(cell: &Cell, n: usize) -> bool {
+    (0..n).all(|j| cell.lo[j] >= 0.0 && cell.hi[j] <= 1.0)
+}
+
+pub(crate) fn excluded(totals: &(Row, Row), m: usize) -> bool {
+    (0..m).any(|i| totals.0[i] > 0.0 || totals.1[i] < 0.0)
+}
+
+pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
+    let (n, m) = (layout.n, layout.rows());
+    stack.extend_from_slice(&cell.lo[..n]);
+    stack.extend_from_slice(&cell.hi[..n]);
+    stack.extend_from_slice(&cell.noise[..m]);
+    stack.extend_from_slice(&cell.scale[..m]);
+    stack.extend_from_slice(&cell.c);
+}
+
+pub(crate) fn pop(stack: &mut Vec<f64>, cell: &mut Cell, layout: &Layout) {
+    let (n, m) = (layout.n, layout.rows());
+    let size = 2 * n + 2 * m + layout.len;
+    let start = stack.len() - size;
+    let record = &stack[start..];
+    cell.lo[..n].copy_from_slice(&record[..n]);
+    cell.hi[..n].copy_from_slice(&record[n..2 * n]);
+    cell.noise[..m].copy_from_slice(&record[2 * n..2 * n + m]);
+    cell.scale[..m].copy_from_slice(&record[2 * n + m..2 * n + 2 * m]);
+    cell.c.clear();
+    cell.c.extend_from_slice(&record[2 * n + 2 * m..]);
+    stack.truncate(start);
+}

@@ -1,0 +1,62 @@
+//! 0-D: all solutions of `n` equations in `n` unknowns.
+//!
+//! For each box, the cheapest test first:
+//!
+//! 1. *Sign*: an equation whose coefficients (with their rounding bound) have one sign excludes the box.
+//! 2. *Linear*: with the mean Jacobian `A`, each equation is `constant + A z + rest`, `|rest| ≤ r`, over the box (`z` from its
+//!    centre). With `K ≈ A⁻¹`, every root lies in `N = (I − K A) Z − K constant ± |K| r`. If `N` misses the box, it has none.
+//! 3. *Certificate*: if `N` is small, take a box `C` around it (also beyond the box's faces). If `‖I − K J(C)‖∞ < 1`, the map is
+//!    injective on `C`; if `N(C) ⊂ C`, the map `z ↦ z − K f(z)` takes `C` into itself, so by Brouwer there is a root. Newton's method
+//!    finds it, and the same `K` bounds its error. All roots of the box lie in `C`: the box is settled.
+//! 4. *Projection*: where the convex hull of an equation's coefficient ranges along an axis meets 0 (Sherbrooke, Patrikalakis 1993).
+//! 5. Reduce, or split a little off the middle, in the direction in which the Jacobian varies most.
+//!
+//! A box at the smallest size stays open, with its cause. A root on a face between boxes is found from both, and is known to be the
+//! same because each is the only one in a box `C` that also holds the other: never because it is near.
+
+mod certify;
+#[cfg(feature = "rayon")]
+mod parallel;
+mod pieces;
+mod solver;
+mod treat;
+
+use crate::Enclosure;
+use crate::search::{SolveStatistics, UnresolvedBox};
+pub use solver::PointSolver;
+
+/// Where a certified root lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RootLocation {
+    /// Inside the region.
+    Inside,
+    /// On the region's boundary, or nearer to it than the root's enclosure is wide: certified on a larger box.
+    Boundary,
+}
+
+/// A root with its certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root {
+    /// The root, as near as numbers allow.
+    pub point: Vec<f64>,
+    /// Holds the root.
+    pub enclosure: Vec<Enclosure>,
+    /// Holds no other root. It may reach beyond the domain.
+    pub unique_in: Vec<Enclosure>,
+    /// The sign of `det ∂f/∂x` at the root (and wherever the root is unique).
+    pub orientation: i8,
+    /// Inside or on the boundary.
+    pub location: RootLocation,
+}
+
+/// All roots of a system in a region: each lies in the enclosure of one of `roots`, or in one of `unresolved`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// Simple roots, each certified, in lexical order.
+    pub roots: Vec<Root>,
+    /// What could not be settled.
+    pub unresolved: Vec<UnresolvedBox>,
+    /// What the search did.
+    pub statistics: SolveStatistics,
+}

@@ -1,0 +1,80 @@
+//! The 0-D search on several threads. What is found depends neither on their number nor on who finishes first: the search goes breadth
+//! first until there are [`PARTS`] boxes, which are searched apart, and their results are joined in the boxes' order.
+
+use super::{PointSolver, Points};
+use crate::coefficients::{Cell, pop};
+use crate::search::{SolveError, Watch};
+use crate::{CancelOnly, Monitor, System};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Boxes that are searched apart: many more than threads, since they differ in cost.
+const PARTS: usize = 128;
+
+impl PointSolver {
+    /// As [`solve`](Self::solve), on the threads of the current rayon pool. The result is the same for any number of threads (unless
+    /// [`SolveOptions::time`](crate::SolveOptions::time) is set or the monitor cancels it); it may differ from `solve`'s in the last digits, and in how boxes that stay
+    /// open are cut. Budgets hold for each of at most 128 parts of the search; the monitor
+    /// [advances](Monitor::advance) by parts, and [visits](Monitor::visit) no boxes.
+    ///
+    /// ```
+    /// use sweepsim_solve::{Enclosure, PointSolver, System};
+    /// use sweepsim_spline::Bernstein;
+    ///
+    /// let x = Bernstein::from_fn(&[3], |i| [1.0, -2.0, 2.0, -1.0][i[0]])?;
+    /// let system = System::new(&[Enclosure::new(0.0, 1.0)], [&x])?;
+    /// let points = PointSolver::default().solve_parallel(&system, &())?;
+    /// assert_eq!(points.roots.len(), 3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    pub fn solve_parallel(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Points, SolveError> {
+        self.check(system)?;
+        self.restart();
+        let layout = &system.layout;
+        let mut watch = Watch::new(&self.options);
+        let mut waiting: VecDeque<(Cell, u32)> = VecDeque::from([(system.root(), 0)]);
+        while waiting.len() < PARTS {
+            let Some((cell, depth)) = waiting.pop_front() else {
+                break;
+            };
+            self.cell = cell;
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
+            if let Some(cause) = stop {
+                self.leave(cause);
+                while let Some((cell, _)) = waiting.pop_front() {
+                    self.cell = cell;
+                    self.leave(cause);
+                }
+                break;
+            }
+            self.visit(system, depth);
+            while let Some(depth) = self.depths.pop() {
+                let mut cell = Cell::default();
+                pop(&mut self.stack, &mut cell, layout);
+                waiting.push_back((cell, depth));
+            }
+        }
+        let (done, total) = (AtomicUsize::new(0), waiting.len());
+        let parts: Vec<Self> = waiting
+            .into_par_iter()
+            .map(|(cell, depth)| {
+                let mut part = Self::new(self.options.clone());
+                part.search(system, &cell, depth, &CancelOnly(monitor));
+                monitor.advance(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+                part
+            })
+            .collect();
+        for part in parts {
+            self.found.extend(part.found);
+            self.open.extend(part.open);
+            self.statistics.merge(&part.statistics);
+        }
+        self.finish(layout.n);
+        Ok(self.points(system))
+    }
+}

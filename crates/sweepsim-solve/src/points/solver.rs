@@ -1,0 +1,227 @@
+//! The 0-D solver: its search, and what follows it.
+
+use super::certify::Found;
+use super::{Points, Root, RootLocation};
+use crate::coefficients::{Cell, pop, push};
+use crate::numbers::{Double, Row};
+use crate::search::{Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, open_box, unite};
+use crate::{Monitor, System};
+
+/// The 0-D solver, with memory that it keeps from one system to the next.
+///
+/// ```
+/// use sweepsim_solve::{Enclosure, PointSolver, System};
+/// use sweepsim_spline::Bernstein;
+///
+/// // x² + y² = 1 and y = x, on [−2, 2]². In u = (x + 2)/4: x² = 16 u² − 16 u + 4 has coefficients 4, −4, 4.
+/// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [4.0, -4.0, 4.0][i[axis]]).unwrap();
+/// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 1.0));
+/// let line = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
+/// let system = System::new(&[Enclosure::new(-2.0, 2.0); 2], [&circle, &line])?;
+/// let points = PointSolver::default().solve(&system, &())?;
+/// assert_eq!(points.roots.len(), 2);
+/// assert!(points.unresolved.is_empty());
+/// assert!(points.roots[1].enclosure[0].contains(0.5f64.sqrt()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct PointSolver {
+    /// Limits.
+    pub options: SolveOptions,
+    pub(crate) stack: Vec<f64>,
+    pub(crate) depths: Vec<u32>,
+    pub(crate) cell: Cell,
+    pub(super) trial: Cell,
+    pub(super) lower: Cell,
+    pub(super) buffer: Vec<f64>,
+    pub(super) doubles: Vec<Double>,
+    pub(super) ranges: Vec<(f64, f64)>,
+    pub(super) failures: u32,
+    pub(crate) found: Vec<Found>,
+    pub(crate) open: Vec<Open>,
+    pub(crate) statistics: SolveStatistics,
+}
+
+impl PointSolver {
+    /// A solver with these limits.
+    #[must_use]
+    pub fn new(options: SolveOptions) -> Self {
+        Self {
+            options,
+            ..Self::default()
+        }
+    }
+
+    /// All roots of the system in its region.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
+    pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Points, SolveError> {
+        self.check(system)?;
+        self.run(system, monitor);
+        Ok(self.points(system))
+    }
+
+    /// Whether the system and the limits can be meant.
+    pub(crate) fn check(&self, system: &System) -> Result<(), SolveError> {
+        let (n, m) = (system.layout.n, system.layout.m);
+        if m != n {
+            return Err(SolveError::Equations {
+                equations: m,
+                variables: n,
+                expected: n,
+            });
+        }
+        if !(1e-14..=1.0).contains(&self.options.smallest) {
+            return Err(SolveError::Smallest);
+        }
+        Ok(())
+    }
+
+    /// What was found, in the domain's coordinates.
+    pub(crate) fn points(&mut self, system: &System) -> Points {
+        let n = system.layout.n;
+        self.found.sort_by(|a, b| {
+            let ends = a.point[..n].iter().zip(&b.point[..n]);
+            ends.map(|(x, y)| x.total_cmp(y))
+                .find(|o| o.is_ne())
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        let root = |f: &Found| Root {
+            point: system.outer_point(&f.point),
+            enclosure: system.outward(&f.lo, &f.hi),
+            unique_in: system.inward(&f.unique_lo, &f.unique_hi),
+            orientation: f.orientation,
+            location: if f.boundary {
+                RootLocation::Boundary
+            } else {
+                RootLocation::Inside
+            },
+        };
+        Points {
+            roots: self.found.iter().map(root).collect(),
+            unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
+            statistics: self.statistics,
+        }
+    }
+
+    /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
+    pub(crate) fn run(&mut self, system: &System, monitor: &dyn Monitor) {
+        self.restart();
+        let root = system.root();
+        self.search(system, &root, 0, monitor);
+        self.finish(system.layout.n);
+    }
+
+    /// Forgets what was found.
+    pub(crate) fn restart(&mut self) {
+        self.statistics = SolveStatistics::default();
+        self.found.clear();
+        self.open.clear();
+        self.stack.clear();
+        self.depths.clear();
+        self.failures = 0;
+    }
+
+    /// Counts roots once, and unites open boxes.
+    pub(crate) fn finish(&mut self, n: usize) {
+        self.identify(n);
+        // An open box inside a box where a found root is the only one holds nothing else.
+        let found = &self.found;
+        self.open.retain(|o| {
+            !found
+                .iter()
+                .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
+        });
+        unite(&mut self.open, n);
+    }
+
+    /// The depth-first search from one cell at some depth; adds to `found` and `open`.
+    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, monitor: &dyn Monitor) {
+        let layout = &system.layout;
+        let mut watch = Watch::new(&self.options);
+        push(&mut self.stack, first, layout);
+        self.depths.push(depth);
+        while let Some(depth) = self.depths.pop() {
+            pop(&mut self.stack, &mut self.cell, layout);
+            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
+            if let Some(cause) = stop {
+                self.leave(cause);
+                while self.depths.pop().is_some() {
+                    pop(&mut self.stack, &mut self.cell, layout);
+                    self.leave(cause);
+                }
+                break;
+            }
+            let fate = self.visit(system, depth);
+            if monitor.visits() {
+                // Where the cell was split, `cell` is the upper part by now and `lower` the other.
+                let lo = if fate == Fate::Split {
+                    &self.lower.lo
+                } else {
+                    &self.cell.lo
+                };
+                monitor.visit(&system.outward(lo, &self.cell.hi), depth, fate);
+            }
+        }
+    }
+
+    /// Treats the current cell, and counts.
+    pub(crate) fn visit(&mut self, system: &System, depth: u32) -> Fate {
+        self.statistics.boxes += 1;
+        self.statistics.depth = self.statistics.depth.max(depth);
+        let fate = self.treat(system, depth);
+        self.statistics.count(fate);
+        fate
+    }
+
+    /// Leaves the current cell open.
+    pub(crate) fn leave(&mut self, cause: Cause) {
+        self.open.push(Open {
+            lo: self.cell.lo,
+            hi: self.cell.hi,
+            cause,
+            boxes: 1,
+        });
+    }
+
+    /// Drops roots that were found from several boxes: only one whose enclosure leaves its box can have been.
+    fn identify(&mut self, n: usize) {
+        let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
+        let mut kept: Vec<Found> = Vec::with_capacity(self.found.len());
+        let mut straddling: Vec<usize> = Vec::new();
+        for next in self.found.drain(..) {
+            let same = if next.straddles {
+                kept.iter().position(|k| touches(k, &next))
+            } else {
+                straddling.iter().copied().find(|k| touches(&kept[*k], &next))
+            };
+            let Some(same) = same else {
+                if next.straddles {
+                    straddling.push(kept.len());
+                }
+                kept.push(next);
+                continue;
+            };
+            let first = &mut kept[same];
+            let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
+                || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n);
+            first.boundary |= next.boundary;
+            if !one {
+                // Two enclosures that meet, neither within the other's box: one root or two.
+                self.open.push(Open {
+                    lo: next.lo,
+                    hi: next.hi,
+                    cause: Cause::Smallest,
+                    boxes: 1,
+                });
+            }
+        }
+        self.found = kept;
+    }
+}
+
+fn inside(lo: &Row, hi: &Row, outer_lo: &Row, outer_hi: &Row, n: usize) -> bool {
+    (0..n).all(|j| outer_lo[j] <= lo[j] && hi[j] <= outer_hi[j])
+}

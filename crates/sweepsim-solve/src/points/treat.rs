@@ -1,0 +1,292 @@
+//! The tests of one box, in the order of their cost, and its reduction or split.
+
+use super::certify::{Found, newton_box, unique_root};
+use super::solver::PointSolver;
+use crate::System;
+use crate::coefficients::{Cell, Layout, excluded, push, within_domain};
+use crate::numbers::{CUT, EPSILON, MAX_UNKNOWNS, Row, Square, inverse};
+use crate::search::{Cause, Fate};
+
+/// The largest half width `h` of `N`, in sides of the box, at which a certificate is tried: for a quadratic, `‖I − K J‖` is
+/// about `8 h` on the box and `24 h²` on the box three times as wide as `N`. After a failure it must have shrunk by [`AGAIN`].
+const TRY: f64 = 0.2;
+const AGAIN: f64 = 0.6;
+/// The least half width of the box `C`, in sides of the box.
+const LEAST: f64 = 1.0 / 16.0;
+/// How far beyond the domain a certificate may reach, in its sides: the bounds of separated forms hold so far.
+pub(crate) const BEYOND: f64 = 1.0 / 64.0;
+/// A reduction to more than this part of each side is not worth its cost.
+const WORTH: f64 = 0.75;
+/// No side shrinks below this part in one reduction, nor below [`THIN`] of the widest.
+const SHRINK: f64 = 1.0 / 64.0;
+const THIN: f64 = 1e-8;
+/// The least side, in those of the domain: some units in the last place.
+const LEAST_SIDE: f64 = 4e-15;
+/// Noise above this part of an equation's size makes its coefficients worth computing anew.
+const NOISY: f64 = 1.5e-8;
+/// Where an equation vanishes up to noise because a side that it depends on is below this part of another, the other is split all the same: the cell may
+/// hold several simple roots.
+const SQUEEZED: f64 = 1.0 / 64.0;
+/// Before a cell stays open, certificates are tried on boxes of so many times its width, each so many times as wide as the one before.
+const WIDER: f64 = 16.0;
+const WIDER_TRIES: u32 = 6;
+/// Where so many cells were tried in vain, the rest is not: a continuum of solutions.
+const WIDER_FAILURES: u32 = 64;
+
+#[expect(clippy::large_enum_variant, reason = "made once an attempt, and taken apart at once")]
+enum Verdict {
+    Root(Found),
+    Elsewhere,
+    Unclear,
+}
+
+impl PointSolver {
+    /// Tests, reduces and, if need be, splits the current cell (pushing the parts).
+    pub(super) fn treat(&mut self, system: &System, depth: u32) -> Fate {
+        let layout = &system.layout;
+        let n = layout.n;
+        let mut threshold = TRY;
+        let (totals, inverted) = loop {
+            let mut totals = layout.ranges(&mut self.cell);
+            if excluded(&totals, n) {
+                return Fate::Sign;
+            }
+            if layout.noisy(&self.cell, &totals, NOISY) && within_domain(&self.cell, n) {
+                layout.refresh(&mut self.cell, &mut self.doubles);
+                self.statistics.refreshed += 1;
+                totals = layout.ranges(&mut self.cell);
+                if excluded(&totals, n) {
+                    return Fate::Sign;
+                }
+            }
+            let affine = layout.affine(&self.cell, layout.mean_slopes(&self.cell.c));
+            let inverted = inverse(&affine.slope, n);
+            let mut window = [(0.0, 1.0); MAX_UNKNOWNS];
+            if let Some((k, _)) = &inverted {
+                let (centre, half) = newton_box(&affine, k, n);
+                for j in 0..n {
+                    window[j].0 = (0.5 + centre[j] - half[j]).max(0.0);
+                    window[j].1 = (0.5 + centre[j] + half[j]).min(1.0);
+                    if window[j].0 > window[j].1 {
+                        return Fate::Linear;
+                    }
+                }
+                let largest = half[..n].iter().fold(0.0, |m: f64, h| m.max(*h));
+                let bounded = half[..n].iter().all(|h| h.is_finite());
+                if bounded && largest <= threshold {
+                    threshold = AGAIN * largest;
+                    match self.certify(system, &centre, &half) {
+                        Verdict::Root(found) => {
+                            self.found.push(found);
+                            return Fate::Certified;
+                        }
+                        Verdict::Elsewhere => return Fate::Elsewhere,
+                        Verdict::Unclear => {}
+                    }
+                }
+            }
+            layout.part_ranges(&self.cell, &mut self.ranges);
+            for j in 0..n {
+                layout.project(&self.cell, &self.ranges, &totals, j, &mut window[j]);
+                if window[j].0 > window[j].1 {
+                    return Fate::Projection;
+                }
+            }
+            if !self.reduce(layout, &mut window) {
+                break (totals, inverted);
+            }
+            self.statistics.reductions += 1;
+        };
+        let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
+        let vanishing = |i: usize| layout.vanishes(&self.cell, &totals, i);
+        let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
+        let thin = |j: usize| width(j) < SQUEEZED * width(widest);
+        let squeezed = !(0..n).all(vanishing)
+            && (0..n).all(|i| !vanishing(i) || ((0..n).any(|j| thin(j) && layout.depends(i, j)) && !layout.nothing(i)));
+        let cause = if (0..n).all(|j| width(j) <= self.options.smallest) {
+            Some(Cause::Smallest)
+        } else if (0..n).any(vanishing) && !squeezed {
+            Some(Cause::Vanishing)
+        } else if depth >= self.options.depth {
+            Some(Cause::Depth)
+        } else {
+            None
+        };
+        if let Some(cause) = cause {
+            return self.settle_or_leave(system, cause);
+        }
+        let axis = if (0..n).any(vanishing) {
+            widest
+        } else {
+            self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k))
+        };
+        let (lo, hi) = (self.cell.lo[axis], self.cell.hi[axis]);
+        let at = lo + CUT * (hi - lo);
+        if !(at > lo && at < hi) {
+            return self.settle_or_leave(system, Cause::Smallest);
+        }
+        layout.split(&mut self.cell, &mut self.lower, axis, at);
+        push(&mut self.stack, &self.cell, layout);
+        push(&mut self.stack, &self.lower, layout);
+        self.depths.push(depth + 1);
+        self.depths.push(depth + 1);
+        Fate::Split
+    }
+
+    /// Shrinks the cell to the window (in its sides) where that is worth it.
+    fn reduce(&mut self, layout: &Layout, window: &mut [(f64, f64); MAX_UNKNOWNS]) -> bool {
+        let n = layout.n;
+        if !window[..n].iter().any(|w| w.1 - w.0 < WORTH) {
+            return false;
+        }
+        let widest = (0..n).fold(0.0, |m: f64, j| {
+            m.max((window[j].1 - window[j].0) * (self.cell.hi[j] - self.cell.lo[j]))
+        });
+        let mut worth = false;
+        for j in 0..n {
+            let (lo, hi) = (self.cell.lo[j], self.cell.hi[j]);
+            let side = hi - lo;
+            let least = SHRINK.max(THIN * widest / side).max(LEAST_SIDE / side).min(1.0);
+            let (mut a, mut b) = window[j];
+            // A tenth of slack on either side, and at least the least width.
+            let middle = 0.5 * (a + b);
+            let half = (0.55 * (b - a)).max(0.5 * least);
+            (a, b) = (middle - half, middle + half);
+            if a < 0.0 {
+                (a, b) = (0.0, (b - a).min(1.0));
+            } else if b > 1.0 {
+                (a, b) = ((1.0 - (b - a)).max(0.0), 1.0);
+            }
+            if b - a > 0.9 {
+                continue;
+            }
+            let new_lo = if a > 0.0 { (lo + a * side).max(lo) } else { lo };
+            let new_hi = if b < 1.0 { (lo + b * side).min(hi) } else { hi };
+            let smaller = new_lo < new_hi && (new_lo != lo || new_hi != hi);
+            if !smaller {
+                continue;
+            }
+            worth |= new_hi - new_lo < 0.85 * side;
+            layout.restrict(&mut self.cell, j, new_lo, new_hi);
+        }
+        worth
+    }
+
+    /// The axis to split across.
+    fn direction(&self, layout: &Layout, depth: u32, inverse: Option<&Square>) -> usize {
+        let n = layout.n;
+        let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
+        let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
+        if depth % 4 == 3 {
+            return widest;
+        }
+        let slopes = layout.slopes(&self.cell);
+        let mut weight = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            for k in 0..n {
+                match inverse {
+                    Some(inverse) => {
+                        let radius = 0.5 * (slopes.hi[k][j] - slopes.lo[k][j]);
+                        for i in 0..n {
+                            weight[j] += inverse[i][k].abs() * radius;
+                        }
+                    }
+                    None => {
+                        let size = layout.size(&self.cell, k);
+                        if size > 0.0 {
+                            weight[j] += slopes.hi[k][j].abs().max(slopes.lo[k][j].abs()) / size;
+                        }
+                    }
+                }
+            }
+            if !weight[j].is_finite() || width(j) <= self.options.smallest.max(THIN * width(widest)) {
+                weight[j] = -1.0;
+            }
+        }
+        let best = (0..n).fold(0, |best, j| if weight[j] > weight[best] { j } else { best });
+        if weight[best] > 0.0 { best } else { widest }
+    }
+
+    /// Tries to prove that a box around the candidate holds exactly one root, and finds it.
+    fn certify(&mut self, system: &System, centre: &Row, half: &Row) -> Verdict {
+        let layout = &system.layout;
+        let n = layout.n;
+        self.statistics.attempts += 1;
+        let cell = &self.cell;
+        let trial = &mut self.trial;
+        trial.c.clear();
+        trial.c.extend_from_slice(&cell.c);
+        (trial.lo, trial.hi, trial.noise, trial.scale) = (cell.lo, cell.hi, cell.noise, cell.scale);
+        let limit = if system.bounded() { 0.0 } else { BEYOND };
+        for j in 0..n {
+            let side = cell.hi[j] - cell.lo[j];
+            let reach = (1.5 * half[j]).max(LEAST);
+            let middle = 0.5 + centre[j];
+            let lo = (cell.lo[j] + (middle - reach) * side).max(-limit);
+            let hi = (cell.lo[j] + (middle + reach) * side).min(1.0 + limit);
+            let wide = hi - lo > 64.0 * EPSILON * lo.abs().max(hi.abs());
+            if !wide {
+                return Verdict::Unclear;
+            }
+            layout.restrict(trial, j, lo, hi);
+        }
+        match unique_root(layout, trial, &mut self.buffer) {
+            Some(unique) => placed(system, cell, unique),
+            None => Verdict::Unclear,
+        }
+    }
+
+    /// The last resort for a cell that is about to stay open: a certificate on a larger box around it. Reductions may have made the
+    /// cell so small that noise hides its slopes, though the root is simple.
+    fn settle_or_leave(&mut self, system: &System, cause: Cause) -> Fate {
+        let layout = &system.layout;
+        let n = layout.n;
+        let limit = if system.bounded() { 0.0 } else { BEYOND };
+        let cell = &self.cell;
+        let widest = (0..n).fold(0.0, |w: f64, j| w.max(cell.hi[j] - cell.lo[j]));
+        let useful = cause != Cause::Depth && self.failures < WIDER_FAILURES;
+        let mut reach = widest;
+        for _ in 0..if useful { WIDER_TRIES } else { 0 } {
+            reach *= WIDER;
+            if reach > 0.5 {
+                break;
+            }
+            let trial = &mut self.trial;
+            trial.c.resize(layout.len, 0.0);
+            for j in 0..n {
+                trial.lo[j] = (cell.lo[j] - reach).max(-limit);
+                trial.hi[j] = (cell.hi[j] + reach).min(1.0 + limit);
+            }
+            layout.refresh(trial, &mut self.doubles);
+            self.statistics.refreshed += 1;
+            self.statistics.attempts += 1;
+            let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
+                continue;
+            };
+            match placed(system, cell, unique) {
+                Verdict::Root(found) => {
+                    self.found.push(found);
+                    return Fate::Certified;
+                }
+                Verdict::Elsewhere => return Fate::Elsewhere,
+                Verdict::Unclear => {}
+            }
+        }
+        self.failures += u32::from(useful);
+        self.leave(cause);
+        Fate::Unresolved
+    }
+}
+
+/// Where the only root of a box around the cell lies.
+fn placed(system: &System, cell: &Cell, unique: Found) -> Verdict {
+    let mut found = unique;
+    for j in 0..system.layout.n {
+        if unique.hi[j] < cell.lo[j] || unique.lo[j] > cell.hi[j] {
+            return Verdict::Elsewhere;
+        }
+        found.straddles |= unique.lo[j] < cell.lo[j] || unique.hi[j] > cell.hi[j];
+        found.boundary |= unique.lo[j] <= system.region.0[j] || unique.hi[j] >= system.region.1[j];
+    }
+    Verdict::Root(found)
+}

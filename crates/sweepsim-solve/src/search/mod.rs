@@ -1,0 +1,14 @@
+//! What all searches share: limits, counts, monitors, and what stays open.
+
+mod error;
+mod limits;
+mod monitor;
+mod open;
+mod picture;
+
+pub use error::SolveError;
+pub(crate) use limits::Watch;
+pub use limits::{Cause, Fate, SolveOptions, SolveStatistics, UnresolvedBox};
+pub use monitor::{CancelOnly, Monitor};
+pub(crate) use open::{Open, open_box, unite};
+pub use picture::Picture;

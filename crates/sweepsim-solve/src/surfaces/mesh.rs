@@ -1,0 +1,326 @@
+//! From an octree of plain boxes to triangles: crossings on edges, arcs on faces, disks in boxes; and the check that there are no others.
+
+use super::lattice::PlaneLattice;
+use super::octree::{FINEST, OctreeNode, State};
+use crate::Monitor;
+use crate::coefficients::Cell;
+use crate::numbers::{MAX_UNKNOWNS, Row};
+use std::collections::BTreeMap;
+
+/// An edge of the finest neighbour: where it starts, its axis, its length.
+type Edge = ([u32; 3], u8, u32);
+
+pub(crate) struct Mesher<'a> {
+    grid: &'a PlaneLattice<'a>,
+    nodes: &'a [OctreeNode],
+    monitor: &'a dyn Monitor,
+    signs: BTreeMap<[u32; 3], i8>,
+    buffer: Vec<f64>,
+}
+
+/// Vertices, and the numbers of each triangle's.
+type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+/// The two axes along a face, in the order that makes (first, second, normal) right-handed.
+const ALONG: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
+/// What the faces around a leaf say.
+enum Cycle {
+    /// No crossing.
+    Empty,
+    /// One cycle of crossings, counter-clockwise seen from where the equation is positive.
+    One(Vec<Edge>),
+    /// Anything else.
+    Bad,
+}
+
+impl<'a> Mesher<'a> {
+    pub(crate) fn new(grid: &'a PlaneLattice<'a>, nodes: &'a [OctreeNode], monitor: &'a dyn Monitor) -> Self {
+        Self {
+            grid,
+            nodes,
+            monitor,
+            signs: BTreeMap::new(),
+            buffer: Vec::new(),
+        }
+    }
+
+    /// Plain leaves whose surroundings are not as they must be; `None` if cancelled.
+    pub(crate) fn check(&mut self) -> Option<Vec<usize>> {
+        let mut bad = Vec::new();
+        for (number, node) in self.nodes.iter().enumerate() {
+            if !matches!(node.state, State::Plain(_)) {
+                continue;
+            }
+            if self.monitor.cancelled() {
+                return None;
+            }
+            if matches!(self.cycle(node), Cycle::Bad) {
+                bad.push(number);
+            }
+        }
+        Some(bad)
+    }
+
+    /// All triangles; `None` if cancelled. The octree must have passed the check.
+    pub(crate) fn mesh(&mut self) -> Option<Triangles> {
+        let nodes = self.nodes;
+        let mut vertices: Vec<[f64; 3]> = Vec::new();
+        let mut triangles = Vec::new();
+        let mut known: BTreeMap<Edge, (u32, Row)> = BTreeMap::new();
+        for node in nodes {
+            let State::Plain(cell) = &node.state else { continue };
+            if self.monitor.cancelled() {
+                return None;
+            }
+            let Cycle::One(cycle) = self.cycle(node) else { continue };
+            let mut corners = Vec::with_capacity(cycle.len());
+            for edge in cycle {
+                let entry = known.get(&edge).copied();
+                let (vertex, point) = entry.unwrap_or_else(|| {
+                    let point = self.crossing(&edge);
+                    vertices.push(self.grid.outer(&point));
+                    let new = (vertices.len() as u32 - 1, point);
+                    known.insert(edge, new);
+                    new
+                });
+                corners.push((vertex, point));
+            }
+            if corners.len() == 3 {
+                triangles.push([corners[0].0, corners[1].0, corners[2].0]);
+                continue;
+            }
+            let centre = self.centre(cell, &corners);
+            vertices.push(self.grid.outer(&centre));
+            let middle = vertices.len() as u32 - 1;
+            for k in 0..corners.len() {
+                triangles.push([corners[k].0, corners[(k + 1) % corners.len()].0, middle]);
+            }
+        }
+        Some((vertices, triangles))
+    }
+
+    /// The leaf that holds a point, in half lattice units.
+    fn leaf(&self, at: [i64; 3]) -> Option<&'a OctreeNode> {
+        let limit = 2 << FINEST;
+        if at.iter().any(|x| *x < 0 || *x > limit) {
+            return None;
+        }
+        let mut node = &self.nodes[0];
+        while let State::Inner(first) = node.state {
+            let half = i64::from(node.side());
+            let upper = |axis: usize| usize::from(at[axis] > 2 * i64::from(node.corner[axis]) + half);
+            node = &self.nodes[first as usize + upper(0) + 2 * upper(1) + 4 * upper(2)];
+        }
+        Some(node)
+    }
+
+    fn sign(&mut self, at: [u32; 3]) -> i8 {
+        if let Some(sign) = self.signs.get(&at) {
+            return *sign;
+        }
+        let mut x = [0.0; MAX_UNKNOWNS];
+        for j in 0..3 {
+            x[j] = self.grid.place(j, at[j]);
+        }
+        let sign = self.grid.sign(&x, &mut self.buffer);
+        self.signs.insert(at, sign);
+        sign
+    }
+
+    /// The crossings around a leaf, joined by the arcs on its faces.
+    fn cycle(&mut self, node: &OctreeNode) -> Cycle {
+        let side = node.side();
+        let mut arcs: BTreeMap<Edge, Edge> = BTreeMap::new();
+        let mut count = 0;
+        for normal in 0..3 {
+            for upper in [false, true] {
+                let mut corner = node.corner;
+                corner[normal] += if upper { side } else { 0 };
+                let mut faces = vec![(corner, side)];
+                while let Some((corner, length)) = faces.pop() {
+                    // The leaf across, near the face's middle.
+                    let mut at = corner.map(|x| 2 * i64::from(x) + i64::from(length));
+                    at[normal] = 2 * i64::from(corner[normal]) + if upper { 1 } else { -1 };
+                    let across = self.leaf(at);
+                    if across.is_some_and(|a| a.side() < length) {
+                        if across.is_some_and(|a| matches!(a.state, State::Open(_))) {
+                            // An open box says nothing about the face's parts: be as small as it.
+                            return Cycle::Bad;
+                        }
+                        let half = length / 2;
+                        for part in 0..4u32 {
+                            let mut c = corner;
+                            c[ALONG[normal][0]] += half * (part & 1);
+                            c[ALONG[normal][1]] += half * (part >> 1);
+                            faces.push((c, half));
+                        }
+                        continue;
+                    }
+                    match self.arc(corner, normal, upper, length) {
+                        Ok(None) => {}
+                        Ok(Some((from, to))) => {
+                            count += 1;
+                            if arcs.insert(from, to).is_some() {
+                                return Cycle::Bad;
+                            }
+                        }
+                        Err(()) => return Cycle::Bad,
+                    }
+                }
+            }
+        }
+        let Some((&start, _)) = arcs.iter().next() else {
+            return Cycle::Empty;
+        };
+        let mut cycle = vec![start];
+        let mut at = start;
+        loop {
+            match arcs.get(&at) {
+                Some(&next) if next == start => break,
+                Some(&next) if cycle.len() <= count => {
+                    cycle.push(next);
+                    at = next;
+                }
+                _ => return Cycle::Bad,
+            }
+        }
+        if cycle.len() == count && count >= 3 {
+            Cycle::One(cycle)
+        } else {
+            Cycle::Bad
+        }
+    }
+
+    /// The arc on a face, directed; an error if there is more than one, or a sign is not certain.
+    fn arc(&mut self, corner: [u32; 3], normal: usize, upper: bool, length: u32) -> Result<Option<(Edge, Edge)>, ()> {
+        let [first, second] = ALONG[normal];
+        // Once around, counter-clockwise seen along the normal's tip; from outside that is right for the upper face only.
+        let mut p = [corner; 4];
+        p[1][first] += length;
+        p[2][first] += length;
+        p[2][second] += length;
+        p[3][second] += length;
+        let (mut rising, mut falling) = (None, None);
+        for k in 0..4 {
+            let (from, to) = (p[k], p[(k + 1) % 4]);
+            let axis = if k % 2 == 0 { first } else { second };
+            let forward = k < 2;
+            let mut parts = vec![(if forward { from } else { to }, length)];
+            while let Some((start, length)) = parts.pop() {
+                if self.finer_beside(start, axis, length) {
+                    let half = length / 2;
+                    let mut middle = start;
+                    middle[axis] += half;
+                    parts.extend([(start, half), (middle, half)]);
+                    continue;
+                }
+                let mut end = start;
+                end[axis] += length;
+                let (a, b) = (self.sign(start), self.sign(end));
+                if a == 0 || b == 0 {
+                    return Err(());
+                }
+                if a == b {
+                    continue;
+                }
+                let slot = if (b > a) == forward { &mut rising } else { &mut falling };
+                if slot.is_some() {
+                    return Err(());
+                }
+                *slot = Some((start, axis as u8, length));
+            }
+        }
+        match (rising, falling) {
+            (None, None) => Ok(None),
+            (Some(rising), Some(falling)) => Ok(Some(if upper { (falling, rising) } else { (rising, falling) })),
+            _ => Err(()),
+        }
+    }
+
+    /// Whether a leaf beside the edge is smaller than it.
+    fn finer_beside(&self, start: [u32; 3], axis: usize, length: u32) -> bool {
+        let [first, second] = ALONG[axis];
+        let mut at = start.map(|x| 2 * i64::from(x));
+        at[axis] += i64::from(length);
+        // The middle of an edge that is split lies on its parts' leaves' corners: look to both sides of it.
+        [(-1, -1), (-1, 1), (1, -1), (1, 1)].iter().any(|(a, b)| {
+            [-1, 1].iter().any(|c| {
+                let mut near = at;
+                near[first] += a;
+                near[second] += b;
+                near[axis] += if length > 1 { *c } else { 0 };
+                self.leaf(near).is_some_and(|leaf| leaf.side() < length)
+            })
+        })
+    }
+
+    /// The equation's zero on an edge with ends of different sign.
+    fn crossing(&mut self, edge: &Edge) -> Row {
+        let (start, axis, length) = *edge;
+        let axis = usize::from(axis);
+        let mut x = [0.0; MAX_UNKNOWNS];
+        for j in 0..3 {
+            x[j] = self.grid.place(j, start[j]);
+        }
+        let (mut lo, mut hi) = (x[axis], self.grid.place(axis, start[axis] + length));
+        let rising = self.sign(start) < 0;
+        let layout = &self.grid.system.layout;
+        x[axis] = 0.5 * (lo + hi);
+        for _ in 0..80 {
+            let (value, slope) = layout.evaluate(&self.grid.first.c, &x, &mut self.buffer);
+            if value[0] == 0.0 {
+                break;
+            }
+            if (value[0] < 0.0) == rising {
+                lo = x[axis];
+            } else {
+                hi = x[axis];
+            }
+            let newton = x[axis] - value[0] / slope[0][axis];
+            let next = if newton > lo && newton < hi {
+                newton
+            } else {
+                0.5 * (lo + hi)
+            };
+            let moved = (next - x[axis]).abs();
+            x[axis] = next;
+            if moved <= 1e-16 || hi - lo <= 1e-16 {
+                break;
+            }
+        }
+        x
+    }
+
+    /// A point of the surface amid the crossings: Newton's method along the gradient, within the cell; else their mean.
+    fn centre(&mut self, cell: &Cell, corners: &[(u32, Row)]) -> Row {
+        let layout = &self.grid.system.layout;
+        let mut mean = [0.0; MAX_UNKNOWNS];
+        for (_, p) in corners {
+            for j in 0..3 {
+                mean[j] += p[j] / corners.len() as f64;
+            }
+        }
+        let domain = self.grid.domain();
+        let scale = [0, 1, 2].map(|j: usize| (domain[j].hi - domain[j].lo).powi(-2));
+        let mut x = mean;
+        for _ in 0..20 {
+            let (value, slope) = layout.evaluate(&self.grid.first.c, &x, &mut self.buffer);
+            let square: f64 = (0..3).map(|j| slope[0][j] * slope[0][j] * scale[j]).sum();
+            let factor = value[0] / square;
+            let mut moved: f64 = 0.0;
+            for j in 0..3 {
+                let step = factor * slope[0][j] * scale[j];
+                x[j] -= step;
+                moved = moved.max(f64::abs(step));
+            }
+            if !(0..3).all(|j| x[j] > cell.lo[j] && x[j] < cell.hi[j]) {
+                return mean;
+            }
+            if moved <= 1e-15 {
+                return x;
+            }
+        }
+        mean
+    }
+}

@@ -1,0 +1,245 @@
+//! 2-D: the surface of one equation in three unknowns, as an oriented triangle mesh of the same topology.
+//!
+//! An octree of boxes. A leaf that the surface may meet is *plain* when
+//!
+//! - on each of its edges, the equation has no zero or one derivative sign: at most one crossing;
+//! - on each of its faces, no zero or one sign of a derivative along the face: the face's curve is a graph, without loops;
+//! - in the box, one sign of some derivative: the surface in it is a graph over a domain of the plane of the other two variables.
+//!
+//! A face between boxes of different size belongs to the smaller one, an edge to its smallest neighbour. When each such face has no crossing
+//! on its boundary or two (so its curve is nothing, or one arc between them), and the arcs around each leaf form no cycle or one (so the
+//! surface in it is nothing, or a graph over a domain with one boundary curve: a disk), then vertices on edges, arcs on faces and disks in
+//! boxes are a cell decomposition of the surface. The mesh has the same one: triangulated disks whose boundaries are the same arcs' chords.
+//! So it is homeomorphic to the surface, and isotopic to it box by box. Leaves that fail are split. (Plantinga and Vegter 2004 pose a condition on
+//! gradients instead, and need a balanced octree.)
+//!
+//! The octree's planes are a little off the even ones, so that symmetric surfaces do not touch them.
+
+mod lattice;
+mod mesh;
+mod octree;
+mod plain;
+
+use crate::search::{Cause, Open, SolveError, SolveOptions, SolveStatistics, UnresolvedBox, Watch, open_box, unite};
+use crate::{Enclosure, Monitor, System};
+use lattice::PlaneLattice;
+use mesh::Mesher;
+use octree::{FINEST, OctreeNode, Search, State};
+
+/// A surface as triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Points; those on edges of the subdivision lie on the surface up to rounding, those inside its boxes as well where Newton's method
+    /// got there.
+    pub vertices: Vec<[f64; 3]>,
+    /// Triangles, counter-clockwise seen from where the equation is positive.
+    pub triangles: Vec<[u32; 3]>,
+    /// The boxes, disjoint but for their faces, in which the surface was found to be a graph (or nothing): with
+    /// [`unresolved`](Self::unresolved) they hold all of it.
+    pub boxes: Vec<[Enclosure; 3]>,
+    /// Boxes where the surface may be singular, or could not be settled. Outside of these the mesh is all there is.
+    pub unresolved: Vec<UnresolvedBox>,
+    /// What the search did.
+    pub statistics: SolveStatistics,
+}
+
+impl Surface {
+    /// Vertices less edges plus triangles.
+    #[must_use]
+    pub fn euler_characteristic(&self) -> i64 {
+        let mut edges: Vec<(u32, u32)> = self.sides().map(|(a, b)| (a.min(b), a.max(b))).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        self.vertices.len() as i64 - edges.len() as i64 + self.triangles.len() as i64
+    }
+
+    /// Directed edges that no neighbouring triangle uses the other way: the mesh's boundary.
+    #[must_use]
+    pub fn boundary(&self) -> Vec<(u32, u32)> {
+        let mut sides: Vec<(u32, u32)> = self.sides().collect();
+        sides.sort_unstable();
+        let free = |(a, b): &(u32, u32)| sides.binary_search(&(*b, *a)).is_err();
+        sides.iter().copied().filter(free).collect()
+    }
+
+    /// The number of connected pieces.
+    #[must_use]
+    pub fn components(&self) -> usize {
+        fn find(parent: &mut [usize], mut x: usize) -> usize {
+            while parent[x] != x {
+                parent[x] = parent[parent[x]];
+                x = parent[x];
+            }
+            x
+        }
+        let mut parent: Vec<usize> = (0..self.vertices.len()).collect();
+        for (a, b) in self.sides() {
+            let (a, b) = (find(&mut parent, a as usize), find(&mut parent, b as usize));
+            parent[a] = b;
+        }
+        (0..parent.len()).filter(|v| parent[*v] == *v).count()
+    }
+
+    fn sides(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.triangles
+            .iter()
+            .flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])])
+    }
+}
+
+/// The 2-D solver.
+///
+/// ```
+/// use sweepsim_solve::{Enclosure, SurfaceSolver, System};
+/// use sweepsim_spline::Bernstein;
+///
+/// // A sphere of radius 1/2 about the middle of the unit cube.
+/// let square = |axis| Bernstein::from_fn(&[2, 2, 2], |i| [0.25, -0.25, 0.25][i[axis]]).unwrap();
+/// let sphere = square(0).add(&square(1)).add(&square(2)).sub(&Bernstein::constant(3, 0.16));
+/// let system = System::new(&[Enclosure::new(0.0, 1.0); 3], [&sphere])?;
+/// let surface = SurfaceSolver::new(0.01).solve(&system, &())?;
+/// assert_eq!((surface.euler_characteristic(), surface.components()), (2, 1));
+/// assert!(surface.boundary().is_empty() && surface.unresolved.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct SurfaceSolver {
+    /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a box counts as singular; 2⁻¹⁸ by default here, 2⁻²⁰ at least.
+    pub options: SolveOptions,
+    /// In each box, mesh and surface lie in a slab of at most this thickness, in the domain's units.
+    pub tolerance: f64,
+}
+
+impl SurfaceSolver {
+    /// A solver with the default limits and this tolerance of the mesh.
+    #[must_use]
+    pub fn new(tolerance: f64) -> Self {
+        let options = SolveOptions {
+            smallest: 1.0 / 262_144.0,
+            unresolved: 20_000,
+            ..SolveOptions::default()
+        };
+        Self::with_options(tolerance, options)
+    }
+
+    /// A solver with these limits.
+    #[must_use]
+    pub fn with_options(tolerance: f64, options: SolveOptions) -> Self {
+        Self { options, tolerance }
+    }
+
+    /// The surface of the system in its region.
+    ///
+    /// # Errors
+    ///
+    /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
+    /// [`SolveError::Smallest`] for an impossible size or tolerance.
+    pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
+        let (n, m) = (system.layout.n, system.layout.m);
+        if n != 3 {
+            return Err(SolveError::Variables {
+                variables: n,
+                least: 3,
+                most: 3,
+            });
+        }
+        if m != 1 {
+            return Err(SolveError::Equations {
+                equations: m,
+                variables: n,
+                expected: 1,
+            });
+        }
+        let possible = (1e-14..=1.0).contains(&self.options.smallest) && self.tolerance > 0.0;
+        if !possible {
+            return Err(SolveError::Smallest);
+        }
+        let deepest = self.options.smallest.log2().abs().ceil() as u32;
+        let mut search = Search {
+            system,
+            grid: PlaneLattice::new(system),
+            options: &self.options,
+            tolerance: self.tolerance,
+            deepest: deepest.min(FINEST).min(self.options.depth),
+            nodes: Vec::new(),
+            statistics: SolveStatistics::default(),
+            doubles: Vec::new(),
+            watch: Watch::new(&self.options),
+            stopped: None,
+            open: 0,
+        };
+        let mut root = system.root();
+        system.layout.ranges(&mut root);
+        search.nodes.push(OctreeNode {
+            corner: [0; 3],
+            level: 0,
+            state: State::Plain(Box::new(root)),
+        });
+        search.treat(0, monitor);
+        let mut mesh = None;
+        while search.stopped.is_none() && mesh.is_none() {
+            let mut mesher = Mesher::new(&search.grid, &search.nodes, monitor);
+            match mesher.check() {
+                Some(failures) if failures.is_empty() => mesh = mesher.mesh(),
+                Some(failures) => {
+                    for node in failures {
+                        search.split(node, monitor);
+                    }
+                    continue;
+                }
+                None => {}
+            }
+            if mesh.is_none() {
+                search.stopped = Some(Cause::Cancelled);
+            }
+        }
+        if let Some(cause) = search.stopped {
+            // Leaves that were not checked against their neighbours are not settled.
+            for number in 0..search.nodes.len() {
+                if matches!(search.nodes[number].state, State::Plain(_)) {
+                    search.leave(number, cause);
+                }
+            }
+        }
+        let (vertices, triangles) = mesh.unwrap_or_default();
+        let mut open: Vec<Open> = Vec::new();
+        let mut boxes = Vec::new();
+        for node in &search.nodes {
+            if matches!(node.state, State::Plain(_)) {
+                let (lo, hi) = search.grid.bounds(node);
+                let (lo, hi) = (search.grid.outer(&lo), search.grid.outer(&hi));
+                boxes.push([0, 1, 2].map(|j| Enclosure::new(lo[j], hi[j])));
+            }
+            if let State::Open(cause) = node.state {
+                let (lo, hi) = search.grid.bounds(node);
+                open.push(Open {
+                    lo,
+                    hi,
+                    cause,
+                    boxes: 1,
+                });
+            }
+        }
+        if open.len() <= 2_000 {
+            unite(&mut open, 3);
+        } else {
+            // A continuum of open boxes: one around them all.
+            let (mut all, cause) = (open[0], open[0].cause);
+            for o in &open {
+                for j in 0..3 {
+                    all.lo[j] = all.lo[j].min(o.lo[j]);
+                    all.hi[j] = all.hi[j].max(o.hi[j]);
+                }
+            }
+            (all.boxes, all.cause) = (open.len(), cause);
+            open = vec![all];
+        }
+        Ok(Surface {
+            vertices,
+            triangles,
+            boxes,
+            unresolved: open.iter().map(|o| open_box(system, o)).collect(),
+            statistics: search.statistics,
+        })
+    }
+}

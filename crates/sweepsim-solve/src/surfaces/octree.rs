@@ -1,0 +1,173 @@
+//! The octree: which boxes the surface misses, which are plain, which are split.
+
+use super::lattice::PlaneLattice;
+use super::plain::plain;
+use crate::coefficients::Cell;
+use crate::numbers::Double;
+use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch};
+use crate::{Monitor, System};
+
+/// The finest level: lattice coordinates go up to `2^FINEST`.
+pub(crate) const FINEST: u32 = 20;
+
+/// What a leaf is.
+#[derive(Debug)]
+pub(crate) enum State {
+    /// It has children, the first of eight at this number.
+    Inner(u32),
+    /// The surface does not meet it.
+    Empty,
+    /// Plain, with its coefficients.
+    Plain(Box<Cell>),
+    /// Left open.
+    Open(Cause),
+}
+
+/// A node of the octree.
+#[derive(Debug)]
+pub(crate) struct OctreeNode {
+    pub corner: [u32; 3],
+    pub level: u32,
+    pub state: State,
+}
+
+impl OctreeNode {
+    /// The side, in lattice units.
+    pub(crate) fn side(&self) -> u32 {
+        1 << (FINEST - self.level)
+    }
+}
+
+/// The search.
+pub(super) struct Search<'a> {
+    pub system: &'a System,
+    pub grid: PlaneLattice<'a>,
+    pub options: &'a SolveOptions,
+    pub tolerance: f64,
+    pub deepest: u32,
+    pub nodes: Vec<OctreeNode>,
+    pub statistics: SolveStatistics,
+    pub doubles: Vec<Double>,
+    pub watch: Watch,
+    pub stopped: Option<Cause>,
+    pub open: usize,
+}
+
+impl Search<'_> {
+    /// Decides a new leaf; splits it as long as need be.
+    pub(super) fn treat(&mut self, first: usize, monitor: &dyn Monitor) {
+        let mut stack = vec![first];
+        while let Some(number) = stack.pop() {
+            let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
+            let State::Plain(mut cell) = state else { continue };
+            if self.stopped.is_none() {
+                self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
+            }
+            if let Some(cause) = self.stopped {
+                self.leave(number, cause);
+                continue;
+            }
+            self.statistics.boxes += 1;
+            self.statistics.depth = self.statistics.depth.max(self.nodes[number].level);
+            let bounds = monitor.visits().then(|| self.system.outward(&cell.lo, &cell.hi));
+            let layout = &self.system.layout;
+            let mut totals = layout.ranges(&mut cell);
+            let fate = if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
+                Fate::Sign
+            } else {
+                if self.nodes[number].level > 0 && layout.noisy(&cell, &totals, 1e-7) {
+                    layout.refresh(&mut cell, &mut self.doubles);
+                    self.statistics.refreshed += 1;
+                    totals = layout.ranges(&mut cell);
+                }
+                if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
+                    Fate::Sign
+                } else if plain(layout, &cell) && self.flat(&cell) {
+                    Fate::Certified
+                } else if self.nodes[number].level < self.deepest {
+                    Fate::Split
+                } else {
+                    Fate::Unresolved
+                }
+            };
+            self.statistics.count(fate);
+            if let Some(bounds) = bounds {
+                monitor.visit(&bounds, self.nodes[number].level, fate);
+            }
+            match fate {
+                Fate::Sign => {}
+                Fate::Certified => self.nodes[number].state = State::Plain(cell),
+                Fate::Split => {
+                    let children = self.divide(number, *cell);
+                    stack.extend((children..children + 8).rev());
+                }
+                _ => self.leave(number, Cause::Smallest),
+            }
+        }
+    }
+
+    pub(super) fn leave(&mut self, number: usize, cause: Cause) {
+        self.open += 1;
+        self.nodes[number].state = State::Open(cause);
+    }
+
+    /// Splits a plain leaf that does not fit its neighbours.
+    pub(super) fn split(&mut self, number: usize, monitor: &dyn Monitor) {
+        let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
+        match state {
+            State::Plain(cell) if self.nodes[number].level < self.deepest => {
+                let children = self.divide(number, *cell);
+                for child in children..children + 8 {
+                    self.treat(child, monitor);
+                }
+            }
+            State::Plain(_) => self.leave(number, Cause::Smallest),
+            other => self.nodes[number].state = other,
+        }
+    }
+
+    /// Adds the eight children; the number of the first.
+    fn divide(&mut self, number: usize, cell: Cell) -> usize {
+        let layout = &self.system.layout;
+        let first = self.nodes.len();
+        let (corner, level) = (self.nodes[number].corner, self.nodes[number].level);
+        let half = self.nodes[number].side() / 2;
+        let mut cells = vec![cell];
+        for axis in 0..3 {
+            let at = self.grid.place(axis, corner[axis] + half);
+            let mut uppers = Vec::with_capacity(cells.len());
+            for cell in &mut cells {
+                let mut lower = Cell::default();
+                layout.split(cell, &mut lower, axis, at);
+                uppers.push(std::mem::replace(cell, lower));
+            }
+            cells.append(&mut uppers);
+        }
+        // Bit `axis` of a child's number says whether it is the upper one.
+        for (child, cell) in cells.into_iter().enumerate() {
+            let mut place = corner;
+            for (axis, x) in place.iter_mut().enumerate() {
+                *x += half * u32::from(child >> axis & 1 == 1);
+            }
+            self.nodes.push(OctreeNode {
+                corner: place,
+                level: level + 1,
+                state: State::Plain(Box::new(cell)),
+            });
+        }
+        self.nodes[number].state = State::Inner(first as u32);
+        first
+    }
+
+    /// Whether the surface in the cell lies in a slab within the tolerance.
+    fn flat(&self, cell: &Cell) -> bool {
+        let layout = &self.system.layout;
+        let affine = layout.affine(cell, layout.mean_slopes(&cell.c));
+        let slope = &affine.slope;
+        let length = (0..3)
+            .map(|j| (slope[0][j] / ((cell.hi[j] - cell.lo[j]) * self.system.domain_width(j))).powi(2))
+            .sum::<f64>()
+            .sqrt();
+        2.0 * affine.radius[0] <= self.tolerance * length
+    }
+}

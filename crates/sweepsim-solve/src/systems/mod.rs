@@ -1,0 +1,10 @@
+//! Systems of equations: Bernstein forms, sums and combinations of them, and splines.
+
+mod expression;
+mod pieces;
+mod separate;
+mod system;
+
+pub use expression::{Expression, MAX_FORMS};
+pub use pieces::{Pieces, PiecesError};
+pub use system::{Equation, MAX_SYSTEM, System, SystemError};

@@ -1,0 +1,375 @@
+//! Systems of equations in Bernstein form over a box, checked once and brought into the solvers' inner form.
+
+use super::expression::{Expression, Rows};
+use crate::Enclosure;
+use crate::coefficients::{Cell, Layout};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
+use smallvec::SmallVec;
+use sweepsim_spline::{Bernstein, RationalBernstein};
+use thiserror::Error;
+
+/// The most coefficients that a system may have in all.
+pub const MAX_SYSTEM: usize = 1 << 24;
+
+/// One equation `f = 0`: a sum of Bernstein forms, with what the sum may differ from `f` by.
+///
+/// Every form has as many variables as the system, on `[0,1]ⁿ` (the system's domain maps to it). A form's own
+/// [`error`](Bernstein::error) counts as an error of its coefficients.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    pub(crate) terms: Vec<Bernstein>,
+    pub(crate) remainder: f64,
+    pub(crate) slope_remainder: f64,
+    /// Instead of terms: a combination of equations.
+    pub(crate) expression: Option<Expression>,
+}
+
+impl Equation {
+    /// `f` is the sum of the forms. If the forms depend on different variables, solvers use that: bounds are sharper and cheaper.
+    #[must_use]
+    pub fn sum(terms: Vec<Bernstein>) -> Self {
+        Self {
+            terms,
+            remainder: 0.0,
+            slope_remainder: 0.0,
+            expression: None,
+        }
+    }
+
+    /// `f` is any continuously differentiable function that differs from the forms' sum by at most `remainder` on the domain, and
+    /// whose derivatives, with respect to coordinates in which the domain is `[0,1]ⁿ`, differ from the sum's by at most
+    /// `slope_remainder`.
+    #[must_use]
+    pub fn with_remainder(mut self, remainder: f64, slope_remainder: f64) -> Self {
+        self.remainder = remainder;
+        self.slope_remainder = slope_remainder;
+        self
+    }
+
+    /// The zeros of a rational function's component are those of its numerator, for its weight is positive.
+    #[must_use]
+    pub fn component(rational: &RationalBernstein, component: usize) -> Option<Self> {
+        rational.numerators().get(component).cloned().map(Self::from)
+    }
+}
+
+impl From<Bernstein> for Equation {
+    fn from(form: Bernstein) -> Self {
+        Self::sum(vec![form])
+    }
+}
+
+impl From<&Bernstein> for Equation {
+    fn from(form: &Bernstein) -> Self {
+        Self::sum(vec![form.clone()])
+    }
+}
+
+/// What is wrong with the parts of a system.
+///
+/// ```
+/// use sweepsim_solve::{Enclosure, System, SystemError};
+/// use sweepsim_spline::Bernstein;
+///
+/// let x = Bernstein::variable(1, 0);
+/// let infinite = [Enclosure::new(0.0, f64::INFINITY)];
+/// assert_eq!(System::new(&infinite, [&x]).unwrap_err(), SystemError::Domain { variable: 0 });
+/// let unit = [Enclosure::new(0.0, 1.0)];
+/// assert_eq!(System::new::<Bernstein>(&unit, []).unwrap_err(), SystemError::NoEquations);
+/// assert_eq!(System::new::<Bernstein>(&[], []).unwrap_err(), SystemError::Variables { variables: 0 });
+/// let too_many = System::new(&unit, [&x, &x]).unwrap_err();
+/// assert_eq!(too_many, SystemError::TooManyEquations { equations: 2, variables: 1 });
+/// let plane = Bernstein::variable(2, 0);
+/// let other = System::new(&unit, [&plane]).unwrap_err();
+/// assert_eq!(other, SystemError::FormVariables { equation: 0, variables: 2, expected: 1 });
+/// let huge = Bernstein::constant(1, f64::NAN);
+/// assert_eq!(System::new(&unit, [&huge]).unwrap_err(), SystemError::NotFinite { equation: 0 });
+/// let outside = System::new(&unit, [&x]).unwrap().within(&[Enclosure::new(0.5, 2.0)]).unwrap_err();
+/// assert_eq!(outside, SystemError::Region { variable: 0 });
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum SystemError {
+    /// Between 1 and [`MAX_UNKNOWNS`] variables are possible.
+    #[error("a system has 1 to {MAX_UNKNOWNS} variables, not {variables}")]
+    Variables {
+        /// As many were given.
+        variables: usize,
+    },
+    /// There is nothing to solve.
+    #[error("a system needs an equation")]
+    NoEquations,
+    /// More equations than variables.
+    #[error("{equations} equations in {variables} variables are overdetermined")]
+    TooManyEquations {
+        /// Equations given.
+        equations: usize,
+        /// Variables given.
+        variables: usize,
+    },
+    /// A side of the domain is empty, reversed, infinite or NaN, or so far from 0 that its ends are neighbouring numbers.
+    #[error("the domain's side {variable} is not an interval of positive finite length")]
+    Domain {
+        /// The variable.
+        variable: usize,
+    },
+    /// A region does not lie in the domain, or is empty.
+    #[error("the region's side {variable} is empty or leaves the domain")]
+    Region {
+        /// The variable.
+        variable: usize,
+    },
+    /// A form has another number of variables.
+    #[error("equation {equation} has a form in {variables} variables, not {expected}")]
+    FormVariables {
+        /// The equation.
+        equation: usize,
+        /// What its form has.
+        variables: usize,
+        /// What the domain has.
+        expected: usize,
+    },
+    /// An equation is the sum of no forms.
+    #[error("equation {equation} is an empty sum")]
+    EmptySum {
+        /// The equation.
+        equation: usize,
+    },
+    /// A coefficient or an error bound is infinite or NaN, or a remainder is negative.
+    #[error("equation {equation} has a coefficient or bound that is not a finite number")]
+    NotFinite {
+        /// The equation.
+        equation: usize,
+    },
+    /// An expression's forms are more than [`MAX_FORMS`](crate::MAX_FORMS) together with those of the equations before it, or it is nested too deeply.
+    #[error("equation {equation} is an expression of too many forms")]
+    TooManyForms {
+        /// The equation.
+        equation: usize,
+    },
+    /// A degree is above [`MAX_DEGREE`](crate::MAX_DEGREE), or there are more than [`MAX_SYSTEM`] coefficients.
+    #[error("equation {equation} is too large: degree {degree}, {coefficients} coefficients in all so far")]
+    TooLarge {
+        /// The equation.
+        equation: usize,
+        /// Its largest degree.
+        degree: usize,
+        /// Coefficients up to here.
+        coefficients: usize,
+    },
+}
+
+/// Equations over a box, ready to be solved.
+#[derive(Clone, Debug)]
+pub struct System {
+    pub(crate) layout: Layout,
+    pub(crate) domain: SmallVec<[Enclosure; 4]>,
+    /// What is searched, in coordinates in which the domain is `[0,1]ⁿ`.
+    pub(crate) region: (Row, Row),
+    /// Some equation is only known on the domain.
+    bounded: bool,
+}
+
+impl System {
+    /// The system of these equations over the domain, one interval a variable.
+    ///
+    /// # Errors
+    ///
+    /// See [`SystemError`].
+    pub fn new<E: Into<Equation>>(
+        domain: &[Enclosure],
+        equations: impl IntoIterator<Item = E>,
+    ) -> Result<Self, SystemError> {
+        let n = domain.len();
+        if n == 0 || n > MAX_UNKNOWNS {
+            return Err(SystemError::Variables { variables: n });
+        }
+        for (variable, side) in domain.iter().enumerate() {
+            let width = side.hi - side.lo;
+            let magnitude = side.lo.abs().max(side.hi.abs());
+            if !(width.is_finite() && width > 64.0 * EPSILON * magnitude && width > f64::MIN_POSITIVE) {
+                return Err(SystemError::Domain { variable });
+            }
+        }
+        let mut layout = Layout { n, ..Layout::default() };
+        let mut rows = Rows::default();
+        for (equation, given) in equations.into_iter().enumerate() {
+            let given: Equation = given.into();
+            if equation >= n {
+                return Err(SystemError::TooManyEquations {
+                    equations: equation + 1,
+                    variables: n,
+                });
+            }
+            rows.add(&mut layout, equation, &given)?;
+            layout.m = equation + 1;
+        }
+        let bounded = rows.finish(&mut layout);
+        if layout.m == 0 {
+            return Err(SystemError::NoEquations);
+        }
+        Ok(Self {
+            layout,
+            domain: domain.into(),
+            region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
+            bounded,
+        })
+    }
+
+    /// The same system, searched in a part of its domain only. Roots on the part's boundary count as on the boundary.
+    ///
+    /// # Errors
+    ///
+    /// [`SystemError::Region`], [`SystemError::Variables`].
+    pub fn within(mut self, region: &[Enclosure]) -> Result<Self, SystemError> {
+        if region.len() != self.domain.len() {
+            return Err(SystemError::Variables {
+                variables: region.len(),
+            });
+        }
+        for (variable, (part, whole)) in region.iter().zip(&self.domain).enumerate() {
+            let width = whole.hi - whole.lo;
+            let (lo, hi) = ((part.lo - whole.lo) / width, (part.hi - whole.lo) / width);
+            if !(lo >= 0.0 && hi <= 1.0 && lo < hi) {
+                return Err(SystemError::Region { variable });
+            }
+            self.region.0[variable] = lo;
+            self.region.1[variable] = hi;
+        }
+        Ok(self)
+    }
+
+    /// A system over a face of a cell, in coordinates in which the face is `[0,1]ⁿ`.
+    pub(crate) fn on_face(&self, cell: &Cell, variable: usize, upper: bool) -> Self {
+        let layout = self.layout.face(cell, variable, upper);
+        let n = layout.n;
+        Self {
+            layout,
+            domain: SmallVec::from_elem(Enclosure::new(0.0, 1.0), n),
+            region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
+            bounded: self.bounded,
+        }
+    }
+
+    /// The number of variables.
+    #[must_use]
+    pub fn variables(&self) -> usize {
+        self.layout.n
+    }
+
+    /// The number of equations.
+    #[must_use]
+    pub fn equations(&self) -> usize {
+        self.layout.m
+    }
+
+    /// The domain, one interval a variable.
+    #[must_use]
+    pub fn domain(&self) -> &[Enclosure] {
+        &self.domain
+    }
+
+    /// The coefficients that the solvers subdivide: after parts that depend on different variables were separated.
+    #[must_use]
+    pub fn coefficients(&self) -> usize {
+        self.layout.len
+    }
+
+    /// A cell over the region.
+    pub(crate) fn root(&self) -> Cell {
+        let mut cell = self.layout.root();
+        for j in 0..self.layout.n {
+            self.layout.restrict(&mut cell, j, self.region.0[j], self.region.1[j]);
+        }
+        cell
+    }
+
+    /// An inner box in the domain's coordinates, rounded outwards.
+    pub(crate) fn outward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
+        self.domain
+            .iter()
+            .enumerate()
+            .map(|(j, side)| {
+                let width = side.hi - side.lo;
+                let pad = 4.0 * EPSILON * (side.lo.abs().max(side.hi.abs()) + width * (lo[j].abs().max(hi[j].abs())));
+                let end = |s: f64| {
+                    if s == 0.0 {
+                        (side.lo, 0.0)
+                    } else if s == 1.0 {
+                        (side.hi, 0.0)
+                    } else {
+                        (side.lo + s * width, pad)
+                    }
+                };
+                let ((l, lp), (h, hp)) = (end(lo[j]), end(hi[j]));
+                Enclosure::new(l - lp, h + hp)
+            })
+            .collect()
+    }
+
+    /// An inner box in the domain's coordinates, rounded inwards.
+    pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
+        let outer = self.outward(lo, hi);
+        let place = |(j, (o, side)): (usize, (Enclosure, &Enclosure))| {
+            let width = side.hi - side.lo;
+            let (l, h) = (side.lo + lo[j] * width, side.lo + hi[j] * width);
+            Enclosure::new(2.0 * l - o.lo, 2.0 * h - o.hi)
+        };
+        outer.into_iter().zip(&self.domain).enumerate().map(place).collect()
+    }
+
+    /// Length of a side of the domain.
+    pub(crate) fn domain_width(&self, variable: usize) -> f64 {
+        self.domain[variable].hi - self.domain[variable].lo
+    }
+
+    /// Whether nothing is known beyond the domain.
+    pub(crate) fn bounded(&self) -> bool {
+        self.bounded
+    }
+
+    /// An inner point in the domain's coordinates.
+    pub(crate) fn outer_point(&self, s: &Row) -> Vec<f64> {
+        let place = |(j, side): (usize, &Enclosure)| side.lo + s[j] * (side.hi - side.lo);
+        self.domain.iter().enumerate().map(place).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit(n: usize) -> Vec<Enclosure> {
+        vec![Enclosure::new(0.0, 1.0); n]
+    }
+
+    #[test]
+    fn dense_sums_are_separated() {
+        let p = Bernstein::from_fn(&[8, 0], |i| ((i[0] * 5) % 7) as f64 - 3.0).unwrap();
+        let q = Bernstein::from_fn(&[0, 8], |i| ((i[1] * 3) % 5) as f64 - 2.0).unwrap();
+        let dense = p.elevated_to(&[8, 8]).add(&q.elevated_to(&[8, 8]));
+        let system = System::new(&unit(2), [&dense]).unwrap();
+        assert_eq!(system.coefficients(), 18);
+        let alone = System::new(&unit(2), [&p.elevated_to(&[8, 8])]).unwrap();
+        assert_eq!(alone.coefficients(), 9);
+    }
+
+    #[test]
+    fn mixed_forms_stay_whole() {
+        let xy = Bernstein::new(&[1, 1, 0], vec![0.0, 0.0, 0.0, 1.0]).unwrap();
+        let z = Bernstein::variable(3, 2);
+        let system = System::new(&unit(3), [&xy.add(&z)]).unwrap();
+        assert_eq!(system.coefficients(), 6);
+        let as_sum = System::new(&unit(3), [Equation::sum(vec![xy.clone(), z, xy])]).unwrap();
+        assert_eq!(as_sum.coefficients(), 6);
+    }
+
+    #[test]
+    fn extreme_scales_are_normalised() {
+        for factor in [1e-300, 1e300, 5e-324] {
+            let x = Bernstein::new(&[1], vec![-factor, factor]).unwrap();
+            let system = System::new(&unit(1), [&x]).unwrap();
+            assert!(system.layout.first.iter().all(|c| (0.5..=2.0).contains(&c.abs())));
+        }
+    }
+}
