@@ -7,10 +7,8 @@ use crate::words;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
-use sweepsim_formats::{
-    DexelFormat, MeshFormat, PathOptions, Program, csv, read_path_file, write_atomically, write_dexels_file,
-    write_mesh_file,
-};
+use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
+use sweepsim_nc::{Options, Program, read_file, table};
 
 /// Reads, writes, and says what came of it.
 pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
@@ -28,7 +26,7 @@ pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
             )));
         }
         Kind::Path => {
-            let program = read_path_file(input, &PathOptions::default())?;
+            let program = read_file(input, &Options::default())?;
             path(&program, input, output)?;
             line("path", &words::counted(program.poses.len() as u64, "pose"));
             program.notes.iter().for_each(|note| line("note", &note.to_string()));
@@ -111,5 +109,5 @@ fn path(program: &Program, input: &Path, output: &Path) -> Result<(), Failure> {
             after.line
         )));
     }
-    Ok(write_atomically(output, |file| csv::write_path(&program.poses, file))?)
+    Ok(write_atomically(output, |file| table::write(&program.poses, file))?)
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::process::ExitCode;
 use sweepsim_formats::FormatError;
+use sweepsim_nc::NcError;
 
 /// What is printed, and how the process ends.
 #[derive(Debug)]
@@ -32,6 +33,12 @@ impl Failure {
 impl From<FormatError> for Failure {
     fn from(error: FormatError) -> Self {
         Self::Bad(error.render(true))
+    }
+}
+
+impl From<NcError> for Failure {
+    fn from(error: NcError) -> Self {
+        FormatError::from(error).into()
     }
 }
 

@@ -8,10 +8,9 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Source, Stock};
-use sweepsim_formats::{
-    DexelFormat, Job, Note, PathOptions, Program, read_dexels_csv, read_dexels_file, read_mesh_file, read_path_file,
-};
+use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_motion::{Pose, ProfileSegment, Tool, Turn};
+use sweepsim_nc::{Note, Options, Program, read_file};
 
 /// Prints what is in a file.
 pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
@@ -28,7 +27,7 @@ pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
             table(&mut text, &rows);
         }
         Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
-        Kind::Path => program(&mut text, &read_path_file(file, &PathOptions::default())?),
+        Kind::Path => program(&mut text, &read_file(file, &Options::default())?),
     }
     crate::print(&text.0)
 }

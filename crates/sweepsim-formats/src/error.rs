@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use sweepsim_dexel::{FrameError, GridError};
 use sweepsim_motion::{MotionError, PathError, PoseError, ProfileError};
+pub use sweepsim_nc::TextPosition;
+use sweepsim_nc::{NcError, NcProblem};
 use thiserror::Error;
 
 /// A file that cannot be read, understood or written.
@@ -19,21 +21,8 @@ pub struct FormatError(Box<Inner>);
 #[derive(Debug)]
 struct Inner {
     file: Option<PathBuf>,
-    place: Option<Place>,
+    position: Option<TextPosition>,
     problem: Problem,
-}
-
-/// Where in a text something is. Lines and columns count from 1, columns in characters.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The line.
-    pub line: usize,
-    /// The column of the first character.
-    pub column: usize,
-    /// How many characters of this line are meant, at least 1.
-    pub width: usize,
-    /// The whole line.
-    pub excerpt: String,
 }
 
 /// What is wrong, without the place.
@@ -145,10 +134,10 @@ impl Problem {
 }
 
 impl FormatError {
-    pub(crate) fn new(problem: Problem, place: Option<Place>) -> Self {
+    pub(crate) fn new(problem: Problem, position: Option<TextPosition>) -> Self {
         Self(Box::new(Inner {
             file: None,
-            place,
+            position,
             problem,
         }))
     }
@@ -167,8 +156,8 @@ impl FormatError {
 
     /// The place in the file, where there is one.
     #[must_use]
-    pub fn place(&self) -> Option<&Place> {
-        self.0.place.as_ref()
+    pub fn position(&self) -> Option<&TextPosition> {
+        self.0.position.as_ref()
     }
 
     /// What is wrong.
@@ -182,21 +171,21 @@ impl FormatError {
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let title = Level::ERROR.primary_title(self.0.problem.to_string());
-        let Some(place) = &self.0.place else {
+        let Some(position) = &self.0.position else {
             let file = self.0.file.as_ref().map(|file| file.display().to_string());
             let group = title.elements(file.map(annotate_snippets::Origin::path));
             return renderer.render(&[group]);
         };
         let bytes = |characters: usize| {
-            place
+            position
                 .excerpt
                 .char_indices()
                 .nth(characters)
-                .map_or(place.excerpt.len(), |(byte, _)| byte)
+                .map_or(position.excerpt.len(), |(byte, _)| byte)
         };
-        let span = bytes(place.column - 1)..bytes(place.column - 1 + place.width);
-        let mut snippet = Snippet::source(place.excerpt.as_str())
-            .line_start(place.line)
+        let span = bytes(position.column - 1)..bytes(position.column - 1 + position.width);
+        let mut snippet = Snippet::source(position.excerpt.as_str())
+            .line_start(position.line)
             .annotation(AnnotationKind::Primary.span(span));
         if let Some(file) = &self.0.file {
             snippet = snippet.path(file.display().to_string());
@@ -210,13 +199,34 @@ impl fmt::Display for FormatError {
         if let Some(file) = &self.0.file {
             write!(f, "{}:", file.display())?;
         }
-        if let Some(place) = &self.0.place {
-            write!(f, "{}:{}:", place.line, place.column)?;
+        if let Some(position) = &self.0.position {
+            write!(f, "{}:{}:", position.line, position.column)?;
         }
-        if self.0.file.is_some() || self.0.place.is_some() {
+        if self.0.file.is_some() || self.0.position.is_some() {
             f.write_str(" ")?;
         }
         write!(f, "{}", self.0.problem)
+    }
+}
+
+impl From<NcError> for FormatError {
+    fn from(error: NcError) -> Self {
+        let (file, position, problem) = error.into_parts();
+        let problem = match problem {
+            NcProblem::Read(error) => Problem::Read(error),
+            NcProblem::Syntax { message } => Problem::Syntax { message },
+            NcProblem::Value { what, found, expected } => Problem::Value { what, found, expected },
+            NcProblem::Unsupported { what, instead } => Problem::Unsupported { what, instead },
+            NcProblem::Pose(error) => Problem::Pose(error),
+            other => Problem::Syntax {
+                message: other.to_string(),
+            },
+        };
+        Self(Box::new(Inner {
+            file,
+            position,
+            problem,
+        }))
     }
 }
 

@@ -18,9 +18,7 @@
 //! | --- | --- | --- |
 //! | jobs (RON) | [`Job::read`] | |
 //! | tools of B-spline surfaces, motions of B-splines (RON) | with the job | |
-//! | paths as tables (`.csv`) | [`csv::read_path`] | [`csv::write_path`] |
-//! | paths as programs (`.nc`, `.ngc`, …) | [`gcode::read`] | |
-//! | either, by extension | [`read_path_file`] | |
+//! | paths as programs and tables | with the job, by [`sweepsim_nc`] | |
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
 //! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |
 //! | meshes for viewers (GLB) | [`read_glb`] | [`write_glb`] |
@@ -40,51 +38,29 @@
 
 mod atomic;
 mod checksum;
-pub mod csv;
-mod dexels_binary;
-mod dexels_csv;
+mod dexels;
 mod error;
-mod files;
-mod fixtures;
-pub mod gcode;
-mod glb;
-mod job;
-mod locate;
-mod motion;
-mod npz;
-mod numbers;
-mod paths;
-mod ply;
-mod program;
-mod raw;
-mod read_job;
+mod extension;
+mod jobs;
+mod meshes;
 mod report;
-mod stl;
-mod surface_tool;
 mod text;
-mod threemf;
-mod tools;
 mod vtk;
 mod zip;
 
 pub use atomic::{AtomicFile, write_atomically};
-pub use dexels_binary::{read_dexels_binary, write_dexels_binary};
-pub use dexels_csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
-pub use error::{FormatError, Place, Problem};
-pub use files::{
-    DexelFormat, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file, write_dexels_file, write_mesh_file,
+pub use dexels::{
+    DexelFormat, DexelRow, Difference, Fixture, dexels_from_rows, is_dexels_csv, read_dexels_binary, read_dexels_csv,
+    read_dexels_file, read_dexels_npz, write_dexels_binary, write_dexels_csv, write_dexels_file, write_dexels_npz,
+    write_dexels_vtu,
 };
-pub use fixtures::{Difference, Fixture};
-pub use glb::{read_glb, write_glb};
-pub use job::{Job, Limits, Target, Units};
-pub use npz::{read_dexels_npz, write_dexels_npz};
-pub use numbers::shortest;
-pub use paths::{JobPath, PathOptions, read_path_file};
-pub use ply::{read_ply, write_ply};
-pub use program::{Note, Program, ProgramPose};
+pub use error::{FormatError, Problem, TextPosition};
+pub use jobs::{Job, JobPath, Limits, Target, Units};
+pub use meshes::{
+    MeshFormat, parse_stl, read_3mf, read_glb, read_mesh_file, read_ply, read_stl, read_vtp, write_3mf, write_glb,
+    write_mesh_file, write_ply, write_stl, write_vtp,
+};
 pub use report::{
     Collision, ComparisonReport, Deviation, DexelCounts, Furthest, HistogramBar, Report, UnresolvedDexel,
 };
-pub use stl::{parse_stl, read_stl, write_stl};
-pub use threemf::{read_3mf, write_3mf};
-pub use vtk::{read_vtp, write_dexels_vtu, write_vtp};
+pub use sweepsim_nc::shortest;

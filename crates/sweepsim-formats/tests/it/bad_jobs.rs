@@ -467,7 +467,7 @@ proptest! {
         let end = (at + length).min(GOOD.len());
         let text = format!("{}{with}{}", &GOOD[..at], &GOOD[end..]);
         if let Err(error) = Job::parse(&text, Path::new("job.ron")) {
-            let place = error.place();
+            let place = error.position();
             prop_assert!(place.is_some(), "{error}");
             let lines = text.lines().count() + 1;
             prop_assert!(place.is_some_and(|place| (1..=lines).contains(&place.line) && place.column >= 1));

@@ -5,5 +5,4 @@ mod dexels_binary;
 mod exchange;
 mod jobs;
 mod motions;
-mod programs;
 mod round_trips;

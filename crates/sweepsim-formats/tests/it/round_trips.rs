@@ -3,10 +3,9 @@
 use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Grid, Interval, Mesh};
 use sweepsim_formats::{
-    DexelRow, Fixture, Job, ProgramPose, Report, UnresolvedDexel, csv, dexels_from_rows, gcode, parse_stl,
-    read_dexels_csv, read_ply, write_dexels_csv, write_ply, write_stl,
+    DexelRow, Fixture, Job, Report, UnresolvedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply,
+    write_dexels_csv, write_ply, write_stl,
 };
-use sweepsim_motion::Pose;
 
 fn length() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -16,20 +15,6 @@ fn length() -> impl Strategy<Value = f64> {
         -1e-12..1e-12,
         -1e12..1e12
     ]
-}
-
-fn pose() -> impl Strategy<Value = ProgramPose> {
-    let axis = [-1.0..1.0, -1.0..1.0, 0.1..1.0];
-    let extras = (any::<bool>(), prop::option::of(0.0..1e4), prop::option::of(0u32..3));
-    ([length(), length(), length()], axis, extras).prop_map(|(tip, axis, (rapid, feed, tool))| ProgramPose {
-        pose: Pose::new(tip, axis).unwrap(),
-        rapid,
-        line: 0,
-        joined: true,
-        tool,
-        feed,
-        way: sweepsim_motion::Move::default(),
-    })
 }
 
 /// Dexels with 0 to 3 intervals on slopes and flats.
@@ -79,29 +64,6 @@ fn like(words: &'static [&'static str]) -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #[test]
-    fn path_csv(poses in prop::collection::vec(pose(), 1..20)) {
-        let mut bytes = Vec::new();
-        csv::write_path(&poses, &mut bytes).unwrap();
-        let read = csv::read_path(std::str::from_utf8(&bytes).unwrap(), 1.0).unwrap();
-        prop_assert_eq!(read.poses.len(), poses.len());
-        for (a, b) in read.poses.iter().zip(&poses) {
-            prop_assert_eq!(a.pose.tip(), b.pose.tip());
-            prop_assert!((a.pose.axis().into_inner() - b.pose.axis().into_inner()).norm() < 1e-15);
-            prop_assert_eq!((a.rapid, a.feed, a.tool), (b.rapid, b.feed, b.tool));
-        }
-    }
-
-    #[test]
-    fn programs(poses in prop::collection::vec([length(), length(), length()], 1..20)) {
-        let text: String = poses.iter().map(|[x, y, z]| format!("G1 X{x} Y{y} Z{z}\n")).collect();
-        let read = gcode::read(&text, &gcode::Options::default()).unwrap();
-        let mut expected = poses.clone();
-        expected.dedup();
-        let found: Vec<[f64; 3]> = read.poses.iter().map(|pose| pose.pose.tip().into()).collect();
-        prop_assert_eq!(found, expected);
-    }
-
     #[test]
     fn dexel_csv(dexels in dexels()) {
         let mut bytes = Vec::new();
@@ -172,21 +134,15 @@ proptest! {
         let _ = read_ply(&[b"ply\n", &bytes[..]].concat());
         let _ = read_dexels_csv(&bytes[..]);
         let _ = Fixture::parse(&text);
-        let _ = csv::read_path(&text, 1.0);
-        let _ = gcode::read(&text, &gcode::Options::default());
         let _ = Job::parse(&text, "x.ron".as_ref());
     }
 
     #[test]
     fn no_reader_panics_on_what_looks_right(
-        program in like(&["G0", "G1", "G2", "G3", "G18", "G91", "G53", "G92", "G10 L2 P1", "G28", "M428", "M6", "T1", "X", "Y", "Z", "A", "B", "C", "I", "J", "K", "R", "P1", "\n", "\n", "(", "é", "%"]),
-        table in like(&["x,y,z,i,j,k\n", "tool", "1,2,3,0,0,1\n", ",", "\"", "\n", "rapid", "é"]),
         fixture in like(&["sweepsim dexels 1\njob a\ngrid 0 0 1 1 2 3\ntolerance 1e-3\n", "*3", "*", "1 0 5 ", "\n", "2 ", "-5 ", "9223372036854775807 "]),
         ply in like(&["ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n", "element face 9999999999\n", "property list uchar int vertex_indices\n", "end_header\n", "1 ", "\n"]),
         job in like(&["Job(", "grid: Grid(", "min: (", "cells: (", "stock: Block(", "tools: {", "1: Ball(", "radius: ", "paths: [", "poses: [", ")", "]", "}", ",", "\"", "//", "/*", "\n"]),
     ) {
-        let _ = gcode::read(&program, &gcode::Options { tip_control: true, ..gcode::Options::default() });
-        let _ = csv::read_path(&table, 25.4);
         let _ = Fixture::parse(&fixture);
         let _ = read_ply(ply.as_bytes());
         let _ = Job::parse(&job, "x.ron".as_ref());

@@ -2,14 +2,14 @@
 
 use super::folder;
 use std::path::{Path, PathBuf};
-use sweepsim_formats::{PathOptions, Program, gcode, read_path_file};
+use sweepsim_nc::{Options, Program, read_file};
 
 fn tilt(pose: &sweepsim_motion::Pose) -> f64 {
     pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 fn read(file: &Path) -> Program {
-    read_path_file(file, &PathOptions::default()).unwrap_or_else(|error| panic!("{}", error.render(false)))
+    read_file(file, &Options::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
@@ -60,13 +60,8 @@ fn boats() {
 #[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn three_axes() {
     let data = folder();
-    let options = PathOptions {
-        program: gcode::Options {
-            arc_tolerance: 1e-2,
-            ..gcode::Options::default()
-        },
-        ..PathOptions::default()
-    };
+    let mut options = Options::default();
+    options.arc_tolerance = 1e-2;
     let mut poses = 0;
     let mut refused = Vec::new();
     for folder in [
@@ -86,7 +81,7 @@ fn three_axes() {
                 continue;
             }
             let name = file.file_name().unwrap().to_string_lossy().into_owned();
-            match read_path_file(&file, &options) {
+            match read_file(&file, &options) {
                 Ok(program) => {
                     println!(
                         "{name}: {} poses in {} sections",
@@ -105,8 +100,8 @@ fn three_axes() {
                     );
                 }
                 Err(error) => {
-                    println!("{}", error.render(false));
-                    assert!(error.place().is_some(), "{error}");
+                    println!("{error}");
+                    assert!(error.position().is_some(), "{error}");
                     refused.push(name);
                 }
             }

@@ -1,0 +1,154 @@
+//! `dexels.csv`: header `i,j,z0,z1`, a row an interval, sorted by `i`, `j`, `z0`; numbers in the shortest form that reads back.
+
+use std::io::{BufRead, Write};
+
+use sweepsim_dexel::{Dexels, Grid, Interval};
+
+use crate::error::{FormatError, Problem, TextPosition};
+use sweepsim_nc::shortest;
+
+pub(crate) const HEADER: &str = "i,j,z0,z1";
+
+/// An interval of a dexel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DexelRow {
+    /// Which dexel, in x,
+    pub i: usize,
+    /// and in y.
+    pub j: usize,
+    /// Where the interval begins,
+    pub z0: f64,
+    /// and ends.
+    pub z1: f64,
+}
+
+/// Writes the intervals of all dexels.
+///
+/// # Errors
+/// What the writer says.
+pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
+    writeln!(writer, "{HEADER}")?;
+    for index in 0..dexels.grid().len() {
+        let (i, j) = dexels.grid().place(index);
+        for interval in dexels.at(index) {
+            let (z0, z1) = (shortest(interval.lower.z), shortest(interval.upper.z));
+            writeln!(writer, "{i},{j},{z0},{z1}")?;
+        }
+    }
+    Ok(())
+}
+
+/// Reads the rows, and checks that they are in order, of positive length, and apart.
+///
+/// # Errors
+/// [`FormatError`] with line and column.
+///
+/// ```
+/// let rows = sweepsim_formats::read_dexels_csv(&b"i,j,z0,z1\n0,2,-1,0.5\n"[..])?;
+/// assert_eq!((rows[0].j, rows[0].z1), (2, 0.5));
+/// let error = sweepsim_formats::read_dexels_csv(&b"i,j,z0,z1\n0,2,1,0.5\n"[..]).unwrap_err();
+/// assert!(error.to_string().starts_with("2:7: z1 is 0.5"));
+/// # Ok::<(), sweepsim_formats::FormatError>(())
+/// ```
+pub fn read_dexels_csv(reader: impl BufRead) -> Result<Vec<DexelRow>, FormatError> {
+    let mut rows: Vec<DexelRow> = Vec::new();
+    let mut header = false;
+    for (index, line) in reader.lines().enumerate() {
+        let line = line.map_err(|error| FormatError::new(Problem::Read(error), None))?;
+        let line = line.trim_end_matches('\r');
+        if !header {
+            if line != HEADER {
+                let problem = Problem::syntax(format!("this is no dexel file: expected `{HEADER}` in the first line"));
+                return Err(error(problem, index, line, None));
+            }
+            header = true;
+        } else if !line.is_empty() {
+            rows.push(row(line, index, rows.last())?);
+        }
+    }
+    if header {
+        Ok(rows)
+    } else {
+        let problem = Problem::syntax(format!("this file is empty: expected `{HEADER}`"));
+        Err(error(problem, 0, "", None))
+    }
+}
+
+/// An error in line `index` (from 0), in a field or the whole.
+fn error(problem: Problem, index: usize, line: &str, field: Option<usize>) -> FormatError {
+    let fields = || line.split(',').map(|field| field.chars().count());
+    let (column, width) = match field {
+        Some(k) => (
+            1 + fields().take(k).map(|width| width + 1).sum::<usize>(),
+            fields().nth(k).unwrap_or(0),
+        ),
+        None => (1, line.chars().count()),
+    };
+    FormatError::new(problem, Some(TextPosition::in_line(index + 1, line, column, width)))
+}
+
+fn row(line: &str, index: usize, before: Option<&DexelRow>) -> Result<DexelRow, FormatError> {
+    let fields: Vec<&str> = line.split(',').collect();
+    let fail = |problem, field| Err(error(problem, index, line, field));
+    let [i, j, z0, z1] = fields[..] else {
+        return fail(
+            Problem::value("the number of fields", fields.len(), "4: i,j,z0,z1"),
+            None,
+        );
+    };
+    let (Ok(i), Ok(j)) = (i.parse::<usize>(), j.parse::<usize>()) else {
+        let bad = usize::from(i.parse::<usize>().is_ok());
+        return fail(
+            Problem::value(["i", "j"][bad], fields[bad], "a whole number"),
+            Some(bad),
+        );
+    };
+    let mut ends = [0.0; 2];
+    for (k, field) in [z0, z1].into_iter().enumerate() {
+        match field.parse::<f64>() {
+            Ok(z) if z.is_finite() => ends[k] = z,
+            _ => return fail(Problem::value(["z0", "z1"][k], field, "a finite number"), Some(2 + k)),
+        }
+    }
+    let row = DexelRow {
+        i,
+        j,
+        z0: ends[0],
+        z1: ends[1],
+    };
+    if row.z1 <= row.z0 {
+        let expected = format!("greater than z0, {}", shortest(row.z0));
+        return fail(Problem::value("z1", shortest(row.z1), expected), Some(3));
+    }
+    let sorted = before.is_none_or(|b| (b.i, b.j) < (i, j) || ((b.i, b.j) == (i, j) && b.z1 < row.z0));
+    if sorted {
+        Ok(row)
+    } else {
+        fail(
+            Problem::syntax("this row is out of order: expected rows by i, j, z0, with gaps between intervals"),
+            None,
+        )
+    }
+}
+
+/// The dexels of `rows` on `grid`. Normals and sources are not known: those of horizontal faces stand for them.
+///
+/// # Errors
+/// [`Problem::Value`] when a row is not on the grid.
+pub fn dexels_from_rows(grid: Grid, rows: &[DexelRow]) -> Result<Dexels, FormatError> {
+    let [nx, ny] = grid.cells();
+    if let Some(row) = rows.iter().find(|row| row.i >= nx || row.j >= ny) {
+        let problem = Problem::value(
+            "a dexel",
+            format!("({}, {})", row.i, row.j),
+            format!("on the grid of {nx} x {ny}"),
+        );
+        return Err(FormatError::new(problem, None));
+    }
+    let mut dexels = Dexels::empty(grid);
+    for chunk in rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)) {
+        let intervals: Vec<Interval> = chunk.iter().map(|row| Interval::between(row.z0, row.z1)).collect();
+        dexels.set(grid.index(chunk[0].i, chunk[0].j), &intervals);
+    }
+    Ok(dexels)
+}

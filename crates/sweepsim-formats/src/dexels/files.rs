@@ -1,0 +1,128 @@
+//! Dexel files, by extension.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::path::Path;
+
+use sweepsim_dexel::{Dexels, Grid};
+
+use super::binary_read::read_dexels_binary;
+use super::binary_write::write_dexels_binary;
+use super::csv::{HEADER, dexels_from_rows, read_dexels_csv, write_dexels_csv};
+use super::fixture::Fixture;
+use super::npz::{read_dexels_npz, write_dexels_npz};
+use super::vtu::write_dexels_vtu;
+use crate::atomic::write_atomically;
+use crate::error::{FormatError, Problem};
+use crate::extension::{extension, unknown};
+
+/// The extensions of [`DexelFormat`] that are read, for messages.
+const DEXELS: &str = ".csv, .dexels, .npz";
+
+/// A format of dexels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DexelFormat {
+    /// `.csv`: a row an interval, without the grid, normals and sources.
+    Csv,
+    /// `.dexels`: to the bit, with everything.
+    Binary,
+    /// `.npz`: NumPy arrays.
+    Npz,
+    /// `.vtu`: lines for ParaView; written only.
+    Vtu,
+}
+
+impl DexelFormat {
+    /// That of a file, by its extension; tables of paths have that of [`DexelFormat::Csv`], too.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Self> {
+        Some(match extension(file).as_str() {
+            "csv" => Self::Csv,
+            "dexels" => Self::Binary,
+            "npz" => Self::Npz,
+            "vtu" => Self::Vtu,
+            _ => return None,
+        })
+    }
+}
+
+/// Whether a table is one of dexels, as its header says.
+///
+/// # Errors
+/// [`Problem::Read`] with the name of the file.
+pub fn is_dexels_csv(file: &Path) -> Result<bool, FormatError> {
+    let read = || -> io::Result<bool> {
+        let mut header = Vec::new();
+        // No header is longer; a file without lines is not read whole.
+        let limit = HEADER.len() as u64 + 3;
+        BufReader::new(File::open(file)?)
+            .take(limit)
+            .read_until(b'\n', &mut header)?;
+        Ok(header.trim_ascii() == HEADER.as_bytes())
+    };
+    read().map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))
+}
+
+/// Reads dexels: `.csv .dexels .npz`. A table does not know its grid: it stands on `grid`; the others have their own.
+///
+/// # Errors
+/// [`FormatError`] with the file's name: no such file, an extension that is not known, a table without a grid, or what the reader
+/// of the format says.
+pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, FormatError> {
+    let failed = |error: io::Error| FormatError::new(Problem::Read(error), None);
+    let read = |format| -> Result<Dexels, FormatError> {
+        let mut reader = BufReader::new(File::open(file).map_err(failed)?);
+        match format {
+            DexelFormat::Csv => {
+                let grid = grid.ok_or_else(|| {
+                    FormatError::new(
+                        Problem::syntax("a table of dexels does not say where they stand: a grid is needed beside it"),
+                        None,
+                    )
+                })?;
+                dexels_from_rows(*grid, &read_dexels_csv(reader)?)
+            }
+            DexelFormat::Npz => {
+                let mut bytes = Vec::new();
+                reader.read_to_end(&mut bytes).map_err(failed)?;
+                read_dexels_npz(&bytes)
+            }
+            DexelFormat::Binary if starts_with(&mut reader, b"sweepsim dexels ").map_err(failed)? => {
+                let mut text = String::new();
+                reader.read_to_string(&mut text).map_err(failed)?;
+                Ok(Fixture::parse(&text)?.dexels())
+            }
+            DexelFormat::Binary => read_dexels_binary(&mut reader),
+            DexelFormat::Vtu => Err(unknown(file, "dexel", format!("{DEXELS}, as .vtu is only written"))),
+        }
+    };
+    let format = DexelFormat::of(file).ok_or_else(|| unknown(file, "dexel", DEXELS))?;
+    read(format).map_err(|error| error.in_file(file))
+}
+
+fn starts_with(reader: &mut BufReader<File>, magic: &[u8]) -> io::Result<bool> {
+    let mut bytes = Vec::new();
+    reader.by_ref().take(magic.len() as u64).read_to_end(&mut bytes)?;
+    reader.rewind()?;
+    Ok(bytes == magic)
+}
+
+/// Writes dexels, whole or not at all: `.csv .dexels .npz .vtu`.
+///
+/// # Errors
+/// [`FormatError`] with the file's name: an extension that is not known, or what the system or the writer of the format says.
+pub fn write_dexels_file(dexels: &Dexels, file: &Path) -> Result<(), FormatError> {
+    let Some(format) = DexelFormat::of(file) else {
+        return Err(unknown(file, "dexel", format!("{DEXELS}, .vtu")));
+    };
+    write_atomically(file, |out| {
+        match format {
+            DexelFormat::Csv => write_dexels_csv(dexels, out),
+            DexelFormat::Binary => write_dexels_binary(dexels, out),
+            DexelFormat::Npz => write_dexels_npz(dexels, out),
+            DexelFormat::Vtu => write_dexels_vtu(dexels, out),
+        }?;
+        out.flush()
+    })
+}

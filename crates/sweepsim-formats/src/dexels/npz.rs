@@ -1,0 +1,213 @@
+//! Dexels as NumPy arrays (`.npz`).
+//!
+//! | array | shape and type | content |
+//! | --- | --- | --- |
+//! | `area` | (2, 2) `<f8` | min x, y; max x, y |
+//! | `cells` | (2,) `<u8` | cells in x and y |
+//! | `frame` | (4, 3) `<f8` | only where the grid has a frame: its origin and its axes x, y, z in the world |
+//! | `line` | (n,) `<u4` | the line of each interval, `i · cells[1] + j`, never less than the one before |
+//! | `z` | (n, 2) `<f8` | its ends |
+//! | `normal` | (n, 2, 3) `<f4` | their normals |
+//! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | what made them: path 65535 for no tool |
+
+use std::io::Write;
+
+use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source};
+
+use super::binary::{framed_numbers, in_frame};
+use crate::error::{FormatError, Problem};
+use crate::zip::{self, Archive};
+
+/// Most dexels that are read: they take an eighth of a byte each, even if the file has no interval.
+const MOST: usize = 1 << 30;
+
+fn npy(kind: &str, shape: &[usize], data: impl IntoIterator<Item = u8>) -> Vec<u8> {
+    let list: String = shape.iter().map(|n| format!("{n},")).collect();
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({list}), }}");
+    // The data begin at a multiple of 64.
+    while (header.len() + 11) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+/// Writes dexels as NumPy arrays: `numpy.load(file)["z"]` are the ends of all intervals.
+///
+/// # Errors
+/// What the writer says; an array of more than 4 GiB.
+pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
+    let grid = dexels.grid();
+    let intervals = || {
+        dexels
+            .iter()
+            .flat_map(|(line, intervals)| intervals.iter().map(move |i| (line, i)))
+    };
+    let ends = || intervals().flat_map(|(_, i)| [i.lower, i.upper]);
+    let n = dexels.count();
+    let area = grid.min().into_iter().chain(grid.max()).flat_map(f64::to_le_bytes);
+    let cells = grid.cells().into_iter().flat_map(|n| (n as u64).to_le_bytes());
+    let frame = framed_numbers(grid.frame()).flat_map(f64::to_le_bytes);
+    let frame = ("frame.npy", npy("<f8", &[4, 3], frame));
+    let mut entries = vec![
+        ("area.npy", npy("<f8", &[2, 2], area)),
+        ("cells.npy", npy("<u8", &[2], cells)),
+        (
+            "line.npy",
+            npy(
+                "<u4",
+                &[n],
+                intervals().flat_map(|(line, _)| (line as u32).to_le_bytes()),
+            ),
+        ),
+        ("z.npy", npy("<f8", &[n, 2], ends().flat_map(|e| e.z.to_le_bytes()))),
+        (
+            "normal.npy",
+            npy(
+                "<f4",
+                &[n, 2, 3],
+                ends().flat_map(|e| e.normal).flat_map(f32::to_le_bytes),
+            ),
+        ),
+        (
+            "path.npy",
+            npy("<u2", &[n, 2], ends().flat_map(|e| e.source.path.to_le_bytes())),
+        ),
+        (
+            "segment.npy",
+            npy("<u4", &[n, 2], ends().flat_map(|e| e.source.segment.to_le_bytes())),
+        ),
+        (
+            "t.npy",
+            npy("<f4", &[n, 2], ends().flat_map(|e| e.source.t.to_le_bytes())),
+        ),
+    ];
+    if !grid.frame().is_world() {
+        entries.push(frame);
+    }
+    zip::write(&entries, writer)
+}
+
+fn problem(message: String) -> FormatError {
+    FormatError::new(Problem::syntax(message), None)
+}
+
+/// The numbers of an array: as many bytes each as its type has, and as many numbers a row as `row` says.
+fn array<'a, const N: usize>(
+    archive: &Archive<'a>,
+    name: &str,
+    kind: &str,
+    row: &[usize],
+) -> Result<&'a [[u8; N]], FormatError> {
+    let bytes = archive.file(&format!("{name}.npy"))?;
+    let wrong = || {
+        let row: String = row.iter().map(|n| format!(", {n}")).collect();
+        problem(format!(
+            "the array `{name}` is not as expected: of type {kind} and shape (n{row})"
+        ))
+    };
+    let rest = bytes.strip_prefix(b"\x93NUMPY\x01\x00").ok_or_else(wrong)?;
+    let (length, rest) = rest.split_first_chunk::<2>().ok_or_else(wrong)?;
+    let (header, data) = rest
+        .split_at_checked(u16::from_le_bytes(*length).into())
+        .ok_or_else(wrong)?;
+    let header: String = String::from_utf8_lossy(header).split_whitespace().collect();
+    let shape = header
+        .strip_prefix(&format!("{{'descr':'{kind}','fortran_order':False,'shape':("))
+        .and_then(|rest| rest.split(')').next())
+        .ok_or_else(wrong)?;
+    let shape: Result<Vec<usize>, _> = shape
+        .split(',')
+        .filter(|word| !word.is_empty())
+        .map(str::parse)
+        .collect();
+    let (numbers, tail) = data.as_chunks::<N>();
+    match shape.as_deref() {
+        Ok([n, rest @ ..])
+            if rest == row
+                && tail.is_empty()
+                && row.iter().try_fold(*n, |all, k| all.checked_mul(*k)) == Some(numbers.len()) =>
+        {
+            Ok(numbers)
+        }
+        _ => Err(wrong()),
+    }
+}
+
+/// Reads dexels that [`write_dexels_npz`] wrote, or `numpy.savez` with the same arrays.
+///
+/// # Errors
+/// [`FormatError`]: no such archive, or a compressed one, arrays of other types or shapes, intervals that are out of order.
+pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
+    let archive = Archive::read(bytes)?;
+    let area: Vec<f64> = array(&archive, "area", "<f8", &[2])?
+        .iter()
+        .map(|b| f64::from_le_bytes(*b))
+        .collect();
+    let cells: Vec<usize> = array(&archive, "cells", "<u8", &[])?
+        .iter()
+        .map(|b| usize::try_from(u64::from_le_bytes(*b)).unwrap_or(usize::MAX))
+        .collect();
+    let (&[x0, y0, x1, y1], &[nx, ny]) = (&area[..], &cells[..]) else {
+        return Err(problem(
+            "the arrays `area` and `cells` have other shapes than (2, 2) and (2,)".to_owned(),
+        ));
+    };
+    let grid = Grid::new([x0, y0], [x1, y1], [nx, ny]).map_err(|error| FormatError::new(Problem::Grid(error), None))?;
+    let grid = if archive.has("frame.npy") {
+        in_frame(grid, array(&archive, "frame", "<f8", &[3])?)?
+    } else {
+        grid
+    };
+    if grid.len() > MOST {
+        return Err(problem(format!(
+            "{} dexels are too many: expected at most {MOST}",
+            grid.len()
+        )));
+    }
+    let lines = array::<4>(&archive, "line", "<u4", &[])?;
+    let z = array::<8>(&archive, "z", "<f8", &[2])?;
+    let normals = array::<4>(&archive, "normal", "<f4", &[2, 3])?;
+    let paths = array::<2>(&archive, "path", "<u2", &[2])?;
+    let segments = array::<4>(&archive, "segment", "<u4", &[2])?;
+    let times = array::<4>(&archive, "t", "<f4", &[2])?;
+    if [z.len(), normals.len() / 3, paths.len(), segments.len(), times.len()] != [2 * lines.len(); 5] {
+        return Err(problem("the arrays of this file have different lengths".to_owned()));
+    }
+    let end = |k: usize| End {
+        z: f64::from_le_bytes(z[k]),
+        normal: [0, 1, 2].map(|c| f32::from_le_bytes(normals[3 * k + c])),
+        source: Source {
+            path: u16::from_le_bytes(paths[k]),
+            segment: u32::from_le_bytes(segments[k]),
+            t: f32::from_le_bytes(times[k]),
+        },
+    };
+    let mut builder = DexelsBuilder::new(grid);
+    let mut line: Vec<Interval> = Vec::new();
+    for k in 0..lines.len() {
+        let (number, next) = (u32::from_le_bytes(lines[k]) as usize, lines.get(k + 1));
+        let interval = Interval {
+            lower: end(2 * k),
+            upper: end(2 * k + 1),
+        };
+        let above = line.last().is_none_or(|last| last.upper.z < interval.lower.z);
+        let whole = interval.lower.z < interval.upper.z;
+        if number >= grid.len() || number < builder.lines() || !above || !whole {
+            return Err(problem(format!(
+                "interval {k} (from 0) is out of order, empty, or not on the grid"
+            )));
+        }
+        line.push(interval);
+        if next.is_none_or(|next| u32::from_le_bytes(*next) as usize != number) {
+            builder.skip(number - builder.lines());
+            builder.push(&line);
+            line.clear();
+        }
+    }
+    Ok(builder.finish())
+}

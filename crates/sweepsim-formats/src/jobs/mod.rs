@@ -1,0 +1,14 @@
+//! Jobs: RON files that say what is cut, with which tools, along which paths.
+
+mod job;
+mod path_entry;
+mod paths;
+mod read;
+mod schema;
+mod spline_motion;
+mod stock;
+mod surface_tool;
+mod tools;
+
+pub use job::{Job, Limits, Target, Units};
+pub use paths::JobPath;

@@ -1,0 +1,160 @@
+//! The entries of a job's list of paths: poses, moves, a motion, or a file.
+
+use std::collections::BTreeMap;
+
+use sweepsim_motion::{Law, Path, RotaryTable, Tool};
+use sweepsim_nc::{AxisLaw, Machine, Options, read_file};
+
+use super::paths::{self, JobPath};
+use super::read::JobReader;
+use super::tools::Step;
+use super::{schema, spline_motion};
+use crate::error::{FormatError, Problem};
+
+/// Chords of arcs may be so many times the job's tolerance away from them, where a path does not say otherwise.
+const ARC_TOLERANCE: f64 = 10.0;
+
+impl JobReader<'_> {
+    /// The paths of entry `index` in the list `paths`.
+    pub(crate) fn path(
+        &self,
+        index: usize,
+        raw: &schema::Path,
+        tools: &BTreeMap<u32, Tool>,
+        tolerance: f64,
+    ) -> Result<Vec<JobPath>, FormatError> {
+        let steps = |rest: &[Step]| {
+            let mut steps = vec!["paths".into(), Step::Item(index)];
+            steps.extend_from_slice(rest);
+            steps
+        };
+        let has_tool = |number: u32| {
+            let known = || tools.keys().copied().collect();
+            tools
+                .contains_key(&number)
+                .then_some(())
+                .ok_or_else(|| Problem::NoSuchTool { number, known: known() })
+        };
+        if let Some(number) = raw.tool {
+            has_tool(number).map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
+        }
+        let law = raw.law.unwrap_or(schema::Law::Slerp);
+        let table = |table: schema::Table| match table {
+            schema::Table::Ac => RotaryTable::Ac,
+            schema::Table::Bc => RotaryTable::Bc,
+        };
+        let tool = || {
+            raw.tool.ok_or_else(|| {
+                let problem = Problem::syntax("this path has no tool: expected `tool:` with a number of `tools`");
+                self.error(problem, &steps(&[]))
+            })
+        };
+        let whole = |tool: u32, path: Path, source: String| {
+            vec![JobPath {
+                tool,
+                rapid: vec![false; path.moves()],
+                path,
+                source,
+                lines: Vec::new(),
+                notes: Vec::new(),
+            }]
+        };
+        let own = || format!("path {index} of the job");
+        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+            let tool = tool()?;
+            let path = made.map_err(|(problem, place)| {
+                let mut path = steps(&[field.into()]);
+                let rest = place
+                    .iter()
+                    .flat_map(|&(pose, part)| [Step::Item(pose), Step::Item(part)]);
+                path.extend(rest);
+                self.error(problem, &path)
+            })?;
+            Ok(whole(tool, path, own()))
+        };
+        if let Some(raw_motion) = &raw.motion {
+            if raw.poses.is_some() || raw.moves.is_some() || raw.file.is_some() || raw.law.is_some() {
+                let problem = Problem::syntax(
+                    "`motion` with `poses`, `moves`, `file` or `law` in one path: a motion says all of it, expected it alone",
+                );
+                return Err(self.error(problem, &steps(&["motion".into()])));
+            }
+            let tool = tool()?;
+            let path = spline_motion::path(raw_motion, self.unit).map_err(|fault| {
+                let place: Vec<Step> = std::iter::once("motion".into()).chain(fault.field).collect();
+                self.error(fault.problem, &steps(&place))
+            })?;
+            return Ok(whole(tool, path, own()));
+        }
+        let own_law = match law {
+            schema::Law::Slerp => Law::Slerp,
+            schema::Law::ConstantSpeed => Law::ConstantSpeed,
+            schema::Law::Rotary(axes) => Law::Rotary(table(axes)),
+        };
+        match (&raw.poses, &raw.file) {
+            _ if raw.moves.is_some() && (raw.poses.is_some() || raw.file.is_some()) => {
+                let problem = Problem::syntax("`moves` and `poses` or `file` in one path: expected one of them");
+                Err(self.error(problem, &steps(&["moves".into()])))
+            }
+            (Some(poses), None) => inline(paths::of_poses(poses, own_law, self.unit), "poses"),
+            (None, Some(name)) => {
+                let arc_tolerance = match raw.arc_tolerance {
+                    None => ARC_TOLERANCE * tolerance,
+                    Some(value) => {
+                        let place = steps(&["arc_tolerance".into()]);
+                        self.check("arc_tolerance", value, value > 0.0, "a positive number", &place)?;
+                        value * self.unit
+                    }
+                };
+                let mut options = Options::default();
+                options.arc_tolerance = arc_tolerance;
+                options.inch = self.unit != 1.0;
+                options.machine = Machine::default().tip_control(raw.tip_control.unwrap_or(false));
+                options.machine.table = match law {
+                    schema::Law::Rotary(axes) => Some(table(axes)),
+                    _ => raw.table.map(table),
+                };
+                options.law = match law {
+                    schema::Law::Slerp => AxisLaw::Slerp,
+                    schema::Law::ConstantSpeed => AxisLaw::ConstantSpeed,
+                    schema::Law::Rotary(_) => AxisLaw::Rotary,
+                };
+                options.exact_arcs = matches!(raw.arcs, Some(schema::Arcs::Exact));
+                let file = paths::beside(self.file, name);
+                if file
+                    .extension()
+                    .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+                {
+                    if raw.law.is_some() {
+                        let problem =
+                            Problem::syntax("`law` with the file of a motion: a motion says how the tool turns");
+                        return Err(self.error(problem, &steps(&["law".into()])));
+                    }
+                    let tool = tool()?;
+                    let path = self.named(
+                        spline_motion::read(&file, self.unit),
+                        &file,
+                        "path",
+                        &steps(&["file".into()]),
+                    )?;
+                    return Ok(whole(tool, path, name.clone()));
+                }
+                let read = read_file(&file, &options).map_err(FormatError::from);
+                let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
+                paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
+            }
+            (Some(_), Some(_)) => {
+                let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
+                Err(self.error(problem, &steps(&["file".into()])))
+            }
+            (None, None) => match &raw.moves {
+                Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
+                None => {
+                    let problem =
+                        Problem::syntax("this path has no poses: expected `poses`, `moves`, `motion` or `file`");
+                    Err(self.error(problem, &steps(&[])))
+                }
+            },
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The paths of a job: poses in the job itself, or a file whose extension says its format.
+
+use std::path::{Path as FilePath, PathBuf};
+
+use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
+use sweepsim_nc::{Note, Program, ProgramPose};
+
+use super::schema;
+use crate::error::{FormatError, Problem, TextPosition};
+
+/// A path of a job, with its tool. A path file gives several of them when its path breaks or its tool changes.
+#[derive(Clone, Debug)]
+pub struct JobPath {
+    /// The number of the tool that goes along it: a key of [`Job::tools`](crate::Job::tools).
+    pub tool: u32,
+    /// The poses, in millimetres.
+    pub path: Path,
+    /// Where it comes from, for people: a file's name, or its place in the job.
+    pub source: String,
+    /// For each move whether it is a rapid one.
+    pub rapid: Vec<bool>,
+    /// For each pose its line in the file; empty when it is in the job itself.
+    pub lines: Vec<usize>,
+    /// What was ignored or decided in reading the file: with the first path of it.
+    pub notes: Vec<Note>,
+}
+
+/// The paths of a program, the tool turning by `law` where the program does not say how. `tool` is that of the job for all of it; without it the program's numbers hold.
+pub(crate) fn of_program(
+    mut program: Program,
+    file: &FilePath,
+    shown: &str,
+    tool: Option<u32>,
+    law: Law,
+    has_tool: impl Fn(u32) -> Result<(), Problem>,
+) -> Result<Vec<JobPath>, FormatError> {
+    let at = |problem: Problem, line: usize| {
+        let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        let whole = text.ok().and_then(|text| text.lines().nth(line - 1).map(str::to_owned));
+        let whole = whole.unwrap_or_default();
+        let place = TextPosition::in_line(line, &whole, 1, whole.chars().count());
+        FormatError::new(problem, Some(place)).in_file(file)
+    };
+    if let (Some(tool), Some(other)) = (tool, second_tool(&program)) {
+        program.notes.push(Note {
+            line: other.line,
+            message: format!("the program changes tools; the job's tool {tool} is used throughout"),
+        });
+    }
+    let mut notes = std::mem::take(&mut program.notes);
+    let mut paths = Vec::new();
+    for section in program.sections() {
+        let first = section[0];
+        let number = match (tool, first.tool) {
+            (Some(tool), _) | (None, Some(tool)) => tool,
+            (None, None) => {
+                let problem = Problem::syntax(
+                    "no tool is named for this path: expected `tool:` in the job, or a tool in the file",
+                );
+                return Err(at(problem, first.line));
+            }
+        };
+        has_tool(number).map_err(|problem| at(problem, first.line))?;
+        let poses = section.iter().map(|pose| pose.pose).collect();
+        let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
+        // Tables say nothing of how the tool turns.
+        let path = if moves.iter().all(|way| *way == Move::default()) {
+            Path::with_law(poses, law)
+        } else {
+            Path::with_moves(poses, moves)
+        };
+        let path = path.map_err(|error| {
+            let line = match error {
+                PathError::OppositeAxes { index } | PathError::Rotary { index } => {
+                    section.get(index + 1).map_or(first.line, |pose| pose.line)
+                }
+                _ => first.line,
+            };
+            at(Problem::Path(error), line)
+        })?;
+        paths.push(JobPath {
+            tool: number,
+            path,
+            source: shown.to_owned(),
+            rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
+            lines: section.iter().map(|pose| pose.line).collect(),
+            notes: std::mem::take(&mut notes),
+        });
+    }
+    Ok(paths)
+}
+
+fn second_tool(program: &Program) -> Option<&ProgramPose> {
+    let first = program.poses.iter().find_map(|pose| pose.tool)?;
+    program
+        .poses
+        .iter()
+        .find(|pose| pose.tool.is_some_and(|tool| tool != first))
+}
+
+/// What is wrong with inline poses: the problem, and which pose and part of it (0: tip, 1: axis, 2: side).
+pub(crate) type PoseFault = (Problem, Option<(usize, usize)>);
+
+fn pose(raw: &schema::Pose, unit: f64) -> Result<Pose, (Problem, usize)> {
+    let schema::Pose(tip, axis, side) = *raw;
+    let placed = tip.map(|c| c * unit);
+    let made = match side {
+        None => Pose::new(placed, axis),
+        Some(side) => Pose::with_side(placed, axis, side),
+    };
+    made.map_err(|error| {
+        let part = match error {
+            PoseError::TipNotFinite(_) => 0,
+            PoseError::SideWithoutDirection(_) => 2,
+            _ => 1,
+        };
+        (Problem::Pose(error), part)
+    })
+}
+
+/// The path through poses of the job itself.
+pub(crate) fn of_poses(raw: &[schema::Pose], law: Law, unit: f64) -> Result<Path, PoseFault> {
+    let mut poses = Vec::with_capacity(raw.len());
+    for (index, raw) in raw.iter().enumerate() {
+        poses.push(pose(raw, unit).map_err(|(problem, part)| (problem, Some((index, part))))?);
+    }
+    Path::with_law(poses, law).map_err(path_fault)
+}
+
+fn path_fault(error: PathError) -> PoseFault {
+    let place = match error {
+        PathError::OppositeAxes { index } => Some((index + 1, 1)),
+        _ => None,
+    };
+    (Problem::Path(error), place)
+}
+
+/// The path along moves of the job itself.
+pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path, PoseFault> {
+    let mut poses: Vec<Pose> = Vec::with_capacity(raw.len());
+    let mut arcs = Vec::new();
+    for (index, raw) in raw.iter().enumerate() {
+        let fault = |problem: Problem| (problem, Some((index, 0)));
+        let (to, arc) = match raw {
+            schema::Move::Start(to) | schema::Move::Line(to) => (to, None),
+            schema::Move::Arc {
+                to,
+                centre,
+                normal,
+                turn,
+                turns,
+            } => (to, Some((centre.map(|c| c * unit), *normal, *turn, *turns))),
+        };
+        if matches!(raw, schema::Move::Start(_)) != (index == 0) {
+            let message = "expected `Start(..)` as the first of the moves, and nowhere else";
+            return Err(fault(Problem::syntax(message)));
+        }
+        let to = pose(to, unit).map_err(|(problem, part)| (problem, Some((index, part))))?;
+        if let (Some((centre, normal, turn, turns)), Some(from)) = (arc, poses.last()) {
+            let signed = match (turns, turn) {
+                (1..=10_000, schema::Turn::Ccw) => i32::from(turns),
+                (1..=10_000, schema::Turn::Cw) => -i32::from(turns),
+                _ => return Err(fault(Problem::value("`turns` of an arc", turns, "from 1 to 10000"))),
+            };
+            let arc = TipArc::between(from.tip().into(), to.tip().into(), centre, normal, signed);
+            arcs.push((
+                index - 1,
+                arc.map_err(|error| fault(Problem::syntax(error.to_string())))?,
+            ));
+        }
+        poses.push(to);
+    }
+    let plain = Path::with_law(poses.clone(), law).map_err(path_fault)?;
+    let mut moves: Vec<Move> = (0..plain.moves()).map(|index| plain.way(index)).collect();
+    for (index, arc) in arcs {
+        moves[index] = Move {
+            course: Course::Arc(arc),
+            turning: match moves[index].turning {
+                Turning::Slerp => Turning::Even,
+                other => other,
+            },
+        };
+    }
+    Path::with_moves(poses, moves).map_err(path_fault)
+}
+
+/// `file` as named in `job`: relative to the folder of the job.
+pub(crate) fn beside(job: &FilePath, file: &str) -> PathBuf {
+    job.parent().unwrap_or(FilePath::new("")).join(file)
+}

@@ -1,0 +1,221 @@
+//! From the values of a job's text to a [`Job`]: every one checked, with its place when it is wrong.
+
+use std::collections::BTreeMap;
+use std::path::Path as FilePath;
+
+use sweepsim_dexel::{Frame, Grid};
+use sweepsim_motion::{AptWarning, Body, BodyKind, Tool};
+use sweepsim_nc::Note;
+
+use super::job::{Job, Limits, Target, Units};
+use super::tools::{self, Step};
+use super::{paths, schema, surface_tool};
+use crate::error::{FormatError, Problem, TextPosition};
+use crate::text::{self, SpanTree};
+
+/// Where a job does not say how exact interval ends are, in its units.
+const TOLERANCE: f64 = 1e-6;
+
+/// Reads a job whose file is, or would be, `file`.
+pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
+    let raw: schema::Job = text::ron(text)?;
+    let units = match raw.units {
+        schema::Units::Mm => Units::Mm,
+        schema::Units::Inch => Units::Inch,
+    };
+    let reader = JobReader {
+        text,
+        file,
+        spans: SpanTree::of(text),
+        unit: units.in_mm(),
+    };
+    reader.job(raw, units)
+}
+
+pub(crate) struct JobReader<'a> {
+    text: &'a str,
+    pub(crate) file: &'a FilePath,
+    spans: SpanTree,
+    /// Millimetres per unit of the job.
+    pub(crate) unit: f64,
+}
+
+impl JobReader<'_> {
+    /// A problem with the value that the steps lead to.
+    pub(crate) fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
+        let span = self.node(steps).span.clone();
+        FormatError::new(problem, Some(TextPosition::of_bytes(self.text, span)))
+    }
+
+    pub(crate) fn node(&self, steps: &[Step]) -> &SpanTree {
+        steps.iter().fold(&self.spans, |node, step| step.of(node))
+    }
+
+    pub(crate) fn check(
+        &self,
+        what: &str,
+        value: f64,
+        good: bool,
+        expected: &str,
+        steps: &[Step],
+    ) -> Result<(), FormatError> {
+        if good && (value * self.unit).is_finite() {
+            Ok(())
+        } else {
+            Err(self.error(Problem::value(what, value, expected), steps))
+        }
+    }
+
+    fn job(&self, raw: schema::Job, units: Units) -> Result<Job, FormatError> {
+        let tolerance = raw.tolerance.unwrap_or(TOLERANCE);
+        self.check(
+            "tolerance",
+            tolerance,
+            tolerance > 0.0,
+            "a positive number",
+            &["tolerance".into()],
+        )?;
+        let tolerance = tolerance * self.unit;
+        let grid = self.grid(&raw.grid)?;
+        let stock = self.stock(&raw.stock, &["stock".into()], &grid)?;
+        if let Some((number, place)) = self.spans.key("tools").second_key() {
+            let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
+            return Err(FormatError::new(
+                problem,
+                Some(TextPosition::of_bytes(self.text, place)),
+            ));
+        }
+        let (mut tools, mut notes) = (BTreeMap::new(), Vec::new());
+        for (&number, tool) in &raw.tools {
+            let steps = vec!["tools".into(), Step::Key(number.to_string())];
+            let (made, odd) = self.tool(number, tool, &steps)?;
+            tools.insert(number, made);
+            notes.extend(odd);
+        }
+        let mut bodies = BTreeMap::new();
+        for (&number, list) in &raw.bodies {
+            let steps = |index: usize| vec!["bodies".into(), Step::Key(number.to_string()), Step::Item(index)];
+            if !tools.contains_key(&number) {
+                let known = tools.keys().copied().collect();
+                return Err(self.error(Problem::NoSuchTool { number, known }, &steps(0)[..2]));
+            }
+            let mut made = Vec::with_capacity(list.len());
+            for (index, body) in list.iter().enumerate() {
+                let (kind, solid) = match body {
+                    schema::Body::Shank(solid) => (BodyKind::Shank, solid),
+                    schema::Body::Holder(solid) => (BodyKind::Holder, solid),
+                };
+                let (solid, odd) = self.tool(number, solid, &steps(index))?;
+                notes.extend(odd);
+                made.push(Body { kind, solid });
+            }
+            bodies.insert(number, made);
+        }
+        let mut paths = Vec::new();
+        for (index, path) in raw.paths.iter().enumerate() {
+            paths.extend(self.path(index, path, &tools, tolerance)?);
+        }
+        let target = match &raw.target {
+            None => None,
+            Some(schema::Target::Mesh(name)) => Some(Target {
+                file: paths::beside(self.file, name),
+                mesh: self.mesh(name, "target", &["target".into()])?,
+            }),
+        };
+        let limits = match raw.limits {
+            None => None,
+            Some(limits) => {
+                for (name, value) in [("gouge", limits.gouge), ("excess", limits.excess)] {
+                    self.check(
+                        name,
+                        value,
+                        value >= 0.0,
+                        "0 or greater",
+                        &["limits".into(), name.into()],
+                    )?;
+                }
+                Some(Limits {
+                    gouge: limits.gouge * self.unit,
+                    excess: limits.excess * self.unit,
+                })
+            }
+        };
+        let stem = self.file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        Ok(Job {
+            name: raw.name.or(stem).unwrap_or_else(|| "job".into()),
+            units,
+            tolerance,
+            grid,
+            stock,
+            tools,
+            bodies,
+            paths,
+            target,
+            limits,
+            notes,
+        })
+    }
+
+    /// The solid of tool `number`, or of a body that moves with it, and what is odd about it.
+    fn tool(&self, number: u32, raw: &schema::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
+        if let schema::Tool::Surface(name) = raw {
+            let file = paths::beside(self.file, name);
+            let tool = self.named(surface_tool::read(&file, self.unit), &file, "tool", steps)?;
+            return Ok((tool, Vec::new()));
+        }
+        let made = tools::tool(number, raw, self.unit).map_err(|fault| {
+            let steps: Vec<Step> = steps.iter().cloned().chain(fault.field).collect();
+            self.error(fault.problem, &steps)
+        })?;
+        let line = TextPosition::of_bytes(self.text, self.node(steps).span.clone()).line;
+        let note = |warning: AptWarning| Note {
+            line,
+            message: format!("tool {number}: {warning}"),
+        };
+        Ok((made.tool, made.warnings.into_iter().map(note).collect()))
+    }
+
+    fn grid(&self, raw: &schema::Grid) -> Result<Grid, FormatError> {
+        let scale = |corner: [f64; 2]| corner.map(|c| c * self.unit);
+        let mut cells = [0; 2];
+        for (k, cell) in cells.iter_mut().enumerate() {
+            *cell = usize::try_from(raw.cells[k]).ok().filter(|&n| n > 0).ok_or_else(|| {
+                let problem = Problem::value("a number of cells", raw.cells[k], "a positive whole number");
+                self.error(problem, &["grid".into(), "cells".into(), Step::Item(k)])
+            })?;
+        }
+        for (name, corner) in [("min", raw.min), ("max", raw.max)] {
+            for (k, value) in corner.into_iter().enumerate() {
+                let steps = ["grid".into(), name.into(), Step::Item(k)];
+                self.check("a corner of the grid", value, true, "finite", &steps)?;
+            }
+        }
+        let grid = Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
+            let ordered = (0..2).all(|k| raw.min[k] < raw.max[k]);
+            let field = if ordered { "cells" } else { "min" };
+            self.error(Problem::Grid(error), &["grid".into(), field.into()])
+        })?;
+        let Some(frame) = &raw.frame else { return Ok(grid) };
+        let origin = frame.origin.map(|c| c * self.unit);
+        let frame = Frame::new(origin, frame.z, frame.x)
+            .map_err(|error| self.error(Problem::Frame(error), &["grid".into(), "frame".into()]))?;
+        Ok(grid.in_frame(frame))
+    }
+
+    /// A file that cannot be opened is an error of the job, at the place that names it.
+    pub(crate) fn named<T>(
+        &self,
+        read: Result<T, FormatError>,
+        file: &FilePath,
+        what: &'static str,
+        steps: &[Step],
+    ) -> Result<T, FormatError> {
+        read.map_err(|error| match error.into_read_error() {
+            Ok(source) => {
+                let file = file.to_owned();
+                self.error(Problem::Named { what, file, source }, steps)
+            }
+            Err(error) => error,
+        })
+    }
+}

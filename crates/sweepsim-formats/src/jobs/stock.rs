@@ -1,0 +1,126 @@
+//! The stock of a job, and other solids from files.
+
+use std::sync::Arc;
+
+use sweepsim_dexel::{Grid, Stock, TriangleSoup};
+
+use super::read::JobReader;
+use super::tools::Step;
+use super::{paths, schema};
+use crate::dexels::read_dexels_file;
+use crate::error::{FormatError, Problem};
+use crate::meshes::{MeshFormat, read_mesh_file, read_stl};
+
+impl JobReader<'_> {
+    /// A piece of stock, whose value the steps lead to.
+    pub(crate) fn stock(&self, raw: &schema::Stock, at: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
+        let scale = |point: [f64; 3]| point.map(|c| c * self.unit);
+        let steps = |name: &str, k: Option<usize>| -> Vec<Step> {
+            let more = [Some(name.into()), k.map(Step::Item)].into_iter().flatten();
+            at.iter().cloned().chain(more).collect()
+        };
+        let finite = |name: &str, point: [f64; 3]| {
+            (0..3).try_for_each(|k| self.check(name, point[k], true, "finite", &steps(name, Some(k))))
+        };
+        // Those in the list that is the item number `place` of a wrapper.
+        let list = |parts: &[schema::Stock], place: usize| -> Result<Vec<Stock>, FormatError> {
+            let each = parts.iter().enumerate().map(|(k, part)| {
+                let steps: Vec<Step> = at.iter().cloned().chain([Step::Item(place), Step::Item(k)]).collect();
+                self.stock(part, &steps, grid)
+            });
+            each.collect()
+        };
+        match *raw {
+            schema::Stock::Block { min, max } => {
+                finite("min", min)?;
+                finite("max", max)?;
+                for k in 0..3 {
+                    let expected = format!("greater than that of min, {}", min[k]);
+                    let what = format!("the {} of max", ['x', 'y', 'z'][k]);
+                    self.check(&what, max[k], min[k] < max[k], &expected, &steps("max", Some(k)))?;
+                }
+                Ok(Stock::Block {
+                    min: scale(min),
+                    max: scale(max),
+                })
+            }
+            schema::Stock::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                finite("base", base)?;
+                finite("axis", axis)?;
+                if axis == [0.0; 3] {
+                    let problem = Problem::value("axis", "zero", "a direction, such as (0, 0, 1)");
+                    return Err(self.error(problem, &steps("axis", None)));
+                }
+                self.check("radius", radius, radius > 0.0, "positive", &steps("radius", None))?;
+                self.check("height", height, height > 0.0, "positive", &steps("height", None))?;
+                Ok(Stock::Cylinder {
+                    base: scale(base),
+                    axis,
+                    radius: radius * self.unit,
+                    height: height * self.unit,
+                })
+            }
+            schema::Stock::Ball { centre, radius } => {
+                finite("centre", centre)?;
+                self.check("radius", radius, radius > 0.0, "positive", &steps("radius", None))?;
+                Ok(Stock::Ball {
+                    centre: scale(centre),
+                    radius: radius * self.unit,
+                })
+            }
+            schema::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", at)?)),
+            schema::Stock::Dexels(ref name) => self.dexels(name, at, grid),
+            schema::Stock::Union(ref parts) => Ok(Stock::Union(list(parts, 0)?)),
+            schema::Stock::Intersection(ref parts) => Ok(Stock::Intersection(list(parts, 0)?)),
+            schema::Stock::Difference(ref whole, ref parts) => {
+                let steps: Vec<Step> = at.iter().cloned().chain([Step::Item(0)]).collect();
+                let whole = self.stock(whole, &steps, grid)?;
+                Ok(Stock::Difference(whole.into(), list(parts, 1)?))
+            }
+        }
+    }
+
+    /// What an earlier run left, in millimetres as all its outputs.
+    fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
+        let file = paths::beside(self.file, name);
+        let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
+        if dexels.grid() == grid {
+            return Ok(Stock::Dexels(Arc::new(dexels)));
+        }
+        let words = |grid: &Grid| {
+            let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
+            let frame = if grid.frame().is_world() { "" } else { " in a frame" };
+            format!("{nx} x {ny} dexels from ({x0}, {y0}) to ({x1}, {y1}) mm{frame}")
+        };
+        let what = format!("the grid of {name}");
+        Err(self.error(
+            Problem::value(what, words(dexels.grid()), format!("that of the job, {}", words(grid))),
+            steps,
+        ))
+    }
+
+    /// The triangles of a file that is named at the steps, in millimetres.
+    pub(crate) fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
+        let file = paths::beside(self.file, name);
+        let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
+        let mesh = if known {
+            let mesh = self.named(read_mesh_file(&file), &file, what, steps)?;
+            mesh.soup().unwrap_or_default()
+        } else {
+            self.named(read_stl(&file), &file, what, steps)?
+        };
+        Ok(if self.unit == 1.0 {
+            mesh
+        } else {
+            let scaled = mesh.triangles.iter().map(|t| t.map(|p| p.map(|c| c * self.unit)));
+            TriangleSoup {
+                triangles: scaled.collect(),
+            }
+        })
+    }
+}

@@ -1,0 +1,106 @@
+//! Mesh files, by extension.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use sweepsim_dexel::Mesh;
+
+use super::glb::{read_glb, write_glb};
+use super::ply::{read_ply, write_ply};
+use super::stl::{read_stl, write_stl};
+use super::threemf::{read_3mf, write_3mf};
+use super::vtp::{read_vtp, write_vtp};
+use crate::atomic::write_atomically;
+use crate::error::{FormatError, Problem};
+use crate::extension::{extension, unknown};
+
+/// The extensions of [`MeshFormat`], for messages.
+const MESHES: &str = ".stl, .ply, .glb, .3mf, .vtp";
+
+/// A format of meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshFormat {
+    /// `.stl`: loose triangles.
+    Stl,
+    /// `.ply`: with normals.
+    Ply,
+    /// `.glb`: glTF 2.0, for viewers.
+    Glb,
+    /// `.3mf`: for printers.
+    ThreeMf,
+    /// `.vtp`: for ParaView.
+    Vtp,
+}
+
+impl MeshFormat {
+    /// That of a file, by its extension.
+    #[must_use]
+    pub fn of(file: &Path) -> Option<Self> {
+        Some(match extension(file).as_str() {
+            "stl" => Self::Stl,
+            "ply" => Self::Ply,
+            "glb" => Self::Glb,
+            "3mf" => Self::ThreeMf,
+            "vtp" => Self::Vtp,
+            _ => return None,
+        })
+    }
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stl => "STL",
+            Self::Ply => "PLY",
+            Self::Glb => "GLB",
+            Self::ThreeMf => "3MF",
+            Self::Vtp => "VTP",
+        })
+    }
+}
+
+/// Reads a mesh: `.stl .ply .glb .3mf .vtp`. Corners of an STL that are equal to the bit become one vertex.
+///
+/// # Errors
+/// [`FormatError`] with the file's name: no such file, an extension that is not known, or what the reader of the format says.
+pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
+    let Some(format) = MeshFormat::of(file) else {
+        return Err(unknown(file, "mesh", MESHES));
+    };
+    if format == MeshFormat::Stl {
+        return Ok(read_stl(file)?.indexed());
+    }
+    let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
+    match format {
+        MeshFormat::Stl | MeshFormat::Ply => read_ply(&bytes),
+        MeshFormat::Glb => read_glb(&bytes),
+        MeshFormat::ThreeMf => read_3mf(&bytes),
+        MeshFormat::Vtp => read_vtp(&bytes),
+    }
+    .map_err(|error| error.in_file(file))
+}
+
+/// Writes a mesh, whole or not at all: `.stl .ply .glb .3mf .vtp`.
+///
+/// # Errors
+/// [`FormatError`] with the file's name: an extension that is not known, or what the system or the writer of the format says.
+pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
+    let Some(format) = MeshFormat::of(file) else {
+        return Err(unknown(file, "mesh", MESHES));
+    };
+    write_atomically(file, |out| match format {
+        MeshFormat::Stl => match mesh.soup() {
+            Some(soup) => write_stl(&soup.triangles, out),
+            None => Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "a triangle without its vertices",
+            )),
+        },
+        MeshFormat::Ply => write_ply(mesh, out),
+        MeshFormat::Glb => write_glb(mesh, out),
+        MeshFormat::ThreeMf => write_3mf(mesh, out),
+        MeshFormat::Vtp => write_vtp(mesh, out),
+    })
+}

@@ -1,0 +1,49 @@
+//! Text files, and RON with the positions of its values.
+
+mod ron_spans;
+
+pub(crate) use ron_spans::SpanTree;
+
+use std::path::Path;
+
+use crate::error::{FormatError, Problem, TextPosition};
+
+/// Reads a text file.
+pub(crate) fn read(file: &Path) -> Result<String, FormatError> {
+    let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes());
+        let problem = Problem::syntax("this is no text: expected UTF-8");
+        FormatError::new(problem, Some(TextPosition::of_bytes(&text, valid..valid + 1))).in_file(file)
+    })
+}
+
+/// The values of a RON text, not checked yet.
+pub(crate) fn ron<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, FormatError> {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| {
+        // Positions are lines and characters from 1; the text around them is found again by bytes.
+        let byte = |position: ron::error::Position| {
+            let start: usize = text
+                .split_inclusive('\n')
+                .take(position.line.saturating_sub(1))
+                .map(str::len)
+                .sum();
+            let column = text[start..].char_indices().nth(position.col.saturating_sub(1));
+            start + column.map_or(text.len() - start, |(byte, _)| byte)
+        };
+        let span = byte(error.span.start)..byte(error.span.end);
+        // The span may have space around what is meant.
+        let skipped = text[span.start..].len() - text[span.start..].trim_start().len();
+        let start = if error.code == ron::Error::Eof {
+            span.start
+        } else {
+            span.start + skipped
+        };
+        FormatError::new(
+            Problem::syntax(error.code.to_string()),
+            Some(TextPosition::of_bytes(text, start..span.end.max(start))),
+        )
+    })
+}

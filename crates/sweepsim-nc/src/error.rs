@@ -1,0 +1,213 @@
+//! What can be wrong with a program, and where.
+
+use std::fmt;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use sweepsim_motion::PoseError;
+use thiserror::Error;
+
+/// Longer lines are cut in excerpts.
+const MAX_EXCERPT: usize = 160;
+
+/// A position in a text. Lines and columns count from 1, columns in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TextPosition {
+    /// The line.
+    pub line: usize,
+    /// The column of the first character.
+    pub column: usize,
+    /// The number of characters in this line, at least 1.
+    pub width: usize,
+    /// The line itself; very long lines are cut after the column.
+    pub excerpt: String,
+}
+
+impl TextPosition {
+    /// `width` characters from `column` on in a line whose text is `whole`.
+    #[must_use]
+    pub fn in_line(line: usize, whole: &str, column: usize, width: usize) -> Self {
+        let column = column.max(1);
+        let kept = MAX_EXCERPT.max(column.saturating_add(MAX_EXCERPT / 4));
+        Self {
+            line,
+            column,
+            width: width.max(1),
+            excerpt: whole.chars().take(kept).collect(),
+        }
+    }
+
+    /// A range of bytes in `text`, on the line where it begins. Ranges beyond the end are moved to the end.
+    #[must_use]
+    pub fn of_bytes(text: &str, bytes: Range<usize>) -> Self {
+        let floor = |byte: usize| {
+            let mut byte = byte.min(text.len());
+            while !text.is_char_boundary(byte) {
+                byte -= 1;
+            }
+            byte
+        };
+        let (start, end) = (floor(bytes.start), floor(bytes.end.max(bytes.start)));
+        let line_start = text[..start].rfind('\n').map_or(0, |byte| byte + 1);
+        let line = 1 + text[..line_start].bytes().filter(|&byte| byte == b'\n').count();
+        let whole = text[line_start..].lines().next().unwrap_or("");
+        let column = 1 + text[line_start..start].chars().count();
+        let width = text[start..end].lines().next().unwrap_or("").chars().count();
+        Self::in_line(line, whole, column, width)
+    }
+}
+
+/// What is wrong, without the position.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NcProblem {
+    /// The file could not be read.
+    #[error("cannot read this file: {0}")]
+    Read(#[source] io::Error),
+    /// The text does not follow the grammar of its format.
+    #[error("{message}")]
+    Syntax {
+        /// What was found, and what was expected.
+        message: String,
+    },
+    /// A value is not allowed.
+    #[error("{what} is {found}, but must be {expected}")]
+    Value {
+        /// The name of the value.
+        what: String,
+        /// The value.
+        found: String,
+        /// What it must be.
+        expected: String,
+    },
+    /// Something that is understood but not supported.
+    #[error("{what} not supported yet: {instead}")]
+    Unsupported {
+        /// What, with its verb: "canned cycles are".
+        what: String,
+        /// What to do instead.
+        instead: String,
+    },
+    /// A pose is invalid.
+    #[error("{0}")]
+    Pose(#[source] PoseError),
+}
+
+impl NcProblem {
+    pub(crate) fn syntax(message: impl Into<String>) -> Self {
+        Self::Syntax {
+            message: message.into(),
+        }
+    }
+
+    pub(crate) fn value(what: impl Into<String>, found: impl fmt::Display, expected: impl Into<String>) -> Self {
+        Self::Value {
+            what: what.into(),
+            found: found.to_string(),
+            expected: expected.into(),
+        }
+    }
+
+    pub(crate) fn unsupported(what: impl Into<String>, instead: impl Into<String>) -> Self {
+        Self::Unsupported {
+            what: what.into(),
+            instead: instead.into(),
+        }
+    }
+}
+
+/// A program that cannot be read: what is wrong, in which file, and where, as far as each is known.
+///
+/// Its `Display` is one line: `file:line:column: what is wrong, and what was expected`.
+#[derive(Debug)]
+pub struct NcError(Box<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    file: Option<PathBuf>,
+    position: Option<TextPosition>,
+    problem: NcProblem,
+}
+
+impl NcError {
+    pub(crate) fn new(problem: NcProblem, position: Option<TextPosition>) -> Self {
+        Self(Box::new(Inner {
+            file: None,
+            position,
+            problem,
+        }))
+    }
+
+    pub(crate) fn in_file(mut self, file: &Path) -> Self {
+        self.0.file.get_or_insert_with(|| file.to_owned());
+        self
+    }
+
+    /// The file, if there is one.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.0.file.as_deref()
+    }
+
+    /// The position in the file, if there is one.
+    #[must_use]
+    pub fn position(&self) -> Option<&TextPosition> {
+        self.0.position.as_ref()
+    }
+
+    /// What is wrong.
+    #[must_use]
+    pub fn problem(&self) -> &NcProblem {
+        &self.0.problem
+    }
+
+    /// The file, the position and the problem.
+    #[must_use]
+    pub fn into_parts(self) -> (Option<PathBuf>, Option<TextPosition>, NcProblem) {
+        let inner = *self.0;
+        (inner.file, inner.position, inner.problem)
+    }
+}
+
+impl fmt::Display for NcError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.0.file {
+            write!(f, "{}:", file.display())?;
+        }
+        if let Some(position) = &self.0.position {
+            write!(f, "{}:{}:", position.line, position.column)?;
+        }
+        if self.0.file.is_some() || self.0.position.is_some() {
+            f.write_str(" ")?;
+        }
+        write!(f, "{}", self.0.problem)
+    }
+}
+
+impl std::error::Error for NcError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        std::error::Error::source(&self.0.problem)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters() {
+        let text = "a\nØØ x = 1\n";
+        let at = text.find('x').unwrap();
+        let found = TextPosition::of_bytes(text, at..at + 1);
+        assert_eq!((found.line, found.column, found.width), (2, 4, 1));
+        assert_eq!(found.excerpt, "ØØ x = 1");
+    }
+
+    #[test]
+    fn beyond_the_end_is_the_end() {
+        let found = TextPosition::of_bytes("ab", 10..20);
+        assert_eq!((found.line, found.column, found.width), (1, 3, 1));
+    }
+}

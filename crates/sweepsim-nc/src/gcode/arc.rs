@@ -1,0 +1,225 @@
+//! Circles and helices of G2 and G3, exact or divided into chords.
+//!
+//! Notation: *u* and *v* are the axes of the plane, such that a counter-clockwise turn (G3) goes from u to v; *w* is the third axis.
+//! G17: XY, Z. G18: ZX, Y. G19: YZ, X.
+
+use std::f64::consts::TAU;
+
+use sweepsim_motion::{ArcError, TipArc};
+
+/// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
+pub(crate) type Plane = [usize; 3];
+
+/// A circular arc or helix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    pub start: [f64; 3],
+    pub end: [f64; 3],
+    pub plane: Plane,
+    /// `(u, v)`.
+    pub centre: [f64; 2],
+    /// Signed, in radians: positive counter-clockwise.
+    pub sweep: f64,
+}
+
+/// How much the radii at both ends of an arc may differ, in mm,
+const RADIUS_SLACK: f64 = 0.0127;
+/// in proportion to the radius,
+const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
+/// and at most. These are LinuxCNC's limits, for which many programs are written.
+const RADIUS_SLACK_LARGEST: f64 = 0.5;
+
+/// The most chords per arc.
+const MOST_CHORDS: f64 = 1e6;
+
+impl Arc {
+    /// The arc about `centre`. `turns` is 1 for less than a full turn, and one more for each further full turn.
+    pub(crate) fn about(
+        (start, end): ([f64; 3], [f64; 3]),
+        plane: Plane,
+        centre: [f64; 2],
+        counter_clockwise: bool,
+        turns: f64,
+    ) -> Result<Self, String> {
+        let [u, v, _] = plane;
+        let from = [start[u] - centre[0], start[v] - centre[1]];
+        let to = [end[u] - centre[0], end[v] - centre[1]];
+        let (ra, rb) = (from[0].hypot(from[1]), to[0].hypot(to[1]));
+        if !(ra > 0.0 && rb > 0.0 && ra.is_finite() && rb.is_finite()) {
+            return Err(format!(
+                "the arc has no radius: its ends are {ra} and {rb} mm from its centre"
+            ));
+        }
+        let apart = (ra - rb).abs();
+        if apart > RADIUS_SLACK_LARGEST || apart > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * ra.max(rb)) {
+            return Err(format!(
+                "the arc has two radii: its start is {ra} mm and its end {rb} mm from its centre, expected the same"
+            ));
+        }
+        let cross = from[0] * to[1] - from[1] * to[0];
+        let dot = from[0] * to[0] + from[1] * to[1];
+        let mut sweep = cross.atan2(dot);
+        // The same start and end means a full turn.
+        if counter_clockwise {
+            if sweep <= 0.0 {
+                sweep += TAU;
+            }
+            sweep += (turns - 1.0) * TAU;
+        } else {
+            if sweep >= 0.0 {
+                sweep -= TAU;
+            }
+            sweep -= (turns - 1.0) * TAU;
+        }
+        Ok(Self {
+            start,
+            end,
+            plane,
+            centre,
+            sweep,
+        })
+    }
+
+    /// The arc with a radius from `start` to `end`: the shorter one for a positive radius, the longer one for a negative radius.
+    pub(crate) fn with_radius(
+        (start, end): ([f64; 3], [f64; 3]),
+        plane: Plane,
+        radius: f64,
+        counter_clockwise: bool,
+        turns: f64,
+    ) -> Result<Self, String> {
+        let [u, v, _] = plane;
+        let chord = [end[u] - start[u], end[v] - start[v]];
+        let length = chord[0].hypot(chord[1]);
+        if length <= 0.0 {
+            return Err("an arc with R cannot end where it starts (a full circle needs its centre: I, J, K)".into());
+        }
+        let square = radius * radius - 0.25 * length * length;
+        if square < 0.0 && 0.5 * length - radius.abs() > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * radius.abs()) {
+            return Err(format!(
+                "the arc's radius {} mm is too small: its ends are {length} mm apart",
+                radius.abs()
+            ));
+        }
+        let height = square.max(0.0).sqrt() / length;
+        let side = if counter_clockwise == (radius > 0.0) { 1.0 } else { -1.0 };
+        let centre = [
+            start[u] + 0.5 * chord[0] - side * height * chord[1],
+            start[v] + 0.5 * chord[1] + side * height * chord[0],
+        ];
+        Self::about((start, end), plane, centre, counter_clockwise, turns)
+    }
+
+    /// The arc as a single move of the tip.
+    pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
+        let [u, v, w] = self.plane;
+        let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
+        centre[u] = self.centre[0];
+        centre[v] = self.centre[1];
+        centre[w] = self.start[w];
+        normal[w] = 1.0;
+        TipArc::new(centre, normal, self.sweep)
+    }
+
+    /// The number of chords that stay within `tolerance` (mm) of the arc.
+    pub(crate) fn chords(&self, tolerance: f64) -> Result<usize, String> {
+        let [u, v, _] = self.plane;
+        let radius = |p: &[f64; 3]| (p[u] - self.centre[0]).hypot(p[v] - self.centre[1]);
+        let radius = radius(&self.start).max(radius(&self.end));
+        // A chord over 2h leaves r (1 - cos h) = 2 r sin²(h/2).
+        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
+        let chords = (self.sweep.abs() / (2.0 * half)).ceil().max(1.0);
+        if chords <= MOST_CHORDS {
+            Ok(chords as usize)
+        } else {
+            Err(format!(
+                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
+            ))
+        }
+    }
+
+    /// The point at `s` in `[0, 1]`; at 0 and 1 exactly the ends.
+    pub(crate) fn at(&self, s: f64) -> [f64; 3] {
+        if s >= 1.0 {
+            return self.end;
+        }
+        let [u, v, w] = self.plane;
+        let from = [self.start[u] - self.centre[0], self.start[v] - self.centre[1]];
+        let to = [self.end[u] - self.centre[0], self.end[v] - self.centre[1]];
+        let (ra, rb) = (from[0].hypot(from[1]), to[0].hypot(to[1]));
+        // If the radii at the ends differ a little, the radius changes linearly between them.
+        let scale = (ra + s * (rb - ra)) / ra;
+        let (sin, cos) = (s * self.sweep).sin_cos();
+        let mut point = self.start;
+        point[u] = self.centre[0] + scale * (cos * from[0] - sin * from[1]);
+        point[v] = self.centre[1] + scale * (sin * from[0] + cos * from[1]);
+        point[w] = self.start[w] + s * (self.end[w] - self.start[w]);
+        point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const XY: Plane = [0, 1, 2];
+
+    #[test]
+    fn quarter_and_full_circle() {
+        let quarter = Arc::about(([1.0, 0.0, 0.0], [0.0, 1.0, 2.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        assert!((quarter.sweep - TAU / 4.0).abs() < 1e-15);
+        let middle = quarter.at(0.5);
+        assert!((middle[0] - 0.5_f64.sqrt()).abs() < 1e-15 && (middle[2] - 1.0).abs() < 1e-15);
+        let full = Arc::about(([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), XY, [0.0; 2], false, 2.0).unwrap();
+        assert!((full.sweep + 2.0 * TAU).abs() < 1e-15);
+    }
+
+    #[test]
+    fn radius_picks_the_side() {
+        let ends = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+        for (radius, counter_clockwise, sweep) in [
+            (1.0, true, 0.25),
+            (-1.0, true, 0.75),
+            (1.0, false, -0.25),
+            (-1.0, false, -0.75),
+        ] {
+            let arc = Arc::with_radius(ends, XY, radius, counter_clockwise, 1.0).unwrap();
+            assert!((arc.sweep / TAU - sweep).abs() < 1e-12, "{radius} {counter_clockwise}");
+        }
+    }
+
+    #[test]
+    fn chords_keep_the_tolerance() {
+        let arc = Arc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        for tolerance in [1.0, 0.1, 1e-3, 1e-5] {
+            let n = arc.chords(tolerance).unwrap();
+            let sagitta = |n: usize| 5.0 * (1.0 - (0.5 * arc.sweep / n as f64).cos());
+            assert!(sagitta(n) <= tolerance * (1.0 + 1e-9), "{tolerance}");
+            assert!(
+                n <= 3 || sagitta(n - 1) > tolerance,
+                "no more than needed at {tolerance}"
+            );
+        }
+    }
+
+    #[test]
+    fn bad_arcs_say_why() {
+        let ends = ([1.0, 0.0, 0.0], [0.0, 3.0, 0.0]);
+        assert!(
+            Arc::about(ends, XY, [0.0; 2], true, 1.0)
+                .unwrap_err()
+                .contains("two radii")
+        );
+        assert!(
+            Arc::about((ends.0, ends.0), XY, [1.0, 0.0], true, 1.0)
+                .unwrap_err()
+                .contains("no radius")
+        );
+        assert!(
+            Arc::with_radius(ends, XY, 1.0, true, 1.0)
+                .unwrap_err()
+                .contains("too small")
+        );
+        assert!(Arc::with_radius((ends.0, ends.0), XY, 1.0, true, 1.0).is_err());
+    }
+}

@@ -1,0 +1,54 @@
+//! G-code (RS-274): what the tool does in the part's frame.
+//!
+//! Supported: `G0 G1 G2 G3` (arcs and helices in `G17 G18 G19`, by centre or radius, with `P` turns), `G90 G91`,
+//! `G90.1 G91.1`, `G20 G21`, work offsets (`G54`…`G59.3`, `G10 L2/L20`, `G52`, `G92`), tip control (`M428`, `M128`, `G43.4`; off with
+//! `M429`, `M129`, `G49`) for tables with A/C or B/C axes ([`RotaryTable`](crate::RotaryTable)), tool changes, comments, block numbers,
+//! `%`, `/`, `M2 M30`. Speeds, coolant and dwell do not affect the geometry and are skipped.
+//!
+//! Each of these decisions is reported as a [`Note`](crate::Note):
+//!
+//! - Arcs are divided into chords within [`Options::arc_tolerance`], unless [`Options::exact_arcs`] keeps them.
+//! - Between two blocks the tip moves straight, and the axis turns as [`Options::law`] says: by default by SLERP, whatever the
+//!   machine's rotary axes do in between. Only where the axis turns by more than 90° in one block are intermediate poses of the
+//!   rotary axes inserted.
+//! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there, and begins again once all
+//!   coordinates are known.
+//! - Where a feed move comes before all of X, Y and Z are known, the unknown ones are taken as 0.
+//! - Unknown words and codes are ignored if they cannot move the tool.
+//!
+//! Anything that could move the tool in a way that is not supported (`G5`, cycles, cutter compensation, rotated frames, subroutines,
+//! variables) is an error with its position.
+
+mod arc;
+mod codes;
+mod interpreter;
+mod lexer;
+mod moves;
+mod offsets;
+mod state;
+mod turns;
+
+use crate::error::NcError;
+use crate::options::Options;
+use crate::program::Program;
+
+/// Reads a program.
+///
+/// # Errors
+/// [`NcError`] with line and column at the first block that is invalid or ambiguous.
+///
+/// ```
+/// use sweepsim_nc::{Options, gcode};
+/// let text = "G21 G90 M428\nG0 X0 Y0 Z5 A0 C90\nG1 Z-1 F200\nX10 A90\n";
+/// let program = gcode::read(text, &Options::default())?;
+/// assert_eq!(program.poses.len(), 3);
+/// assert!(program.poses[0].rapid && !program.poses[2].rapid);
+/// assert_eq!(program.poses[2].pose.axis().as_slice(), [1.0, 0.0, 0.0]);
+///
+/// let error = gcode::read("G0 X0 Y0 Z5\nG5 X1", &Options::default()).unwrap_err();
+/// assert!(error.to_string().starts_with("2:1: G5"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read(text: &str, options: &Options) -> Result<Program, NcError> {
+    interpreter::read(text, options)
+}

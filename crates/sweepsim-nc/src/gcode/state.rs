@@ -1,0 +1,254 @@
+//! The interpreter's state: the current position, and the poses so far.
+//!
+//! Coordinates are millimetres and degrees in the frame of the first work offset; `None` until the program has given them.
+
+use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
+
+use super::turns;
+use crate::error::NcProblem;
+use crate::machine::Machine;
+use crate::options::{AxisLaw, Options};
+use crate::program::{NoteList, Program, ProgramPose};
+
+/// The most poses of one program: bounds the memory that a file of a few bytes can demand.
+const MOST_POSES: usize = 20_000_000;
+
+/// The end of a move: coordinates, and rotary angles A, B, C.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Target {
+    pub xyz: [f64; 3],
+    pub abc: [f64; 3],
+}
+
+/// The angles `[tilt, C]` of a table.
+fn angles(table: RotaryTable, [a, b, c]: [f64; 3]) -> [f64; 2] {
+    match table {
+        RotaryTable::Ac => [a, c],
+        RotaryTable::Bc => [b, c],
+    }
+}
+
+/// The state of the interpreter.
+pub(crate) struct State {
+    pub xyz: [Option<f64>; 3],
+    pub abc: [f64; 3],
+    pub tip_control: bool,
+    pub tool: Option<u32>,
+    pub feed: Option<f64>,
+    pub notes: NoteList,
+    table: Option<RotaryTable>,
+    table_given: bool,
+    /// Whether tip control holds from the start.
+    tip_control_given: bool,
+    poses: Vec<ProgramPose>,
+    /// Whether the tool moves to the next pose from the last one.
+    joined: bool,
+    law: AxisLaw,
+}
+
+impl State {
+    pub fn new(options: &Options) -> Self {
+        Self {
+            xyz: [None; 3],
+            abc: [0.0; 3],
+            tip_control: options.machine.tip_control,
+            tool: None,
+            feed: None,
+            notes: NoteList::default(),
+            table: options.machine.table,
+            table_given: options.machine.table.is_some(),
+            tip_control_given: options.machine.tip_control,
+            poses: Vec::new(),
+            joined: false,
+            law: options.law,
+        }
+    }
+
+    pub fn finish(self) -> Program {
+        Program {
+            files: Vec::new(),
+            poses: self.poses,
+            machine: Machine {
+                table: self.table,
+                tip_control: self.tip_control_given,
+            },
+            notes: self.notes.finish(),
+        }
+    }
+
+    /// Whether there is a pose yet.
+    pub fn has_moved(&self) -> bool {
+        !self.poses.is_empty()
+    }
+
+    /// Breaks the path: the tool does not move to the next pose from the last one.
+    pub fn leave(&mut self) {
+        self.joined = false;
+    }
+
+    /// The position, if all coordinates are known.
+    pub fn known(&self) -> Option<[f64; 3]> {
+        match self.xyz {
+            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
+            _ => None,
+        }
+    }
+
+    /// Takes unknown coordinates as 0, before a move that needs them.
+    pub fn assume(&mut self, line: usize, xyz: impl Fn(usize) -> bool) {
+        for k in 0..3 {
+            if self.xyz[k].is_none() && xyz(k) {
+                let axis = ['X', 'Y', 'Z'][k];
+                self.notes.add(line, format!("{axis} is not known here: taken as 0"));
+                self.xyz[k] = Some(0.0);
+            }
+        }
+    }
+
+    /// Adds the pose where a feed move starts, unless the path already leads there.
+    pub fn start_here(&mut self, line: usize) -> Result<(), NcProblem> {
+        if let (false, Some(xyz)) = (self.joined, self.known()) {
+            self.push(Target { xyz, abc: self.abc }, Move::default(), true, line)?;
+        }
+        Ok(())
+    }
+
+    /// A straight move, divided where the tool axis turns far.
+    pub fn line_to(&mut self, target: Target, rapid: bool, line: usize) -> Result<(), NcProblem> {
+        let from = self.abc;
+        if self.joined && target.abc != from && self.law != AxisLaw::Rotary {
+            let table = self.table(target.abc)?;
+            let tilt = |abc: [f64; 3]| match table {
+                Some(table) => angles(table, abc),
+                None => [0.0, abc[2]],
+            };
+            let parts = turns::parts(tilt(from), tilt(target.abc));
+            if parts > 1e4 {
+                return Err(NcProblem::value(
+                    "the turn of the rotary axes in one block",
+                    format!("{} degrees", parts * 90.0),
+                    "less than 900000 degrees",
+                ));
+            }
+            if let (true, Some(start)) = (parts > 1.0, self.known()) {
+                self.notes.add(
+                    line,
+                    "the axis turns by more than 90 degrees in one block: intermediate poses inserted",
+                );
+                for part in 1..parts as usize {
+                    let s = part as f64 / parts;
+                    let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + s * (b[k] - a[k]));
+                    let between = Target {
+                        xyz: mix(start, target.xyz),
+                        abc: mix(from, target.abc),
+                    };
+                    let way = Move::straight(self.turning(from, between.abc)?);
+                    self.push(between, way, rapid, line)?;
+                }
+            }
+        }
+        let way = Move::straight(self.turning(from, target.abc)?);
+        self.push(target, way, rapid, line)?;
+        self.xyz = target.xyz.map(Some);
+        self.abc = target.abc;
+        Ok(())
+    }
+
+    /// A feed move along an arc.
+    pub fn arc_to(&mut self, target: Target, arc: TipArc, line: usize) -> Result<(), NcProblem> {
+        let turning = match self.turning(self.abc, target.abc)? {
+            Turning::Slerp => Turning::Even,
+            other => other,
+        };
+        let way = Move {
+            course: Course::Arc(arc),
+            turning,
+        };
+        self.push(target, way, false, line)?;
+        self.xyz = target.xyz.map(Some);
+        self.abc = target.abc;
+        Ok(())
+    }
+
+    /// How the tool axis turns between two positions of the rotary axes.
+    fn turning(&mut self, from: [f64; 3], to: [f64; 3]) -> Result<Turning, NcProblem> {
+        Ok(match (self.law, self.table(to)?) {
+            (AxisLaw::ConstantSpeed, _) => Turning::Even,
+            (AxisLaw::Rotary, Some(table)) if from != to => Turning::Rotary {
+                table,
+                from: angles(table, from),
+                to: angles(table, to),
+            },
+            _ => Turning::Slerp,
+        })
+    }
+
+    /// The rotary table: as given, or by the letters whose values are not 0.
+    fn table(&mut self, [a, b, _]: [f64; 3]) -> Result<Option<RotaryTable>, NcProblem> {
+        let used = match (a != 0.0, b != 0.0) {
+            (false, false) => return Ok(self.table),
+            (true, false) => RotaryTable::Ac,
+            (false, true) => RotaryTable::Bc,
+            (true, true) => {
+                return Err(NcProblem::unsupported(
+                    "machines with both A and B axes are",
+                    "expected A and C, or B and C",
+                ));
+            }
+        };
+        match self.table {
+            Some(table) if table != used => Err(NcProblem::value(
+                "the rotary word",
+                if used == RotaryTable::Ac { "A" } else { "B" },
+                match (table, self.table_given) {
+                    (RotaryTable::Ac, true) => "A or C: the table is given as A/C",
+                    (RotaryTable::Bc, true) => "B or C: the table is given as B/C",
+                    (RotaryTable::Ac, false) => "A or C, as before",
+                    (RotaryTable::Bc, false) => "B or C, as before",
+                },
+            )),
+            _ => {
+                self.table = Some(used);
+                Ok(self.table)
+            }
+        }
+    }
+
+    fn push(&mut self, target: Target, way: Move, rapid: bool, line: usize) -> Result<(), NcProblem> {
+        if !self.tip_control && target.abc != [0.0; 3] {
+            return Err(NcProblem::value(
+                "a move with the rotary axes turned",
+                "without tip control",
+                "after M428, M128 or G43.4 (or read with `tip_control: true` when the coordinates are the tip in the part's frame)",
+            ));
+        }
+        let axis = match self.table(target.abc)? {
+            Some(table) => table.axis(angles(table, target.abc)),
+            None => [0.0, 0.0, 1.0],
+        };
+        let pose = Pose::new(target.xyz, axis).map_err(NcProblem::Pose)?;
+        let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
+        let same = !moves && self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
+        if !same {
+            if self.poses.len() >= MOST_POSES {
+                return Err(NcProblem::value(
+                    "the number of poses",
+                    self.poses.len(),
+                    "smaller: divide the program, or allow a larger arc tolerance",
+                ));
+            }
+            self.poses.push(ProgramPose {
+                pose,
+                rapid,
+                file: 0,
+                line,
+                joined: self.joined,
+                tool: self.tool,
+                feed: if rapid { None } else { self.feed },
+                way,
+            });
+        }
+        self.joined = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,40 @@
+//! Reads NC programs into canonical moves: poses in the part's frame, each with how the tool gets there and the file and line that
+//! say so. The crate knows no stock and no sweep; use it alone to convert, check or plot programs.
+//!
+//! ```
+//! use sweepsim_nc::{Options, gcode};
+//!
+//! let text = "G21 G90\nT1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F200\nX10\n";
+//! let program = gcode::read(text, &Options::default())?;
+//! let lines: Vec<usize> = program.poses.iter().map(|pose| pose.line).collect();
+//! assert_eq!(lines, [3, 4, 5]);
+//! assert!(program.poses[0].rapid);
+//! assert_eq!((program.poses[2].tool, program.poses[2].feed), (Some(1), Some(200.0)));
+//! # Ok::<(), sweepsim_nc::NcError>(())
+//! ```
+//!
+//! | format | read | write |
+//! | --- | --- | --- |
+//! | G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) | [`gcode::read`] | |
+//! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
+//! | either, by extension | [`read_file`] | |
+//!
+//! A program is never half understood in silence: a word that could move the tool in an unknown way is an [`NcError`] with line and
+//! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
+
+mod error;
+pub mod gcode;
+mod machine;
+mod numbers;
+mod options;
+mod program;
+mod read;
+pub mod table;
+
+pub use error::{NcError, NcProblem, TextPosition};
+pub use machine::Machine;
+pub use numbers::shortest;
+pub use options::{AxisLaw, Options};
+pub use program::{Note, Program, ProgramPose};
+pub use read::read_file;
+pub use sweepsim_motion::RotaryTable;

@@ -1,0 +1,34 @@
+//! Machines: what turns, and what the coordinates of a program mean on them.
+
+use sweepsim_motion::RotaryTable;
+
+/// A machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Machine {
+    /// The rotary axes of the table. `None`: none, or those of the letters that a program uses.
+    pub table: Option<RotaryTable>,
+    /// Whether coordinates are those of the tip in the part's frame from the start, without a code in the program (`M428`, `M128`,
+    /// `G43.4`).
+    pub tip_control: bool,
+}
+
+impl Machine {
+    /// A machine with two rotary axes in its table.
+    #[must_use]
+    pub fn with_table(table: RotaryTable) -> Self {
+        Self {
+            table: Some(table),
+            tip_control: false,
+        }
+    }
+
+    /// The same machine, with coordinates that are those of the tip from the start, or not.
+    #[must_use]
+    pub fn tip_control(self, on: bool) -> Self {
+        Self {
+            tip_control: on,
+            ..self
+        }
+    }
+}

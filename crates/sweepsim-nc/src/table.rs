@@ -1,0 +1,254 @@
+//! Tables of poses (CSV): a header `x,y,z,i,j,k` with optional columns `rapid`, `feed` and `tool`, in any order, and one pose per row.
+
+use std::io::Write;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use sweepsim_motion::{Move, Pose};
+
+use crate::error::{NcError, NcProblem, TextPosition};
+use crate::numbers::shortest;
+use crate::program::{Program, ProgramPose};
+
+/// All columns; the first six are required.
+const COLUMNS: [&str; 9] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "tool"];
+
+/// Reads a table. Lengths are multiplied by `unit`, in millimetres per unit of the table.
+///
+/// The axis `i, j, k` may have any length but 0. `rapid` is `0`, `1`, `true`, `false` or empty, and describes the move that ends in its
+/// row. Where `tool` changes, the path breaks.
+///
+/// # Errors
+/// [`NcError`] with line and column.
+///
+/// ```
+/// let text = "x,y,z,i,j,k,rapid\n0,0,5,0,0,1,1\n0,0,0,0,0,2,0\n";
+/// let program = sweepsim_nc::table::read(text, 1.0)?;
+/// assert!(program.poses[0].rapid && !program.poses[1].rapid);
+///
+/// let error = sweepsim_nc::table::read("x,y,z,i,j,k\n0,0,zero,0,0,1\n", 1.0).unwrap_err();
+/// assert_eq!(error.to_string(), "2:5: z is \"zero\", but must be a number");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read(text: &str, unit: f64) -> Result<Program, NcError> {
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(Trim::None)
+        .from_reader(text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes());
+    let table = SourceText {
+        lines: text.lines().collect(),
+    };
+    if !(unit > 0.0 && unit.is_finite()) {
+        let problem = NcProblem::value("the unit of the table", unit, "a positive number of millimetres");
+        return Err(NcError::new(problem, None));
+    }
+    let mut columns: Option<Vec<usize>> = None;
+    let mut program = Program::default();
+    let mut record = StringRecord::new();
+    loop {
+        match reader.read_record(&mut record) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) => {
+                let line = error.position().map_or(1, csv::Position::line) as usize;
+                return Err(table.error(NcProblem::syntax(error.to_string()), line, None));
+            }
+        }
+        let line = record.position().map_or(1, csv::Position::line) as usize;
+        match &columns {
+            None => columns = Some(table.header(&record, line)?),
+            Some(columns) => {
+                let row = Row {
+                    table: &table,
+                    columns,
+                    record: &record,
+                    line,
+                };
+                let pose = row.pose(unit, program.poses.last())?;
+                if !program
+                    .poses
+                    .last()
+                    .is_some_and(|last| pose.joined && last.pose == pose.pose)
+                {
+                    program.poses.push(pose);
+                }
+            }
+        }
+    }
+    if program.poses.is_empty() {
+        let problem = NcProblem::syntax("this table has no pose: expected a header x,y,z,i,j,k and one row per pose");
+        return Err(table.error(problem, table.lines.len().max(1), None));
+    }
+    Ok(program)
+}
+
+struct SourceText<'a> {
+    lines: Vec<&'a str>,
+}
+
+impl SourceText<'_> {
+    /// An error on a line, or in a field of it.
+    fn error(&self, problem: NcProblem, line: usize, field: Option<(&StringRecord, usize)>) -> NcError {
+        let whole = self.lines.get(line.saturating_sub(1)).copied().unwrap_or("");
+        let (column, width) = match field {
+            // The record does not keep its commas and quotes: with quotes the columns are unknown, and the end of the line must do.
+            Some((record, index)) if !whole.contains('"') && index < record.len() => {
+                let before: usize = record.iter().take(index).map(|field| field.chars().count() + 1).sum();
+                let field = &record[index];
+                let space = field.chars().take_while(|c| c.is_whitespace()).count();
+                (1 + before + space, field.trim().chars().count())
+            }
+            Some(_) => (1 + whole.chars().count(), 1),
+            None => (1, whole.chars().count()),
+        };
+        NcError::new(problem, Some(TextPosition::in_line(line, whole, column, width)))
+    }
+
+    /// The field that holds each of [`COLUMNS`], `usize::MAX` for none.
+    fn header(&self, record: &StringRecord, line: usize) -> Result<Vec<usize>, NcError> {
+        let mut columns = vec![usize::MAX; COLUMNS.len()];
+        for (index, name) in record.iter().enumerate() {
+            let name = name.trim().to_ascii_lowercase();
+            let known = COLUMNS
+                .iter()
+                .position(|column| *column == name)
+                .filter(|&k| columns[k] == usize::MAX);
+            let Some(k) = known else {
+                let problem = NcProblem::value(
+                    "a column of the header",
+                    format!("{name:?}"),
+                    format!("one of {}, each once", COLUMNS.join(", ")),
+                );
+                return Err(self.error(problem, line, Some((record, index))));
+            };
+            columns[k] = index;
+        }
+        match columns[..6].iter().position(|&column| column == usize::MAX) {
+            Some(missing) => {
+                let problem = NcProblem::syntax(format!(
+                    "the header has no column {}: expected x,y,z,i,j,k",
+                    COLUMNS[missing]
+                ));
+                Err(self.error(problem, line, None))
+            }
+            None => Ok(columns),
+        }
+    }
+}
+
+struct Row<'a> {
+    table: &'a SourceText<'a>,
+    columns: &'a [usize],
+    record: &'a StringRecord,
+    line: usize,
+}
+
+impl Row<'_> {
+    /// The field of column `k`, unless it is missing or empty.
+    fn field(&self, k: usize) -> Option<&str> {
+        let field = self.record.get(self.columns[k])?.trim();
+        (!field.is_empty()).then_some(field)
+    }
+
+    fn error(&self, k: usize, expected: &str) -> NcError {
+        let problem = match self.field(k) {
+            Some(found) => NcProblem::value(COLUMNS[k], format!("{found:?}"), expected),
+            None => NcProblem::syntax(format!("{} is missing: expected {expected}", COLUMNS[k])),
+        };
+        self.table
+            .error(problem, self.line, Some((self.record, self.columns[k])))
+    }
+
+    fn number(&self, k: usize) -> Result<f64, NcError> {
+        let expected = "a number";
+        let value: f64 = self
+            .field(k)
+            .and_then(|field| field.parse().ok())
+            .ok_or_else(|| self.error(k, expected))?;
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(self.error(k, "a finite number"))
+        }
+    }
+
+    fn pose(&self, unit: f64, last: Option<&ProgramPose>) -> Result<ProgramPose, NcError> {
+        let fields = COLUMNS.len().min(self.record.len());
+        if self.columns.iter().filter(|&&column| column != usize::MAX).count() < self.record.len() {
+            let problem = NcProblem::value("the number of fields", fields, "that of the header");
+            return Err(self.table.error(problem, self.line, None));
+        }
+        let mut numbers = [0.0; 6];
+        for (k, number) in numbers.iter_mut().enumerate() {
+            *number = self.number(k)?;
+        }
+        let [x, y, z, i, j, k] = numbers;
+        let pose = Pose::new([x * unit, y * unit, z * unit], [i, j, k])
+            .map_err(|error| self.table.error(NcProblem::Pose(error), self.line, None))?;
+        let rapid = match self.field(6) {
+            None | Some("0" | "false") => false,
+            Some("1" | "true") => true,
+            Some(_) => return Err(self.error(6, "0, 1, true or false")),
+        };
+        let feed = self.field(7).map(|_| self.number(7)).transpose()?;
+        let tool = match self.field(8) {
+            None => None,
+            Some(number) => Some(number.parse().map_err(|_| self.error(8, "a whole number"))?),
+        };
+        Ok(ProgramPose {
+            pose,
+            rapid,
+            file: 0,
+            line: self.line,
+            joined: last.is_some_and(|last| last.tool == tool),
+            tool,
+            feed,
+            way: Move::default(),
+        })
+    }
+}
+
+/// Writes a table that [`read`] reads back, with the columns `rapid`, `feed` and `tool` if any pose has them.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<()> {
+    let has = [
+        poses.iter().any(|pose| pose.rapid),
+        poses.iter().any(|pose| pose.feed.is_some()),
+        poses.iter().any(|pose| pose.tool.is_some()),
+    ];
+    let mut line: Vec<String> = COLUMNS[..6].iter().map(|&name| name.to_owned()).collect();
+    line.extend(
+        COLUMNS[6..]
+            .iter()
+            .zip(has)
+            .filter(|&(_, has)| has)
+            .map(|(&name, _)| name.to_owned()),
+    );
+    writeln!(writer, "{}", line.join(","))?;
+    for pose in poses {
+        line.clear();
+        line.extend(
+            pose.pose
+                .tip()
+                .iter()
+                .chain(pose.pose.axis().iter())
+                .map(|&value| shortest(value)),
+        );
+        let optional = [
+            u8::from(pose.rapid).to_string(),
+            pose.feed.map_or_else(String::new, shortest),
+            pose.tool.map_or_else(String::new, |tool| tool.to_string()),
+        ];
+        line.extend(
+            optional
+                .into_iter()
+                .zip(has)
+                .filter(|(_, has)| *has)
+                .map(|(text, _)| text),
+        );
+        writeln!(writer, "{}", line.join(","))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! Tables are read back as written, and nothing that a reader gets makes it panic.
+
+use proptest::prelude::*;
+use sweepsim_motion::Pose;
+use sweepsim_nc::{Machine, Options, ProgramPose, gcode, read_file, table};
+
+fn length() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        -1e3..1e3,
+        (-1_000_000_i32..1_000_000).prop_map(|n| f64::from(n) * 1e-3),
+        (-100_i32..100).prop_map(f64::from),
+        Just(-0.0),
+    ]
+}
+
+fn pose() -> impl Strategy<Value = ProgramPose> {
+    let axis = (-1.0..1.0, -1.0..1.0, 0.1..1.0).prop_map(|(x, y, z)| [x, y, z]);
+    let extras = (any::<bool>(), prop::option::of(1.0..1e4), prop::option::of(0_u32..20));
+    ([length(), length(), length()], axis, extras).prop_map(|(tip, axis, (rapid, feed, tool))| {
+        let mut pose = ProgramPose::new(Pose::new(tip, axis).unwrap(), 1);
+        (pose.rapid, pose.feed, pose.tool) = (rapid, feed, tool);
+        pose
+    })
+}
+
+fn like(words: &'static [&'static str]) -> impl Strategy<Value = String> {
+    let word = prop_oneof![
+        prop::sample::select(words).prop_map(str::to_owned),
+        "\\PC{0,3}",
+        "[-0-9.eE+]{0,6}"
+    ];
+    prop::collection::vec(word, 0..60).prop_map(|words| words.concat())
+}
+
+proptest! {
+    #[test]
+    fn tables_are_read_back(mut poses in prop::collection::vec(pose(), 1..12)) {
+        poses.dedup_by(|b, a| a.pose == b.pose && a.tool == b.tool);
+        let mut bytes = Vec::new();
+        table::write(&poses, &mut bytes).unwrap();
+        let read = table::read(std::str::from_utf8(&bytes).unwrap(), 1.0).unwrap();
+        prop_assert_eq!(read.poses.len(), poses.len());
+        for (found, expected) in read.poses.iter().zip(&poses) {
+            prop_assert_eq!(found.pose.tip(), expected.pose.tip());
+            prop_assert!((found.pose.axis().into_inner() - expected.pose.axis().into_inner()).norm() < 1e-15);
+            prop_assert_eq!((found.rapid, found.feed, found.tool), (expected.rapid, expected.feed, expected.tool));
+        }
+    }
+
+    #[test]
+    fn programs_are_read_back(points in prop::collection::vec([length(), length(), length()], 1..20)) {
+        let text: String = points.iter().map(|[x, y, z]| format!("G1 X{x} Y{y} Z{z}\n")).collect();
+        let read = gcode::read(&text, &Options::default()).unwrap();
+        let mut expected = points.clone();
+        expected.dedup();
+        let found: Vec<[f64; 3]> = read.poses.iter().map(|pose| pose.pose.tip().into()).collect();
+        prop_assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn no_table_panics(text in like(&["x,y,z,i,j,k", ",rapid,feed,tool", "\n", ",", "0", "1", "\"", "NaN", "inf", " "]), unit: f64) {
+        let _ = table::read(&text, unit);
+        let _ = table::read(&format!("x,y,z,i,j,k\n{text}"), 25.4);
+    }
+
+    #[test]
+    fn no_program_panics(
+        text in like(&["G0", "G1", "G2", "G3 ", "G10 L2", "G92", "G43.4", "M6", "T1", "X1", "Y", "Z0", "I1", "R2", "A90", "C1e", "\n", "\n", "#", "(", "/"]),
+        tip_control: bool,
+        exact_arcs: bool,
+        arc_tolerance in prop_oneof![Just(1e-3), Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(1e-300)],
+    ) {
+        let mut options = Options::default();
+        options.machine = Machine::default().tip_control(tip_control);
+        options.exact_arcs = exact_arcs;
+        options.arc_tolerance = arc_tolerance;
+        let _ = gcode::read(&text, &options);
+        let _ = gcode::read(&format!("G0 X0 Y0 Z0\n{text}"), &options);
+    }
+
+    #[test]
+    fn no_file_panics(bytes in prop::collection::vec(any::<u8>(), 0..200), extension in prop::sample::select(&["csv", "nc", "apt", "x", ""][..])) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(format!("file.{extension}"));
+        std::fs::write(&file, bytes).unwrap();
+        if let Err(error) = read_file(&file, &Options::default()) {
+            prop_assert_eq!(error.file(), Some(file.as_path()));
+        }
+    }
+}
+
+#[test]
+fn units_must_be_positive() {
+    let text = "x,y,z,i,j,k\n1,0,0,0,0,1\n";
+    assert_eq!(table::read(text, 25.4).unwrap().poses[0].pose.tip().x, 25.4);
+    for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(table::read(text, unit).is_err(), "{unit}");
+    }
+}
+
+#[test]
+fn moves_know_their_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("part.nc");
+    std::fs::write(&file, "G0 X0 Y0 Z5\nG1 Z0 F100\n").unwrap();
+    let program = read_file(&file, &Options::default()).unwrap();
+    let last = program.poses.last().unwrap();
+    assert_eq!((program.file_of(last), last.line), (Some(file.as_path()), 2));
+}
