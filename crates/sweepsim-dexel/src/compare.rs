@@ -4,11 +4,11 @@
 //! ends around. So a wall that is a little off is a little off, though the ends on its line are far apart; on flat faces
 //! the distance is exact, on faces of curvature radius `r` it errs by about `d²/2r` when the nearest end is `d` away.
 
+use crate::dexels::Line;
 use crate::dexels::{Dexels, GridMismatch};
-use crate::distance::DistanceTo;
-use crate::frame::Frame;
-use crate::interval::End;
-use crate::line::Line;
+use crate::grid::Frame;
+use crate::intervals::End;
+use crate::mesh::DistanceTo;
 use crate::mesh::TriangleSoup;
 use crate::stock::{StockError, mesh_dexels};
 use rayon::prelude::*;

@@ -20,37 +20,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod builder;
-mod chunk;
 mod compare;
-mod contour;
-mod crossing;
 mod dexels;
-mod distance;
-mod frame;
 mod grid;
-mod interval;
-mod line;
+mod intervals;
 mod mesh;
-mod operations;
-mod packed;
-mod set;
 mod stock;
 mod surface;
 mod tri;
 
-pub use builder::DexelsBuilder;
 pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
-pub use crossing::{AuditFailure, Crossing, cover};
-pub use dexels::{Dexels, GridMismatch, Operation};
-pub use distance::{DistanceTo, Nearest};
-pub use frame::{Frame, FrameError};
-pub use grid::{Grid, GridError};
-pub use interval::{Boundary, End, Interval, Source};
-pub use line::{Line, LineIter};
-pub use mesh::{Mesh, MeshError, TriangleSoup};
-pub use packed::{pack_normal, unpack_normal};
-pub use set::IntervalSet;
+pub use dexels::{Dexels, DexelsBuilder, GridMismatch, Line, LineIter, Operation, pack_normal, unpack_normal};
+pub use grid::{Frame, FrameError, Grid, GridError};
+pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalSet, Source, cover};
+pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, TriangleSoup};
 pub use stock::{Stock, StockError};
 pub use surface::surface;
 pub use tri::{TriDexels, TriDexelsError};

@@ -1,5 +1,5 @@
 use super::*;
-use crate::interval::Source;
+use crate::intervals::{Crossing, Source};
 use crate::stock::Stock;
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Which ends of two neighbouring dexels belong together.
 
 use super::end;
-use crate::interval::{End, Interval};
+use crate::intervals::{End, Interval};
 use smallvec::SmallVec;
 
 /// What happens along a grid edge.

@@ -1,10 +1,10 @@
 //! One square of the grid: its faces.
 
+use super::batch::{Corner, TriangleBatch};
 use super::edge::{Class, Edge, Heights, Link, rise, slopes, snap};
 use super::outline::Outline;
-use super::part::{Corner, Part};
 use super::{Dexel, Field, end, is_cut, unit};
-use crate::interval::End;
+use crate::intervals::End;
 use smallvec::SmallVec;
 
 /// An edge of a square, from corner `k` to the next.
@@ -61,7 +61,7 @@ fn corner_of(dexel: &Dexel<'_>, e: usize) -> Corner {
 
 impl<'a> Square<'a> {
     /// Adds the triangles of a square.
-    pub fn emit(field: &'a Field<'a>, outline: &Outline, s: [usize; 2], part: &mut Part) {
+    pub fn emit(field: &'a Field<'a>, outline: &Outline, s: [usize; 2], part: &mut TriangleBatch) {
         let corners = [0, 1, 2, 3].map(|q| field.corner(s, q));
         if corners.iter().all(|c| c.line.is_empty()) {
             return;
@@ -202,7 +202,7 @@ impl<'a> Square<'a> {
     }
 
     /// The upper and lower faces.
-    fn faces(&self, part: &mut Part) {
+    fn faces(&self, part: &mut TriangleBatch) {
         let mut done = vec![false; self.offsets[4]];
         for e in 0..self.offsets[1] {
             if let Some(ring) = self.ring(e) {
@@ -246,7 +246,16 @@ impl<'a> Square<'a> {
 
     /// The part of a face between its dexel, the outline's crossing of edge `k` and its vertex.
     #[allow(clippy::too_many_arguments)]
-    fn fan(&self, part: &mut Part, k: usize, which: usize, e: usize, heights: &[f64], steps: &[f64], middle: Corner) {
+    fn fan(
+        &self,
+        part: &mut TriangleBatch,
+        k: usize,
+        which: usize,
+        e: usize,
+        heights: &[f64],
+        steps: &[f64],
+        middle: Corner,
+    ) {
         let q = (k + which) % 4;
         let own = corner_of(&self.corners[q], e);
         let mut chain: SmallVec<[Corner; 4]> = heights
@@ -288,7 +297,7 @@ impl<'a> Square<'a> {
     }
 
     /// The vertex of every end's sheet over the centre.
-    fn middles(&self, part: &mut Part, done: &[bool]) -> Vec<Corner> {
+    fn middles(&self, part: &mut TriangleBatch, done: &[bool]) -> Vec<Corner> {
         let count = self.offsets[4];
         let mut sums = vec![([0.0; 3], true); count];
         for number in 0..count {

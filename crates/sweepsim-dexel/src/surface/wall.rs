@@ -1,8 +1,8 @@
 //! One square of the grid: its walls.
 
+use super::batch::{Corner, TriangleBatch};
 use super::edge::{Link, snap};
 use super::outline::Outline;
-use super::part::{Corner, Part};
 use super::square::Square;
 use super::{Field, end, is_cut, unit};
 use smallvec::SmallVec;
@@ -80,7 +80,14 @@ impl Square<'_> {
     }
 
     /// Walls between the crossing of edge `k` and the square's vertex: where there is material on one side only.
-    pub(super) fn walls(&self, field: &Field<'_>, outline: &Outline, s: [usize; 2], k: usize, part: &mut Part) {
+    pub(super) fn walls(
+        &self,
+        field: &Field<'_>,
+        outline: &Outline,
+        s: [usize; 2],
+        k: usize,
+        part: &mut TriangleBatch,
+    ) {
         let (mut lines, steps) = self.lines(k);
         if lines.is_empty() {
             return;

@@ -1,11 +1,12 @@
 //! What there is before the first cut.
 
-use crate::crossing::Crossing;
+mod from_mesh;
+
 use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Grid;
-use crate::interval::{End, Interval, Source};
+use crate::intervals::{End, Interval, Source};
 use crate::mesh::{MeshError, TriangleSoup};
-use rayon::prelude::*;
+pub(crate) use from_mesh::mesh_dexels;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -91,7 +92,7 @@ pub enum StockError {
     },
 }
 
-fn end(z: f64, normal: [f64; 3]) -> End {
+pub(super) fn end(z: f64, normal: [f64; 3]) -> End {
     End {
         z,
         normal: normal.map(|c| c as f32),
@@ -256,208 +257,5 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
     }))
 }
 
-/// The dexels of the inside of a closed surface.
-pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
-    soup.check_closed()?;
-    let soup = &*soup.seen_from(grid.frame());
-    let [dx, dy] = grid.spacing();
-    let shift = [dx * 7.548_776_662e-10, dy * 5.698_402_910e-10];
-    let [columns, rows] = grid.cells();
-    let found: Vec<(u32, Crossing)> = soup
-        .triangles
-        .par_iter()
-        .flat_map_iter(|corners| {
-            let [a, b, c] = *corners;
-            let normal = {
-                let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-                [
-                    u[1] * v[2] - u[2] * v[1],
-                    u[2] * v[0] - u[0] * v[2],
-                    u[0] * v[1] - u[1] * v[0],
-                ]
-            };
-            let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-            let range = |k: usize, cells: usize, first: f64, step: f64| {
-                let lo = a[k].min(b[k]).min(c[k]);
-                let hi = a[k].max(b[k]).max(c[k]);
-                let from = ((lo - first) / step - 1.0).ceil().clamp(0.0, cells as f64) as usize;
-                let to = ((hi - first) / step + 1.0).floor().clamp(-1.0, cells as f64 - 1.0);
-                if normal[2] == 0.0 || to < 0.0 {
-                    0..0
-                } else {
-                    from..to as usize + 1
-                }
-            };
-            let is = range(0, columns, grid.x(0), dx);
-            let js = range(1, rows, grid.y(0), dy);
-            is.flat_map(move |i| js.clone().map(move |j| (i, j)))
-                .filter_map(move |(i, j)| {
-                    let (x, y) = (grid.x(i) + shift[0], grid.y(j) + shift[1]);
-                    // Each edge is looked at from its lower end, so that both its triangles see the same number.
-                    let side = |p: [f64; 3], q: [f64; 3]| {
-                        let ordered = (p[0], p[1]) < (q[0], q[1]);
-                        let (p, q) = if ordered { (p, q) } else { (q, p) };
-                        let area = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
-                        (area > 0.0) == ordered
-                    };
-                    let sides = [side(a, b), side(b, c), side(c, a)];
-                    if sides.iter().any(|s| *s != sides[0]) || sides[0] != (normal[2] > 0.0) {
-                        return None;
-                    }
-                    let z = a[2] - (normal[0] * (x - a[0]) + normal[1] * (y - a[1])) / normal[2];
-                    let jump = if normal[2] < 0.0 { 1 } else { -1 };
-                    let normal = normal.map(|c| (c / length) as f32);
-                    Some((
-                        grid.index(i, j) as u32,
-                        Crossing {
-                            z,
-                            jump,
-                            normal,
-                            source: Source::STOCK,
-                        },
-                    ))
-                })
-        })
-        .collect();
-    let mut dexels = Dexels::empty(*grid);
-    // Triangles that meet on a line give the same height but for rounding.
-    let size = soup
-        .triangles
-        .iter()
-        .flatten()
-        .flatten()
-        .fold(0.0, |size: f64, c| size.max(c.abs()));
-    let same = 64.0 * f64::EPSILON * size;
-    match dexels.update_by_crossings(Operation::Union, &found, same).first() {
-        None => Ok(dexels),
-        Some((index, _)) => {
-            let (i, j) = grid.place(*index as usize);
-            let (x, y) = (grid.x(i), grid.y(j));
-            Err(StockError::Tangled { x, y })
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn grid() -> Grid {
-        Grid::new([-10.0, -10.0], [10.0, 10.0], [100, 100]).unwrap()
-    }
-
-    /// A box as 12 triangles, facing outwards.
-    fn cube(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
-        let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let triangles = quads
-            .iter()
-            .flat_map(|q| [[p(q[0]), p(q[1]), p(q[2])], [p(q[0]), p(q[2]), p(q[3])]])
-            .collect();
-        TriangleSoup { triangles }
-    }
-
-    #[test]
-    fn a_block_and_its_mesh_are_the_same() {
-        let (min, max) = ([-5.0, -4.0, 0.0], [5.0, 4.0, 2.5]);
-        let block = Stock::Block { min, max }.dexels(&grid()).unwrap();
-        let mesh = Stock::Mesh(cube(min, max)).dexels(&grid()).unwrap();
-        assert_eq!(block.volume(), mesh.volume());
-        // 50 × 40 cells of 0.2.
-        assert!((block.volume() - 200.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn cylinders_of_all_directions_have_their_volume() {
-        for axis in [
-            [0.0, 0.0, 2.0],
-            [0.0, 0.0, -1.0],
-            [1.0, 0.0, 0.0],
-            [0.3, -0.4, 0.5],
-            [0.3, 0.9, -1e-3],
-        ] {
-            let length = f64::sqrt(axis.iter().map(|c| c * c).sum());
-            // Centred at the origin.
-            let base = axis.map(|c| -c / length * 3.0);
-            let dexels = Stock::Cylinder {
-                base,
-                axis,
-                radius: 2.0,
-                height: 6.0,
-            }
-            .dexels(&grid())
-            .unwrap();
-            let exact = std::f64::consts::PI * 4.0 * 6.0;
-            // The midpoint rule on cells of 0.2, for a height that ends like a square root: under 2 %.
-            assert!(
-                (dexels.volume() - exact).abs() < 0.02 * exact,
-                "{axis:?}: {}",
-                dexels.volume()
-            );
-            for (_, line) in dexels.iter() {
-                for interval in line {
-                    assert!(interval.lower.normal[2] <= 0.0 && interval.upper.normal[2] >= 0.0);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn stock_is_put_together() {
-        let block = |min, max| Stock::Block { min, max };
-        let (a, b) = (block([-5.0; 3], [5.0; 3]), block([0.0; 3], [7.0; 3]));
-        let volume = |stock: &Stock| stock.dexels(&grid()).unwrap().volume();
-        let close = |stock: Stock, expected: f64| assert!((volume(&stock) - expected).abs() < 1e-9, "{stock:?}");
-        close(Stock::Union(vec![a.clone(), b.clone()]), 1000.0 + 343.0 - 125.0);
-        close(Stock::Intersection(vec![a.clone(), b.clone()]), 125.0);
-        close(
-            Stock::Difference(Box::new(a.clone()), vec![b.clone(), b.clone()]),
-            875.0,
-        );
-        close(Stock::Union(Vec::new()), 0.0);
-        close(Stock::Intersection(Vec::new()), 0.0);
-        let earlier = Stock::Dexels(Arc::new(a.dexels(&grid()).unwrap()));
-        close(Stock::Difference(Box::new(earlier.clone()), vec![b]), 875.0);
-        let other = Grid::new([0.0; 2], [1.0; 2], [3, 3]).unwrap();
-        assert_eq!(earlier.dexels(&other), Err(StockError::Grid(GridMismatch)));
-    }
-
-    #[test]
-    fn bad_stock_is_refused() {
-        let bad = Stock::Block {
-            min: [0.0; 3],
-            max: [1.0, 0.0, 1.0],
-        }
-        .dexels(&grid());
-        assert!(matches!(bad, Err(StockError::Block { .. })));
-        let mut open = cube([0.0; 3], [1.0; 3]);
-        open.triangles.pop();
-        assert!(matches!(
-            Stock::Mesh(open).dexels(&grid()),
-            Err(StockError::Mesh(MeshError::Open { edges: 3, .. }))
-        ));
-        let mut inside_out = cube([-5.0; 3], [5.0; 3]);
-        for corners in &mut inside_out.triangles {
-            corners.swap(0, 1);
-        }
-        assert!(matches!(
-            Stock::Mesh(inside_out).dexels(&grid()),
-            Err(StockError::Tangled { .. })
-        ));
-        let nothing = Stock::Cylinder {
-            base: [0.0; 3],
-            axis: [0.0; 3],
-            radius: 1.0,
-            height: 1.0,
-        }
-        .dexels(&grid());
-        assert!(matches!(nothing, Err(StockError::Cylinder { .. })));
-    }
-}
+mod tests;

@@ -1,6 +1,8 @@
 //! Where the dexels stand.
 
-use crate::frame::Frame;
+mod frame;
+
+pub use frame::{Frame, FrameError};
 use thiserror::Error;
 
 /// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).

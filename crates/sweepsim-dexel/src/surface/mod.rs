@@ -16,18 +16,18 @@
 //! Around the grid stand dexels without material. So the surface of any dexels is closed: every edge is used as often in
 //! one direction as in the other. The mesh of a block on whole cells is that block.
 
+mod batch;
 mod edge;
 mod outline;
-mod part;
 mod square;
 mod wall;
 
 use crate::dexels::Dexels;
-use crate::interval::{End, Interval, Source};
+use crate::intervals::{End, Interval, Source};
 use crate::mesh::Mesh;
+use batch::TriangleBatch;
 use edge::{Class, Edge};
 use outline::Outline;
-use part::Part;
 use rayon::prelude::*;
 use square::Square;
 use std::collections::HashMap;
@@ -61,10 +61,10 @@ const CRISP: f64 = 0.766;
 pub fn surface(dexels: &Dexels) -> Mesh {
     let field = Field::new(dexels);
     let outline = Outline::new(&field);
-    let parts: Vec<Part> = (0..=field.cells[0])
+    let parts: Vec<TriangleBatch> = (0..=field.cells[0])
         .into_par_iter()
         .map(|si| {
-            let mut part = Part::new(field.ends());
+            let mut part = TriangleBatch::new(field.ends());
             for sj in 0..=field.cells[1] {
                 Square::emit(&field, &outline, [si, sj], &mut part);
             }
@@ -257,7 +257,7 @@ fn outside(dexels: &Dexels) -> Vec<bool> {
 }
 
 /// Puts the columns' parts together behind the vertices of the ends.
-fn assemble(field: &Field<'_>, parts: Vec<Part>) -> Mesh {
+fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>) -> Mesh {
     let ends = field.ends() as usize;
     let vertices = ends + parts.iter().map(|p| p.vertices.len()).sum::<usize>();
     let mut mesh = Mesh {

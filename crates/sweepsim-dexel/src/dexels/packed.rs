@@ -2,9 +2,9 @@
 //!
 //! The height is kept to the bit. The normal is projected onto an octahedron, and that unfolded to a square: two numbers of 16
 //! bits, which turn it by at most 6.5e-5 and leave the directions of the axes as they are. The source is a number in the
-//! table of moves of the [chunk](crate::chunk) and a time, in 32 bits.
+//! table of moves of the chunk and a time, in 32 bits.
 
-use crate::interval::Boundary;
+use crate::intervals::Endpoint;
 
 /// An end without its table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ impl Packed {
     pub const STOCK: u32 = u32::MAX;
 }
 
-impl Boundary for Packed {
+impl Endpoint for Packed {
     fn height(&self) -> f64 {
         self.z
     }

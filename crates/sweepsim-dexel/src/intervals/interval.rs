@@ -21,7 +21,7 @@ impl Source {
 }
 
 /// What an interval can end with: a height, and perhaps more that is known there.
-pub trait Boundary: Copy {
+pub trait Endpoint: Copy {
     /// The height.
     fn height(&self) -> f64;
 
@@ -31,7 +31,7 @@ pub trait Boundary: Copy {
 }
 
 /// A height and nothing else.
-impl Boundary for f64 {
+impl Endpoint for f64 {
     fn height(&self) -> f64 {
         *self
     }
@@ -63,7 +63,7 @@ impl End {
     }
 }
 
-impl Boundary for End {
+impl Endpoint for End {
     fn height(&self) -> f64 {
         self.z
     }
@@ -98,7 +98,7 @@ impl Interval {
     }
 }
 
-impl<E: Boundary> Interval<E> {
+impl<E: Endpoint> Interval<E> {
     /// Length.
     #[must_use]
     pub fn length(&self) -> f64 {

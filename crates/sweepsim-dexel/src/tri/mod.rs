@@ -1,8 +1,12 @@
 //! Dexels along all three axes.
 
-use crate::contour;
+mod cell;
+mod contour;
+mod lattice;
+mod plane;
+
 use crate::dexels::{Dexels, GridMismatch, Operation};
-use crate::frame::Frame;
+use crate::grid::Frame;
 use crate::grid::{Grid, GridError};
 use crate::mesh::Mesh;
 use crate::stock::{Stock, StockError};

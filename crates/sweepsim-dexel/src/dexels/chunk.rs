@@ -8,139 +8,22 @@
 //! the number of the move first, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24 at first,
 //! and one fewer whenever the table outgrows the rest: times are good to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for 65,536.
 
-use crate::interval::{Boundary, End, Interval, Source};
-use crate::packed::{Octahedral, Packed};
+use super::packed::Packed;
+use super::segments::{CutSegment, LEAST_TIME, SegmentTable, Table};
+use crate::intervals::{Endpoint, Interval};
 
 /// Lines of a chunk.
 pub(crate) const LINES: usize = 64;
 
 /// An interval as it is stored: 32 bytes.
-pub(crate) type Piece = Interval<Packed>;
-
-/// Path and segment of a source.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Move {
-    pub path: u16,
-    pub segment: u32,
-}
-
-/// How many entries of the table, counted from its end, are looked at for a move before it is entered again.
-const LOOK: usize = 16;
-/// Bits of a time in a table of at most 256 moves.
-const TIME: u32 = 24;
-/// Fewest bits of a time: enough for no table that fits into memory to ask for less.
-const LEAST_TIME: u32 = 2;
-
-/// What a time needs to be read.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Table<'a> {
-    moves: &'a [Move],
-    time: u32,
-}
-
-impl Table<'_> {
-    pub const EMPTY: Self = Self { moves: &[], time: TIME };
-
-    fn source(self, packed: u32) -> Source {
-        if packed == Packed::STOCK {
-            return Source::STOCK;
-        }
-        let ticks = packed & ((1 << self.time) - 1);
-        match self.moves.get((packed >> self.time) as usize) {
-            Some(Move { path, segment }) => Source {
-                path: *path,
-                segment: *segment,
-                t: (f64::from(ticks) / f64::from(1_u32 << (self.time - 1))) as f32,
-            },
-            None => Source::STOCK,
-        }
-    }
-
-    pub fn end(self, packed: &Packed) -> End {
-        End {
-            z: packed.z,
-            normal: packed.normal.vector(),
-            source: self.source(packed.source),
-        }
-    }
-
-    pub fn interval(self, piece: &Piece) -> Interval {
-        Interval {
-            lower: self.end(&piece.lower),
-            upper: self.end(&piece.upper),
-        }
-    }
-}
-
-/// The table, growing.
-#[derive(Clone, Debug)]
-pub(crate) struct Moves {
-    moves: Vec<Move>,
-    time: u32,
-}
-
-impl Default for Moves {
-    fn default() -> Self {
-        Self {
-            moves: Vec::new(),
-            time: TIME,
-        }
-    }
-}
-
-impl Moves {
-    fn table(&self) -> Table<'_> {
-        Table {
-            moves: &self.moves,
-            time: self.time,
-        }
-    }
-
-    fn number(&mut self, wanted: Move) -> u32 {
-        let first = self.moves.len().saturating_sub(LOOK);
-        let found = self.moves[first..].iter().rposition(|m| *m == wanted);
-        let number = found.map_or(self.moves.len(), |k| first + k);
-        if found.is_none() {
-            if self.moves.len() == self.moves.capacity() {
-                self.moves.reserve_exact(4 + self.moves.len() / 4);
-            }
-            self.moves.push(wanted);
-        }
-        number as u32
-    }
-
-    fn source(&mut self, source: Source) -> u32 {
-        if source == Source::STOCK {
-            return Packed::STOCK;
-        }
-        let number = self.number(Move {
-            path: source.path,
-            segment: source.segment,
-        });
-        // A NaN becomes 0.
-        let ticks = (f64::from(source.t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1)) + 0.5) as u32;
-        number << self.time | ticks
-    }
-
-    fn interval(&mut self, interval: &Interval) -> Piece {
-        let mut end = |end: &End| Packed {
-            z: end.z,
-            normal: Octahedral::new(end.normal),
-            source: self.source(end.source),
-        };
-        Interval {
-            lower: end(&interval.lower),
-            upper: end(&interval.upper),
-        }
-    }
-}
+pub(crate) type PackedInterval = Interval<Packed>;
 
 /// The intervals of [`LINES`] lines.
 #[derive(Clone, Debug)]
 pub(crate) struct Chunk {
     first: [u32; LINES + 1],
-    pieces: Vec<Piece>,
-    moves: Moves,
+    pieces: Vec<PackedInterval>,
+    moves: SegmentTable,
 }
 
 impl Default for Chunk {
@@ -148,7 +31,7 @@ impl Default for Chunk {
         Self {
             first: [0; LINES + 1],
             pieces: Vec::new(),
-            moves: Moves::default(),
+            moves: SegmentTable::default(),
         }
     }
 }
@@ -163,12 +46,12 @@ impl Chunk {
     }
 
     /// Stored intervals of a line.
-    pub fn line(&self, line: usize) -> &[Piece] {
+    pub fn line(&self, line: usize) -> &[PackedInterval] {
         &self.pieces[self.first[line] as usize..self.first[line + 1] as usize]
     }
 
     /// Stored intervals of all lines, one line after the other.
-    pub fn all(&self) -> &[Piece] {
+    pub fn all(&self) -> &[PackedInterval] {
         &self.pieces
     }
 
@@ -179,12 +62,12 @@ impl Chunk {
     /// Bytes of memory, the chunk itself with what it points to.
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
-            + self.pieces.capacity() * size_of::<Piece>()
-            + self.moves.moves.capacity() * size_of::<Move>()
+            + self.pieces.capacity() * size_of::<PackedInterval>()
+            + self.moves.moves.capacity() * size_of::<CutSegment>()
     }
 
     /// Appends packed intervals to `out`, their moves to the table.
-    pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<Piece>) {
+    pub fn pack(&mut self, intervals: &[Interval], out: &mut Vec<PackedInterval>) {
         for interval in intervals {
             self.make_room(2, out);
             out.push(self.moves.interval(interval));
@@ -192,7 +75,7 @@ impl Chunk {
     }
 
     /// Appends stored intervals of another chunk to `out`, their moves to the table.
-    pub fn adopt(&mut self, table: Table<'_>, pieces: &[Piece], out: &mut Vec<Piece>) {
+    pub fn adopt(&mut self, table: Table<'_>, pieces: &[PackedInterval], out: &mut Vec<PackedInterval>) {
         self.make_room(table.moves.len().min(2 * pieces.len()), out);
         let mut numbers = vec![u32::MAX; table.moves.len()];
         let moves = &mut self.moves;
@@ -224,8 +107,8 @@ impl Chunk {
 
     /// Makes room for more moves: the table loses what no end names, then times lose bits. `out` holds intervals that are not
     /// in the chunk yet.
-    fn make_room(&mut self, more: usize, out: &mut [Piece]) {
-        let full = |moves: &Moves| moves.moves.len() + more > 1 << (32 - moves.time);
+    fn make_room(&mut self, more: usize, out: &mut [PackedInterval]) {
+        let full = |moves: &SegmentTable| moves.moves.len() + more > 1 << (32 - moves.time);
         let wasteful = self.moves.moves.len() > 64 + 4 * (self.pieces.len() + out.len());
         if wasteful || full(&self.moves) {
             self.tidy(out);
@@ -243,7 +126,7 @@ impl Chunk {
     }
 
     /// Drops moves that no end names, and the second of any two that are the same.
-    fn tidy(&mut self, out: &mut [Piece]) {
+    fn tidy(&mut self, out: &mut [PackedInterval]) {
         let mut used = vec![false; self.moves.moves.len()];
         let time = self.moves.time;
         for_sources(&mut self.pieces, out, |source| {
@@ -254,7 +137,7 @@ impl Chunk {
             }
         });
         let old = std::mem::take(&mut self.moves.moves);
-        let mut kept: Vec<Move> = old
+        let mut kept: Vec<CutSegment> = old
             .iter()
             .zip(&used)
             .filter(|(_, used)| **used)
@@ -262,7 +145,7 @@ impl Chunk {
             .collect();
         kept.sort_unstable();
         kept.dedup();
-        let number = |m: &Move| kept.binary_search(m).unwrap_or(0) as u32;
+        let number = |m: &CutSegment| kept.binary_search(m).unwrap_or(0) as u32;
         for_sources(&mut self.pieces, out, |source| {
             if let Some(m) = old.get((*source >> time) as usize)
                 && *source != Packed::STOCK
@@ -275,7 +158,7 @@ impl Chunk {
     }
 
     /// Replaces the intervals of a line by packed ones.
-    pub fn replace(&mut self, line: usize, pieces: &[Piece]) {
+    pub fn replace(&mut self, line: usize, pieces: &[PackedInterval]) {
         let (from, to) = (self.first[line] as usize, self.first[line + 1] as usize);
         let (old, new) = (to - from, pieces.len());
         if old == new {
@@ -296,7 +179,11 @@ impl Chunk {
     }
 
     /// Replaces all lines: `write` appends the new intervals of each line to the list, given the old ones.
-    pub fn rebuild(&mut self, scratch: &mut Vec<Piece>, mut write: impl FnMut(usize, &[Piece], &mut Vec<Piece>)) {
+    pub fn rebuild(
+        &mut self,
+        scratch: &mut Vec<PackedInterval>,
+        mut write: impl FnMut(usize, &[PackedInterval], &mut Vec<PackedInterval>),
+    ) {
         scratch.clear();
         let mut first = [0; LINES + 1];
         for line in 0..LINES {
@@ -308,7 +195,7 @@ impl Chunk {
     }
 
     /// Exactly as much memory as is needed, unless what there is nearly fits.
-    fn refill(&mut self, pieces: &[Piece]) {
+    fn refill(&mut self, pieces: &[PackedInterval]) {
         let room = self.pieces.capacity();
         if room < pieces.len() || room > pieces.len() + pieces.len() / 8 + 8 {
             self.pieces = pieces.to_vec();
@@ -319,7 +206,7 @@ impl Chunk {
     }
 
     /// Fills an empty chunk: `write` appends the intervals of each line, in normal form.
-    pub fn fill(&mut self, scratch: &mut Vec<Piece>, mut write: impl FnMut(usize, &mut Vec<Interval>)) {
+    pub fn fill(&mut self, scratch: &mut Vec<PackedInterval>, mut write: impl FnMut(usize, &mut Vec<Interval>)) {
         scratch.clear();
         let mut line_pieces = Vec::new();
         for line in 0..LINES {
@@ -339,7 +226,7 @@ impl Chunk {
     }
 }
 
-fn for_sources(pieces: &mut [Piece], more: &mut [Piece], mut visit: impl FnMut(&mut u32)) {
+fn for_sources(pieces: &mut [PackedInterval], more: &mut [PackedInterval], mut visit: impl FnMut(&mut u32)) {
     for piece in pieces.iter_mut().chain(more) {
         visit(&mut piece.lower.source);
         visit(&mut piece.upper.source);
@@ -347,7 +234,7 @@ fn for_sources(pieces: &mut [Piece], more: &mut [Piece], mut visit: impl FnMut(&
 }
 
 /// Whether intervals are in normal form.
-pub(crate) fn is_normal<E: Boundary>(pieces: &[Interval<E>]) -> bool {
+pub(crate) fn is_normal<E: Endpoint>(pieces: &[Interval<E>]) -> bool {
     pieces.iter().all(|piece| piece.lower.height() < piece.upper.height())
         && pieces.windows(2).all(|w| w[0].upper.height() < w[1].lower.height())
 }
@@ -355,11 +242,12 @@ pub(crate) fn is_normal<E: Boundary>(pieces: &[Interval<E>]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::intervals::Source;
 
     #[test]
     fn sizes_are_as_promised() {
-        assert_eq!(size_of::<Piece>(), 32);
-        assert_eq!(size_of::<Move>(), 8);
+        assert_eq!(size_of::<PackedInterval>(), 32);
+        assert_eq!(size_of::<CutSegment>(), 8);
         assert!(size_of::<Chunk>() <= 5 * LINES);
     }
 

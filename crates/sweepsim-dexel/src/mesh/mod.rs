@@ -1,6 +1,9 @@
 //! Triangles, going in and coming out.
 
-use crate::frame::Frame;
+mod distance;
+
+use crate::grid::Frame;
+pub use distance::{DistanceTo, Nearest};
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;

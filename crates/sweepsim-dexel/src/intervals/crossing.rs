@@ -5,8 +5,8 @@
 //! and far above, and each crossing says by how much it jumps, going up. So the jumps add up to 0, and no partial sum is
 //! negative: a crossing lost or found twice breaks the audit (unless a second error of opposite sign hides it).
 
-use crate::interval::{End, Interval, Source};
-use crate::operations::merge;
+use super::interval::{End, Interval, Source};
+use super::operations::merge;
 use thiserror::Error;
 
 /// A point of a line where the coverage count jumps.

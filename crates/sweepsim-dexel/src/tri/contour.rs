@@ -15,15 +15,11 @@
 //! on each side of it. So an edge of the mesh across such a face gets a vertex of its own there, on its curve. (Others turn the
 //! curves of such a face; this way a cell needs to know nothing of its neighbours.)
 
-mod cell;
-mod lattice;
-mod plane;
-
+use super::TriDexels;
+use super::cell::{CELLS, EDGES};
+use super::lattice::{Hit, Lattice};
+use super::plane::Planes;
 use crate::mesh::Mesh;
-use crate::tri::TriDexels;
-use cell::{CELLS, EDGES};
-use lattice::{Hit, Lattice};
-use plane::Planes;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -277,4 +273,5 @@ impl Face<'_> {
 }
 
 #[cfg(test)]
+#[path = "tests.rs"]
 mod tests;

@@ -1,8 +1,8 @@
 //! Which points of the lattice have material, and where it ends between them.
 
+use super::TriDexels;
 use crate::dexels::Dexels;
-use crate::interval::Source;
-use crate::tri::TriDexels;
+use crate::intervals::Source;
 use rayon::prelude::*;
 
 /// Points where lines of all three sets cross, with a rim of points without material around them.

@@ -1,10 +1,9 @@
 //! Dexels line after line, without knowing how many will come.
 
-use crate::chunk::{Chunk, LINES, Piece, is_normal};
-use crate::dexels::Dexels;
+use super::Dexels;
+use super::chunk::{Chunk, LINES, PackedInterval, is_normal};
 use crate::grid::Grid;
-use crate::interval::Interval;
-use crate::operations::normalise;
+use crate::intervals::{Interval, normalise};
 
 /// Builds [`Dexels`] from their first line to the last. Memory grows with the lines that came, not with the grid, so that a
 /// file that promises much and holds little costs little.
@@ -24,7 +23,7 @@ pub struct DexelsBuilder {
     chunks: Vec<Option<Box<Chunk>>>,
     current: Option<Box<Chunk>>,
     lines: usize,
-    packed: Vec<Piece>,
+    packed: Vec<PackedInterval>,
 }
 
 impl DexelsBuilder {

@@ -30,7 +30,7 @@ const SAMPLES: f64 = 2e6;
 pub struct DistanceTo {
     vertices: Vec<[f64; 3]>,
     faces: Vec<Face>,
-    nodes: Vec<Node>,
+    nodes: Vec<TreeNode>,
 }
 
 /// The place of a surface that is nearest to a point.
@@ -54,7 +54,7 @@ struct Face {
 }
 
 #[derive(Clone, Debug)]
-struct Node {
+struct TreeNode {
     low: [f64; 3],
     high: [f64; 3],
     /// Faces `first..first + count`; of an inner node the second child is at `first`, the first right behind it.
@@ -80,46 +80,49 @@ fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
 
 /// Which part of a triangle is meant.
 #[derive(Clone, Copy)]
-enum Part {
+enum NearestOn {
     Inside,
     Edge(usize),
     Corner(usize),
 }
 
 /// The place of a triangle nearest to `p` (Ericson: *Real-Time Collision Detection*, 5.1.5).
-fn nearest_on(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> ([f64; 3], Part) {
+fn nearest_on(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> ([f64; 3], NearestOn) {
     let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(p, a));
     let (d1, d2) = (dot(ab, ap), dot(ac, ap));
     if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, Part::Corner(0));
+        return (a, NearestOn::Corner(0));
     }
     let bp = sub(p, b);
     let (d3, d4) = (dot(ab, bp), dot(ac, bp));
     if d3 >= 0.0 && d4 <= d3 {
-        return (b, Part::Corner(1));
+        return (b, NearestOn::Corner(1));
     }
     let vc = d1 * d4 - d3 * d2;
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (along(a, d1 / (d1 - d3), ab), Part::Edge(0));
+        return (along(a, d1 / (d1 - d3), ab), NearestOn::Edge(0));
     }
     let cp = sub(p, c);
     let (d5, d6) = (dot(ab, cp), dot(ac, cp));
     if d6 >= 0.0 && d5 <= d6 {
-        return (c, Part::Corner(2));
+        return (c, NearestOn::Corner(2));
     }
     let vb = d5 * d2 - d1 * d6;
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (along(a, d2 / (d2 - d6), ac), Part::Edge(2));
+        return (along(a, d2 / (d2 - d6), ac), NearestOn::Edge(2));
     }
     let va = d3 * d6 - d5 * d4;
     if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return (along(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), sub(c, b)), Part::Edge(1));
+        return (
+            along(b, (d4 - d3) / ((d4 - d3) + (d5 - d6)), sub(c, b)),
+            NearestOn::Edge(1),
+        );
     }
     let scale = 1.0 / (va + vb + vc);
-    (along(along(a, vb * scale, ab), vc * scale, ac), Part::Inside)
+    (along(along(a, vb * scale, ab), vc * scale, ac), NearestOn::Inside)
 }
 
-impl Node {
+impl TreeNode {
     fn distance_squared(&self, p: [f64; 3]) -> f64 {
         (0..3)
             .map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2))
@@ -196,7 +199,7 @@ impl DistanceTo {
                 (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
             }
         }
-        self.nodes.push(Node {
+        self.nodes.push(TreeNode {
             low,
             high,
             first: first as u32,
@@ -232,7 +235,7 @@ impl DistanceTo {
 
     fn search(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<Nearest> {
         let mut best = reach * reach;
-        let mut found: Option<(usize, [f64; 3], Part)> = None;
+        let mut found: Option<(usize, [f64; 3], NearestOn)> = None;
         // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
         let mut open = smallvec::SmallVec::<[(f64, u32); 64]>::new();
         open.extend(self.nodes.first().map(|root| (root.distance_squared(p), 0)));
@@ -267,9 +270,9 @@ impl DistanceTo {
         let (number, place, part) = found?;
         let face = &self.faces[number];
         let side = match part {
-            Part::Inside => face.normal,
-            Part::Edge(k) => face.at_edges[k].map(f64::from),
-            Part::Corner(k) => face.at_corners[k].map(f64::from),
+            NearestOn::Inside => face.normal,
+            NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
+            NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
         };
         let outside = dot(sub(p, place), side) >= 0.0;
         Some(Nearest {
@@ -332,112 +335,5 @@ fn further(a: ([f64; 3], Nearest), b: ([f64; 3], Nearest)) -> ([f64; 3], Nearest
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Stock, TriDexels};
-    use proptest::prelude::*;
-
-    fn block(min: [f64; 3], max: [f64; 3]) -> TriangleSoup {
-        let p = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-        let quads = [
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-        ];
-        let triangles = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-        TriangleSoup {
-            triangles: triangles.map(|t| t.map(p)).collect(),
-        }
-    }
-
-    proptest! {
-        /// The distance to a box has a formula.
-        #[test]
-        fn distances_to_a_box(p in [-4.0..7.0_f64, -4.0..7.0, -4.0..7.0]) {
-            let (min, max) = ([-1.0, 0.0, 0.5], [3.0, 2.0, 4.5]);
-            let near = DistanceTo::new(&block(min, max)).nearest(p).unwrap();
-            let out = [0, 1, 2].map(|k| (min[k] - p[k]).max(p[k] - max[k]));
-            let beyond = out.iter().map(|c| c.max(0.0).powi(2)).sum::<f64>().sqrt();
-            let within = out.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(0.0);
-            prop_assert!((near.distance - beyond - within).abs() < 1e-12, "{near:?}");
-        }
-    }
-
-    /// A solid with corners of all kinds, convex and not, against all its triangles one after the other and against its dexels.
-    #[test]
-    fn the_tree_finds_what_all_triangles_have() {
-        let part = |min: [f64; 3], max: [f64; 3]| Stock::Block { min, max };
-        let solid = Stock::Difference(
-            part([-4.1; 3], [4.2; 3]).into(),
-            vec![part([-1.0; 3], [5.0; 3]), part([-9.0, 1.0, -2.0], [9.0, 3.0, -1.0])],
-        );
-        let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [20; 3], &solid).unwrap().surface();
-        let soup = mesh.soup().unwrap();
-        let tree = DistanceTo::new(&soup);
-        let (mut state, mut sides) = (9_u64, [0; 2]);
-        for _ in 0..2000 {
-            let p = [0; 3].map(|_| {
-                state = state
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695_040_888_963_407);
-                (state >> 11) as f64 / (1_u64 << 53) as f64 * 12.0 - 6.0
-            });
-            let near = tree.nearest(p).unwrap();
-            let slow = soup.triangles.iter().map(|t| {
-                let off = sub(p, nearest_on(p, *t).0);
-                dot(off, off)
-            });
-            let slow = slow.fold(f64::INFINITY, f64::min).sqrt();
-            assert!((near.distance.abs() - slow).abs() < 1e-12);
-            let beside = |axis: usize, low: f64, high: f64| low < p[axis] && p[axis] < high;
-            let inside = (0..3).all(|k| beside(k, -4.1, 4.2))
-                && !(0..3).all(|k| p[k] > -1.0)
-                && !(beside(1, 1.0, 3.0) && beside(2, -2.0, -1.0));
-            assert!(
-                inside == (near.distance < 0.0) || near.distance.abs() < 1e-9,
-                "{p:?} {near:?}"
-            );
-            sides[usize::from(inside)] += 1;
-        }
-        assert!(sides.iter().all(|n| *n > 300), "{sides:?}");
-    }
-
-    #[test]
-    fn furthest_points_are_those_of_the_shapes() {
-        let (small, large) = (block([0.0; 3], [4.0; 3]), block([0.0, 0.0, -0.5], [4.0, 4.0, 6.0]));
-        let (place, near) = DistanceTo::new(&small).furthest(&large, 0.1).unwrap();
-        // Samples between the corners are rounded.
-        assert!(
-            (place[2] - 6.0).abs() < 1e-14 && (near.distance - 2.0).abs() < 1e-14,
-            "{place:?} {near:?}"
-        );
-        let (_, back) = DistanceTo::new(&large).furthest(&small, 0.1).unwrap();
-        // The middle of the small one's top is 2 away from the sides and from the top.
-        assert!((back.distance + 2.0).abs() < 0.06, "{back:?}");
-        assert!(
-            DistanceTo::new(&TriangleSoup::default())
-                .furthest(&small, 0.1)
-                .is_none()
-        );
-        assert!(
-            DistanceTo::new(&small)
-                .furthest(&TriangleSoup::default(), 0.1)
-                .is_none()
-        );
-        assert!(DistanceTo::new(&small).nearest([f64::NAN; 3]).is_none());
-    }
-
-    #[test]
-    fn sides_of_a_thin_wall_are_told_apart() {
-        let tree = DistanceTo::new(&block([0.0; 3], [9.0, 9.0, 0.1]));
-        let p = [4.0, 4.0, 0.3];
-        assert!((tree.nearest(p).unwrap().distance - 0.2).abs() < 1e-12);
-        let lower = tree.nearest_facing(p, [0.0, 0.0, -1.0], 1.0).unwrap();
-        assert_eq!(lower.place[2], 0.0);
-        assert!((lower.distance + 0.3).abs() < 1e-12);
-        assert!(tree.nearest_facing(p, [0.0, 0.0, -1.0], 0.25).is_none());
-    }
-}
+#[path = "distance_tests.rs"]
+mod tests;

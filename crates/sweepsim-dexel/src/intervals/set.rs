@@ -1,12 +1,12 @@
 //! Sets of intervals on a line.
 
-use crate::interval::{Boundary, Interval};
-use crate::operations::{Run, difference, intersection, merge, normalise, union};
+use super::interval::{Endpoint, Interval};
+use super::operations::{Run, difference, intersection, merge, normalise, union};
 
 /// A set of points of a line: intervals in normal form, that is sorted, each of positive length, with gaps between them.
 ///
 /// Sets of points that differ by single points are one: whether ends belong to intervals has no meaning here. Ends may be plain
-/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is a [`Boundary`]; an end costs what
+/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is a [`Endpoint`]; an end costs what
 /// its type costs. Heights may be infinite.
 ///
 /// ```
@@ -28,7 +28,7 @@ impl<E> Default for IntervalSet<E> {
     }
 }
 
-impl<E: Boundary> IntervalSet<E> {
+impl<E: Endpoint> IntervalSet<E> {
     /// The empty set.
     #[must_use]
     pub fn new() -> Self {
@@ -118,7 +118,7 @@ impl<E: Boundary> IntervalSet<E> {
 }
 
 /// Intervals in any order that may overlap. Those that have no positive length (or a NaN) are left out.
-impl<E: Boundary> FromIterator<Interval<E>> for IntervalSet<E> {
+impl<E: Endpoint> FromIterator<Interval<E>> for IntervalSet<E> {
     fn from_iter<I: IntoIterator<Item = Interval<E>>>(pieces: I) -> Self {
         let mut pieces: Vec<Interval<E>> = pieces.into_iter().collect();
         normalise(&mut pieces);
@@ -127,7 +127,7 @@ impl<E: Boundary> FromIterator<Interval<E>> for IntervalSet<E> {
 }
 
 /// As [`FromIterator`], from pairs `[lower, upper]`.
-impl<E: Boundary, const N: usize> From<[[E; 2]; N]> for IntervalSet<E> {
+impl<E: Endpoint, const N: usize> From<[[E; 2]; N]> for IntervalSet<E> {
     fn from(pieces: [[E; 2]; N]) -> Self {
         pieces
             .into_iter()

@@ -3,13 +3,13 @@
 //! Lists are in *normal form*: sorted, each interval of positive length, each gap of positive length. Every operation takes
 //! two lists in normal form and appends one to `out`, whose earlier content it leaves alone. They run in one pass.
 
-use crate::interval::{Boundary, Interval};
+use super::interval::{Endpoint, Interval};
 
 /// An operation: of two lists, to the third.
 pub(crate) type Run<E> = fn(&[Interval<E>], &[Interval<E>], &mut Vec<Interval<E>>);
 
 /// `a ∖ b`. New ends are those of `b`, flipped.
-pub(crate) fn difference<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
+pub(crate) fn difference<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
     let mut first = 0;
     for piece in a {
         while first < b.len() && b[first].upper.height() <= piece.lower.height() {
@@ -36,7 +36,7 @@ pub(crate) fn difference<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out:
 /// `a ∪ b`; intervals that touch become one. Ends at one height: those of `a`.
 ///
 /// `a` and `b` need only be sorted by their lower ends: intervals that overlap in one of them are joined as well.
-pub(crate) fn union<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
+pub(crate) fn union<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
     let start = out.len();
     let (mut i, mut j) = (0, 0);
     while i < a.len() || j < b.len() {
@@ -60,7 +60,7 @@ pub(crate) fn union<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out: &mut
 }
 
 /// `a ∩ b`. Ends at one height: those of `a`.
-pub(crate) fn intersection<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
+pub(crate) fn intersection<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
     let (mut i, mut j) = (0, 0);
     while i < a.len() && j < b.len() {
         let lower = if b[j].lower.height() > a[i].lower.height() {
@@ -82,7 +82,7 @@ pub(crate) fn intersection<E: Boundary>(a: &[Interval<E>], b: &[Interval<E>], ou
 }
 
 /// Brings intervals in any order, overlapping or empty, into normal form.
-pub(crate) fn normalise<E: Boundary>(pieces: &mut Vec<Interval<E>>) {
+pub(crate) fn normalise<E: Endpoint>(pieces: &mut Vec<Interval<E>>) {
     // Comparisons with NaN are false: such intervals are none.
     pieces.retain(|piece| piece.lower.height() < piece.upper.height());
     let apart = |w: &[Interval<E>]| w[0].upper.height() < w[1].lower.height();
@@ -94,7 +94,7 @@ pub(crate) fn normalise<E: Boundary>(pieces: &mut Vec<Interval<E>>) {
 }
 
 /// Fills gaps of at most `tolerance`, then drops intervals of at most `tolerance`: see [`IntervalSet::merged`](crate::IntervalSet::merged).
-pub(crate) fn merge<E: Boundary>(pieces: &mut Vec<Interval<E>>, tolerance: f64) {
+pub(crate) fn merge<E: Endpoint>(pieces: &mut Vec<Interval<E>>, tolerance: f64) {
     pieces.dedup_by(|next, last| {
         let join = next.lower.height() - last.upper.height() <= tolerance;
         if join {

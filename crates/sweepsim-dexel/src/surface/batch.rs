@@ -6,7 +6,7 @@ use super::{CRISP, dot, normal_of, unit};
 const STEEP: f64 = 0.5;
 
 /// Triangles of some squares. Vertex numbers below `ends` are those of ends, the others count up from there.
-pub(super) struct Part {
+pub(super) struct TriangleBatch {
     ends: u32,
     pub vertices: Vec<[f64; 3]>,
     pub normals: Vec<[f32; 3]>,
@@ -26,7 +26,7 @@ pub(super) struct Corner {
     pub cut: bool,
 }
 
-impl Part {
+impl TriangleBatch {
     pub fn new(ends: u32) -> Self {
         Self {
             ends,

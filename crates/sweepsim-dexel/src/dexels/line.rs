@@ -1,7 +1,8 @@
 //! The intervals of one line, as they are handed out.
 
-use crate::chunk::{Piece, Table};
-use crate::interval::Interval;
+use super::chunk::PackedInterval;
+use super::segments::Table;
+use crate::intervals::Interval;
 use std::fmt;
 
 /// The intervals of one line of [`Dexels`](crate::Dexels): sorted, disjoint, of positive length.
@@ -9,7 +10,7 @@ use std::fmt;
 /// They are stored in half the space of an [`Interval`], so they are handed out by value. A line is a view: it is `Copy`.
 #[derive(Clone, Copy)]
 pub struct Line<'a> {
-    pieces: &'a [Piece],
+    pieces: &'a [PackedInterval],
     table: Table<'a>,
 }
 
@@ -19,7 +20,7 @@ impl<'a> Line<'a> {
         table: Table::EMPTY,
     };
 
-    pub(crate) fn new(pieces: &'a [Piece], table: Table<'a>) -> Self {
+    pub(crate) fn new(pieces: &'a [PackedInterval], table: Table<'a>) -> Self {
         Self { pieces, table }
     }
 
@@ -104,7 +105,7 @@ impl<'a> IntoIterator for Line<'a> {
 /// The intervals of a [`Line`], going up.
 #[derive(Clone, Debug)]
 pub struct LineIter<'a> {
-    pieces: std::slice::Iter<'a, Piece>,
+    pieces: std::slice::Iter<'a, PackedInterval>,
     table: Table<'a>,
 }
 
