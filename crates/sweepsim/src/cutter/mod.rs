@@ -10,15 +10,15 @@ use sweepsim_motion::Tool;
 
 /// A tool, prepared.
 pub(crate) struct Cutter {
-    pub faces: Vec<PatchForms>,
-    pub rims: Vec<PatchForms>,
+    pub patches: Vec<PatchForms>,
+    pub edges: Vec<PatchForms>,
     /// No point of the tool is farther from its tip.
     pub reach: f64,
 }
 
 impl Cutter {
     pub fn new(tool: &Tool) -> Self {
-        let (faces, rims) = PatchForms::all(tool);
+        let (patches, edges) = PatchForms::all(tool);
         let reach = tool
             .patches()
             .iter()
@@ -29,6 +29,6 @@ impl Cutter {
                 })
             })
             .fold(0.0, f64::max);
-        Self { faces, rims, reach }
+        Self { patches, edges, reach }
     }
 }

@@ -29,11 +29,6 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// The lines of one column: those with one `x`.
-    pub fn column(grid: &'a Grid, i: usize, shift: [f64; 2]) -> Self {
-        Self::columns(grid, [i, i], shift)
-    }
-
     /// The lines of neighbouring columns, from the first to the last.
     pub fn columns(grid: &'a Grid, i: [usize; 2], shift: [f64; 2]) -> Self {
         Self {
@@ -50,6 +45,11 @@ impl<'a> Lattice<'a> {
             j: [j, j],
             ..Self::all(grid, shift)
         }
+    }
+
+    /// Whether some line stands in these ranges of `x` and `y`.
+    pub fn meets(&self, [x, y]: [Interval; 2]) -> bool {
+        self.numbers(0, x).is_some() && self.numbers(1, y).is_some()
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.

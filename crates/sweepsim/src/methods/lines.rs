@@ -4,25 +4,37 @@
 //! long as its box may hold a solution, and each root has a certificate of its own.
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
-use crate::envelope::{ROUNDING, Side};
-use crate::methods::search::sides;
+use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side};
+use crate::methods::charts::Charts;
+use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
+use crate::methods::placement::sides;
+use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
-use sweepsim_motion::{NormalField, Patch, Tool};
-use sweepsim_solve::Bundle;
+use rayon::prelude::*;
+use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
+use sweepsim_solve::{Bundle, Sink};
 use sweepsim_spline::Bernstein;
+
+/// Columns of dexels whose lines make a bundle.
+const STRIP: usize = 128;
+
+/// The systems of each part of a chunk.
+pub(crate) struct Lines {
+    bundles: Vec<PartBundles>,
+}
 
 /// The systems of one part of a path. Where there are none (numbers out of range), charts are used.
 #[derive(Clone, Debug)]
-pub(crate) struct Bundles {
-    faces: Vec<Option<Bundle<3>>>,
-    rims: Vec<Option<Bundle<2>>>,
+struct PartBundles {
+    patches: Vec<Option<Bundle<3>>>,
+    edges: Vec<Option<Bundle<2>>>,
     /// At its start, and where it is the last one, at its end.
     placed: [Vec<Option<Bundle<2>>>; 2],
 }
 
-impl Bundles {
+impl PartBundles {
     /// Those of `parts[at]`.
-    pub fn new(tool: &Tool, parts: &[PathPart], at: usize) -> Self {
+    fn new(tool: &Tool, parts: &[PathPart], at: usize) -> Self {
         let segment = &parts[at].segment;
         let face = |patch: &Patch| {
             let motion = PatchMotion::new(patch, segment);
@@ -36,10 +48,10 @@ impl Bundles {
             let bundle = Bundle::new(vec![x.clone(), y.clone()], weight, vec![]).ok()?;
             bundle.where_signs_differ(before, after).ok()
         };
-        let placed = |end: usize| {
+        let placed = |end: SegmentEnd| {
             let (turn, tip) = match end {
-                0 => (segment.start(), segment.tips()[0]),
-                _ => (segment.end(), segment.tips()[1]),
+                SegmentEnd::Start => (segment.start(), segment.tips()[0]),
+                SegmentEnd::Finish => (segment.end(), segment.tips()[1]),
             };
             let [before, after] = sides(parts, at, end);
             let bundle = |patch: &Patch| {
@@ -52,23 +64,73 @@ impl Bundles {
             tool.patches().iter().map(bundle).collect()
         };
         Self {
-            faces: tool.patches().iter().map(face).collect(),
-            rims: tool.edges().iter().map(rim).collect(),
-            placed: [placed(0), if at + 1 == parts.len() { placed(1) } else { Vec::new() }],
+            patches: tool.patches().iter().map(face).collect(),
+            edges: tool.edges().iter().map(rim).collect(),
+            placed: [
+                placed(SegmentEnd::Start),
+                if at + 1 == parts.len() {
+                    placed(SegmentEnd::Finish)
+                } else {
+                    Vec::new()
+                },
+            ],
+        }
+    }
+}
+
+impl CrossingMethod<'_> for Lines {
+    fn prepare(tool: &Tool, chunk: &[PathPart]) -> Self {
+        let bundles = (0..chunk.len()).into_par_iter();
+        Self {
+            bundles: bundles.map(|at| PartBundles::new(tool, chunk, at)).collect(),
         }
     }
 
-    pub fn face(&self, number: usize) -> Option<&Bundle<3>> {
-        self.faces[number].as_ref()
+    /// By blocks of parts, and within them by strips of columns, whose lines make a bundle.
+    fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
+        let strips = || {
+            (0..columns)
+                .step_by(STRIP)
+                .map(|first| [first, (first + STRIP).min(columns) - 1])
+        };
+        let blocks = in_blocks(parts);
+        blocks
+            .flat_map(|parts| {
+                strips().map(move |columns| WorkShare {
+                    parts: parts.clone(),
+                    columns,
+                })
+            })
+            .collect()
     }
 
-    pub fn rim(&self, number: usize) -> Option<&Bundle<2>> {
-        self.rims[number].as_ref()
+    fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
+        match &self.bundles[query.part].patches[query.number] {
+            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            None => Charts.on_patch(query, map, solvers, sink),
+        }
     }
 
-    /// The patch at the start (0) or the end (1).
-    pub fn placed(&self, end: usize, number: usize) -> Option<&Bundle<2>> {
-        self.placed[end].get(number).and_then(Option::as_ref)
+    fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
+        match &self.bundles[query.part].edges[query.number] {
+            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            None => Charts.on_edge(query, map, solvers, sink),
+        }
+    }
+
+    fn on_placed(
+        &self,
+        query: Query,
+        end: SegmentEnd,
+        map: &mut PlacedMap,
+        solvers: &mut Solvers,
+        sink: &mut impl Sink<2, OnPlaced>,
+    ) {
+        let placed = &self.bundles[query.part].placed[usize::from(end == SegmentEnd::Finish)];
+        match placed.get(query.number).and_then(Option::as_ref) {
+            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            None => Charts.on_placed(query, end, map, solvers, sink),
+        }
     }
 }
 
@@ -148,7 +210,7 @@ mod tests {
                 let [a, b] = plane(motion.position(), &at);
                 prop_assert!(near(x, a) && near(y, b) && near(g, motion.condition().evaluate(&at)));
                 let [before, after] = [
-                    crate::methods::search::twist(&segment, sweepsim_motion::SegmentEnd::Start, &segment.start()),
+                    crate::methods::placement::twist(&segment, SegmentEnd::Start, &segment.start()),
                     Side::Beyond(true),
                 ];
                 let (turn, own_tip) = (segment.start(), segment.tips()[0]);

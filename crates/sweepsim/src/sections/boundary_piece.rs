@@ -33,8 +33,8 @@ pub struct PiecePoint {
 
 /// A tool, prepared, with one part of a path.
 pub(crate) struct Moving<'a> {
-    pub faces: &'a [PatchForms],
-    pub rims: &'a [PatchForms],
+    pub patches: &'a [PatchForms],
+    pub edges: &'a [PatchForms],
     pub parts: &'a [PathPart],
     pub at: usize,
     times: Times,
@@ -47,10 +47,10 @@ pub(crate) struct Seen {
 }
 
 impl<'a> Moving<'a> {
-    pub fn new(faces: &'a [PatchForms], rims: &'a [PatchForms], parts: &'a [PathPart], at: usize) -> Self {
+    pub fn new(patches: &'a [PatchForms], edges: &'a [PatchForms], parts: &'a [PathPart], at: usize) -> Self {
         Self {
-            faces,
-            rims,
+            patches,
+            edges,
             parts,
             at,
             times: Times::new(&parts[at].segment),
@@ -117,7 +117,7 @@ impl<'a> Moving<'a> {
 
     /// The point, and normal and moment in the tool.
     fn on_patch(&self, k: usize, at: [f64; 2], t: f64) -> (PiecePoint, [Vector3<f64>; 2]) {
-        let (position, [normal, arm]) = self.faces[k].face(at);
+        let (position, [normal, arm]) = self.patches[k].face(at);
         let moment = self.times.at(t);
         let seen = PiecePoint {
             position: (moment.turn * position + moment.tip).into(),
@@ -128,10 +128,10 @@ impl<'a> Moving<'a> {
     }
 
     fn on_edge(&self, k: usize, r: f64, t: f64) -> Seen {
-        let (position, fields) = self.rims[k].rim(r);
+        let (position, fields) = self.edges[k].rim(r);
         let moment = self.times.at(t);
         let [a, b] = fields.map(|[normal, arm]| moment.own_spin.dot(&arm) + moment.travel.dot(&normal));
-        // The envelope's normal lies in the fan of the two faces, where g = 0.
+        // The envelope's normal lies in the fan of the two patches, where g = 0.
         let [n, m] = fields.map(|[normal, _]| moment.turn * normal);
         let (p, q) = (a.abs() / n.norm(), b.abs() / m.norm());
         let (n, m) = (n / n.norm(), m / m.norm());

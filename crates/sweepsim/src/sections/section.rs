@@ -172,7 +172,7 @@ fn of_part(
     plane: &Plane,
     chord: f64,
 ) -> Found {
-    let moving = Moving::new(&cutter.faces, &cutter.rims, parts, at);
+    let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
     let segment = &parts[at].segment;
     let speed = moving.speed(cutter.reach);
     // No parameter moves a point by more than this: a patch's side by its control polygon's longest leg times the degree.

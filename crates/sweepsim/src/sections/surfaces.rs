@@ -110,7 +110,7 @@ fn of_part(
     (parts, at): (&[PathPart], usize),
     chord: f64,
 ) -> EnvelopeSurfaces {
-    let moving = Moving::new(&cutter.faces, &cutter.rims, parts, at);
+    let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
     let segment = &parts[at].segment;
     let speed = moving.speed(cutter.reach);
     let mut all = EnvelopeSurfaces::default();

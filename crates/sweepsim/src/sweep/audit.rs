@@ -1,6 +1,7 @@
 //! Crossings counted to intervals, audited, and repaired.
 
-use crate::methods::search::{Harvest, Numbered, Workspace};
+use crate::methods::harvest::{Harvest, Numbered};
+use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::{self, Boundary};
 use crate::sweep::report::{Statistics, SweepError, Unresolved};
 use crate::sweep::schedule::{ATTEMPTS, Job};

@@ -4,7 +4,9 @@ mod audit;
 mod boundary_operator;
 mod options;
 mod plan;
+mod probe;
 mod report;
+mod run;
 mod schedule;
 mod simulate;
 mod tri;
@@ -12,111 +14,8 @@ mod tri;
 pub use boundary_operator::{Boundary, UnknownBoundary};
 pub use options::{Method, Options, UnknownMethod};
 pub(crate) use plan::Plan;
+pub use probe::probe;
 pub use report::{Monitor, Statistics, Sweep, SweepError, Unresolved};
+pub use run::sweep;
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use tri::{TriSimulation, simulate_tri};
-
-use crate::methods::search::Workspace;
-use crate::sweep::schedule::CHUNK;
-use rayon::prelude::*;
-use std::sync::Mutex;
-use sweepsim_dexel::{Dexels, Frame, Grid, Interval};
-use sweepsim_motion::{Path, Tool};
-
-/// The volume that `tool` sweeps along `path`, on the dexels of `grid`, in whatever frame they stand. The path is in the world.
-///
-/// Runs in the current rayon pool; the result does not depend on the number of threads.
-///
-/// # Errors
-/// [`SweepError`]: cancelled, or a tolerance that is none.
-pub fn sweep(
-    tool: &Tool,
-    path: &Path,
-    grid: &Grid,
-    options: &Options,
-    monitor: &dyn Monitor,
-) -> Result<Sweep, SweepError> {
-    let extent = grid.min().into_iter().chain(grid.max());
-    let plan = Plan::new(tool, path, grid.frame(), extent, options)?;
-    let job = plan.job(tool, grid, options, monitor);
-    let parts = &plan.parts;
-    let mut volume = Dexels::empty(*grid);
-    let mut statistics = Statistics {
-        moves: path.moves(),
-        ..Statistics::default()
-    };
-    let mut failed: Vec<Unresolved> = Vec::new();
-    // The paper takes each move by itself.
-    let length = match options.boundary {
-        Boundary::Coverage => CHUNK,
-        Boundary::Paper => 1,
-    };
-    for (number, chunk) in parts.chunks(length).enumerate() {
-        let harvest = job.harvest(chunk)?;
-        statistics.crossings += harvest.crossings.len() as u64;
-        statistics.boxes += harvest.statistics.boxes;
-        statistics.charts += harvest.statistics.charts;
-        job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;
-        monitor.advance((number * length + chunk.len()).min(parts.len()), parts.len());
-    }
-    statistics.covered = volume.covered();
-    failed.sort_by_key(|u| (u.i, u.j));
-    failed.dedup_by_key(|u| (u.i, u.j));
-    statistics.unresolved = failed;
-    Ok(Sweep { volume, statistics })
-}
-
-/// The intervals of the volume that `tool` sweeps along `path` on any lines along `z`, given by their `x` and `y`; `None` for a line
-/// that could not be established.
-///
-/// # Errors
-/// [`SweepError`]: cancelled, or a tolerance that is none.
-///
-/// ```
-/// use sweepsim::{Options, probe};
-/// use sweepsim_motion::{Path, Pose, Tool};
-///
-/// let up = [0.0, 0.0, 1.0];
-/// let path = Path::new(vec![Pose::new([0.0; 3], up)?, Pose::new([10.0, 0.0, 0.0], up)?])?;
-/// let found = probe(&Tool::ball(2.0, 30.0)?, &path, &[[5.0, 0.0], [5.0, 3.0]], &Options::default(), &())?;
-/// let Some(groove) = &found[0] else { unreachable!() };
-/// assert!(groove.len() == 1 && groove[0].lower.z.abs() < 1e-6);
-/// assert_eq!(found[1].as_ref().map(Vec::len), Some(0));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn probe(
-    tool: &Tool,
-    path: &Path,
-    lines: &[[f64; 2]],
-    options: &Options,
-    monitor: &dyn Monitor,
-) -> Result<Vec<Option<Vec<Interval>>>, SweepError> {
-    let plan = Plan::new(tool, path, &Frame::WORLD, lines.iter().flatten().copied(), options)?;
-    let space = Mutex::new(Vec::new());
-    let half = 0.01 * plan.cutter.reach;
-    let one = |[x, y]: &[f64; 2]| -> Option<Vec<Interval>> {
-        // A grid of one line: the spacing only tells the search what is small.
-        let grid = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]).ok()?;
-        let job = plan.job(tool, &grid, options, monitor);
-        let mut own = space
-            .lock()
-            .ok()?
-            .pop()
-            .unwrap_or_else(|| Workspace::new(&plan.cutter, plan.accept));
-        let mut volume = Dexels::empty(grid);
-        let mut established = true;
-        for chunk in plan.parts.chunks(CHUNK) {
-            match job.repair(chunk, 0, 0, &mut own) {
-                Ok(intervals) => volume.unite(0, &intervals),
-                Err(_) => established = false,
-            }
-        }
-        space.lock().ok()?.push(own);
-        established.then(|| volume.at(0).to_vec())
-    };
-    let found = lines.par_iter().map(one).collect();
-    if monitor.cancelled() {
-        return Err(SweepError::Cancelled);
-    }
-    Ok(found)
-}

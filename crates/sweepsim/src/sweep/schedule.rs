@@ -2,9 +2,15 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::Size;
+use crate::methods::charts::Charts;
+use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
-use crate::methods::lines::Bundles;
-use crate::methods::search::{Forms, Harvest, How, Search, Workspace};
+use crate::methods::lines::Lines;
+use crate::methods::method::CrossingMethod;
+use crate::methods::planes::Planes;
+use crate::methods::search::Search;
+use crate::methods::surface::Surfaces;
+use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::Boundary;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
@@ -17,10 +23,6 @@ use sweepsim_motion::Tool;
 
 /// Segments whose crossings are counted together. Longer chunks save caps, shorter ones memory.
 pub(super) const CHUNK: usize = 256;
-/// Segments that a worker takes at a time.
-const BLOCK: usize = 4;
-/// Columns of dexels whose lines make a bundle.
-const STRIP: usize = 128;
 /// Times that a line is solved again, each time moved elsewhere.
 pub(super) const ATTEMPTS: usize = 5;
 
@@ -79,96 +81,44 @@ impl Job<'_> {
         result
     }
 
-    fn search<'b>(&'b self, lattice: &'b Lattice<'b>, how: How<'b>) -> Search<'b> {
+    /// All crossings of a chunk, in an order that does not depend on the threads.
+    pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
+        match self.method {
+            Method::Charts => self.by::<Charts>(chunk),
+            Method::Lines => self.by::<Lines>(chunk),
+            Method::Planes => self.by::<Planes>(chunk),
+            Method::Surface => self.by::<Surfaces>(chunk),
+        }
+    }
+
+    fn search<'b, M>(&'b self, method: &'b M, parts: &'b [PathPart], lines: &'b Lattice<'b>) -> Search<'b, M> {
         Search {
-            tool: self.tool,
+            method,
             cutter: self.cutter,
-            how,
-            lattice,
+            parts,
+            lines,
             size: self.size,
             path: self.path,
         }
     }
 
-    /// All crossings of a chunk, in an order that does not depend on the threads.
-    pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
+    fn by<'c, M: CrossingMethod<'c>>(&'c self, chunk: &'c [PathPart]) -> Result<Harvest, SweepError> {
+        let method = M::prepare(self.tool, chunk);
         let shift = path_parts::shift(self.tolerance, 0);
-        match self.method {
-            Method::Charts | Method::Surface => {
-                let lattice = Lattice::all(self.grid, shift);
-                let how = if self.method == Method::Charts {
-                    How::Charts
-                } else {
-                    How::Surface
-                };
-                let search = self.search(&lattice, how);
-                self.gather(chunk.len().div_ceil(BLOCK), |block, space, harvest| {
-                    for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
-                        if self.monitor.cancelled() {
-                            break;
-                        }
-                        search.part(chunk, at, space, harvest);
-                    }
-                })
-            }
-            Method::Planes => {
-                let forms: Vec<Forms> = chunk
-                    .par_iter()
-                    .map(|part| Forms::new(self.tool, &part.segment))
-                    .collect();
-                self.gather(self.grid.cells()[0], |column, space, harvest| {
-                    let lattice = Lattice::column(self.grid, column, shift);
-                    let search = self.search(&lattice, How::Planes(&forms));
-                    for at in 0..chunk.len() {
-                        if self.monitor.cancelled() {
-                            break;
-                        }
-                        search.part(chunk, at, space, harvest);
-                    }
-                })
-            }
-            Method::Lines => {
-                let bundles: Vec<Bundles> = (0..chunk.len())
-                    .into_par_iter()
-                    .map(|at| Bundles::new(self.tool, chunk, at))
-                    .collect();
-                let blocks = chunk.len().div_ceil(BLOCK);
-                let strips = self.grid.cells()[0].div_ceil(STRIP);
-                self.gather(blocks * strips, |number, space, harvest| {
-                    let (block, strip) = (number / strips, number % strips);
-                    let columns = [strip * STRIP, ((strip + 1) * STRIP).min(self.grid.cells()[0]) - 1];
-                    let lattice = Lattice::columns(self.grid, columns, shift);
-                    let search = self.search(&lattice, How::Lines(&bundles));
-                    for at in block * BLOCK..((block + 1) * BLOCK).min(chunk.len()) {
-                        if self.monitor.cancelled() {
-                            break;
-                        }
-                        search.part(chunk, at, space, harvest);
-                    }
-                })
-            }
-        }
-    }
-
-    /// The crossings of one line, moved as in the given attempt.
-    pub fn line(&self, chunk: &[PathPart], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let lattice = Lattice::one(self.grid, line, path_parts::shift(self.tolerance, attempt));
-        let search = self.search(&lattice, How::Charts);
-        for at in 0..chunk.len() {
-            search.part(chunk, at, space, harvest);
-        }
-    }
-
-    fn gather(
-        &self,
-        count: usize,
-        work: impl Fn(usize, &mut Workspace, &mut Harvest) + Sync,
-    ) -> Result<Harvest, SweepError> {
-        let parts: Vec<Harvest> = (0..count)
+        let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
-            .map(|number| {
+            .map(|share| {
+                let lines = Lattice::columns(self.grid, share.columns, shift);
+                let search = self.search(&method, chunk, &lines);
                 let mut harvest = Harvest::default();
-                self.with_space(|space| work(number, space, &mut harvest));
+                self.with_space(|space| {
+                    for at in share.parts {
+                        if self.monitor.cancelled() {
+                            break;
+                        }
+                        search.part(at, space, &mut harvest);
+                    }
+                });
                 harvest
             })
             .collect();
@@ -177,14 +127,19 @@ impl Job<'_> {
         }
         let mut all = Harvest::default();
         all.crossings
-            .reserve(parts.iter().map(|part| part.crossings.len()).sum());
-        for part in parts {
-            all.crossings.extend(part.crossings);
-            all.open.extend(part.open);
-            all.statistics.boxes += part.statistics.boxes;
-            all.statistics.charts += part.statistics.charts;
-            all.statistics.evaluations += part.statistics.evaluations;
+            .reserve(found.iter().map(|part| part.crossings.len()).sum());
+        for part in found {
+            all.merge(part);
         }
         Ok(all)
+    }
+
+    /// The crossings of one line, moved as in the given attempt.
+    pub fn line(&self, chunk: &[PathPart], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
+        let lines = Lattice::one(self.grid, line, path_parts::shift(self.tolerance, attempt));
+        let search = self.search(&Charts, chunk, &lines);
+        for at in 0..chunk.len() {
+            search.part(at, space, harvest);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::sweep::options::Options;
 use crate::sweep::report::{Monitor, Statistics, SweepError};
-use crate::sweep::sweep;
+use crate::sweep::run::sweep;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 

@@ -1,0 +1,75 @@
+//! Crossings, made of preimages as they come.
+
+use nalgebra::Vector3;
+use sweepsim_dexel::Crossing;
+use sweepsim_solve::{ChartStatistics, Preimage, Reason, Sink, Undecided};
+
+/// A crossing and the number of its line.
+pub(crate) type Numbered = (u32, Crossing);
+
+/// What a search found.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Harvest {
+    pub crossings: Vec<Numbered>,
+    /// Lines with a box that could not be decided.
+    pub open: Vec<(u32, Reason)>,
+    pub statistics: ChartStatistics,
+}
+
+/// Makes crossings of preimages as they come.
+pub(super) struct Reaper<'a, F> {
+    crossings: &'a mut Vec<Numbered>,
+    open: &'a mut Vec<(u32, Reason)>,
+    make: F,
+}
+
+impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> for Reaper<'_, F> {
+    fn found(&mut self, preimage: Preimage<N, S>) {
+        if let Some(crossing) = (self.make)(&preimage) {
+            self.crossings.push((preimage.target as u32, crossing));
+        }
+    }
+
+    fn mark(&self) -> usize {
+        self.crossings.len()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.crossings.truncate(mark);
+    }
+
+    fn undecided(&mut self, undecided: Undecided<N>) {
+        self.open.push((undecided.target as u32, undecided.reason));
+    }
+}
+
+pub(super) fn unit(normal: Vector3<f64>) -> [f32; 3] {
+    let length = normal.norm();
+    let normal = if length > 0.0 { normal / length } else { normal };
+    [normal.x as f32, normal.y as f32, normal.z as f32]
+}
+
+impl Harvest {
+    /// Receives preimages, of which `make` makes crossings.
+    pub(super) fn reaper<F>(&mut self, make: F) -> Reaper<'_, F> {
+        Reaper {
+            crossings: &mut self.crossings,
+            open: &mut self.open,
+            make,
+        }
+    }
+
+    /// Adds what another search did.
+    pub fn count(&mut self, statistics: &ChartStatistics) {
+        self.statistics.boxes += statistics.boxes;
+        self.statistics.charts += statistics.charts;
+        self.statistics.evaluations += statistics.evaluations;
+    }
+
+    /// Adds what another search found.
+    pub fn merge(&mut self, other: Self) {
+        self.crossings.extend(other.crossings);
+        self.open.extend(other.open);
+        self.count(&other.statistics);
+    }
+}

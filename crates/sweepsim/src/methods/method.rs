@@ -1,0 +1,67 @@
+//! What every method of finding crossings does.
+
+use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
+use crate::methods::lattice::Lattice;
+use crate::methods::workspace::Solvers;
+use crate::time::path_parts::PathPart;
+use std::ops::Range;
+use sweepsim_motion::{SegmentEnd, Tool};
+use sweepsim_solve::Sink;
+
+/// A map of one part of the path, and the lines whose preimages are wanted.
+#[derive(Clone, Copy)]
+pub(crate) struct Query<'a> {
+    /// Number of the part in its chunk.
+    pub part: usize,
+    /// Number of the tool's patch or edge.
+    pub number: usize,
+    pub lines: &'a Lattice<'a>,
+}
+
+/// What a worker does at a time: these parts of the path, on the lines of these columns.
+#[derive(Clone, Debug)]
+pub(crate) struct WorkShare {
+    pub parts: Range<usize>,
+    /// The first and the last.
+    pub columns: [usize; 2],
+}
+
+/// A way to find the preimages of dexel lines under the maps of the envelope: every one exactly once, or the line is reported as undecided.
+pub(crate) trait CrossingMethod<'a>: Sized + Sync {
+    /// What the method needs to know of a chunk of the path, computed once for all its lines.
+    fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self;
+
+    /// How the work on so many parts and columns is shared out. The order of the shares is that of the crossings.
+    fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
+        in_blocks(parts)
+            .map(|parts| WorkShare {
+                parts,
+                columns: [0, columns - 1],
+            })
+            .collect()
+    }
+
+    /// Solves Eq. 6 for a patch under the motion.
+    fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>);
+
+    /// Solves Eq. 7 for an edge under the motion.
+    fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>);
+
+    /// Solves for the points of a patch at rest, at the start or the end of the part.
+    fn on_placed(
+        &self,
+        query: Query,
+        end: SegmentEnd,
+        map: &mut PlacedMap,
+        solvers: &mut Solvers,
+        sink: &mut impl Sink<2, OnPlaced>,
+    );
+}
+
+/// Parts of a path that a worker takes at a time.
+const BLOCK: usize = 4;
+
+/// Parts in blocks of a few.
+pub(crate) fn in_blocks(parts: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..parts.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(parts))
+}

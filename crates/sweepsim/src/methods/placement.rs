@@ -1,0 +1,29 @@
+//! The tool at rest between two motions: at a kink of the path, or at an end of it.
+
+use crate::envelope::{Side, Twist};
+use crate::time::path_parts::PathPart;
+use nalgebra::Matrix3;
+use sweepsim_motion::{Segment, SegmentEnd};
+
+/// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
+pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
+    let back = turn.transpose();
+    let [spin, travel] = segment.velocity(end);
+    Side::Moving(Twist {
+        spin: (back * spin).into(),
+        travel: (back * travel).into(),
+    })
+}
+
+/// What moves before and after the tool is where a part starts, or where the last part of a path ends.
+pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [Side; 2] {
+    let segment = &parts[at].segment;
+    if end == SegmentEnd::Finish {
+        return [twist(segment, SegmentEnd::Finish, &segment.end()), Side::Beyond(true)];
+    }
+    let turn = segment.start();
+    let before = at.checked_sub(1).map_or(Side::Beyond(false), |k| {
+        twist(&parts[k].segment, SegmentEnd::Finish, &turn)
+    });
+    [before, twist(segment, SegmentEnd::Start, &turn)]
+}

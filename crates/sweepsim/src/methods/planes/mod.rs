@@ -1,0 +1,131 @@
+//! Algorithm 3: the envelope's sections by the planes `x = const` (Eq. 4 and 5), as curves, cut by the lines of each plane.
+
+mod jacobian;
+pub(crate) mod slicer;
+mod spans;
+
+use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
+use crate::envelope::{AnyBox, EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
+use crate::methods::lattice::Lattice;
+use crate::methods::method::{CrossingMethod, Query, WorkShare};
+use crate::methods::planes::slicer::Slicer;
+use crate::methods::workspace::Solvers;
+use crate::time::path_parts::PathPart;
+use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
+use rayon::prelude::*;
+use sweepsim_motion::{Segment, SegmentEnd, Tool};
+use sweepsim_solve::{ChartSolver, Sink, System, SystemError};
+
+/// The exact forms of each part of a chunk.
+pub(crate) struct Planes {
+    forms: Vec<Forms>,
+}
+
+/// A tool under one motion, and at rest at its start and end.
+#[derive(Clone, Debug)]
+struct Forms {
+    patches: Vec<PatchMotion>,
+    edges: Vec<EdgeMotion>,
+    placed: [Vec<PlacedPatch>; 2],
+}
+
+impl Forms {
+    fn new(tool: &Tool, segment: &Segment) -> Self {
+        let [first, last] = segment.tips();
+        let at_rest = |turn: Matrix3<f64>, tip: &Vector3<f64>| {
+            let patches = tool.patches().iter();
+            patches.map(|patch| PlacedPatch::new(patch, &turn, tip)).collect()
+        };
+        Self {
+            patches: tool
+                .patches()
+                .iter()
+                .map(|patch| PatchMotion::new(patch, segment))
+                .collect(),
+            edges: tool.edges().iter().map(|edge| EdgeMotion::new(edge, segment)).collect(),
+            placed: [at_rest(segment.start(), first), at_rest(segment.end(), last)],
+        }
+    }
+}
+
+/// The plane of lines with one `x`.
+fn plane(lines: &Lattice) -> Plane {
+    Plane::x(lines.coordinate(0, lines.i[0]))
+}
+
+/// Solves a map by the curves in the lines' plane; by charts, where that does not decide it.
+fn slice<const N: usize, M: AnyBox<N>>(
+    map: &mut M,
+    system: impl FnOnce() -> Result<System, SystemError>,
+    lines: &Lattice,
+    (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
+    sink: &mut impl Sink<N, M::Seen>,
+) where
+    Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+{
+    // Most planes miss most patches.
+    let root = map.root();
+    let touches = map
+        .values(&root)
+        .is_some_and(|values| lines.meets([values[0], values[1]]));
+    if touches && !slicer.solve(map, system(), lines, charts.options.accept, sink) {
+        charts.solve(map, root, lines, sink);
+    }
+}
+
+impl CrossingMethod<'_> for Planes {
+    fn prepare(tool: &Tool, chunk: &[PathPart]) -> Self {
+        let forms = chunk.par_iter().map(|part| Forms::new(tool, &part.segment));
+        Self { forms: forms.collect() }
+    }
+
+    /// Column by column: each is a plane.
+    fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
+        let column = |i: usize| WorkShare {
+            parts: 0..parts,
+            columns: [i, i],
+        };
+        (0..columns).map(column).collect()
+    }
+
+    fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
+        let system = || self.forms[query.part].patches[query.number].section(&plane(query.lines));
+        slice(
+            map,
+            system,
+            query.lines,
+            (&mut solvers.slicer, &mut solvers.moving),
+            sink,
+        );
+    }
+
+    fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
+        let system = || self.forms[query.part].edges[query.number].section(&plane(query.lines));
+        slice(
+            map,
+            system,
+            query.lines,
+            (&mut solvers.slicer, &mut solvers.moving),
+            sink,
+        );
+    }
+
+    fn on_placed(
+        &self,
+        query: Query,
+        end: SegmentEnd,
+        map: &mut PlacedMap,
+        solvers: &mut Solvers,
+        sink: &mut impl Sink<2, OnPlaced>,
+    ) {
+        let placed = &self.forms[query.part].placed[usize::from(end == SegmentEnd::Finish)];
+        let system = || placed[query.number].section(&plane(query.lines));
+        slice(
+            map,
+            system,
+            query.lines,
+            (&mut solvers.slicer, &mut solvers.placed),
+            sink,
+        );
+    }
+}

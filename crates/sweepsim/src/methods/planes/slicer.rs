@@ -1,0 +1,129 @@
+//! Algorithm 3: the envelope's section by a plane `x = const`, as curves, cut by the lines of that plane.
+//!
+//! [`CurveSolver`] gives the curves of Eq. 4 (patches) and Eq. 5 (edges; caps and kinks alike) with the right connectivity, as
+//! polylines whose vertices lie on the curve. Each *span*, the curve between two vertices, lies in a known box: its chord's,
+//! widened by the polyline's tolerance. Where the Jacobian of `(X, Y, g)` is regular on the box, `Y` is monotone along the span: a
+//! line crosses it once, if it passes between the two ends, or never. Where it is not (about the extrema of `Y`), and a line may
+//! cross, the span is halved at a point of the curve, and the boxes of the halves shrink around it by the mean value theorem.
+//!
+//! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. Where curves or spans
+//! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), the answer is none, and the patch is
+//! left to the charts of the column's lines.
+
+use crate::envelope::AnyBox;
+use crate::methods::lattice::Lattice;
+use crate::methods::planes::spans::{Cutting, DEPTH, Vertex};
+use nalgebra::{Const, DimMin, ToTypenum};
+use sweepsim_solve::{ChartStatistics, CurveSolver, Curves, Interval, Sink, SolveOptions, System, SystemError};
+
+/// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
+/// is tried where a span of the one before could not be decided.
+const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
+/// Boxes of a section, and of each search on a face of one. Sections without trouble need some ten to a hundred.
+const BOXES: u64 = 4_000;
+/// Spans of a section, halves included. Sections without trouble need some hundred; where a curve almost touches itself there is no end to them.
+const SPANS: u32 = 4_000;
+
+/// Makes the curves of sections.
+#[derive(Debug)]
+pub(crate) struct Slicer {
+    curves: CurveSolver,
+    /// Spans count as boxes, regular ones as charts.
+    pub statistics: ChartStatistics,
+}
+
+impl Slicer {
+    pub fn new() -> Self {
+        let options = SolveOptions {
+            smallest: 1e-10,
+            boxes: BOXES,
+            unresolved: 4,
+            ..SolveOptions::default()
+        };
+        Self {
+            curves: CurveSolver::with_options(TOLERANCES[0], options),
+            statistics: ChartStatistics::default(),
+        }
+    }
+
+    /// Finds the preimages of the lines of `lattice`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
+    /// where the map has it). `false`, and nothing found, where that does not decide it.
+    pub fn solve<const N: usize, M>(
+        &mut self,
+        map: &mut M,
+        system: Result<System, SystemError>,
+        lattice: &Lattice,
+        accept: f64,
+        sink: &mut impl Sink<N, M::Seen>,
+    ) -> bool
+    where
+        M: AnyBox<N>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let Ok(system) = system else {
+            return false;
+        };
+        let mark = sink.mark();
+        for tolerance in TOLERANCES {
+            self.curves.tolerance = tolerance;
+            let Ok(curves) = self.curves.solve(&system, &mut ()) else {
+                return false;
+            };
+            if !curves.singular.is_empty() {
+                return false;
+            }
+            if self.cut(map, &curves, tolerance, lattice, accept, sink) {
+                return true;
+            }
+            sink.forget(mark);
+        }
+        false
+    }
+
+    /// Cuts the curves by the lines; `false` if some span stays undecided.
+    fn cut<const N: usize, M>(
+        &mut self,
+        map: &mut M,
+        Curves { curves, skin, .. }: &Curves,
+        tolerance: f64,
+        lattice: &Lattice,
+        accept: f64,
+        sink: &mut impl Sink<N, M::Seen>,
+    ) -> bool
+    where
+        M: AnyBox<N>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        // With a skin, curves run on beyond the domain: at most this far.
+        let region = Interval::new(-2.0 * skin, 1.0 + 2.0 * skin);
+        let mut cutting = Cutting {
+            map,
+            lattice,
+            x: lattice.coordinate(0, lattice.i[0]),
+            accept,
+            sink,
+            statistics: &mut self.statistics,
+            left: SPANS,
+        };
+        for curve in curves {
+            let count = curve.points.len();
+            let mut from: Option<Vertex<N>> = None;
+            let last = if curve.ends.is_none() { count + 1 } else { count };
+            for k in 0..last {
+                let point = &curve.points[k % count].point;
+                let to = cutting.vertex(std::array::from_fn(|j| point[j]));
+                if let Some(from) = from {
+                    let within = std::array::from_fn(|j| {
+                        let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
+                        Interval::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
+                    });
+                    if !cutting.span(&from, &to, within, DEPTH) {
+                        return false;
+                    }
+                }
+                from = Some(to);
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,72 @@
+//! Algorithm 1: the envelope of each patch as a surface in `u, v, t` (Eq. 2), cut by all lines within the boxes that hold it.
+
+use crate::envelope::systems::PatchMotion;
+use crate::envelope::{AnyBox, EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT};
+use crate::methods::charts::Charts;
+use crate::methods::method::{CrossingMethod, Query};
+use crate::methods::workspace::Solvers;
+use crate::time::path_parts::PathPart;
+use sweepsim_motion::{SegmentEnd, Tool};
+use sweepsim_solve::{ChartMap, Sink, SolveOptions, SurfaceSolver};
+
+/// How flat the surface is in its boxes, in parts of the parameters' ranges.
+const FLATNESS: f64 = 0.02;
+/// Boxes of an envelope surface. Those without trouble need some ten to a thousand.
+const BOXES: u64 = 2_000;
+
+/// Edges and patches at rest are surfaces without an equation: charts solve them.
+pub(crate) struct Surfaces<'a> {
+    tool: &'a Tool,
+    chunk: &'a [PathPart],
+}
+
+impl<'a> CrossingMethod<'a> for Surfaces<'a> {
+    fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self {
+        Self { tool, chunk }
+    }
+
+    fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
+        let values = map.values(&ROOT);
+        if !values.is_some_and(|values| query.lines.meets([values[0], values[1]])) {
+            return;
+        }
+        let motion = PatchMotion::new(&self.tool.patches()[query.number], &self.chunk[query.part].segment);
+        let options = SolveOptions {
+            boxes: BOXES,
+            unresolved: 0,
+            ..SurfaceSolver::new(FLATNESS).options
+        };
+        let mut solver = SurfaceSolver::with_options(FLATNESS, options);
+        let surface = motion
+            .envelope()
+            .ok()
+            .and_then(|system| solver.solve(&system, &mut ()).ok());
+        let Some(surface) = surface.filter(|surface| surface.unresolved.is_empty()) else {
+            // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
+            solvers.moving.solve(map, ROOT, query.lines, sink);
+            return;
+        };
+        let domain = map.bounds(&ROOT);
+        for bounds in surface.boxes {
+            let mark = map.mark();
+            let part = map.place(&bounds);
+            solvers.moving.solve_part(map, part, &domain, query.lines, sink);
+            map.release(mark);
+        }
+    }
+
+    fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
+        Charts.on_edge(query, map, solvers, sink);
+    }
+
+    fn on_placed(
+        &self,
+        query: Query,
+        end: SegmentEnd,
+        map: &mut PlacedMap,
+        solvers: &mut Solvers,
+        sink: &mut impl Sink<2, OnPlaced>,
+    ) {
+        Charts.on_placed(query, end, map, solvers, sink);
+    }
+}

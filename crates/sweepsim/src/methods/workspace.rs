@@ -1,0 +1,63 @@
+//! What one worker keeps from one part of a path to the next.
+
+use crate::cutter::Cutter;
+use crate::cutter::cells::Cells;
+use crate::methods::planes::slicer::Slicer;
+use sweepsim_solve::{BundleSolver, ChartOptions, ChartSolver, ChartStatistics};
+
+/// The cells of a tool, and solvers.
+pub(crate) struct Workspace {
+    pub patches: Vec<Cells>,
+    pub edges: Vec<Cells>,
+    pub solvers: Solvers,
+}
+
+/// The solvers of all methods, with their memory.
+pub(crate) struct Solvers {
+    /// Charts of patches and edges under a motion.
+    pub moving: ChartSolver<(u32, u32)>,
+    /// Charts of patches at rest.
+    pub placed: ChartSolver<u32>,
+    pub slicer: Slicer,
+    pub bundles: BundleSolver,
+}
+
+impl Workspace {
+    /// `accept`: see [`ChartOptions`].
+    pub fn new(cutter: &Cutter, accept: f64) -> Self {
+        let options = ChartOptions {
+            accept,
+            ..ChartOptions::default()
+        };
+        Self {
+            patches: cutter.patches.iter().map(Cells::new).collect(),
+            edges: cutter.edges.iter().map(Cells::new).collect(),
+            solvers: Solvers {
+                moving: ChartSolver::new(options),
+                placed: ChartSolver::new(options),
+                slicer: Slicer::new(),
+                bundles: BundleSolver::new(options),
+            },
+        }
+    }
+}
+
+impl Solvers {
+    /// What was done since the last call.
+    pub fn take_statistics(&mut self) -> ChartStatistics {
+        let solved = [
+            &mut self.moving.statistics,
+            &mut self.placed.statistics,
+            &mut self.bundles.statistics,
+            &mut self.slicer.statistics,
+        ];
+        let mut sum = ChartStatistics::default();
+        for own in solved {
+            let own = std::mem::take(own);
+            sum.boxes += own.boxes;
+            sum.charts += own.charts;
+            sum.evaluations += own.evaluations;
+        }
+        sum
+    }
+}
