@@ -140,10 +140,7 @@ fn run_job(path: &Path) -> Result<Outcome, String> {
     let cuts: Vec<Cut> = job
         .paths
         .iter()
-        .map(|cut| Cut {
-            tool: &job.tools[&cut.tool],
-            path: &cut.path,
-        })
+        .map(|cut| Cut::new(&job.tools[&cut.tool], &cut.path))
         .collect();
     let done = simulate(stock, &cuts, &Options::new(job.tolerance), &()).map_err(|error| about(path, error))?;
     let open = done.statistics.unresolved.iter();

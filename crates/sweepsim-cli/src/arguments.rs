@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
-use sweepsim::{Boundary, Method};
+use sweepsim::{BoundaryOperator, Method};
 use sweepsim_picture::{Axis, Image, Section, View};
 
 /// Exact swept volumes of milling tools, and the simulation of NC programs with them.
@@ -55,8 +55,8 @@ pub(crate) struct RunOptions {
     #[arg(long, default_value_t = Method::Charts, value_parser = parsed::<Method, 4>(["charts", "planes", "lines", "surface"]))]
     pub method: Method,
     /// How crossings become intervals: `paper` is for comparison only, it errs where a sweep overlaps itself.
-    #[arg(long, default_value_t = Boundary::Coverage, value_parser = parsed::<Boundary, 2>(["coverage", "paper"]))]
-    pub boundary: Boundary,
+    #[arg(long, default_value_t = BoundaryOperator::Coverage, value_parser = parsed::<BoundaryOperator, 2>(["coverage", "paper"]))]
+    pub boundary: BoundaryOperator,
     /// Another number of dexels than the job's, like 300x200.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{
-    Boundary, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all,
+    BoundaryOperator, Cut, Method, Monitor, Options, Statistics, SweepError, envelope_surfaces, simulate, sweep_all,
 };
 use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
 use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
@@ -143,10 +143,7 @@ pub(crate) fn folder_name(name: &str) -> PathBuf {
 pub(crate) fn cuts_of(job: &Job) -> Vec<Cut<'_>> {
     job.paths
         .iter()
-        .map(|path| Cut {
-            tool: &job.tools[&path.tool],
-            path: &path.path,
-        })
+        .map(|path| Cut::new(&job.tools[&path.tool], &path.path))
         .collect()
 }
 
@@ -231,7 +228,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
     let unresolved = outcome.statistics.unresolved.iter().map(|dexel| UnresolvedDexel {
         i: dexel.i,
         j: dexel.j,
-        reason: dexel.reason.clone(),
+        reason: dexel.reason.to_string(),
     });
     report.dexels = DexelCounts {
         covered: outcome.dexels.covered(),
@@ -241,7 +238,7 @@ fn describe(report: &mut Report, job: &Job, options: &RunOptions, outcome: &Outc
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
     report.notes = notes_of(job, &options.job);
-    if options.boundary == Boundary::Paper {
+    if options.boundary == BoundaryOperator::Paper {
         let note =
             "intervals by the paper's boundary operator, which errs where a sweep overlaps itself; nothing was audited";
         report.notes.push(note.to_owned());

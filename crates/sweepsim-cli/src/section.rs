@@ -11,7 +11,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 use sweepsim::systems::Plane;
-use sweepsim::{Monitor, Options, Piece, Section, SweepError, section};
+use sweepsim::{BoundaryPiece, Monitor, Options, Section, SweepError, section};
 use sweepsim_formats::Job;
 
 /// Cuts the job's sweeps by the plane; writes `section.svg` and `section.csv`.
@@ -50,12 +50,12 @@ pub(crate) fn run(options: &SectionOptions) -> Result<ExitCode, Failure> {
 }
 
 /// What a piece is called in `section.csv`.
-fn name(piece: Piece) -> String {
+fn name(piece: BoundaryPiece) -> String {
     match piece {
-        Piece::Patch(k) => format!("patch {k}"),
-        Piece::Edge(k) => format!("edge {k}"),
-        Piece::Placed(k) => format!("placed {k}"),
-        Piece::Last(k) => format!("last {k}"),
+        BoundaryPiece::Patch(k) => format!("patch {k}"),
+        BoundaryPiece::Edge(k) => format!("edge {k}"),
+        BoundaryPiece::Placed(k) => format!("placed {k}"),
+        BoundaryPiece::Last(k) => format!("last {k}"),
         _ => "other".to_owned(),
     }
 }

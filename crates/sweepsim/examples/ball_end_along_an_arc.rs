@@ -28,10 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let stock = block.dexels(&grid)?;
     let before = stock.volume();
-    let cut = Cut {
-        tool: &tool,
-        path: &path,
-    };
+    let cut = Cut::new(&tool, &path);
     let part = simulate(stock, &[cut], &Options::new(1e-6), &())?;
     println!("cut {:.1} mm³ out of the block", before - part.remaining.volume());
     Ok(())

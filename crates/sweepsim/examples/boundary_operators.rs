@@ -3,7 +3,7 @@
 //! A cutter with three fins tilts as it moves. What the count gives is blue; what the paper's Algorithm 2 takes for gaps in it, red.
 
 use std::fmt::Write as _;
-use sweepsim::{Boundary, Options, sweep};
+use sweepsim::{BoundaryOperator, Options, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool};
 
@@ -28,7 +28,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (min, max) = ([-3.0, -0.1], [7.0, 0.1]);
     let grid = Grid::new(min, max, [160, 1])?;
     let run = |boundary| sweep(&tool, &path, &grid, &Options::new(1e-6).boundary(boundary), &());
-    let (counted, paper) = (run(Boundary::Coverage)?.volume, run(Boundary::Paper)?.volume);
+    let (counted, paper) = (
+        run(BoundaryOperator::Coverage)?.volume,
+        run(BoundaryOperator::Paper)?.volume,
+    );
     let scale = 80.0;
     let (mut blue, mut red) = (String::new(), String::new());
     for i in 0..160 {

@@ -11,10 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Pose::new([0.0, 6.0, 0.0], [0.0, -0.4, 1.0])?,
         Pose::new([20.0, -4.0, 3.0], [-0.4, 0.0, 1.0])?,
     ])?;
-    let cut = Cut {
-        tool: &tool,
-        path: &path,
-    };
+    let cut = Cut::new(&tool, &path);
     // Any direction will do: this plane leans.
     let plane = Plane {
         normal: [0.2, 1.0, 0.0],

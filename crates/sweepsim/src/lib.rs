@@ -3,7 +3,7 @@
 //! [`sweep`] finds where the boundary of what a tool sweeps crosses the lines of a grid, by solving the envelope condition
 //! `⟨N, V⟩ = 0` as the algebraic system it is, and counts the crossings to intervals; [`simulate`] takes what several tools
 //! sweep out of a stock. Nothing is sampled in time. Every line is audited: what could not be established is
-//! [named](Unresolved).
+//! [named](UnresolvedDexel).
 //!
 //! ```
 //! use sweepsim::{Options, sweep};
@@ -38,12 +38,15 @@ mod time;
 
 pub use envelope::systems;
 pub use sections::{
-    EnvelopeSurface, EnvelopeSurfaces, Piece, PiecePoint, Section, SectionCurve, envelope_surfaces, section,
+    BoundaryPiece, BoundaryPoint, EnvelopeSurface, EnvelopeSurfaces, Section, SectionCurve, envelope_surfaces, section,
 };
 pub use sweep::{
-    Boundary, Cut, Method, Monitor, Options, Simulation, Statistics, Sweep, SweepError, TriSimulation, UnknownBoundary,
-    UnknownMethod, Unresolved, probe, simulate, simulate_tri, sweep, sweep_all,
+    BoundaryOperator, Cut, Method, Options, Simulation, Statistics, Sweep, SweepError, TriSimulation,
+    UnknownBoundaryOperator, UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate, simulate_tri, sweep,
+    sweep_all,
 };
+
+pub use sweepsim_solve::Monitor;
 
 /// The README's example is tested.
 #[cfg(doctest)]

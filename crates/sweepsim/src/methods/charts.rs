@@ -5,7 +5,7 @@ use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::Sink;
+use sweepsim_solve::{CancelOnly, Sink};
 
 /// Charts need nothing but the maps.
 pub(crate) struct Charts;
@@ -16,11 +16,15 @@ impl CrossingMethod<'_> for Charts {
     }
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
-        solvers.moving.solve(map, ROOT, query.lines, sink);
+        solvers
+            .moving
+            .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
-        solvers.moving.solve(map, ROOT, query.lines, sink);
+        solvers
+            .moving
+            .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
     }
 
     fn on_placed(
@@ -31,6 +35,8 @@ impl CrossingMethod<'_> for Charts {
         solvers: &mut Solvers,
         sink: &mut impl Sink<2, OnPlaced>,
     ) {
-        solvers.placed.solve(map, 0, query.lines, sink);
+        solvers
+            .placed
+            .solve(map, 0, query.lines, sink, &CancelOnly(query.monitor));
     }
 }

@@ -48,7 +48,7 @@ impl<'a> Lattice<'a> {
     }
 
     /// Whether some line stands in these ranges of `x` and `y`.
-    pub fn meets(&self, [x, y]: [Interval; 2]) -> bool {
+    pub fn meets(&self, [x, y]: [Enclosure; 2]) -> bool {
         self.numbers(0, x).is_some() && self.numbers(1, y).is_some()
     }
 

@@ -12,7 +12,7 @@ use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
 use rayon::prelude::*;
 use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
-use sweepsim_solve::{Bundle, Sink};
+use sweepsim_solve::{Bundle, CancelOnly, Sink};
 use sweepsim_spline::Bernstein;
 
 /// Columns of dexels whose lines make a bundle.
@@ -106,14 +106,18 @@ impl CrossingMethod<'_> for Lines {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         match &self.bundles[query.part].patches[query.number] {
-            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            Some(bundle) => solvers
+                .bundles
+                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
             None => Charts.on_patch(query, map, solvers, sink),
         }
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         match &self.bundles[query.part].edges[query.number] {
-            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            Some(bundle) => solvers
+                .bundles
+                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
             None => Charts.on_edge(query, map, solvers, sink),
         }
     }
@@ -128,7 +132,9 @@ impl CrossingMethod<'_> for Lines {
     ) {
         let placed = &self.bundles[query.part].placed[usize::from(end == SegmentEnd::Finish)];
         match placed.get(query.number).and_then(Option::as_ref) {
-            Some(bundle) => solvers.bundles.solve(bundle, map, query.lines, sink),
+            Some(bundle) => solvers
+                .bundles
+                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
             None => Charts.on_placed(query, end, map, solvers, sink),
         }
     }

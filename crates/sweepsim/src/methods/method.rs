@@ -6,7 +6,7 @@ use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
 use std::ops::Range;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::Sink;
+use sweepsim_solve::{Monitor, Sink};
 
 /// A map of one part of the path, and the lines whose preimages are wanted.
 #[derive(Clone, Copy)]
@@ -16,6 +16,8 @@ pub(crate) struct Query<'a> {
     /// Number of the tool's patch or edge.
     pub number: usize,
     pub lines: &'a Lattice<'a>,
+    /// Asked in the inner loops whether to stop.
+    pub monitor: &'a dyn Monitor,
 }
 
 /// What a worker does at a time: these parts of the path, on the lines of these columns.

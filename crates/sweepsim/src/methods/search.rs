@@ -13,7 +13,7 @@ use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
-use sweepsim_solve::Preimage;
+use sweepsim_solve::{Monitor, Preimage};
 
 /// A search of some lines along some parts of a path.
 pub(crate) struct Search<'a, M> {
@@ -23,7 +23,8 @@ pub(crate) struct Search<'a, M> {
     pub lines: &'a Lattice<'a>,
     pub size: Size,
     /// Number of the path, for sources.
-    pub path: u16,
+    pub path: u32,
+    pub monitor: &'a dyn Monitor,
 }
 
 impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
@@ -69,6 +70,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             part,
             number,
             lines: self.lines,
+            monitor: self.monitor,
         }
     }
 
@@ -76,7 +78,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     fn source(&self, at: usize, t: f64) -> Source {
         let part = &self.parts[at];
         Source {
-            path: self.path,
+            path: u16::try_from(self.path).unwrap_or(u16::MAX - 1),
             segment: part.number,
             t: part.start + part.share * part.segment.time(t) as f32,
         }

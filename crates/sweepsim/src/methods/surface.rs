@@ -7,7 +7,7 @@ use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::{ChartMap, Sink, SolveOptions, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, ChartMap, Sink, SolveOptions, SurfaceSolver};
 
 /// How flat the surface is in its boxes, in parts of the parameters' ranges.
 const FLATNESS: f64 = 0.02;
@@ -40,17 +40,21 @@ impl<'a> CrossingMethod<'a> for Surfaces<'a> {
         let surface = motion
             .envelope()
             .ok()
-            .and_then(|system| solver.solve(&system, &mut ()).ok());
+            .and_then(|system| solver.solve(&system, &CancelOnly(query.monitor)).ok());
         let Some(surface) = surface.filter(|surface| surface.unresolved.is_empty()) else {
             // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
-            solvers.moving.solve(map, ROOT, query.lines, sink);
+            solvers
+                .moving
+                .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
             return;
         };
         let domain = map.bounds(&ROOT);
         for bounds in surface.boxes {
             let mark = map.mark();
             let part = map.place(&bounds);
-            solvers.moving.solve_part(map, part, &domain, query.lines, sink);
+            solvers
+                .moving
+                .solve_part(map, part, &domain, query.lines, sink, &CancelOnly(query.monitor));
             map.release(mark);
         }
     }

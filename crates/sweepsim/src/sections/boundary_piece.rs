@@ -9,7 +9,7 @@ use sweepsim_motion::{Segment, SegmentEnd, Tool};
 /// What a piece of a swept volume's boundary comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Piece {
+pub enum BoundaryPiece {
     /// The envelope of this patch of the tool (Eq. 2).
     Patch(usize),
     /// The envelope of this sharp edge (Eq. 3).
@@ -22,7 +22,8 @@ pub enum Piece {
 
 /// A point of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PiecePoint {
+#[non_exhaustive]
+pub struct BoundaryPoint {
     /// Where it is.
     pub position: [f64; 3],
     /// Unit normal of the envelope, out of the tool.
@@ -42,7 +43,7 @@ pub(crate) struct Moving<'a> {
 
 /// A point, and by which sign of a condition it belongs to the boundary of the move: where the two differ.
 pub(crate) struct Seen {
-    pub point: PiecePoint,
+    pub point: BoundaryPoint,
     pub sides: Option<[f64; 2]>,
 }
 
@@ -62,17 +63,17 @@ impl<'a> Moving<'a> {
     }
 
     /// The point of a piece at its parameters: `u, v, t` of patches, `r, t` of edges, `u, v` of placed patches.
-    pub fn see(&self, piece: Piece, x: &[f64]) -> Seen {
+    pub fn see(&self, piece: BoundaryPiece, x: &[f64]) -> Seen {
         match piece {
-            Piece::Patch(k) => {
+            BoundaryPiece::Patch(k) => {
                 let seen = self.on_patch(k, [x[0], x[1]], x[2]);
                 Seen {
                     point: seen.0,
                     sides: None,
                 }
             }
-            Piece::Edge(k) => self.on_edge(k, x[0], x[1]),
-            Piece::Placed(k) => {
+            BoundaryPiece::Edge(k) => self.on_edge(k, x[0], x[1]),
+            BoundaryPiece::Placed(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 0.0);
                 let before = self.at.checked_sub(1).map_or(1.0, |k| {
                     condition(
@@ -93,7 +94,7 @@ impl<'a> Moving<'a> {
                     sides: Some([before, after]),
                 }
             }
-            Piece::Last(k) => {
+            BoundaryPiece::Last(k) => {
                 let (point, field) = self.on_patch(k, [x[0], x[1]], 1.0);
                 let before = condition(
                     &self.part().segment,
@@ -116,10 +117,10 @@ impl<'a> Moving<'a> {
     }
 
     /// The point, and normal and moment in the tool.
-    fn on_patch(&self, k: usize, at: [f64; 2], t: f64) -> (PiecePoint, [Vector3<f64>; 2]) {
+    fn on_patch(&self, k: usize, at: [f64; 2], t: f64) -> (BoundaryPoint, [Vector3<f64>; 2]) {
         let (position, [normal, arm]) = self.patches[k].face(at);
         let moment = self.times.at(t);
-        let seen = PiecePoint {
+        let seen = BoundaryPoint {
             position: (moment.turn * position + moment.tip).into(),
             normal: unit(moment.turn * normal),
             t: self.time(t),
@@ -136,7 +137,7 @@ impl<'a> Moving<'a> {
         let (p, q) = (a.abs() / n.norm(), b.abs() / m.norm());
         let (n, m) = (n / n.norm(), m / m.norm());
         Seen {
-            point: PiecePoint {
+            point: BoundaryPoint {
                 position: (moment.turn * position + moment.tip).into(),
                 normal: unit(n * q + m * p),
                 t: self.time(t),
@@ -146,13 +147,13 @@ impl<'a> Moving<'a> {
     }
 
     /// The pieces of the part: all but the last cap, which only the last part has.
-    pub fn pieces(&self, tool: &Tool) -> Vec<Piece> {
+    pub fn pieces(&self, tool: &Tool) -> Vec<BoundaryPiece> {
         let (patches, edges) = (tool.patches().len(), tool.edges().len());
-        let mut pieces: Vec<Piece> = (0..patches).map(Piece::Patch).collect();
-        pieces.extend((0..edges).map(Piece::Edge));
-        pieces.extend((0..patches).map(Piece::Placed));
+        let mut pieces: Vec<BoundaryPiece> = (0..patches).map(BoundaryPiece::Patch).collect();
+        pieces.extend((0..edges).map(BoundaryPiece::Edge));
+        pieces.extend((0..patches).map(BoundaryPiece::Placed));
         if self.at + 1 == self.parts.len() {
-            pieces.extend((0..patches).map(Piece::Last));
+            pieces.extend((0..patches).map(BoundaryPiece::Last));
         }
         pieces
     }

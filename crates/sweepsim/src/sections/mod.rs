@@ -5,6 +5,6 @@ mod section;
 mod surfaces;
 mod svg;
 
-pub use boundary_piece::{Piece, PiecePoint};
+pub use boundary_piece::{BoundaryPiece, BoundaryPoint};
 pub use section::{Section, SectionCurve, section};
 pub use surfaces::{EnvelopeSurface, EnvelopeSurfaces, envelope_surfaces};

@@ -2,39 +2,41 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
-use crate::sections::boundary_piece::{Moving, Piece, PiecePoint};
-use crate::sweep::{Cut, Monitor, Options, Plan, SweepError, probe};
+use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
+use crate::sweep::{Cut, Options, Plan, SweepError, probe};
 use crate::time::path_parts::PathPart;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
-use sweepsim_solve::{CurveSolver, SolveOptions, System, SystemError};
+use sweepsim_solve::{CancelOnly, CurveSolver, Monitor, SolveOptions, System, SystemError};
 
 /// A curve of a section.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SectionCurve {
     /// Number of the cut.
     pub cut: usize,
     /// What it comes from.
-    pub piece: Piece,
+    pub piece: BoundaryPiece,
     /// Number of the move.
     pub segment: u32,
     /// Its points, in order. A closed curve's first is its last.
-    pub points: Vec<PiecePoint>,
+    pub points: Vec<BoundaryPoint>,
     /// Per point, whether it bounds the volume: no other part of any sweep covers it.
     pub outer: Vec<bool>,
 }
 
 /// The section of a swept volume by a plane.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Section {
     /// The plane.
     pub plane: Plane,
     /// The curves of all pieces of the envelope, also those inside the volume.
     pub curves: Vec<SectionCurve>,
     /// Pieces whose curves could not all be established, with the numbers of their cut and move.
-    pub open: Vec<(usize, Piece, u32)>,
+    pub open: Vec<(usize, BoundaryPiece, u32)>,
 }
 
 impl Section {
@@ -76,7 +78,7 @@ const BOXES: u64 = 20_000;
 /// let up = [0.0, 0.0, 1.0];
 /// let path = Path::new(vec![Pose::new([-9.0, 0.0, 0.0], up)?, Pose::new([9.0, 0.0, 0.0], up)?])?;
 /// let tool = Tool::ball(2.0, 30.0)?;
-/// let cut = Cut { tool: &tool, path: &path };
+/// let cut = Cut::new(&tool, &path);
 /// let groove = section(&[cut], &Plane::x(0.5), 1e-3, &Options::default(), &())?;
 /// for [_, y, z] in groove.outline().into_iter().flatten().filter(|p| p[2] < 1.99) {
 ///     assert!((y.hypot(z - 2.0) - 2.0).abs() < 1e-6);
@@ -106,7 +108,7 @@ pub fn section(
                 if monitor.cancelled() || !reaches(&plan.parts[at], plane, plan.cutter.reach) {
                     return (Vec::new(), Vec::new());
                 }
-                of_part((tool, number), &plan.cutter, (&plan.parts, at), plane, chord)
+                of_part((tool, number), &plan.cutter, (&plan.parts, at), plane, chord, monitor)
             })
             .collect();
         if monitor.cancelled() {
@@ -117,7 +119,7 @@ pub fn section(
             section.open.extend(open);
         }
     }
-    let points: Vec<&PiecePoint> = section.curves.iter().flat_map(|curve| &curve.points).collect();
+    let points: Vec<&BoundaryPoint> = section.curves.iter().flat_map(|curve| &curve.points).collect();
     let mut outer = outer(cuts, &points, options, monitor)?.into_iter();
     for curve in &mut section.curves {
         curve.outer = outer.by_ref().take(curve.points.len()).collect();
@@ -129,7 +131,7 @@ pub fn section(
 /// as outer.
 pub(crate) fn outer(
     cuts: &[Cut],
-    points: &[&PiecePoint],
+    points: &[&BoundaryPoint],
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Vec<bool>, SweepError> {
@@ -163,7 +165,7 @@ fn reaches(part: &PathPart, plane: &Plane, reach: f64) -> bool {
     low <= margin && high >= -margin
 }
 
-type Found = (Vec<SectionCurve>, Vec<(usize, Piece, u32)>);
+type Found = (Vec<SectionCurve>, Vec<(usize, BoundaryPiece, u32)>);
 
 fn of_part(
     (tool, cut): (&Tool, usize),
@@ -171,6 +173,7 @@ fn of_part(
     (parts, at): (&[PathPart], usize),
     plane: &Plane,
     chord: f64,
+    monitor: &dyn Monitor,
 ) -> Found {
     let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
     let segment = &parts[at].segment;
@@ -193,7 +196,10 @@ fn of_part(
     let number = parts[at].number;
     for piece in moving.pieces(tool) {
         let system = system(piece, tool, segment, plane);
-        let Some(found) = system.ok().and_then(|system| solver.solve(&system, &()).ok()) else {
+        let Some(found) = system
+            .ok()
+            .and_then(|system| solver.solve(&system, &CancelOnly(monitor)).ok())
+        else {
             open.push((cut, piece, number));
             continue;
         };
@@ -219,21 +225,26 @@ fn of_part(
     (curves, open)
 }
 
-fn system(piece: Piece, tool: &Tool, segment: &sweepsim_motion::Segment, plane: &Plane) -> Result<System, SystemError> {
+fn system(
+    piece: BoundaryPiece,
+    tool: &Tool,
+    segment: &sweepsim_motion::Segment,
+    plane: &Plane,
+) -> Result<System, SystemError> {
     let [first, last] = segment.tips();
     match piece {
-        Piece::Patch(k) => PatchMotion::new(&tool.patches()[k], segment).section(plane),
-        Piece::Edge(k) => EdgeMotion::new(&tool.edges()[k], segment).section(plane),
-        Piece::Placed(k) => PlacedPatch::new(&tool.patches()[k], &segment.start(), first).section(plane),
-        Piece::Last(k) => PlacedPatch::new(&tool.patches()[k], &segment.end(), last).section(plane),
+        BoundaryPiece::Patch(k) => PatchMotion::new(&tool.patches()[k], segment).section(plane),
+        BoundaryPiece::Edge(k) => EdgeMotion::new(&tool.edges()[k], segment).section(plane),
+        BoundaryPiece::Placed(k) => PlacedPatch::new(&tool.patches()[k], &segment.start(), first).section(plane),
+        BoundaryPiece::Last(k) => PlacedPatch::new(&tool.patches()[k], &segment.end(), last).section(plane),
     }
 }
 
 /// The runs of a polyline that belong to the boundary of their move, cut where a condition changes its sign.
-fn kept(moving: &Moving, piece: Piece, points: &[&[f64]]) -> Vec<Vec<PiecePoint>> {
+fn kept(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]]) -> Vec<Vec<BoundaryPoint>> {
     let belongs = |sides: Option<[f64; 2]>| sides.is_none_or(|[a, b]| (a < 0.0) != (b < 0.0));
-    let mut runs: Vec<Vec<PiecePoint>> = Vec::new();
-    let mut run: Vec<PiecePoint> = Vec::new();
+    let mut runs: Vec<Vec<BoundaryPoint>> = Vec::new();
+    let mut run: Vec<BoundaryPoint> = Vec::new();
     for (n, x) in points.iter().enumerate() {
         let seen = moving.see(piece, x);
         let inside = belongs(seen.sides);

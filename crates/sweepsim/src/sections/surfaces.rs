@@ -2,28 +2,29 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::PatchMotion;
-use crate::sections::boundary_piece::{Moving, Piece, PiecePoint};
+use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
 use crate::sections::section::{outer, stretch};
-use crate::sweep::{Cut, Monitor, Options, Plan, SweepError};
+use crate::sweep::{Cut, Options, Plan, SweepError};
 use crate::time::path_parts::PathPart;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
-use sweepsim_solve::{SolveOptions, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, Monitor, SolveOptions, SurfaceSolver};
 
 /// One piece of an envelope as triangles.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EnvelopeSurface {
     /// Number of the cut.
     pub cut: usize,
     /// What it comes from.
-    pub piece: Piece,
+    pub piece: BoundaryPiece,
     /// Number of the move.
     pub segment: u32,
     /// Points of the surface.
-    pub vertices: Vec<PiecePoint>,
+    pub vertices: Vec<BoundaryPoint>,
     /// Counter-clockwise seen from outside the tool.
     pub triangles: Vec<[u32; 3]>,
     /// Per vertex, whether it bounds the swept volume: no other part of any sweep covers it.
@@ -32,18 +33,19 @@ pub struct EnvelopeSurface {
 
 /// The envelope of some sweeps, with their kinks and caps.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct EnvelopeSurfaces {
     /// All pieces, also those inside the volume.
     pub surfaces: Vec<EnvelopeSurface>,
     /// Pieces whose surface could not be established everywhere, with the numbers of their cut and move.
-    pub open: Vec<(usize, Piece, u32)>,
+    pub open: Vec<(usize, BoundaryPiece, u32)>,
 }
 
 impl EnvelopeSurfaces {
     /// Positions, normals and triangles of all pieces in one list; of the `trimmed` envelope only the triangles all of whose corners bound the
     /// volume.
     #[must_use]
-    pub fn triangles(&self, trimmed: bool) -> (Vec<PiecePoint>, Vec<[u32; 3]>) {
+    pub fn triangles(&self, trimmed: bool) -> (Vec<BoundaryPoint>, Vec<[u32; 3]>) {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for surface in &self.surfaces {
             let first = vertices.len() as u32;
@@ -85,7 +87,7 @@ pub fn envelope_surfaces(
                 if monitor.cancelled() {
                     return EnvelopeSurfaces::default();
                 }
-                of_part((tool, number), &plan.cutter, (&plan.parts, at), chord)
+                of_part((tool, number), &plan.cutter, (&plan.parts, at), chord, monitor)
             })
             .collect();
         if monitor.cancelled() {
@@ -96,7 +98,7 @@ pub fn envelope_surfaces(
             all.open.extend(part.open);
         }
     }
-    let points: Vec<&PiecePoint> = all.surfaces.iter().flat_map(|surface| &surface.vertices).collect();
+    let points: Vec<&BoundaryPoint> = all.surfaces.iter().flat_map(|surface| &surface.vertices).collect();
     let mut outer = outer(cuts, &points, options, monitor)?.into_iter();
     for surface in &mut all.surfaces {
         surface.outer = outer.by_ref().take(surface.vertices.len()).collect();
@@ -109,14 +111,18 @@ fn of_part(
     cutter: &Cutter,
     (parts, at): (&[PathPart], usize),
     chord: f64,
+    monitor: &dyn Monitor,
 ) -> EnvelopeSurfaces {
     let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
     let segment = &parts[at].segment;
     let speed = moving.speed(cutter.reach);
     let mut all = EnvelopeSurfaces::default();
     for piece in moving.pieces(tool) {
+        if monitor.cancelled() {
+            break;
+        }
         let (vertices, mut triangles) = match piece {
-            Piece::Patch(k) => {
+            BoundaryPiece::Patch(k) => {
                 let patch = &tool.patches()[k];
                 let fastest = stretch(&patch.position, &patch.weight).max(speed);
                 let options = SolveOptions {
@@ -125,10 +131,11 @@ fn of_part(
                     ..SurfaceSolver::new(0.1).options
                 };
                 let flatness = (chord / fastest).clamp(1e-6, 0.05);
-                let surface = PatchMotion::new(patch, segment)
-                    .envelope()
-                    .ok()
-                    .and_then(|system| SurfaceSolver::with_options(flatness, options).solve(&system, &()).ok());
+                let surface = PatchMotion::new(patch, segment).envelope().ok().and_then(|system| {
+                    SurfaceSolver::with_options(flatness, options)
+                        .solve(&system, &CancelOnly(monitor))
+                        .ok()
+                });
                 let Some(surface) = surface else {
                     all.open.push((cut, piece, parts[at].number));
                     continue;
@@ -158,7 +165,7 @@ fn of_part(
 }
 
 /// Turns triangles that face inwards.
-fn orient(vertices: &[PiecePoint], triangles: &mut [[u32; 3]]) {
+fn orient(vertices: &[BoundaryPoint], triangles: &mut [[u32; 3]]) {
     for triangle in triangles {
         let [a, b, c] = triangle.map(|v| &vertices[v as usize]);
         let p = [a, b, c].map(|v| Vector3::from(v.position));
@@ -170,7 +177,7 @@ fn orient(vertices: &[PiecePoint], triangles: &mut [[u32; 3]]) {
 }
 
 /// A piece with two parameters over a grid, where it belongs to the boundary of its move.
-fn by_grid(moving: &Moving, piece: Piece, chord: f64) -> (Vec<PiecePoint>, Vec<[u32; 3]>) {
+fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: f64) -> (Vec<BoundaryPoint>, Vec<[u32; 3]>) {
     let place = |x: [f64; 2]| Vector3::from(moving.see(piece, &x).point.position);
     // Steps in each direction: as many as keep the middles of steps within half the chord, on a few lines.
     let steps = [0, 1].map(|axis| {
@@ -248,18 +255,18 @@ fn by_grid(moving: &Moving, piece: Piece, chord: f64) -> (Vec<PiecePoint>, Vec<[
 
 /// Vertices shared by triangles: corners of the grid, and where its edges are cut off.
 struct Clipped {
-    vertices: Vec<PiecePoint>,
+    vertices: Vec<BoundaryPoint>,
     corners: HashMap<usize, u32>,
     cuts: HashMap<(usize, usize), u32>,
 }
 
 impl Clipped {
-    fn corner(&mut self, n: usize, point: impl FnOnce() -> PiecePoint) -> u32 {
+    fn corner(&mut self, n: usize, point: impl FnOnce() -> BoundaryPoint) -> u32 {
         let vertices = &mut self.vertices;
         *self.corners.entry(n).or_insert_with(|| push(vertices, point()))
     }
 
-    fn cut(&mut self, a: usize, b: usize, point: impl FnOnce() -> PiecePoint) -> u32 {
+    fn cut(&mut self, a: usize, b: usize, point: impl FnOnce() -> BoundaryPoint) -> u32 {
         let vertices = &mut self.vertices;
         *self
             .cuts
@@ -268,7 +275,7 @@ impl Clipped {
     }
 }
 
-fn push(vertices: &mut Vec<PiecePoint>, point: PiecePoint) -> u32 {
+fn push(vertices: &mut Vec<BoundaryPoint>, point: BoundaryPoint) -> u32 {
     vertices.push(point);
     vertices.len() as u32 - 1
 }

@@ -2,8 +2,8 @@
 
 use crate::methods::harvest::{Harvest, Numbered};
 use crate::methods::workspace::Workspace;
-use crate::sweep::boundary_operator::{self, Boundary};
-use crate::sweep::report::{Statistics, SweepError, Unresolved};
+use crate::sweep::boundary_operator::{self, BoundaryOperator};
+use crate::sweep::report::{Statistics, SweepError, UnresolvedDexel, UnresolvedReason};
 use crate::sweep::schedule::{ATTEMPTS, Job};
 use crate::time::path_parts::{self, PathPart};
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ impl Job<'_> {
         harvest: Harvest,
         volume: &mut Dexels,
         statistics: &mut Statistics,
-        failed: &mut Vec<Unresolved>,
+        failed: &mut Vec<UnresolvedDexel>,
     ) -> Result<(), SweepError> {
         let Harvest {
             mut crossings,
@@ -32,12 +32,12 @@ impl Job<'_> {
             crossings.retain(|(line, _)| bad.binary_search(line).is_err());
         }
         let mut wrong: Vec<u32> = match self.boundary {
-            Boundary::Coverage => {
+            BoundaryOperator::Coverage => {
                 let same = path_parts::same(self.tolerance);
                 let failures = volume.update_by_crossings(Operation::Union, &crossings, same);
                 failures.into_iter().map(|(line, _)| line).collect()
             }
-            Boundary::Paper => {
+            BoundaryOperator::Paper => {
                 crossings.sort_by_key(|(line, _)| *line);
                 for group in crossings.chunk_by(|a, b| a.0 == b.0) {
                     let mut line: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
@@ -49,7 +49,7 @@ impl Job<'_> {
         wrong.extend(&bad);
         wrong.sort_unstable();
         wrong.dedup();
-        let repaired: Vec<Result<Vec<Interval>, String>> = wrong
+        let repaired: Vec<Result<Vec<Interval>, UnresolvedReason>> = wrong
             .par_iter()
             .map(|line| self.with_space(|space| self.repair(chunk, *line, 1, space)))
             .collect();
@@ -64,22 +64,22 @@ impl Job<'_> {
                 }
                 Err(reason) => {
                     let (i, j) = self.grid.place(line as usize);
-                    failed.push(Unresolved { i, j, reason });
+                    failed.push(UnresolvedDexel { i, j, reason });
                 }
             }
         }
         Ok(())
     }
 
-    /// Solves one line, from the given attempt on each time moved elsewhere within the tolerance, until its audit closes.
+    /// Solves one line, from the given attempt on displaced farther each time, until its audit closes.
     pub fn repair(
         &self,
         chunk: &[PathPart],
         line: u32,
         first: usize,
         space: &mut Workspace,
-    ) -> Result<Vec<Interval>, String> {
-        let mut reason = String::new();
+    ) -> Result<Vec<Interval>, UnresolvedReason> {
+        let mut reason = UnresolvedReason::Budget;
         for attempt in first..=ATTEMPTS {
             if self.monitor.cancelled() {
                 break;
@@ -88,19 +88,14 @@ impl Job<'_> {
             self.line(chunk, line as usize, attempt, space, &mut harvest);
             if let Some((_, why)) = harvest.open.first() {
                 reason = match why {
-                    Reason::Budget => "the budget of boxes is spent".to_owned(),
-                    _ => "a box could not be decided at the smallest size".to_owned(),
+                    Reason::Budget => UnresolvedReason::Budget,
+                    _ => UnresolvedReason::SmallestBox,
                 };
                 continue;
             }
             match self.intervals(&harvest.crossings) {
                 Ok(intervals) => return Ok(intervals),
-                Err(failure) => {
-                    reason = format!(
-                        "the coverage count does not close: sum {}, lowest {}, at z = {}",
-                        failure.sum, failure.lowest, failure.z
-                    );
-                }
+                Err(failure) => reason = UnresolvedReason::Audit(failure),
             }
         }
         Err(reason)
@@ -110,12 +105,12 @@ impl Job<'_> {
     fn intervals(&self, group: &[Numbered]) -> Result<Vec<Interval>, AuditFailure> {
         let mut crossings: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
         match self.boundary {
-            Boundary::Coverage => {
+            BoundaryOperator::Coverage => {
                 let mut intervals = Vec::new();
                 cover(&mut crossings, path_parts::same(self.tolerance), &mut intervals)?;
                 Ok(intervals)
             }
-            Boundary::Paper => Ok(boundary_operator::by_normals(&mut crossings)),
+            BoundaryOperator::Paper => Ok(boundary_operator::by_normals(&mut crossings)),
         }
     }
 }

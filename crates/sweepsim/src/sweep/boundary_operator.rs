@@ -14,7 +14,7 @@ use thiserror::Error;
 /// How the crossings of a line become intervals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Boundary {
+pub enum BoundaryOperator {
     /// By the coverage count of the whole path, audited (see [`cover`](sweepsim_dexel::cover)).
     #[default]
     Coverage,
@@ -22,7 +22,7 @@ pub enum Boundary {
     Paper,
 }
 
-impl fmt::Display for Boundary {
+impl fmt::Display for BoundaryOperator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Coverage => "coverage",
@@ -34,16 +34,16 @@ impl fmt::Display for Boundary {
 /// A name that is no boundary operator.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("unknown boundary operator `{0}`: expected `coverage` or `paper`")]
-pub struct UnknownBoundary(pub String);
+pub struct UnknownBoundaryOperator(pub String);
 
-impl FromStr for Boundary {
-    type Err = UnknownBoundary;
+impl FromStr for BoundaryOperator {
+    type Err = UnknownBoundaryOperator;
 
-    fn from_str(name: &str) -> Result<Self, UnknownBoundary> {
+    fn from_str(name: &str) -> Result<Self, UnknownBoundaryOperator> {
         match name {
             "coverage" => Ok(Self::Coverage),
             "paper" => Ok(Self::Paper),
-            _ => Err(UnknownBoundary(name.to_owned())),
+            _ => Err(UnknownBoundaryOperator(name.to_owned())),
         }
     }
 }

@@ -11,11 +11,11 @@ mod schedule;
 mod simulate;
 mod tri;
 
-pub use boundary_operator::{Boundary, UnknownBoundary};
+pub use boundary_operator::{BoundaryOperator, UnknownBoundaryOperator};
 pub use options::{Method, Options, UnknownMethod};
 pub(crate) use plan::Plan;
 pub use probe::probe;
-pub use report::{Monitor, Statistics, Sweep, SweepError, Unresolved};
+pub use report::{Statistics, Sweep, SweepError, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use tri::{TriSimulation, simulate_tri};

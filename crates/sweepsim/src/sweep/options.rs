@@ -1,6 +1,6 @@
 //! How to sweep.
 
-use crate::sweep::boundary_operator::Boundary;
+use crate::sweep::boundary_operator::BoundaryOperator;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -59,9 +59,9 @@ pub struct Options {
     /// How crossings are found.
     pub method: Method,
     /// How they become intervals.
-    pub boundary: Boundary,
+    pub boundary: BoundaryOperator,
     /// What [`Source::path`](sweepsim_dexel::Source) says.
-    pub path_number: u16,
+    pub path_number: u32,
 }
 
 impl Default for Options {
@@ -69,7 +69,7 @@ impl Default for Options {
         Self {
             tolerance: 1e-6,
             method: Method::Charts,
-            boundary: Boundary::Coverage,
+            boundary: BoundaryOperator::Coverage,
             path_number: 0,
         }
     }
@@ -94,14 +94,14 @@ impl Options {
 
     /// Chooses the boundary operator.
     #[must_use]
-    pub fn boundary(mut self, boundary: Boundary) -> Self {
+    pub fn boundary(mut self, boundary: BoundaryOperator) -> Self {
         self.boundary = boundary;
         self
     }
 
     /// Chooses the number of the path that sources carry.
     #[must_use]
-    pub fn path_number(mut self, number: u16) -> Self {
+    pub fn path_number(mut self, number: u32) -> Self {
         self.path_number = number;
         self
     }

@@ -3,12 +3,13 @@
 use crate::methods::workspace::Workspace;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
-use crate::sweep::report::{Monitor, SweepError};
+use crate::sweep::report::SweepError;
 use crate::sweep::schedule::CHUNK;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim_dexel::{Dexels, Frame, Grid, Interval};
 use sweepsim_motion::{Path, Tool};
+use sweepsim_solve::Monitor;
 
 /// The intervals of the volume that `tool` sweeps along `path` on any lines along `z`, given by their `x` and `y`; `None` for a line
 /// that could not be established.

@@ -1,55 +1,57 @@
 //! What comes out of a sweep: its volume, what was done, and what could not be.
 
-use sweepsim_dexel::Dexels;
+use sweepsim_dexel::{AuditFailure, Dexels};
 use thiserror::Error;
 
-/// Watches a sweep, and may end it.
-pub trait Monitor: Sync {
-    /// `done` of `total` moves are swept.
-    fn advance(&self, done: usize, total: usize) {
-        let _ = (done, total);
-    }
-
-    /// Whether to give up.
-    fn cancelled(&self) -> bool {
-        false
-    }
-}
-
-impl Monitor for () {}
-
-/// A dexel whose intervals could not be established.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unresolved {
+/// A dexel whose intervals are not certain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UnresolvedDexel {
     /// Column.
     pub i: usize,
     /// Row.
     pub j: usize,
-    /// What went wrong.
-    pub reason: String,
+    /// What went wrong at the last attempt.
+    pub reason: UnresolvedReason,
+}
+
+/// Why the intervals of a dexel are not certain.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum UnresolvedReason {
+    /// The search used up its budget of boxes.
+    #[error("the budget of boxes is spent")]
+    Budget,
+    /// A box of the smallest size was neither excluded nor solved: a multiple or singular solution.
+    #[error("a box could not be decided at the smallest size")]
+    SmallestBox,
+    /// The crossings do not add up: one is missing, or there is one too many.
+    #[error("the coverage count does not close: sum {}, lowest {}, at z = {}", .0.sum, .0.lowest, .0.z)]
+    Audit(AuditFailure),
 }
 
 /// What a sweep did.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Statistics {
     /// Moves of the path.
     pub moves: usize,
     /// Crossings found.
     pub crossings: u64,
-    /// Boxes that the subdivision looked at.
+    /// Boxes that the subdivision examined.
     pub boxes: u64,
     /// Boxes that were charts.
     pub charts: u64,
-    /// Dexels that the tool touches.
+    /// Dexels that are not empty.
     pub covered: usize,
-    /// Dexels whose audit failed at first, and closed for a line moved within the tolerance.
+    /// Dexels that failed their first audit, and passed it on a line displaced within the tolerance.
     pub repaired: usize,
-    /// Dexels whose audit did not close.
-    pub unresolved: Vec<Unresolved>,
+    /// Dexels that passed no audit: their intervals are not certain.
+    pub unresolved: Vec<UnresolvedDexel>,
 }
 
 impl Statistics {
-    /// Adds those of another path.
+    /// Adds the statistics of another path.
     pub fn merge(&mut self, other: &Self) {
         self.moves += other.moves;
         self.crossings += other.crossings;
@@ -57,12 +59,13 @@ impl Statistics {
         self.charts += other.charts;
         self.covered = self.covered.max(other.covered);
         self.repaired += other.repaired;
-        self.unresolved.extend(other.unresolved.iter().cloned());
+        self.unresolved.extend(&other.unresolved);
     }
 }
 
 /// A swept volume.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Sweep {
     /// Its dexels; ends carry the normal of the envelope and the segment and time that made them.
     pub volume: Dexels,

@@ -1,12 +1,13 @@
 //! The sweep of a path on a grid, chunk by chunk.
 
-use crate::sweep::boundary_operator::Boundary;
+use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
-use crate::sweep::report::{Monitor, Statistics, Sweep, SweepError, Unresolved};
+use crate::sweep::report::{Statistics, Sweep, SweepError, UnresolvedDexel};
 use crate::sweep::schedule::CHUNK;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
+use sweepsim_solve::Monitor;
 
 /// The volume that `tool` sweeps along `path`, on the dexels of `grid`, in whatever frame they stand. The path is in the world.
 ///
@@ -30,11 +31,11 @@ pub fn sweep(
         moves: path.moves(),
         ..Statistics::default()
     };
-    let mut failed: Vec<Unresolved> = Vec::new();
+    let mut failed: Vec<UnresolvedDexel> = Vec::new();
     // The paper takes each move by itself.
     let length = match options.boundary {
-        Boundary::Coverage => CHUNK,
-        Boundary::Paper => 1,
+        BoundaryOperator::Coverage => CHUNK,
+        BoundaryOperator::Paper => 1,
     };
     for (number, chunk) in parts.chunks(length).enumerate() {
         let harvest = job.harvest(chunk)?;

@@ -11,15 +11,16 @@ use crate::methods::planes::Planes;
 use crate::methods::search::Search;
 use crate::methods::surface::Surfaces;
 use crate::methods::workspace::Workspace;
-use crate::sweep::boundary_operator::Boundary;
+use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
-use crate::sweep::report::{Monitor, SweepError};
+use crate::sweep::report::SweepError;
 use crate::time::path_parts::{self, PathPart};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
+use sweepsim_solve::Monitor;
 
 /// Segments whose crossings are counted together. Longer chunks save caps, shorter ones memory.
 pub(super) const CHUNK: usize = 256;
@@ -60,8 +61,8 @@ pub(super) struct Job<'a> {
     pub grid: &'a Grid,
     pub tolerance: f64,
     pub method: Method,
-    pub boundary: Boundary,
-    pub path: u16,
+    pub boundary: BoundaryOperator,
+    pub path: u32,
     pub size: Size,
     pub accept: f64,
     /// Workspaces that no worker uses just now.
@@ -99,6 +100,7 @@ impl Job<'_> {
             lines,
             size: self.size,
             path: self.path,
+            monitor: self.monitor,
         }
     }
 
@@ -139,6 +141,9 @@ impl Job<'_> {
         let lines = Lattice::one(self.grid, line, path_parts::shift(self.tolerance, attempt));
         let search = self.search(&Charts, chunk, &lines);
         for at in 0..chunk.len() {
+            if self.monitor.cancelled() {
+                break;
+            }
             search.part(at, space, harvest);
         }
     }

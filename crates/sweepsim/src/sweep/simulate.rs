@@ -1,13 +1,15 @@
 //! Several cuts: what they take out of a stock, or sweep together.
 
 use crate::sweep::options::Options;
-use crate::sweep::report::{Monitor, Statistics, SweepError};
+use crate::sweep::report::{Statistics, SweepError};
 use crate::sweep::run::sweep;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
+use sweepsim_solve::Monitor;
 
 /// A tool and where it goes.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Cut<'a> {
     /// The tool.
     pub tool: &'a Tool,
@@ -15,8 +17,17 @@ pub struct Cut<'a> {
     pub path: &'a Path,
 }
 
+impl<'a> Cut<'a> {
+    /// A tool along a path.
+    #[must_use]
+    pub fn new(tool: &'a Tool, path: &'a Path) -> Self {
+        Self { tool, path }
+    }
+}
+
 /// What is left of a stock.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Simulation {
     /// The material that no cut took away; ends made by a tool know which [cut](sweepsim_dexel::Source), move and time.
     pub remaining: Dexels,
@@ -62,9 +73,7 @@ fn each(
             moves,
             total,
         };
-        let options = options
-            .clone()
-            .path_number(u16::try_from(number).unwrap_or(u16::MAX - 1));
+        let options = options.clone().path_number(u32::try_from(number).unwrap_or(u32::MAX));
         let swept = sweep(cut.tool, cut.path, grid, &options, &share)?;
         statistics.merge(&swept.statistics);
         take(swept.volume);
@@ -93,7 +102,7 @@ fn each(
 /// let tool = Tool::flat(3.0, 20.0)?;
 /// let up = [0.0, 0.0, 1.0];
 /// let path = Path::new(vec![Pose::new([-20.0, 0.0, 5.0], up)?, Pose::new([20.0, 0.0, 5.0], up)?])?;
-/// let part = simulate(stock, &[Cut { tool: &tool, path: &path }], &Options::default(), &())?;
+/// let part = simulate(stock, &[Cut::new(&tool, &path)], &Options::default(), &())?;
 /// // A groove 6 wide (twelve rows of dexels, half a millimetre each) and 3 deep.
 /// let removed = 20.0 * 20.0 * 8.0 - part.remaining.volume();
 /// assert!((removed - 20.0 * 6.0 * 3.0).abs() < 1e-3);

@@ -1,12 +1,14 @@
 //! Cuts in tri-dexels: walls of any direction are met squarely by the lines of one set.
 
 use crate::sweep::options::Options;
-use crate::sweep::report::{Monitor, Statistics, SweepError};
+use crate::sweep::report::{Statistics, SweepError};
 use crate::sweep::simulate::{Cut, Simulation, simulate};
 use sweepsim_dexel::{Dexels, TriDexels};
+use sweepsim_solve::Monitor;
 
 /// What is left of a stock, along all three axes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct TriSimulation {
     /// The material that no cut took away.
     pub remaining: TriDexels,
@@ -46,7 +48,7 @@ impl Monitor for Pass<'_> {
 /// let tool = Tool::flat(2.0, 20.0)?;
 /// let up = [0.0, 0.0, 1.0];
 /// let path = Path::new(vec![Pose::new([-5.0, 5.0, 3.0], up)?, Pose::new([25.0, 5.0, 3.0], up)?])?;
-/// let part = simulate_tri(stock, &[Cut { tool: &tool, path: &path }], &Options::default(), &())?.remaining;
+/// let part = simulate_tri(stock, &[Cut::new(&tool, &path)], &Options::default(), &())?.remaining;
 /// // A groove 4 wide and 2 deep, whose walls and edges are where they are, not where the nearest line is.
 /// let mesh = part.surface();
 /// let volume = mesh.soup().ok_or("no mesh")?.volume();

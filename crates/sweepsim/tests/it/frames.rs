@@ -143,10 +143,7 @@ fn three_sets_cut_one_part() {
     ];
     let poses = poses.map(|(tip, axis)| Pose::new(tip, axis).unwrap());
     let path = Path::new(poses.to_vec()).unwrap();
-    let cut = Cut {
-        tool: &tool,
-        path: &path,
-    };
+    let cut = Cut::new(&tool, &path);
     let part = simulate_tri(stock, &[cut], &Options::new(TOLERANCE), &()).unwrap();
     assert!(part.statistics.iter().all(|s| s.unresolved.is_empty()));
     // Where lines cross they agree.

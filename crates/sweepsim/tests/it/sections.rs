@@ -34,7 +34,7 @@ proptest! {
         let tool = &tools()[tool];
         let chord = 1e-3;
         let options = Options::new(1e-6);
-        let section = section(&[Cut { tool, path: &path }], &Plane::x(x), chord, &options, &()).unwrap();
+        let section = section(&[Cut::new(tool, &path)], &Plane::x(x), chord, &options, &()).unwrap();
         prop_assert!(section.open.is_empty(), "{:?}", section.open);
         let ys: Vec<f64> = (0..9).map(|k| -12.0 + 3.0 * (f64::from(k) + shift)).collect();
         let lines: Vec<[f64; 2]> = ys.iter().map(|y| [x, *y]).collect();
@@ -77,23 +77,13 @@ fn a_plane_of_any_direction() {
         normal: [1.0, 1.0, 1.0],
         offset: 30.0,
     };
-    let found = section(
-        &[Cut {
-            tool: &tool,
-            path: &path,
-        }],
-        &plane,
-        1e-3,
-        &Options::new(1e-6),
-        &(),
-    )
-    .unwrap();
+    let found = section(&[Cut::new(&tool, &path)], &plane, 1e-3, &Options::new(1e-6), &()).unwrap();
     let mut count = 0;
     for curve in &found.curves {
         for point in &curve.points {
             let [a, b, c] = point.position;
             // Ends of cut-off curves lie on chords.
-            let off = if matches!(curve.piece, sweepsim::Piece::Patch(_)) {
+            let off = if matches!(curve.piece, sweepsim::BoundaryPiece::Patch(_)) {
                 1e-9
             } else {
                 2e-3
@@ -101,7 +91,7 @@ fn a_plane_of_any_direction() {
             assert!((a + b + c - 30.0).abs() < off);
             // Below the ball's equator it is a sphere.
             let centre = [20.0 * point.t, 20.0 * point.t, 20.0 * point.t];
-            if matches!(curve.piece, sweepsim::Piece::Patch(_)) && c < centre[2] - 0.1 {
+            if matches!(curve.piece, sweepsim::BoundaryPiece::Patch(_)) && c < centre[2] - 0.1 {
                 let far = (a - 10.0).hypot(b - 10.0).hypot(c - 10.0);
                 assert!((far - 5.0).abs() < 1e-6, "{far}");
                 count += 1;

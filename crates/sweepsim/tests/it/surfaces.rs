@@ -1,6 +1,6 @@
 //! Envelope surfaces bound the swept volume.
 
-use sweepsim::{Cut, EnvelopeSurfaces, Options, Piece, envelope_surfaces, probe, sweep};
+use sweepsim::{BoundaryPiece, Cut, EnvelopeSurfaces, Options, envelope_surfaces, probe, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Pose, Tool};
 
@@ -44,10 +44,7 @@ fn the_pieces_of_a_move_that_meets_itself_nowhere_enclose_it() {
         ([12.0, 5.0, 3.0], [0.1, 0.2, 1.0]),
     ]);
     for tool in [Tool::ball(5.0, 30.0).unwrap(), Tool::bull(5.0, 1.0, 30.0).unwrap()] {
-        let cut = Cut {
-            tool: &tool,
-            path: &path,
-        };
+        let cut = Cut::new(&tool, &path);
         let options = Options::new(1e-6);
         let grid = Grid::new([-30.0, -30.0], [30.0, 30.0], [400, 400]).unwrap();
         let swept = sweep(&tool, &path, &grid, &options, &()).unwrap().volume.volume();
@@ -74,17 +71,19 @@ fn corners_that_bound_the_volume_lie_where_dexels_end() {
         ([9.0, -1.0, 5.0], [-0.3, 0.0, 1.0]),
     ]);
     let tool = Tool::bull(4.0, 1.5, 20.0).unwrap();
-    let cut = Cut {
-        tool: &tool,
-        path: &path,
-    };
+    let cut = Cut::new(&tool, &path);
     let options = Options::new(1e-6);
     let surfaces = envelope_surfaces(&[cut], 0.2, &options, &()).unwrap();
-    assert!(surfaces.surfaces.iter().any(|s| matches!(s.piece, Piece::Placed(_))));
+    assert!(
+        surfaces
+            .surfaces
+            .iter()
+            .any(|s| matches!(s.piece, BoundaryPiece::Placed(_)))
+    );
     let (mut outer, mut inner) = (0, 0);
     for surface in &surfaces.surfaces {
         // Along walls an end of a line says little, and edges may be the volume's outline seen from above, where lines only touch it.
-        if matches!(surface.piece, Piece::Edge(_)) {
+        if matches!(surface.piece, BoundaryPiece::Edge(_)) {
             continue;
         }
         let chosen = surface.vertices.iter().zip(&surface.outer).step_by(17);
@@ -113,10 +112,7 @@ fn corners_that_bound_the_volume_lie_where_dexels_end() {
 fn bad_chords_are_refused() {
     let path = path(&[([0.0; 3], [0.0, 0.0, 1.0]), ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0])]);
     let tool = Tool::ball(1.0, 5.0).unwrap();
-    let cut = Cut {
-        tool: &tool,
-        path: &path,
-    };
+    let cut = Cut::new(&tool, &path);
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(envelope_surfaces(&[cut], bad, &Options::default(), &()).is_err());
     }

@@ -6,7 +6,7 @@ use crate::brute_force::judge::{TOLERANCE, Tally, judge, same_volume, swept};
 use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use sweepsim::{Boundary, Method, Options, sweep};
+use sweepsim::{BoundaryOperator, Method, Options, sweep};
 use sweepsim_motion::{Apt, Path, Pose, Profile, ProfileSegment, Tool, Turn};
 use sweepsim_tests::tools::{drill, lollipop, scaled_concave};
 
@@ -311,7 +311,7 @@ fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
             let options = Options::new(TOLERANCE).boundary(boundary);
             sweep(&finned, &path, &grid, &options, &()).expect(name).volume.volume()
         };
-        let (counted, paper) = (volume(Boundary::Coverage), volume(Boundary::Paper));
+        let (counted, paper) = (volume(BoundaryOperator::Coverage), volume(BoundaryOperator::Paper));
         println!("{name}: {counted:.3} by the count, {paper:.3} by the paper's operator");
         // It only ever loses material, and much more than rounding here.
         assert!(paper < 0.999 * counted, "{name}: {paper} {counted}");
@@ -331,7 +331,7 @@ fn the_papers_boundary_operator_is_right_where_moves_do_not_overlap_themselves()
                 .volume
                 .volume()
         };
-        let (counted, paper) = (volume(Boundary::Coverage), volume(Boundary::Paper));
+        let (counted, paper) = (volume(BoundaryOperator::Coverage), volume(BoundaryOperator::Paper));
         // Both make ends within the tolerance; a line has a few of them.
         let slack = 10.0 * TOLERANCE * grid.spacing()[0] * grid.spacing()[1] * grid.len() as f64;
         ((counted - paper).abs() > slack).then(|| format!("{name}: {paper} for {counted}"))

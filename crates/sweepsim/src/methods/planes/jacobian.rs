@@ -1,7 +1,7 @@
 //! What the enclosure of a Jacobian says of a section's curve: whether it is regular, and along which variables it is monotone.
 
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum};
-use sweepsim_solve::Interval;
+use sweepsim_solve::Enclosure;
 
 /// What is seen of the equations without that of `Y`: row 0 is `X`, row 2 is `g`.
 pub(super) fn rows<const N: usize>() -> impl Iterator<Item = usize> {
@@ -20,7 +20,7 @@ pub(super) fn without<const N: usize>(jacobian: &[[f64; N]; N], over: usize) -> 
 }
 
 /// Whether the Jacobian of `X` (and `g`) with respect to the variables other than `over` has one sign of its determinant.
-pub(super) fn minor_is_definite<const N: usize>(jacobian: &[[Interval; N]; N], over: usize) -> bool {
+pub(super) fn minor_is_definite<const N: usize>(jacobian: &[[Enclosure; N]; N], over: usize) -> bool {
     let mut others = (0..N).filter(|k| *k != over);
     let (a, b) = (others.next(), others.next());
     let (lo, hi) = match (a, b) {
@@ -37,21 +37,21 @@ pub(super) fn minor_is_definite<const N: usize>(jacobian: &[[Interval; N]; N], o
     lo > margin || hi < -margin
 }
 
-fn product(a: Interval, b: Interval) -> Interval {
+fn product(a: Enclosure, b: Enclosure) -> Enclosure {
     let all = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
-    Interval::new(
+    Enclosure::new(
         all.iter().fold(f64::INFINITY, |m, x| m.min(*x)),
         all.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)),
     )
 }
 
 /// Whether no matrix of the enclosure is singular: `‖I − K J‖∞ < 1`, `K` the inverse of its middle, in coordinates scaled to the box.
-pub(super) fn regular<const N: usize>(bounds: &[Interval; N], jacobian: &[[Interval; N]; N]) -> bool
+pub(super) fn regular<const N: usize>(bounds: &[Enclosure; N], jacobian: &[[Enclosure; N]; N]) -> bool
 where
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
     type Square<const N: usize> = nalgebra::SMatrix<f64, N, N>;
-    let half = bounds.map(Interval::radius);
+    let half = bounds.map(Enclosure::radius);
     let middle = Square::<N>::from_fn(|i, j| jacobian[i][j].mid() * half[j]);
     let radius = Square::<N>::from_fn(|i, j| jacobian[i][j].radius() * half[j]);
     let Some(inverse) = middle.try_inverse() else {

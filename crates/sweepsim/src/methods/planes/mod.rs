@@ -14,7 +14,7 @@ use crate::time::path_parts::PathPart;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use rayon::prelude::*;
 use sweepsim_motion::{Segment, SegmentEnd, Tool};
-use sweepsim_solve::{ChartSolver, Sink, System, SystemError};
+use sweepsim_solve::{CancelOnly, ChartSolver, Sink, System, SystemError};
 
 /// The exact forms of each part of a chunk.
 pub(crate) struct Planes {
@@ -57,7 +57,7 @@ fn plane(lines: &Lattice) -> Plane {
 fn slice<const N: usize, M: AnyBox<N>>(
     map: &mut M,
     system: impl FnOnce() -> Result<System, SystemError>,
-    lines: &Lattice,
+    query: Query,
     (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
     sink: &mut impl Sink<N, M::Seen>,
 ) where
@@ -67,9 +67,9 @@ fn slice<const N: usize, M: AnyBox<N>>(
     let root = map.root();
     let touches = map
         .values(&root)
-        .is_some_and(|values| lines.meets([values[0], values[1]]));
-    if touches && !slicer.solve(map, system(), lines, charts.options.accept, sink) {
-        charts.solve(map, root, lines, sink);
+        .is_some_and(|values| query.lines.meets([values[0], values[1]]));
+    if touches && !slicer.solve(map, system(), query, charts.options.accept, sink) {
+        charts.solve(map, root, query.lines, sink, &CancelOnly(query.monitor));
     }
 }
 
@@ -90,24 +90,12 @@ impl CrossingMethod<'_> for Planes {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         let system = || self.forms[query.part].patches[query.number].section(&plane(query.lines));
-        slice(
-            map,
-            system,
-            query.lines,
-            (&mut solvers.slicer, &mut solvers.moving),
-            sink,
-        );
+        slice(map, system, query, (&mut solvers.slicer, &mut solvers.moving), sink);
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         let system = || self.forms[query.part].edges[query.number].section(&plane(query.lines));
-        slice(
-            map,
-            system,
-            query.lines,
-            (&mut solvers.slicer, &mut solvers.moving),
-            sink,
-        );
+        slice(map, system, query, (&mut solvers.slicer, &mut solvers.moving), sink);
     }
 
     fn on_placed(
@@ -120,12 +108,6 @@ impl CrossingMethod<'_> for Planes {
     ) {
         let placed = &self.forms[query.part].placed[usize::from(end == SegmentEnd::Finish)];
         let system = || placed[query.number].section(&plane(query.lines));
-        slice(
-            map,
-            system,
-            query.lines,
-            (&mut solvers.slicer, &mut solvers.placed),
-            sink,
-        );
+        slice(map, system, query, (&mut solvers.slicer, &mut solvers.placed), sink);
     }
 }

@@ -11,10 +11,12 @@
 //! left to the charts of the column's lines.
 
 use crate::envelope::AnyBox;
-use crate::methods::lattice::Lattice;
+use crate::methods::method::Query;
 use crate::methods::planes::spans::{Cutting, DEPTH, Vertex};
 use nalgebra::{Const, DimMin, ToTypenum};
-use sweepsim_solve::{ChartStatistics, CurveSolver, Curves, Interval, Sink, SolveOptions, System, SystemError};
+use sweepsim_solve::{
+    CancelOnly, ChartStatistics, CurveSolver, Curves, Enclosure, Sink, SolveOptions, System, SystemError,
+};
 
 /// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
 /// is tried where a span of the one before could not be decided.
@@ -46,13 +48,13 @@ impl Slicer {
         }
     }
 
-    /// Finds the preimages of the lines of `lattice`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
+    /// Finds the preimages of the lines of `query`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
     /// where the map has it). `false`, and nothing found, where that does not decide it.
     pub fn solve<const N: usize, M>(
         &mut self,
         map: &mut M,
         system: Result<System, SystemError>,
-        lattice: &Lattice,
+        query: Query,
         accept: f64,
         sink: &mut impl Sink<N, M::Seen>,
     ) -> bool
@@ -66,13 +68,13 @@ impl Slicer {
         let mark = sink.mark();
         for tolerance in TOLERANCES {
             self.curves.tolerance = tolerance;
-            let Ok(curves) = self.curves.solve(&system, &mut ()) else {
+            let Ok(curves) = self.curves.solve(&system, &CancelOnly(query.monitor)) else {
                 return false;
             };
             if !curves.singular.is_empty() {
                 return false;
             }
-            if self.cut(map, &curves, tolerance, lattice, accept, sink) {
+            if self.cut(map, &curves, tolerance, query, accept, sink) {
                 return true;
             }
             sink.forget(mark);
@@ -86,7 +88,7 @@ impl Slicer {
         map: &mut M,
         Curves { curves, skin, .. }: &Curves,
         tolerance: f64,
-        lattice: &Lattice,
+        query: Query,
         accept: f64,
         sink: &mut impl Sink<N, M::Seen>,
     ) -> bool
@@ -95,11 +97,12 @@ impl Slicer {
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         // With a skin, curves run on beyond the domain: at most this far.
-        let region = Interval::new(-2.0 * skin, 1.0 + 2.0 * skin);
+        let region = Enclosure::new(-2.0 * skin, 1.0 + 2.0 * skin);
         let mut cutting = Cutting {
             map,
-            lattice,
-            x: lattice.coordinate(0, lattice.i[0]),
+            lattice: query.lines,
+            monitor: query.monitor,
+            x: query.lines.coordinate(0, query.lines.i[0]),
             accept,
             sink,
             statistics: &mut self.statistics,
@@ -115,7 +118,7 @@ impl Slicer {
                 if let Some(from) = from {
                     let within = std::array::from_fn(|j| {
                         let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
-                        Interval::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
+                        Enclosure::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
                     });
                     if !cutting.span(&from, &to, within, DEPTH) {
                         return false;

@@ -4,7 +4,7 @@ use crate::envelope::AnyBox;
 use crate::methods::lattice::Lattice;
 use crate::methods::planes::jacobian::{minor_is_definite, regular, rows, without};
 use nalgebra::{Const, DimMin, ToTypenum, Vector2};
-use sweepsim_solve::{ChartStatistics, Interval, Preimage, Sample, Sink};
+use sweepsim_solve::{ChartStatistics, Enclosure, Monitor, Preimage, Sample, Sink};
 
 /// Halvings of a span.
 pub(super) const DEPTH: u32 = 44;
@@ -41,6 +41,7 @@ fn guess<const N: usize>(last: &[Option<Slope<N>>; 2], y: f64) -> Option<[f64; N
 pub(super) struct Cutting<'a, const N: usize, M: AnyBox<N>, K> {
     pub map: &'a mut M,
     pub lattice: &'a Lattice<'a>,
+    pub monitor: &'a dyn Monitor,
     pub x: f64,
     pub accept: f64,
     pub sink: &'a mut K,
@@ -66,12 +67,15 @@ where
     }
 
     /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
-    pub fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Interval; N], depth: u32) -> bool {
+    pub fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Enclosure; N], depth: u32) -> bool {
         self.statistics.boxes += 1;
         let Some(left) = self.left.checked_sub(1) else {
             return false;
         };
         self.left = left;
+        if self.monitor.cancelled() {
+            return false;
+        }
         let mark = self.map.mark();
         let cell = self.map.place(&within);
         // Where the map asks for nothing (an edge both of whose faces move in, …) no crossing counts.
@@ -96,7 +100,7 @@ where
     }
 
     /// The crossings of a span along which `Y` is monotone.
-    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Interval; N], [first, last]: [usize; 2]) -> bool {
+    fn cross(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: &[Enclosure; N], [first, last]: [usize; 2]) -> bool {
         let mut from = *p;
         let mut before: [Option<Slope<N>>; 2] = [None; 2];
         let forward = p.y < q.y;
@@ -128,7 +132,7 @@ where
         &mut self,
         guess: [f64; N],
         (target, y): (usize, f64),
-        within: &[Interval; N],
+        within: &[Enclosure; N],
     ) -> Option<(Preimage<N, M::Seen>, [f64; N])> {
         let mut x: [f64; N] = std::array::from_fn(|k| guess[k].clamp(within[k].lo, within[k].hi));
         for _ in 0..STEPS {
@@ -167,9 +171,9 @@ where
         &mut self,
         p: &Vertex<N>,
         q: &Vertex<N>,
-        within: &[Interval; N],
-        jacobian: &[[Interval; N]; N],
-    ) -> Option<(Vertex<N>, [[Interval; N]; 2])> {
+        within: &[Enclosure; N],
+        jacobian: &[[Enclosure; N]; N],
+    ) -> Option<(Vertex<N>, [[Enclosure; N]; 2])> {
         let length = |k: usize| (q.x[k] - p.x[k]).abs();
         let over = (0..N)
             .filter(|k| minor_is_definite(jacobian, *k))
@@ -181,7 +185,7 @@ where
         let middle = self.on_curve(p, q, over, at, within)?;
         let parts = [p, q].map(|end| {
             let mut part = *within;
-            part[over] = Interval::new(end.x[over].min(at), end.x[over].max(at));
+            part[over] = Enclosure::new(end.x[over].min(at), end.x[over].max(at));
             part
         });
         let parts = parts.map(|part| self.shrunk(part, over));
@@ -195,7 +199,7 @@ where
         q: &Vertex<N>,
         over: usize,
         at: f64,
-        within: &[Interval; N],
+        within: &[Enclosure; N],
     ) -> Option<Vertex<N>> {
         let mut x: [f64; N] = std::array::from_fn(|k| 0.5 * (p.x[k] + q.x[k]));
         x[over] = at;
@@ -225,7 +229,7 @@ where
 
     /// A smaller box that holds all of the curve in `part`: by the mean value theorem around its middle, the other variables are
     /// affine functions of `over`, up to how much the Jacobian varies.
-    fn shrunk(&mut self, part: [Interval; N], over: usize) -> [Interval; N] {
+    fn shrunk(&mut self, part: [Enclosure; N], over: usize) -> [Enclosure; N] {
         let mark = self.map.mark();
         let cell = self.map.place(&part);
         let jacobian = self.map.jacobian(&cell);
@@ -257,7 +261,7 @@ where
                 reach += ((row[j] - unit).abs() + spread[j] + 1e-14) * part[j].radius();
             }
             let (lo, hi) = (centre[k] + shift - reach - 1e-15, centre[k] + shift + reach + 1e-15);
-            let cut = Interval::new(part[k].lo.max(lo), part[k].hi.min(hi));
+            let cut = Enclosure::new(part[k].lo.max(lo), part[k].hi.min(hi));
             if cut.lo < cut.hi {
                 smaller[k] = cut;
             }
