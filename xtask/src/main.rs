@@ -4,6 +4,7 @@ mod bench;
 mod generate;
 mod regress;
 mod stored;
+mod suites;
 mod workspace;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -35,10 +36,31 @@ enum Command {
         /// Names of jobs; all if none.
         jobs: Vec<String>,
     },
-    /// Measures, and prints beside published figures.
+    /// Measures, in a release build, and prints beside published figures.
     Bench {
         /// What to measure.
         table: Table,
+        /// Of instructions: only work whose name contains this.
+        filter: Option<String>,
+    },
+    /// Does one piece of work of `bench instructions`.
+    #[command(hide = true)]
+    Work {
+        /// Its name.
+        name: String,
+    },
+    /// Runs the whole brute-force suite, of which the gate runs a sample: takes half an hour and more.
+    BruteForce {
+        /// Only tests whose names contain this.
+        filter: Option<String>,
+        /// How many times the drawn cases are drawn.
+        #[arg(long, default_value_t = 1)]
+        times: u32,
+    },
+    /// Runs the other tests that the gate leaves out: takes many minutes and 4 GiB of memory.
+    Slow {
+        /// Only tests whose names contain this.
+        filter: Option<String>,
     },
     /// Runs what must pass before a change is integrated: .ci/run.
     Ci,
@@ -50,6 +72,18 @@ enum Table {
     Table1,
     /// The fixture jobs, on one thread and on all.
     Programs,
+    /// Instructions of Table 1 and of small jobs, by valgrind: for comparing two versions on a busy machine.
+    Instructions,
+}
+
+/// The same command by a release build: measurements of any other would mislead.
+fn in_release() -> Result<bool, String> {
+    let status = std::process::Command::new(env!("CARGO"))
+        .args(["run", "--quiet", "--release", "--package", "xtask", "--"])
+        .args(std::env::args_os().skip(1))
+        .status()
+        .map_err(|error| format!("cargo run: {error}"))?;
+    Ok(status.success())
 }
 
 fn main() -> ExitCode {
@@ -59,8 +93,16 @@ fn main() -> ExitCode {
             .map_err(|error| error.to_string()),
         Command::Regress { jobs } => regress::run(Mode::Regress, &jobs),
         Command::Bless { jobs } => regress::run(Mode::Bless, &jobs),
-        Command::Bench { table: Table::Table1 } => bench::table1().map(|()| true),
-        Command::Bench { table: Table::Programs } => bench::programs().map(|()| true),
+        Command::Bench { .. } if cfg!(debug_assertions) => in_release(),
+        Command::Bench { table, filter } => match table {
+            Table::Table1 => bench::table1(),
+            Table::Programs => bench::programs(),
+            Table::Instructions => bench::instructions(filter.as_deref()),
+        }
+        .map(|()| true),
+        Command::Work { name } => bench::work(&name).map(|()| true),
+        Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
+        Command::Slow { filter } => suites::slow(filter.as_deref()),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())

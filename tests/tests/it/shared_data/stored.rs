@@ -15,7 +15,6 @@ pub struct Stored {
     pub forms: Vec<Bernstein>,
     pub expected: serde_json::Value,
     pub tags: Vec<String>,
-    pub polynomial: bool,
     pub dimension: u64,
     pub roots: Vec<Vec<f64>>,
 }
@@ -50,7 +49,6 @@ fn read(json: &serde_json::Value) -> Stored {
         forms,
         expected: json["expected"].clone(),
         tags: strings(&json["tags"]),
-        polynomial: json["polynomial"].as_bool().unwrap(),
         dimension: json["solution_dim"].as_u64().unwrap(),
         roots: json["roots"]
             .as_array()

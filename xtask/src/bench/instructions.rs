@@ -1,0 +1,88 @@
+//! Instructions instead of seconds: they hardly differ from run to run, however busy the machine is.
+
+use super::{on, programs, table1};
+use crate::workspace;
+use std::process::Command;
+use sweepsim::Method;
+use sweepsim_formats::Job;
+
+/// Fixture jobs that are counted; the others take long under valgrind.
+const JOBS: [&str; 2] = ["quickstart", "motions"];
+/// Cells of Table 1 that are counted.
+const CELLS: usize = 200;
+const METHODS: [Method; 4] = [Method::Charts, Method::Planes, Method::Lines, Method::Surface];
+
+/// Counts the instructions of every piece of work by valgrind's callgrind, each in a process of its own.
+///
+/// `filter`: only pieces of work whose names contain it.
+pub fn instructions(filter: Option<&str>) -> Result<(), String> {
+    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    // What a process costs that does nothing.
+    let nothing = count(&own, "nothing")?;
+    println!("{:<28} {:>12}", "work, one thread", "Mio. instr.");
+    for name in names()? {
+        if filter.is_none_or(|filter| name.contains(filter)) {
+            println!(
+                "{name:<28} {:>12.2}",
+                (count(&own, &name)?.saturating_sub(nothing)) as f64 * 1e-6
+            );
+        }
+    }
+    Ok(())
+}
+
+fn names() -> Result<Vec<String>, String> {
+    let mut names = Vec::new();
+    for cutter in table1::tools()? {
+        for sweep in 1..=2 {
+            let name = |method| format!("{}-sweep{sweep}-{method}", cutter.name);
+            // The form tool by charts alone: the others take minutes.
+            let methods = if cutter.name == "form" { &METHODS[..1] } else { &METHODS };
+            names.extend(methods.iter().map(name));
+        }
+    }
+    names.extend(JOBS.map(String::from));
+    Ok(names)
+}
+
+fn count(own: &std::path::Path, name: &str) -> Result<u64, String> {
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(own)
+        .args(["work", name])
+        .output()
+        .map_err(|error| format!("valgrind: {error} (install it to count instructions)"))?;
+    let text = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        return Err(format!("{name}: {text}"));
+    }
+    let collected = text.lines().find_map(|line| line.split_once("Collected :"));
+    let number = collected.and_then(|(_, number)| number.trim().parse().ok());
+    number.ok_or_else(|| format!("{name}: no count in what valgrind printed: {text}"))
+}
+
+/// Does one piece of work, once, on one thread.
+pub fn work(name: &str) -> Result<(), String> {
+    on(1, || here(name))?
+}
+
+fn here(name: &str) -> Result<(), String> {
+    if name == "nothing" {
+        return Ok(());
+    }
+    if JOBS.contains(&name) {
+        let file = workspace::fixtures().join("jobs").join(name).with_extension("ron");
+        let job = Job::read(&file).map_err(|error| error.to_string())?;
+        return programs::once(&job).map(drop);
+    }
+    for cutter in table1::tools()? {
+        for which in 0..2 {
+            for method in METHODS {
+                if name == format!("{}-sweep{}-{method}", cutter.name, which + 1) {
+                    return cutter.entry(which, CELLS)?.run(method);
+                }
+            }
+        }
+    }
+    Err(format!("no piece of work has the name {name}"))
+}

@@ -1,0 +1,33 @@
+//! `cargo xtask bench`: measures, and prints beside what the paper reports.
+
+mod instructions;
+mod programs;
+mod table1;
+
+pub use instructions::{instructions, work};
+pub use programs::programs;
+pub use table1::table1;
+
+use std::time::{Duration, Instant};
+
+/// Each measurement is repeated until so much time has passed; the shortest run counts.
+const AT_LEAST: Duration = Duration::from_millis(400);
+
+/// Does some work on so many threads.
+fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(pool.map_err(|error| error.to_string())?.install(work))
+}
+
+/// The shortest of several runs: of two at least, for the first one has its memory yet to get.
+fn shortest(run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
+    let begin = Instant::now();
+    let (mut best, mut runs) = (f64::INFINITY, 0);
+    while runs < 2 || begin.elapsed() < AT_LEAST {
+        let start = Instant::now();
+        run()?;
+        best = best.min(start.elapsed().as_secs_f64());
+        runs += 1;
+    }
+    Ok(best)
+}

@@ -1,0 +1,147 @@
+//! The paper's Table 1.
+
+use super::{on, shortest};
+use crate::workspace;
+use sweepsim::{Method, Options, sweep};
+use sweepsim_dexel::Grid;
+use sweepsim_formats::Job;
+use sweepsim_motion::{Path, Pose, Tool};
+
+/// The tools' length.
+const LENGTH: f64 = 30.0;
+
+/// A tool of the table.
+pub struct Cutter {
+    pub name: &'static str,
+    radius: f64,
+    tool: Tool,
+}
+
+/// An entry of the table, but for the method.
+pub struct Entry<'a> {
+    tool: &'a Tool,
+    path: Path,
+    grid: Grid,
+}
+
+impl Cutter {
+    /// This tool along Sweep1 (0) or Sweep2 (1), on so many cells each way.
+    pub fn entry(&self, which: usize, cells: usize) -> Result<Entry<'_>, String> {
+        let path = path(which)?;
+        let (min, max) = bounds(&path, self.radius, LENGTH);
+        let grid = Grid::new(min, max, [cells; 2]).map_err(|error| error.to_string())?;
+        let tool = &self.tool;
+        Ok(Entry { tool, path, grid })
+    }
+}
+
+impl Entry<'_> {
+    /// Sweeps it.
+    pub fn run(&self, method: Method) -> Result<(), String> {
+        let options = Options::new(1e-6).method(method);
+        let swept = sweep(self.tool, &self.path, &self.grid, &options, &());
+        swept.map(drop).map_err(|error| error.to_string())
+    }
+}
+
+/// Ball end, flat end, and the paper's form tool.
+pub fn tools() -> Result<[Cutter; 3], String> {
+    let radius = 5.0;
+    let form = Job::read(&workspace::root().join("fixtures/jobs/railing.ron")).map_err(|error| error.to_string())?;
+    let form = form.tools.into_values().next().ok_or("railing.ron has no tool")?;
+    let (ball, flat) = (Tool::ball(radius, LENGTH), Tool::flat(radius, LENGTH));
+    let cutter = |name, radius, tool| Cutter { name, radius, tool };
+    Ok([
+        cutter("ball", radius, ball.map_err(|error| error.to_string())?),
+        cutter("flat", radius, flat.map_err(|error| error.to_string())?),
+        cutter("form", reach(&form), form),
+    ])
+}
+
+/// The paper's Table 1 on one thread. Its seconds were taken at 4.2 GHz: read ratios, not seconds.
+pub fn table1() -> Result<(), String> {
+    on(1, table1_here)?
+}
+
+/// The paper's Table 1, seconds, of the ball end: (method, cells, Sweep1 and Sweep2). Beside charts stands its fastest, Algorithm 3.
+const PAPER: [(Method, usize, [f64; 2]); 8] = [
+    (Method::Charts, 200, [0.35, 0.63]),
+    (Method::Charts, 500, [0.75, 1.20]),
+    (Method::Planes, 200, [0.35, 0.63]),
+    (Method::Planes, 500, [0.75, 1.20]),
+    (Method::Surface, 200, [10.30, 13.50]),
+    (Method::Surface, 500, [10.30, 13.90]),
+    (Method::Lines, 200, [5.27, 22.40]),
+    (Method::Lines, 500, [35.40, 134.50]),
+];
+
+fn table1_here() -> Result<(), String> {
+    let tools = tools()?;
+    println!(
+        "One thread. The paper (ball, 4.2 GHz): its Algorithm 3 beside charts and planes, 1 beside surface, 4 beside lines."
+    );
+    println!(
+        "{:<6} {:<8} {:<8} {:>6} {:>12} {:>12} {:>8}",
+        "tool", "motion", "method", "cells", "ms", "paper, ms", "ratio"
+    );
+    for cutter in &tools {
+        for (method, cells, seconds) in PAPER {
+            for (which, paper) in seconds.into_iter().enumerate() {
+                let entry = cutter.entry(which, cells)?;
+                let best = shortest(|| entry.run(method))?;
+                let name = cutter.name;
+                println!(
+                    "{name:<6} {:<8} {:<8} {cells:>6} {:>12.2} {:>12.0} {:>8.1}",
+                    format!("Sweep{}", which + 1),
+                    method.to_string(),
+                    best * 1e3,
+                    paper * 1e3,
+                    paper / best
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The largest distance of a tool's control points from its axis.
+fn reach(tool: &Tool) -> f64 {
+    let points = tool.patches().iter().flat_map(|patch| {
+        let weights = patch.weight.coefficients();
+        (0..weights.len()).map(move |i| {
+            let coordinate = |k: usize| patch.position[k].coefficients()[i] / weights[i];
+            coordinate(0).hypot(coordinate(1))
+        })
+    });
+    points.fold(0.0, f64::max)
+}
+
+/// Sweep1: a translation with the axis 15° about `y`. Sweep2: the same line, the axis from −25° to 25° about `x`.
+fn path(which: usize) -> Result<Path, String> {
+    let lean = |degrees: f64| degrees.to_radians().sin_cos();
+    let (across, (aside, up)) = (lean(15.0), lean(25.0));
+    let axes = match which {
+        0 => [[across.0, 0.0, across.1]; 2],
+        _ => [[0.0, aside, up], [0.0, -aside, up]],
+    };
+    let pose = |tip, axis| Pose::new(tip, axis).map_err(|error| error.to_string());
+    Path::new(vec![
+        pose([-20.0, -10.0, 0.0], axes[0])?,
+        pose([20.0, 10.0, 8.0], axes[1])?,
+    ])
+    .map_err(|error| error.to_string())
+}
+
+/// The rectangle over the swept volume: of the tool's spheres about both ends of its axis (an axis that turns stays between its two ends).
+fn bounds(path: &Path, radius: f64, length: f64) -> ([f64; 2], [f64; 2]) {
+    let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for pose in path.poses() {
+        let tip = pose.tip();
+        let top = tip + pose.axis().into_inner() * length;
+        for k in 0..2 {
+            min[k] = min[k].min(tip[k] - radius).min(top[k] - radius);
+            max[k] = max[k].max(tip[k] + radius).max(top[k] + radius);
+        }
+    }
+    (min, max)
+}
