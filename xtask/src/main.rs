@@ -3,6 +3,7 @@
 mod bench;
 mod generate;
 mod regress;
+mod standalone;
 mod stored;
 mod suites;
 mod workspace;
@@ -62,6 +63,11 @@ enum Command {
         /// Only tests whose names contain this.
         filter: Option<String>,
     },
+    /// Compiles and runs the first example of every README as a package of its own that depends on that crate alone.
+    Standalone {
+        /// Names of crates; all if none.
+        crates: Vec<String>,
+    },
     /// Runs what must pass before a change is integrated: .ci/run.
     Ci,
 }
@@ -103,6 +109,7 @@ fn main() -> ExitCode {
         Command::Work { name } => bench::work(&name).map(|()| true),
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),
+        Command::Standalone { crates } => standalone::run(&crates),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())
