@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
-use sweepsim_dexel::{Dexels, Grid, Mesh, Source, Stock};
+use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_motion::{Pose, ProfileSegment, Tool, Turn};
 use sweepsim_nc::{Note, Options, Program, read_file};
@@ -249,7 +249,7 @@ fn dexels(text: &mut Text, dexels: &Dexels) {
     let cut = dexels
         .iter()
         .flat_map(|(_, line)| line.iter().flat_map(|i| [i.lower, i.upper]));
-    let cut = cut.filter(|end| end.source != Source::STOCK).count();
+    let cut = cut.filter(|end| end.source.is_cut()).count();
     text.line(
         "cut",
         &format!("{} of {}", count(cut as u64), counted(2 * dexels.count() as u64, "end")),

@@ -25,7 +25,7 @@ fn cuts() -> Vec<(usize, Interval)> {
         .map(|k| {
             let z = (k.wrapping_mul(2_654_435_761) >> 7 & 1023) as f64 * 0.01 - 5.0;
             let mut cut = Interval::between(z, z + 0.3);
-            cut.lower.source = Source {
+            cut.lower.source = Source::Cut {
                 path: 0,
                 segment: (k / 500) as u32,
                 t: 0.25,

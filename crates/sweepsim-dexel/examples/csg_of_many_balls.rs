@@ -34,7 +34,7 @@ fn cuts(grid: &Grid, axis: usize) -> Vec<(u32, Interval)> {
                 let end = |side: f64| End {
                     z: z + side * half,
                     normal: [u, v, side * half].map(|c| (c / RADIUS) as f32),
-                    source: Source {
+                    source: Source::Cut {
                         path: 0,
                         segment: 0,
                         t: 0.0,

@@ -13,7 +13,7 @@
 //! use sweepsim_dexel::{Dexels, End, Grid, Interval, Source, Stock};
 //! let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [5, 5])?;
 //! let mut part = Stock::Block { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 4.0] }.dexels(&grid)?;
-//! let end = |z, up| End { z, normal: [0.0, 0.0, up], source: Source { path: 0, segment: 3, t: 0.5 } };
+//! let end = |z, up| End { z, normal: [0.0, 0.0, up], source: Source::Cut { path: 0, segment: 3, t: 0.5 } };
 //! part.subtract(grid.index(2, 2), &[Interval { lower: end(1.0, -1.0), upper: end(9.0, 1.0) }]);
 //! assert_eq!(part.intervals(2, 2).to_vec()[0].upper.z, 1.0);
 //! assert_eq!(part.volume(), 400.0 - 3.0 * 4.0);

@@ -59,6 +59,13 @@ impl Chunk {
         self.moves.table()
     }
 
+    /// The highest number of a path that made an end.
+    pub fn highest_path(&self) -> Option<u32> {
+        let table = self.table();
+        let ends = self.pieces.iter().flat_map(|piece| [piece.lower, piece.upper]);
+        ends.filter_map(|end| table.path(end.source)).max()
+    }
+
     /// Bytes of memory, the chunk itself with what it points to.
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
@@ -253,8 +260,38 @@ mod tests {
 
     fn made(z: f64, segment: u32, t: f32) -> Interval {
         let mut interval = Interval::between(z, z + 0.5);
-        interval.lower.source = Source { path: 7, segment, t };
+        interval.lower.source = Source::Cut { path: 7, segment, t };
         interval
+    }
+
+    fn time_of(source: Source) -> f32 {
+        cut(source)[2] as f32
+    }
+
+    fn cut(source: Source) -> [f64; 3] {
+        match source {
+            Source::Cut { path, segment, t } => [path.into(), segment.into(), t.into()],
+            Source::Stock => panic!("made by no tool"),
+        }
+    }
+
+    #[test]
+    fn every_number_of_a_path_is_kept() {
+        let mut chunk = Chunk::default();
+        let numbers = [0, 1, 65_533, 65_534, 65_535, 65_536, 70_000, u32::MAX - 1, u32::MAX];
+        let made = |path: u32| {
+            let z = f64::from(path);
+            let source = |segment| Source::Cut { path, segment, t: 0.0 };
+            let mut interval = Interval::between(z, z + 0.5);
+            (interval.lower.source, interval.upper.source) = (source(0), source(u32::MAX));
+            interval
+        };
+        let intervals = numbers.map(made);
+        let mut packed = Vec::new();
+        chunk.pack(&intervals, &mut packed);
+        chunk.replace(0, &packed);
+        let found: Vec<Interval> = chunk.line(0).iter().map(|p| chunk.table().interval(p)).collect();
+        assert_eq!(found, intervals);
     }
 
     #[test]
@@ -269,11 +306,11 @@ mod tests {
             chunk.replace(5, &packed);
             for (piece, interval) in chunk.line(5).iter().zip(&intervals) {
                 let found = chunk.table().interval(piece);
-                assert_eq!(found.upper.source, Source::STOCK);
+                assert_eq!(found.upper.source, Source::Stock);
                 let (a, b) = (found.lower.source, interval.lower.source);
-                assert_eq!((a.path, a.segment), (b.path, b.segment));
+                assert_eq!(cut(a)[..2], cut(b)[..2]);
                 // 12 bits for up to 4096 moves, 13 when two rounds are in the table.
-                assert!((a.t - b.t).abs() <= 2.0_f32.powi(-16), "{} {}", a.t, b.t);
+                assert!((time_of(a) - time_of(b)).abs() <= 2.0_f32.powi(-16), "{a:?} {b:?}");
             }
         }
         chunk.shrink();
@@ -297,7 +334,10 @@ mod tests {
             ],
             &mut packed,
         );
-        let times: Vec<f32> = packed.iter().map(|p| few.table().interval(p).lower.source.t).collect();
+        let times: Vec<f32> = packed
+            .iter()
+            .map(|p| time_of(few.table().interval(p).lower.source))
+            .collect();
         assert!((times[0] - 0.3).abs() <= 2.0_f32.powi(-24));
         assert_eq!(times[1..], [0.75, 0.0, 1.0]);
     }

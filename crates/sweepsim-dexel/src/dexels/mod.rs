@@ -281,6 +281,13 @@ impl Dexels {
         self.chunks.iter().flatten().map(|chunk| chunk.len()).sum()
     }
 
+    /// The highest number of a path that made an end; `None` if no tool made any.
+    #[must_use]
+    pub fn highest_path(&self) -> Option<u32> {
+        let chunks = self.chunks.par_iter().flatten();
+        chunks.filter_map(|chunk| chunk.highest_path()).max()
+    }
+
     /// Bytes of memory, with what is kept for growth; without what the allocator takes for itself.
     #[must_use]
     pub fn bytes(&self) -> usize {

@@ -7,7 +7,7 @@ use crate::intervals::{End, Interval, Source};
 /// Path and segment of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct CutSegment {
-    pub path: u16,
+    pub path: u32,
     pub segment: u32,
 }
 
@@ -30,17 +30,23 @@ impl Table<'_> {
 
     fn source(self, packed: u32) -> Source {
         if packed == Packed::STOCK {
-            return Source::STOCK;
+            return Source::Stock;
         }
         let ticks = packed & ((1 << self.time) - 1);
         match self.moves.get((packed >> self.time) as usize) {
-            Some(CutSegment { path, segment }) => Source {
+            Some(CutSegment { path, segment }) => Source::Cut {
                 path: *path,
                 segment: *segment,
                 t: (f64::from(ticks) / f64::from(1_u32 << (self.time - 1))) as f32,
             },
-            None => Source::STOCK,
+            None => Source::Stock,
         }
+    }
+
+    /// The path that made a packed source.
+    pub fn path(self, packed: u32) -> Option<u32> {
+        let cut = self.moves.get((packed >> self.time) as usize);
+        cut.filter(|_| packed != Packed::STOCK).map(|cut| cut.path)
     }
 
     pub fn end(self, packed: &Packed) -> End {
@@ -97,15 +103,12 @@ impl SegmentTable {
     }
 
     fn source(&mut self, source: Source) -> u32 {
-        if source == Source::STOCK {
+        let Source::Cut { path, segment, t } = source else {
             return Packed::STOCK;
-        }
-        let number = self.number(CutSegment {
-            path: source.path,
-            segment: source.segment,
-        });
+        };
+        let number = self.number(CutSegment { path, segment });
         // A NaN becomes 0.
-        let ticks = (f64::from(source.t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1)) + 0.5) as u32;
+        let ticks = (f64::from(t.clamp(0.0, 1.0)) * f64::from(1_u32 << (self.time - 1)) + 0.5) as u32;
         number << self.time | ticks
     }
 

@@ -13,7 +13,7 @@ fn pieces(lines: u32) -> impl Strategy<Value = Vec<(u32, Interval)>> {
     proptest::collection::vec(piece, 0..90).prop_map(|pieces| {
         let made = |(line, z, length, segment, t): (u32, i32, i32, u32, f32)| {
             let mut interval = Interval::between(f64::from(z), f64::from(z + length));
-            interval.upper.source = Source { path: 3, segment, t };
+            interval.upper.source = Source::Cut { path: 3, segment, t };
             (line, interval)
         };
         pieces.into_iter().map(made).collect()
@@ -110,7 +110,7 @@ fn the_same_at_any_thread_count() {
         .map(|k| {
             let z = f64::from(k.wrapping_mul(2_654_435_761) >> 20) * 0.01;
             let mut interval = Interval::between(z, z + 0.7);
-            interval.lower.source = Source {
+            interval.lower.source = Source::Cut {
                 path: 0,
                 segment: k % 3000,
                 t: 0.3,
@@ -156,7 +156,7 @@ fn failures_are_named() {
         z,
         jump,
         normal: [0.0, 0.0, 1.0],
-        source: Source::STOCK,
+        source: Source::Stock,
     };
     let all = vec![
         (7, crossing(0.0, 1)),

@@ -45,10 +45,9 @@ pub struct AuditFailure {
 /// [`AuditFailure`]: the jumps do not add up to 0, or a sum between groups is negative. `intervals` is then empty.
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     crossings.sort_by(|a, b| {
-        let source = |c: &Crossing| (c.source.path, c.source.segment, c.source.t.to_bits());
         a.z.total_cmp(&b.z)
             .then(b.jump.cmp(&a.jump))
-            .then_with(|| source(a).cmp(&source(b)))
+            .then_with(|| a.source.rank().cmp(&b.source.rank()))
     });
     intervals.clear();
     let (mut sum, mut lowest, mut place) = (0_i32, 0_i32, f64::NAN);
@@ -115,7 +114,7 @@ mod tests {
             z,
             jump,
             normal: [0.0, 0.0, 1.0],
-            source: Source::STOCK,
+            source: Source::Stock,
         }
     }
 

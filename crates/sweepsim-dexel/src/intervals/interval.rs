@@ -1,23 +1,36 @@
 //! Intervals of material on a line, and what their ends remember.
 
-/// Which motion made an end, and when.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source {
-    /// Number of the path, or [`Source::STOCK`]'s.
-    pub path: u16,
-    /// Number of the move in the path.
-    pub segment: u32,
-    /// Time in the move, from 0 to 1.
-    pub t: f32,
+/// What made an end of an interval: the stock itself, or a cut.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Source {
+    /// No tool made the end: it belongs to the stock.
+    #[default]
+    Stock,
+    /// A tool made the end.
+    Cut {
+        /// Number of the path.
+        path: u32,
+        /// Number of the segment in the path.
+        segment: u32,
+        /// Time in the segment, from 0 to 1.
+        t: f32,
+    },
 }
 
 impl Source {
-    /// An end that no tool made.
-    pub const STOCK: Self = Self {
-        path: u16::MAX,
-        segment: 0,
-        t: 0.0,
-    };
+    /// Whether a tool made the end.
+    #[must_use]
+    pub fn is_cut(self) -> bool {
+        matches!(self, Self::Cut { .. })
+    }
+
+    /// Paths in order, then segments, then times; the stock last.
+    pub(super) fn rank(self) -> (u64, u32, u32) {
+        match self {
+            Self::Cut { path, segment, t } => (path.into(), segment, t.to_bits()),
+            Self::Stock => (u64::MAX, 0, 0),
+        }
+    }
 }
 
 /// What an interval can end with: a height, and perhaps more that is known there.
@@ -89,7 +102,7 @@ impl Interval {
         let end = |z, up| End {
             z,
             normal: [0.0, 0.0, up],
-            source: Source::STOCK,
+            source: Source::Stock,
         };
         Self {
             lower: end(lower, -1.0),

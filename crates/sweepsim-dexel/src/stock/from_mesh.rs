@@ -64,7 +64,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
                             z,
                             jump,
                             normal,
-                            source: Source::STOCK,
+                            source: Source::Stock,
                         },
                     ))
                 })

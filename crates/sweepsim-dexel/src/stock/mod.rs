@@ -96,7 +96,7 @@ pub(super) fn end(z: f64, normal: [f64; 3]) -> End {
     End {
         z,
         normal: normal.map(|c| c as f32),
-        source: Source::STOCK,
+        source: Source::Stock,
     }
 }
 

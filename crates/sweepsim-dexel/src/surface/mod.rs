@@ -23,7 +23,7 @@ mod square;
 mod wall;
 
 use crate::dexels::Dexels;
-use crate::intervals::{End, Interval, Source};
+use crate::intervals::{End, Interval};
 use crate::mesh::Mesh;
 use batch::TriangleBatch;
 use edge::{Class, Edge};
@@ -114,7 +114,7 @@ fn end(line: &[Interval], e: usize) -> &End {
 }
 
 fn is_cut(end: &End) -> bool {
-    end.source.path != Source::STOCK.path
+    end.source.is_cut()
 }
 
 impl<'a> Field<'a> {

@@ -2,7 +2,6 @@
 
 use super::TriDexels;
 use crate::dexels::Dexels;
-use crate::intervals::Source;
 use rayon::prelude::*;
 
 /// Points where lines of all three sets cross, with a rim of points without material around them.
@@ -176,7 +175,7 @@ impl<'a> Lattice<'a> {
                     }
                     None => None,
                 },
-                cut: end.is_some_and(|end| end.source != Source::STOCK),
+                cut: end.is_some_and(|end| end.source.is_cut()),
             });
         }
         hits

@@ -4,7 +4,7 @@
 //!
 //! | part | content |
 //! | --- | --- |
-//! | header | `sweepdxl`; version `u32`; 1 as `u32` if there is a frame, else 0; area: min x, y and max x, y as `f64`; cells in x and y as `u64`; the frame's origin and axes x, y, z as 12 `f64`; checksum `u32` |
+//! | header | `sweepdxl`; version `u32` (2 if the number of a path is above 65,534, else 1); 1 as `u32` if there is a frame, else 0; area: min x, y and max x, y as `f64`; cells in x and y as `u64`; the frame's origin and axes x, y, z as 12 `f64`; checksum `u32` |
 //! | blocks | number of the first line `u64`; lines `u32`; bytes `u32`; the bytes; checksum `u32` |
 //! | end | `u64::MAX`; 0 as `u32`; 8 as `u32`; number of all intervals `u64`; checksum `u32` |
 //!
@@ -24,12 +24,15 @@
 //! So flat faces take 2 bytes an interval and 1 a line. No end takes less than a byte: a reader needs memory for what a file holds
 //! and not for what it promises.
 
-use sweepsim_dexel::{End, Frame, Grid, Source};
+use sweepsim_dexel::{Dexels, End, Frame, Grid, Source};
 
 use crate::error::{FormatError, Problem};
 
 pub(crate) const MAGIC: &[u8; 8] = b"sweepdxl";
+/// The version that is written where it can hold the numbers of all paths; up to [`WIDE`] is read.
 pub(crate) const VERSION: u32 = 1;
+/// As version 1, with numbers of paths from 65,535 on: readers of version 1 know none of these.
+pub(crate) const WIDE: u32 = 2;
 pub(crate) const HEADER: usize = 64;
 /// What follows the header where there is a frame.
 pub(crate) const FRAME: usize = 96;
@@ -47,6 +50,19 @@ pub(crate) const MOVE: u8 = 4;
 pub(crate) const TIME: u8 = 8;
 pub(crate) const STOCK: u8 = 16;
 
+/// Whether some number of a path is as high as what tables of numbers have for no path in 16 bits.
+pub(crate) fn has_wide_paths(dexels: &Dexels) -> bool {
+    dexels.highest_path().is_some_and(|path| path >= u16::MAX.into())
+}
+
+/// Path, segment and time of a source as numbers for tables: the highest number of a path, in 32 bits, stands for the stock.
+pub(crate) fn source_numbers(source: Source) -> (u32, u32, f32) {
+    match source {
+        Source::Stock => (u32::MAX, 0, 0.0),
+        Source::Cut { path, segment, t } => (path, segment, t),
+    }
+}
+
 /// What ends of a block are compared with.
 #[derive(Default)]
 pub(crate) struct Before {
@@ -58,7 +74,7 @@ impl Before {
         let nothing = End {
             z: 0.0,
             normal: [0.0, 0.0, 1.0],
-            source: Source::STOCK,
+            source: Source::Stock,
         };
         *self.ends.get(number).or(below).unwrap_or(&(nothing, [0, 0]))
     }

@@ -5,7 +5,7 @@ use std::io::Read;
 use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source, unpack_normal};
 
 use super::binary::{
-    BLOCK_HEADER, Before, END, FRAME, HEADER, HEIGHT, LINES, MAGIC, MOVE, NORMAL, STOCK, TIME, VERSION, in_frame,
+    BLOCK_HEADER, Before, END, FRAME, HEADER, HEIGHT, LINES, MAGIC, MOVE, NORMAL, STOCK, TIME, VERSION, WIDE, in_frame,
 };
 use crate::checksum::crc32;
 use crate::error::{FormatError, Problem};
@@ -107,9 +107,9 @@ fn header(reader: &mut impl Read) -> Result<Grid, FormatError> {
     };
     let version = u32::from_le_bytes(number(&header, 8));
     let framed = u32::from_le_bytes(number(&header, 12));
-    if version != VERSION {
+    if !(VERSION..=WIDE).contains(&version) {
         return Err(FormatError::new(
-            Problem::value("the version of this file", version, format!("{VERSION}")),
+            Problem::value("the version of this file", version, format!("{VERSION} or {WIDE}")),
             None,
         ));
     }
@@ -213,17 +213,22 @@ fn end(rest: &mut Rest<'_>, before: &Before, number: usize, line: &mut Vec<(End,
         normal = [i16::from_le_bytes(rest.take()?), i16::from_le_bytes(rest.take()?)];
     }
     end.normal = unpack_normal(normal);
+    let (mut made_by, mut t) = match end.source {
+        Source::Stock => (None, 0.0),
+        Source::Cut { path, segment, t } => (Some((path, segment)), t),
+    };
     if differs & MOVE != 0 {
-        end.source.path = u16::try_from(rest.varint()?).ok()?;
-        end.source.segment = u32::try_from(rest.varint()?).ok()?;
+        let path = u32::try_from(rest.varint()?).ok()?;
+        made_by = Some((path, u32::try_from(rest.varint()?).ok()?));
     }
     if differs & TIME != 0 {
-        end.source.t = f32::from_le_bytes(rest.take()?);
+        t = f32::from_le_bytes(rest.take()?);
     }
-    if differs & STOCK != 0 {
-        end.source = Source::STOCK;
-    }
-    let known = differs < 2 * STOCK && (0.0..=1.0).contains(&end.source.t);
+    end.source = match made_by {
+        Some((path, segment)) if differs & STOCK == 0 => Source::Cut { path, segment, t },
+        _ => Source::Stock,
+    };
+    let known = differs < 2 * STOCK && (0.0..=1.0).contains(&t);
     line.push((end, normal));
     known.then_some(end)
 }

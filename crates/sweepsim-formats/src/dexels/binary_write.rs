@@ -5,7 +5,8 @@ use std::io::Write;
 use sweepsim_dexel::{Dexels, Source, pack_normal};
 
 use super::binary::{
-    BLOCK_HEADER, BYTES, Before, END, HEADER, HEIGHT, LINES, MAGIC, MOVE, NORMAL, STOCK, TIME, VERSION, framed_numbers,
+    BLOCK_HEADER, BYTES, Before, END, HEADER, HEIGHT, LINES, MAGIC, MOVE, NORMAL, STOCK, TIME, VERSION, WIDE,
+    framed_numbers, has_wide_paths,
 };
 use crate::checksum::crc32;
 
@@ -25,7 +26,7 @@ pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io:
     let grid = dexels.grid();
     let mut header = Vec::with_capacity(HEADER);
     header.extend_from_slice(MAGIC);
-    header.extend_from_slice(&VERSION.to_le_bytes());
+    header.extend_from_slice(&if has_wide_paths(dexels) { WIDE } else { VERSION }.to_le_bytes());
     let framed = !grid.frame().is_world();
     header.extend_from_slice(&u32::from(framed).to_le_bytes());
     for number in grid.min().into_iter().chain(grid.max()) {
@@ -96,18 +97,23 @@ fn fill(dexels: &Dexels, first: usize, out: &mut Vec<u8>) -> usize {
                 differs |= NORMAL;
                 normal.iter().for_each(|c| out.extend_from_slice(&c.to_le_bytes()));
             }
-            let (new, old) = (end.source, old.source);
-            if new == Source::STOCK {
-                differs |= if old == Source::STOCK { 0 } else { STOCK };
-            } else {
-                if (new.path, new.segment) != (old.path, old.segment) {
-                    differs |= MOVE;
-                    varint(new.path.into(), out);
-                    varint(new.segment.into(), out);
-                }
-                if new.t.to_bits() != old.t.to_bits() {
-                    differs |= TIME;
-                    out.extend_from_slice(&new.t.to_le_bytes());
+            match (end.source, old.source) {
+                (Source::Stock, Source::Stock) => {}
+                (Source::Stock, _) => differs |= STOCK,
+                (Source::Cut { path, segment, t }, old) => {
+                    let (old_move, old_t) = match old {
+                        Source::Stock => (None, 0.0),
+                        Source::Cut { path, segment, t } => (Some((path, segment)), t),
+                    };
+                    if old_move != Some((path, segment)) {
+                        differs |= MOVE;
+                        varint(path.into(), out);
+                        varint(segment.into(), out);
+                    }
+                    if t.to_bits() != f32::to_bits(old_t) {
+                        differs |= TIME;
+                        out.extend_from_slice(&t.to_le_bytes());
+                    }
                 }
             }
             out[place] = differs;

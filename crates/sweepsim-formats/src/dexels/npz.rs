@@ -8,13 +8,13 @@
 //! | `line` | (n,) `<u4` | the line of each interval, `i · cells[1] + j`, never less than the one before |
 //! | `z` | (n, 2) `<f8` | its ends |
 //! | `normal` | (n, 2, 3) `<f4` | their normals |
-//! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | what made them: path 65535 for no tool |
+//! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | what made them: path 65535 for no tool; with more paths `path` is `<u4`, and 4294967295 for no tool |
 
 use std::io::Write;
 
 use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source};
 
-use super::binary::{framed_numbers, in_frame};
+use super::binary::{framed_numbers, has_wide_paths, in_frame, source_numbers};
 use crate::error::{FormatError, Problem};
 use crate::zip::{self, Archive};
 
@@ -39,7 +39,7 @@ fn npy(kind: &str, shape: &[usize], data: impl IntoIterator<Item = u8>) -> Vec<u
 /// Writes dexels as NumPy arrays: `numpy.load(file)["z"]` are the ends of all intervals.
 ///
 /// # Errors
-/// What the writer says; an array of more than 4 GiB.
+/// What the writer says; an array of more than 4 GiB; a path numbered `u32::MAX`.
 pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
     let grid = dexels.grid();
     let intervals = || {
@@ -53,6 +53,21 @@ pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
     let cells = grid.cells().into_iter().flat_map(|n| (n as u64).to_le_bytes());
     let frame = framed_numbers(grid.frame()).flat_map(f64::to_le_bytes);
     let frame = ("frame.npy", npy("<f8", &[4, 3], frame));
+    let sources = || ends().map(|end| source_numbers(end.source));
+    let paths = if has_wide_paths(dexels) {
+        if dexels.highest_path() == Some(u32::MAX) {
+            let message = "NumPy arrays have no room for a path with the number 4294967295";
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, message));
+        }
+        npy("<u4", &[n, 2], sources().flat_map(|(path, ..)| path.to_le_bytes()))
+    } else {
+        // The stock's number keeps its lower half.
+        npy(
+            "<u2",
+            &[n, 2],
+            sources().flat_map(|(path, ..)| (path as u16).to_le_bytes()),
+        )
+    };
     let mut entries = vec![
         ("area.npy", npy("<f8", &[2, 2], area)),
         ("cells.npy", npy("<u8", &[2], cells)),
@@ -73,17 +88,18 @@ pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
                 ends().flat_map(|e| e.normal).flat_map(f32::to_le_bytes),
             ),
         ),
-        (
-            "path.npy",
-            npy("<u2", &[n, 2], ends().flat_map(|e| e.source.path.to_le_bytes())),
-        ),
+        ("path.npy", paths),
         (
             "segment.npy",
-            npy("<u4", &[n, 2], ends().flat_map(|e| e.source.segment.to_le_bytes())),
+            npy(
+                "<u4",
+                &[n, 2],
+                sources().flat_map(|(_, segment, _)| segment.to_le_bytes()),
+            ),
         ),
         (
             "t.npy",
-            npy("<f4", &[n, 2], ends().flat_map(|e| e.source.t.to_le_bytes())),
+            npy("<f4", &[n, 2], sources().flat_map(|(_, _, t)| t.to_le_bytes())),
         ),
     ];
     if !grid.frame().is_world() {
@@ -172,7 +188,20 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
     let lines = array::<4>(&archive, "line", "<u4", &[])?;
     let z = array::<8>(&archive, "z", "<f8", &[2])?;
     let normals = array::<4>(&archive, "normal", "<f4", &[2, 3])?;
-    let paths = array::<2>(&archive, "path", "<u2", &[2])?;
+    let narrow = array::<2>(&archive, "path", "<u2", &[2]).map(|paths| {
+        let number = |path: &[u8; 2]| Some(u16::from_le_bytes(*path)).filter(|path| *path < u16::MAX);
+        paths.iter().map(|path| number(path).map(u32::from)).collect()
+    });
+    let paths: Vec<Option<u32>> = match narrow {
+        Ok(paths) => paths,
+        Err(error) => match array::<4>(&archive, "path", "<u4", &[2]) {
+            Ok(paths) => {
+                let number = |path: &[u8; 4]| Some(u32::from_le_bytes(*path)).filter(|path| *path < u32::MAX);
+                paths.iter().map(number).collect()
+            }
+            Err(_) => return Err(error),
+        },
+    };
     let segments = array::<4>(&archive, "segment", "<u4", &[2])?;
     let times = array::<4>(&archive, "t", "<f4", &[2])?;
     if [z.len(), normals.len() / 3, paths.len(), segments.len(), times.len()] != [2 * lines.len(); 5] {
@@ -181,11 +210,11 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
     let end = |k: usize| End {
         z: f64::from_le_bytes(z[k]),
         normal: [0, 1, 2].map(|c| f32::from_le_bytes(normals[3 * k + c])),
-        source: Source {
-            path: u16::from_le_bytes(paths[k]),
+        source: paths[k].map_or(Source::Stock, |path| Source::Cut {
+            path,
             segment: u32::from_le_bytes(segments[k]),
             t: f32::from_le_bytes(times[k]),
-        },
+        }),
     };
     let mut builder = DexelsBuilder::new(grid);
     let mut line: Vec<Interval> = Vec::new();

@@ -4,13 +4,14 @@ use std::io::{self, Write};
 
 use sweepsim_dexel::{Dexels, End};
 
+use super::binary::{has_wide_paths, source_numbers};
 use crate::vtk::Document;
 
 /// VTK's number for a line.
 const LINE: u8 = 3;
 
 /// Writes dexels for ParaView (`.vtu`): each interval is a line, with its cell `i`, `j`; its ends have `normal`, `path` (65535 for
-/// no tool), `segment` and `t`.
+/// no tool, 4294967295 where there are more paths), `segment` and `t`.
 ///
 /// # Errors
 /// What the writer says.
@@ -36,14 +37,25 @@ pub fn write_dexels_vtu(dexels: &Dexels, writer: &mut impl Write) -> io::Result<
     let world = |end: &End| grid.frame().turn_to_world(end.normal.map(f64::from)).map(|c| c as f32);
     let normals = ends().flat_map(|(_, end)| world(&end)).flat_map(f32::to_le_bytes);
     document.array("normal", "Float32", 3, normals);
-    document.array("path", "UInt16", 1, of_ends(|end| end.source.path.to_le_bytes().into()));
+    if has_wide_paths(dexels) {
+        let path = |end: &End| source_numbers(end.source).0.to_le_bytes().into();
+        document.array("path", "UInt32", 1, of_ends(path));
+    } else {
+        let path = |end: &End| (source_numbers(end.source).0 as u16).to_le_bytes().into();
+        document.array("path", "UInt16", 1, of_ends(path));
+    }
     document.array(
         "segment",
         "UInt32",
         1,
-        of_ends(|end| end.source.segment.to_le_bytes().into()),
+        of_ends(|end| source_numbers(end.source).1.to_le_bytes().into()),
     );
-    document.array("t", "Float32", 1, of_ends(|end| end.source.t.to_le_bytes().into()));
+    document.array(
+        "t",
+        "Float32",
+        1,
+        of_ends(|end| source_numbers(end.source).2.to_le_bytes().into()),
+    );
     document.open("/PointData");
     document.open("CellData");
     document.array("i", "UInt32", 1, lines().flat_map(|(i, _)| (i as u32).to_le_bytes()));

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Frame, Grid, Interval, Source};
-use sweepsim_formats::{read_dexels_binary, write_dexels_binary};
+use sweepsim_formats::{read_dexels_binary, read_dexels_npz, write_dexels_binary, write_dexels_npz};
 
 /// Any dexels on a few hundred lines.
 fn dexels() -> impl Strategy<Value = Dexels> {
@@ -31,7 +31,7 @@ fn dexels() -> impl Strategy<Value = Dexels> {
                 if *segment > 2 {
                     interval.upper.normal = *normal;
                     let segment = segment * 1000 + (index % 7) as u32;
-                    interval.upper.source = Source {
+                    interval.upper.source = Source::Cut {
                         path: 2,
                         segment,
                         t: *t,
@@ -148,4 +148,45 @@ fn large_dexels_have_many_blocks() {
     let file = written(&slope);
     assert!(file.len() < 20 * slope.count(), "{} bytes", file.len());
     assert_eq!(read_dexels_binary(&mut &file[..]).unwrap(), slope);
+}
+
+/// Cuts of paths with these numbers on four lines each, and stock beside them.
+fn cut_by(paths: &[u32]) -> Dexels {
+    let grid = Grid::new([0.0; 2], [paths.len() as f64, 4.0], [paths.len(), 4]).unwrap();
+    Dexels::from_fn(grid, |index, out| {
+        let (i, j) = grid.place(index);
+        let path = paths[i];
+        let mut interval = Interval::between(0.0, 1.0 + j as f64);
+        // The second one once looked like the stock.
+        interval.upper.source = Source::Cut {
+            path,
+            segment: j as u32,
+            t: 0.25 * j as f32,
+        };
+        out.push(interval);
+    })
+}
+
+#[test]
+fn every_number_of_a_path_is_read_again() {
+    let version = |file: &[u8]| u32::from_le_bytes([file[8], file[9], file[10], file[11]]);
+    for (paths, expected) in [
+        (vec![0, 1, 65_533, 65_534], 1),
+        (vec![65_534, 65_535, 65_536, 100_000], 2),
+        (vec![u32::MAX - 1, u32::MAX], 2),
+    ] {
+        let dexels = cut_by(&paths);
+        assert_eq!(dexels.highest_path(), paths.iter().copied().max());
+        let mut file = Vec::new();
+        write_dexels_binary(&dexels, &mut file).unwrap();
+        assert_eq!(version(&file), expected, "{paths:?}");
+        assert_eq!(read_dexels_binary(&mut file.as_slice()).unwrap(), dexels, "{paths:?}");
+        let mut arrays = Vec::new();
+        if paths.contains(&u32::MAX) {
+            assert!(write_dexels_npz(&dexels, &mut arrays).is_err());
+        } else {
+            write_dexels_npz(&dexels, &mut arrays).unwrap();
+            assert_eq!(read_dexels_npz(&arrays).unwrap(), dexels, "{paths:?}");
+        }
+    }
 }

@@ -23,7 +23,7 @@ fn dexels() -> Dexels {
         for k in 0..index % 4 {
             let mut interval = Interval::between(k as f64 + 0.1, k as f64 + 0.9);
             interval.upper.normal = [0.6, 0.0, 0.8];
-            interval.upper.source = Source {
+            interval.upper.source = Source::Cut {
                 path: 3,
                 segment: index as u32,
                 t: 0.25,

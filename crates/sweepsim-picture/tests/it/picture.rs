@@ -16,7 +16,7 @@ fn block(cut: bool) -> Mesh {
     if cut {
         for index in 0..grid.len() {
             let mut groove = Interval::between(5.0, 20.0);
-            let source = Source {
+            let source = Source::Cut {
                 path: 0,
                 segment: 0,
                 t: 0.5,

@@ -77,8 +77,8 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Where a crossing at the time `t` of a part comes from.
     fn source(&self, at: usize, t: f64) -> Source {
         let part = &self.parts[at];
-        Source {
-            path: u16::try_from(self.path).unwrap_or(u16::MAX - 1),
+        Source::Cut {
+            path: self.path,
             segment: part.number,
             t: part.start + part.share * part.segment.time(t) as f32,
         }

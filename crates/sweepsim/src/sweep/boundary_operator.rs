@@ -91,7 +91,7 @@ mod tests {
             z: k as f64,
             jump: *jump,
             normal: [0.0, 0.0, *normal],
-            source: Source::STOCK,
+            source: Source::Stock,
         };
         crossings.iter().enumerate().map(crossing).collect()
     }

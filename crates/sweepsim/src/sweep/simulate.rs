@@ -87,7 +87,7 @@ fn each(
 
 /// Takes what the cuts sweep, one after the other, out of `stock`.
 ///
-/// [`Options::path_number`] is set to the number of each cut; sources tell 65,534 of them apart.
+/// [`Options::path_number`] is set to the number of each cut.
 ///
 /// # Errors
 /// Those of [`sweep`](crate::sweep).

@@ -7,7 +7,7 @@ use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim::{Method, Options, Sweep, sweep};
-use sweepsim_dexel::{End, Grid, Interval};
+use sweepsim_dexel::{End, Grid, Interval, Source};
 use sweepsim_motion::{Path, Pose, Profile, Tool};
 use sweepsim_tests::oracle::{Depth, Motion, Outline, Sampling, Span, SweptLine, Verdict, compare, swept_line};
 
@@ -230,13 +230,16 @@ fn judge_ends(
 /// At the time that an end names as its source the tool's boundary must pass through it.
 fn judge_source(end: &End, depth: &Depth<'_>, motion: &Motion, [x, y]: [f64; 2]) -> Result<(), String> {
     let source = end.source;
-    let (segment, t) = (source.segment as usize, f64::from(source.t));
+    let Source::Cut { path, segment, t } = source else {
+        return Err(format!("no tool made the end at z = {}", end.z));
+    };
+    let (segment, t) = (segment as usize, f64::from(t));
     let arcs = motion.arcs().iter().filter(|arc| arc.segment == segment);
     let point = [x, y, end.z];
     let speed = arcs
         .map(|arc| arc.speed_bound(&point.into()) / (arc.time[1] - arc.time[0]))
         .fold(f64::NAN, f64::max);
-    if source.path != 0 || speed.is_nan() || !(0.0..=1.0).contains(&t) {
+    if path != 0 || speed.is_nan() || !(0.0..=1.0).contains(&t) {
         return Err(format!("the end at z = {} has no move: {source:?}", end.z));
     }
     // The time is an f32: half a unit in the last place is 6e-8 at most. The end itself is good to the tolerance.
