@@ -132,7 +132,7 @@ fn other_files_and_versions_are_named() {
     assert!(error(b"i,j,z0,z1\n").contains("no file of dexels"));
     assert!(error(&[b'x'; 100]).contains("no file of dexels"));
     file[8] = 7;
-    assert_eq!(error(&file), "the version of this file is 7, but must be 1");
+    assert_eq!(error(&file), "the version of this file is 7, but must be 1 or 2");
 }
 
 #[test]
