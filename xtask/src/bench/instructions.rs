@@ -20,7 +20,7 @@ pub fn instructions(filter: Option<&str>) -> Result<(), String> {
     // What a process costs that does nothing.
     let nothing = count(&own, "nothing")?;
     println!("{:<28} {:>12}", "work, one thread", "Mio. instr.");
-    for name in names()? {
+    for name in names() {
         if filter.is_none_or(|filter| name.contains(filter)) {
             println!(
                 "{name:<28} {:>12.2}",
@@ -31,18 +31,18 @@ pub fn instructions(filter: Option<&str>) -> Result<(), String> {
     Ok(())
 }
 
-fn names() -> Result<Vec<String>, String> {
+fn names() -> Vec<String> {
     let mut names = Vec::new();
-    for cutter in table1::tools()? {
+    for cutter in table1::CUTTERS {
         for sweep in 1..=2 {
-            let name = |method| format!("{}-sweep{sweep}-{method}", cutter.name);
+            let name = |method| format!("{cutter}-sweep{sweep}-{method}");
             // The form tool by charts alone: the others take minutes.
-            let methods = if cutter.name == "form" { &METHODS[..1] } else { &METHODS };
+            let methods = if cutter == "form" { &METHODS[..1] } else { &METHODS };
             names.extend(methods.iter().map(name));
         }
     }
     names.extend(JOBS.map(String::from));
-    Ok(names)
+    names
 }
 
 fn count(own: &std::path::Path, name: &str) -> Result<u64, String> {
@@ -75,11 +75,11 @@ fn here(name: &str) -> Result<(), String> {
         let job = Job::read(&file).map_err(|error| error.to_string())?;
         return programs::once(&job).map(drop);
     }
-    for cutter in table1::tools()? {
+    for cutter in table1::CUTTERS {
         for which in 0..2 {
             for method in METHODS {
-                if name == format!("{}-sweep{}-{method}", cutter.name, which + 1) {
-                    return cutter.entry(which, CELLS)?.run(method);
+                if name == format!("{cutter}-sweep{}-{method}", which + 1) {
+                    return table1::cutter(cutter)?.entry(which, CELLS)?.run(method);
                 }
             }
         }
