@@ -115,7 +115,7 @@ impl Derivatives {
                 let choose: f64 = index
                     .iter()
                     .zip(&beta)
-                    .map(|(&i, &b)| crate::kernel::binomial::row(i)[b])
+                    .map(|(&i, &b)| crate::kernel::binomial(i, b))
                     .product();
                 for k in 0..m {
                     own[k] -= choose * w * result.values[at * m + k];

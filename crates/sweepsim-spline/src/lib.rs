@@ -51,7 +51,7 @@ mod bounds;
 mod construct;
 mod determinant;
 mod jets;
-mod kernel;
+pub mod kernel;
 mod knots;
 mod rounding;
 mod spline;

@@ -4,7 +4,7 @@ use super::{NormalField, Patch, Revolved};
 use crate::profile::{Bezier, OutlineArc};
 use nalgebra::Vector2;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
-use sweepsim_spline::Bernstein;
+use sweepsim_spline::{Bernstein, kernel};
 
 pub(super) fn form(degrees: &[usize], coefficients: Vec<f64>) -> Bernstein {
     Bernstein::new(degrees, coefficients).expect("as many coefficients as the degrees say, all finite")
@@ -172,18 +172,11 @@ impl Meridian {
             &self.normal_zeta,
             &self.moment,
         ];
-        lists
-            .iter()
-            .all(|list| list.len() <= 3)
-            .then(|| lists.map(|list| quadratic(list)))
-    }
-}
-
-/// A list of two or three Bernstein coefficients as one of three.
-fn quadratic(list: &[f64]) -> [f64; 3] {
-    match *list {
-        [a, b, c] => [a, b, c],
-        [a, b] => [a, 0.5 * a + 0.5 * b, b],
-        _ => [list[0]; 3],
+        lists.iter().all(|list| list.len() <= 3).then(|| {
+            lists.map(|list| {
+                let mut raised = kernel::raised(list, 3 - list.len());
+                std::array::from_fn(|_| raised.next().unwrap_or(0.0))
+            })
+        })
     }
 }

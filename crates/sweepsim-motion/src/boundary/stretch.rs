@@ -5,6 +5,7 @@ use super::side_curve::{PLACES, SideCurve, part};
 use super::{Edge, NormalField};
 use nalgebra::{DMatrix, DVector, Vector3};
 use sweepsim_spline::Bernstein;
+use sweepsim_spline::kernel::binomial;
 
 /// Degree of normals that are carried over, how far they may be off, and how often the stretch is halved for that.
 const CARRIED: usize = 6;
@@ -134,8 +135,7 @@ impl JointStretch<'_> {
 fn fitted(value: impl Fn(f64) -> Vector3<f64>) -> ([Bernstein; 3], f64) {
     let count = CARRIED + 1;
     let node = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / count as f64).cos();
-    let binomial = |j: usize| (0..j).fold(1.0, |b, k| b * (CARRIED - k) as f64 / (k + 1) as f64);
-    let basis = |j: usize, x: f64| binomial(j) * x.powi(j as i32) * (1.0 - x).powi((CARRIED - j) as i32);
+    let basis = |j: usize, x: f64| binomial(CARRIED, j) * x.powi(j as i32) * (1.0 - x).powi((CARRIED - j) as i32);
     let system = DMatrix::from_fn(count, count, |i, j| basis(j, node(i))).lu();
     let values: Vec<Vector3<f64>> = (0..count).map(|i| value(node(i))).collect();
     let forms = [0, 1, 2].map(|k| {

@@ -4,8 +4,9 @@
 //! rational Bézier curves*, CAGD 9, 1991). So a curve whose legs lie in an open half-plane neither stops nor meets itself, and neither do two that join
 //! where the legs of both lie in one: what is not so is halved.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
+use sweepsim_spline::kernel;
 
 /// A rational Bézier curve. Invariants: as many points as positive weights, at least two; the first and the last weight are 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,27 +44,20 @@ impl Bezier {
         self.weights.iter().all(|w| *w == 1.0)
     }
 
-    /// Both halves, by de Casteljau. Their weights are not in standard form.
+    /// Points times weights, and weights.
+    fn homogeneous(&self) -> Vec<Vector3<f64>> {
+        let both = self.points.iter().zip(&self.weights);
+        both.map(|(p, w)| Vector3::new(p.x * w, p.y * w, *w)).collect()
+    }
+
+    /// Both halves. Their weights are not in standard form.
     pub(super) fn halves(&self) -> (Self, Self) {
-        let mut row: Vec<_> = self
-            .points
-            .iter()
-            .zip(&self.weights)
-            .map(|(p, w)| (p * *w, *w))
-            .collect();
-        let (mut low, mut high) = (vec![row[0]], vec![row[row.len() - 1]]);
-        while row.len() > 1 {
-            row = row
-                .windows(2)
-                .map(|p| ((p[0].0 + p[1].0) * 0.5, 0.5 * (p[0].1 + p[1].1)))
-                .collect();
-            low.push(row[0]);
-            high.push(row[row.len() - 1]);
-        }
-        high.reverse();
-        let made = |list: Vec<(Vector2<f64>, f64)>| Self {
-            points: list.iter().map(|(p, w)| p / *w).collect(),
-            weights: list.into_iter().map(|(_, w)| w).collect(),
+        let mut high = self.homogeneous();
+        let mut low = high.clone();
+        kernel::split_line(&mut high, &mut low, 0.5, 0.5);
+        let made = |list: Vec<Vector3<f64>>| Self {
+            points: list.iter().map(|p| p.xy() / p.z).collect(),
+            weights: list.into_iter().map(|p| p.z).collect(),
         };
         let (mut low, mut high) = (made(low), made(high));
         low.points[0] = self.points[0];
@@ -73,17 +67,8 @@ impl Bezier {
     }
 
     pub fn at(&self, s: f64) -> Vector2<f64> {
-        let mut row: Vec<_> = self
-            .points
-            .iter()
-            .zip(&self.weights)
-            .map(|(p, w)| (p * *w, *w))
-            .collect();
-        while row.len() > 1 {
-            let mix = |p: &[(Vector2<f64>, f64)]| (p[0].0 * (1.0 - s) + p[1].0 * s, p[0].1 * (1.0 - s) + p[1].1 * s);
-            row = row.windows(2).map(mix).collect();
-        }
-        row[0].0 / row[0].1
+        let point = kernel::evaluate(&mut self.homogeneous(), s).unwrap_or_else(Vector3::z);
+        point.xy() / point.z
     }
 
     pub(super) fn legs(&self) -> impl Iterator<Item = Vector2<f64>> + '_ {

@@ -1,8 +1,9 @@
 //! Velocities: of the tip, of the orientation, and of the tool as it sees them itself.
 
-use super::forms::{derivative, product, raised, wronskian};
+use super::forms::{product, raised, wronskian};
 use super::{Kind, Segment, SegmentCurve, SegmentEnd};
 use nalgebra::{Matrix3, Vector3};
+use sweepsim_spline::kernel;
 
 impl Segment {
     /// Numerators of `b′`, and as many positive denominators.
@@ -77,7 +78,7 @@ impl SegmentCurve {
     fn rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
         let (points, weights) = (&self.points, &self.point_weights);
         if weights.is_empty() {
-            return (derivative(points), vec![1.0]);
+            return (kernel::derivative(points).collect(), vec![1.0]);
         }
         let rate = wronskian(points.len() - 1, |i, j| points[j] * weights[i] - points[i] * weights[j]);
         (rate, product(weights, weights, |a, b| a * b))

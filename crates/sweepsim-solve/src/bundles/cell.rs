@@ -5,6 +5,7 @@ use crate::coefficients::tensor;
 use crate::numbers::{CUT, EPSILON};
 use crate::{Enclosure, MAX_DEGREE};
 use sweepsim_spline::Bernstein;
+use sweepsim_spline::kernel;
 
 /// Forms of one degree, one after another.
 #[derive(Clone, Copy, Debug)]
@@ -175,7 +176,7 @@ impl<const N: usize> Blocks<N> {
         let mut parts = [*frame; 2];
         for (number, block) in self.blocks.iter().enumerate().filter(|(_, block)| block.count > 0) {
             let (degree, inner) = (block.degrees[axis], block.inner(axis));
-            tensor::split(
+            kernel::split(
                 &mut upper[block.range()],
                 &mut lower[block.range()],
                 degree,

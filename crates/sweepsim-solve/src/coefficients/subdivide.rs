@@ -5,6 +5,7 @@ use super::tensor;
 use crate::numbers::double::{self, Double};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS};
 use smallvec::SmallVec;
+use sweepsim_spline::kernel;
 
 impl Layout {
     /// Restricts along one variable; the new ends may lie outside the old ones.
@@ -35,13 +36,13 @@ impl Layout {
             let Some(axis) = part.axis(variable) else { continue };
             let c = part.of_mut(&mut cell.c);
             if upper_first && cut_upper {
-                tensor::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
+                kernel::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
             }
             if cut_lower {
-                tensor::keep_lower(c, axis.degree, axis.inner, lower.0, lower.1);
+                kernel::keep_lower(c, axis.degree, axis.inner, lower.0, lower.1);
             }
             if !upper_first && cut_upper {
-                tensor::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
+                kernel::keep_upper(c, axis.degree, axis.inner, upper.0, upper.1);
             }
             let growth = (growth_upper * growth_lower).max(1.0);
             let growth = if growth < 1.0 + 1e-12 {
@@ -72,7 +73,7 @@ impl Layout {
             let low = &mut lower.c[part.offset..part.offset + part.len];
             match part.axis(variable) {
                 Some(axis) => {
-                    tensor::split(c, low, axis.degree, axis.inner, s, t);
+                    kernel::split(c, low, axis.degree, axis.inner, s, t);
                     let e = part.equation;
                     cell.noise[e] += 4.0 * EPSILON * axis.degree as f64 * cell.scale[e];
                 }

@@ -3,6 +3,7 @@
 use super::layout::{Axis, MAX_DEGREE, Summand};
 use super::tensor;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
+use sweepsim_spline::kernel;
 
 /// Range of `c − Σ slope (I/d − ½)`: the part less an affine function, by coefficients (affine functions have their values
 /// at `I/d` as coefficients).
@@ -118,12 +119,12 @@ pub(crate) fn evaluate_part(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec
         buffer.resize(2 * room, 0.0);
     }
     let (mut from, mut to) = buffer.split_at_mut(room);
-    tensor::basis(last.degree, s[last.variable], &mut w, &mut d);
+    kernel::basis_with_slopes(last.degree, s[last.variable], &mut w, &mut d);
     tensor::contract(c, &w, &mut from[..size]);
     tensor::contract(c, &d, &mut from[size..2 * size]);
     let mut length = size;
     for (alive, axis) in (2..).zip(part.axes[..count - 1].iter().rev()) {
-        tensor::basis(axis.degree, s[axis.variable], &mut w, &mut d);
+        kernel::basis_with_slopes(axis.degree, s[axis.variable], &mut w, &mut d);
         let size = axis.inner;
         for t in 0..alive {
             tensor::contract(

@@ -1,12 +1,11 @@
-//! Kernels on flat coefficient tensors: subdivision, ranges, envelopes, derivatives, values.
+//! Ranges, envelopes and slopes of coefficient tensors, laid out as in [`sweepsim_spline::kernel`], which cuts them.
 //!
-//! A tensor along one axis is `outer × (degree + 1) × inner`, `inner` contiguous: de Casteljau's steps are combinations of
-//! whole rows, which compilers turn into vector instructions. Nothing here allocates.
-//!
-//! Errors. One step `s·a + t·b` with computed `s ≈ 1 − t` and `t` (each within a few units in the last place of the ratio of
+//! Errors of cuts. One step `s·a + t·b` with computed `s ≈ 1 − t` and `t` (each within a few units in the last place of the ratio of
 //! exact box sides that it stands for) is within `4 ε M σ` of the exact one, `M` the largest coefficient, `σ = |s| + |t|`
 //! (1 inside the box, more outside), `ε = 2⁻⁵²`. A pass over degree `d` therefore turns an error `e` of all
 //! coefficients into at most `σᵈ (e + 4 d ε M)`; callers add this up ([`Layout::restrict`](crate::coefficients::Layout)).
+
+use sweepsim_spline::kernel::accumulate;
 
 /// Lanes of the reductions.
 const LANES: usize = 8;
@@ -56,134 +55,6 @@ pub(crate) fn range_from(values: &[f64], lo: f64, hi: f64) -> (f64, f64) {
 #[inline]
 pub(crate) fn range(values: &[f64]) -> (f64, f64) {
     range_from(values, f64::INFINITY, f64::NEG_INFINITY)
-}
-
-/// `first ← s·first + t·second` for neighbouring rows.
-#[inline(always)]
-fn blend(first: &mut [f64], second: &[f64], s: f64, t: f64) {
-    for (a, b) in first.iter_mut().zip(second) {
-        *a = s * *a + t * *b;
-    }
-}
-
-/// Keeps the part above `t` along an axis: in place.
-pub(crate) fn keep_upper(c: &mut [f64], degree: usize, inner: usize, s: f64, t: f64) {
-    if degree == 0 {
-        return;
-    }
-    if inner == 1 {
-        match degree {
-            1 => upper_rows::<2>(c, s, t),
-            2 => upper_rows::<3>(c, s, t),
-            3 => upper_rows::<4>(c, s, t),
-            4 => upper_rows::<5>(c, s, t),
-            _ => {
-                for row in c.chunks_exact_mut(degree + 1) {
-                    for level in 0..degree {
-                        for i in 0..degree - level {
-                            row[i] = s * row[i] + t * row[i + 1];
-                        }
-                    }
-                }
-            }
-        }
-        return;
-    }
-    for block in c.chunks_exact_mut((degree + 1) * inner) {
-        for level in 0..degree {
-            for i in 0..degree - level {
-                let (first, second) = block[i * inner..(i + 2) * inner].split_at_mut(inner);
-                blend(first, second, s, t);
-            }
-        }
-    }
-}
-
-fn upper_rows<const N: usize>(c: &mut [f64], s: f64, t: f64) {
-    let (rows, _) = c.as_chunks_mut::<N>();
-    for row in rows {
-        for level in 0..N - 1 {
-            for i in 0..N - 1 - level {
-                row[i] = s * row[i] + t * row[i + 1];
-            }
-        }
-    }
-}
-
-/// Keeps the part below `t` along an axis: in place.
-pub(crate) fn keep_lower(c: &mut [f64], degree: usize, inner: usize, s: f64, t: f64) {
-    if degree == 0 {
-        return;
-    }
-    if inner == 1 {
-        match degree {
-            1 => lower_rows::<2>(c, s, t),
-            2 => lower_rows::<3>(c, s, t),
-            3 => lower_rows::<4>(c, s, t),
-            4 => lower_rows::<5>(c, s, t),
-            _ => {
-                for row in c.chunks_exact_mut(degree + 1) {
-                    for level in 0..degree {
-                        for i in (level + 1..=degree).rev() {
-                            row[i] = s * row[i - 1] + t * row[i];
-                        }
-                    }
-                }
-            }
-        }
-        return;
-    }
-    for block in c.chunks_exact_mut((degree + 1) * inner) {
-        for level in 0..degree {
-            for i in (level + 1..=degree).rev() {
-                let (first, second) = block[(i - 1) * inner..(i + 1) * inner].split_at_mut(inner);
-                blend(second, first, t, s);
-            }
-        }
-    }
-}
-
-fn lower_rows<const N: usize>(c: &mut [f64], s: f64, t: f64) {
-    let (rows, _) = c.as_chunks_mut::<N>();
-    for row in rows {
-        for level in 0..N - 1 {
-            for i in (level + 1..N).rev() {
-                row[i] = s * row[i - 1] + t * row[i];
-            }
-        }
-    }
-}
-
-/// Both parts at `t` along an axis: the upper one in place, the lower one into `lower`.
-pub(crate) fn split(c: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, s: f64, t: f64) {
-    if degree == 0 {
-        lower.copy_from_slice(c);
-        return;
-    }
-    if inner == 1 {
-        let rows = c.chunks_exact_mut(degree + 1);
-        for (row, low) in rows.zip(lower.chunks_exact_mut(degree + 1)) {
-            low[0] = row[0];
-            for level in 0..degree {
-                for i in 0..degree - level {
-                    row[i] = s * row[i] + t * row[i + 1];
-                }
-                low[level + 1] = row[0];
-            }
-        }
-        return;
-    }
-    let size = (degree + 1) * inner;
-    for (block, low) in c.chunks_exact_mut(size).zip(lower.chunks_exact_mut(size)) {
-        low[..inner].copy_from_slice(&block[..inner]);
-        for level in 0..degree {
-            for i in 0..degree - level {
-                let (first, second) = block[i * inner..(i + 2) * inner].split_at_mut(inner);
-                blend(first, second, s, t);
-            }
-            low[(level + 1) * inner..(level + 2) * inner].copy_from_slice(&block[..inner]);
-        }
-    }
 }
 
 /// Least and greatest coefficient of each slab along an axis.
@@ -268,34 +139,6 @@ pub(crate) fn mean_slope(c: &[f64], degree: usize, inner: usize) -> f64 {
     sum / (blocks * inner as f64)
 }
 
-/// Bernstein polynomials of one degree at `s`, and their derivatives.
-pub(crate) fn basis(degree: usize, s: f64, values: &mut [f64], derivatives: &mut [f64]) {
-    let r = 1.0 - s;
-    values[0] = 1.0;
-    if degree == 0 {
-        derivatives[0] = 0.0;
-        return;
-    }
-    for d in 1..degree {
-        values[d] = s * values[d - 1];
-        for k in (1..d).rev() {
-            values[k] = r * values[k] + s * values[k - 1];
-        }
-        values[0] *= r;
-    }
-    let factor = degree as f64;
-    derivatives[0] = -factor * values[0];
-    derivatives[degree] = factor * values[degree - 1];
-    for k in 1..degree {
-        derivatives[k] = factor * (values[k - 1] - values[k]);
-    }
-    values[degree] = s * values[degree - 1];
-    for k in (1..degree).rev() {
-        values[k] = r * values[k] + s * values[k - 1];
-    }
-    values[0] *= r;
-}
-
 /// `out ← Σₖ weights[k] · slab k` along the last axis (slabs of `out.len()` coefficients).
 #[inline]
 pub(crate) fn contract(c: &[f64], weights: &[f64], out: &mut [f64]) {
@@ -304,57 +147,13 @@ pub(crate) fn contract(c: &[f64], weights: &[f64], out: &mut [f64]) {
         *x = weights[0] * a;
     }
     for (k, slab) in c.chunks_exact(size).enumerate().skip(1) {
-        let w = weights[k];
-        for (x, a) in out.iter_mut().zip(slab) {
-            *x += w * a;
-        }
+        accumulate(out, slab, weights[k]);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// `Σ cₖ Bₖ(t)` by the basis.
-    fn value(c: &[f64], t: f64) -> f64 {
-        let (mut b, mut d) = ([0.0; 9], [0.0; 9]);
-        basis(c.len() - 1, t, &mut b, &mut d);
-        c.iter().zip(b).map(|(c, b)| c * b).sum()
-    }
-
-    #[test]
-    fn parts_agree_with_values_of_the_whole() {
-        for degree in 1..=7 {
-            let c: Vec<f64> = (0..=degree).map(|i| ((i * i * 7 + 3) % 11) as f64 - 5.0).collect();
-            for t in [0.25, 0.7, -0.2, 1.3] {
-                let (mut upper, mut lower) = (c.clone(), c.clone());
-                keep_upper(&mut upper, degree, 1, 1.0 - t, t);
-                keep_lower(&mut lower, degree, 1, 1.0 - t, t);
-                let (mut both, mut low) = (c.clone(), c.clone());
-                split(&mut both, &mut low, degree, 1, 1.0 - t, t);
-                assert_eq!(both, upper);
-                for s in [0.0, 0.3, 1.0] {
-                    assert!((value(&upper, s) - value(&c, t + (1.0 - t) * s)).abs() < 1e-11);
-                    assert!((value(&lower, s) - value(&c, t * s)).abs() < 1e-11);
-                    assert!((value(&low, s) - value(&c, t * s)).abs() < 1e-11);
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn derivatives_are_those_of_the_basis() {
-        for degree in 0..=8 {
-            let (mut b, mut d) = ([0.0; 9], [0.0; 9]);
-            basis(degree, 0.37, &mut b, &mut d);
-            let (mut b1, mut b2, mut unused) = ([0.0; 9], [0.0; 9], [0.0; 9]);
-            basis(degree, 0.37 + 1e-6, &mut b1, &mut unused);
-            basis(degree, 0.37 - 1e-6, &mut b2, &mut unused);
-            for k in 0..=degree {
-                assert!(((b1[k] - b2[k]) / 2e-6 - d[k]).abs() < 1e-8);
-            }
-        }
-    }
 
     #[test]
     fn kernels_along_either_axis_agree() {

@@ -5,10 +5,8 @@
 //! pays, of the first two laid out with the product's stride, so that the inner loop is long and contiguous.
 
 use super::{Bernstein, Degrees, coefficient_count};
-use crate::kernel::binomial;
-use crate::kernel::{accumulate, along};
+use crate::kernel::{along, binomial_roundings, degree_of, elevate, multiply};
 use crate::rounding::{UNDERFLOW, UNIT, gamma, magnitude, up};
-use smallvec::SmallVec;
 use std::ops::{Add, Mul, Neg, Sub};
 
 impl Bernstein {
@@ -67,7 +65,7 @@ impl Bernstein {
             return product;
         }
         let mut coefficients = vec![0.0; count];
-        multiply_blocks(
+        multiply(
             (&self.degrees, &self.coefficients),
             (&other.degrees, &other.coefficients),
             &degrees,
@@ -185,7 +183,7 @@ impl Bernstein {
                 continue;
             }
             for degree in start..start + by {
-                elevate_rows(block, view.inner, degree);
+                elevate(block, degree, view.inner);
             }
         }
         // Weights k/(d+1) and (d+1−k)/(d+1) carry one rounding each, then one product each and one sum: γ₃ a pass.
@@ -220,26 +218,13 @@ fn common(a: &Bernstein, b: &Bernstein, rule: impl Fn(usize, usize) -> usize) ->
         .collect()
 }
 
-/// One elevation in place: the first `degree + 1` rows of `block` become `degree + 2`.
-fn elevate_rows(block: &mut [f64], inner: usize, degree: usize) {
-    block.copy_within(degree * inner..(degree + 1) * inner, (degree + 1) * inner);
-    let order = (degree + 1) as f64;
-    for k in (1..=degree).rev() {
-        let (before, after) = block.split_at_mut(k * inner);
-        let (s, t) = ((order - k as f64) / order, k as f64 / order);
-        for (a, &b) in after[..inner].iter_mut().zip(&before[(k - 1) * inner..]) {
-            *a = s * *a + t * b;
-        }
-    }
-}
-
 /// A bound on the error of a product's coefficients, from degrees, magnitude and error of the factors.
 pub(crate) fn product_error(a: (&[usize], f64, f64), b: (&[usize], f64, f64)) -> f64 {
     let (mut terms, mut roundings) = (1usize, 0);
     for axis in 0..a.0.len().max(b.0.len()) {
         let (d, e) = (degree_of(a.0, axis), degree_of(b.0, axis));
         terms = terms.saturating_mul(d.min(e) + 1);
-        roundings += 4 + binomial::roundings(d) + binomial::roundings(e) + binomial::roundings(d + e);
+        roundings += 4 + binomial_roundings(d) + binomial_roundings(e) + binomial_roundings(d + e);
     }
     let rounding = if a.1 == 0.0 || b.1 == 0.0 {
         0.0
@@ -247,96 +232,6 @@ pub(crate) fn product_error(a: (&[usize], f64, f64), b: (&[usize], f64, f64)) ->
         gamma(terms.saturating_add(roundings + 1)) * a.1 * b.1 + terms as f64 * UNDERFLOW
     };
     up(a.1 * b.2 + b.1 * a.2 + a.2 * b.2 + rounding)
-}
-
-fn degree_of(degrees: &[usize], axis: usize) -> usize {
-    degrees.get(axis).copied().unwrap_or(0)
-}
-
-type Scratch = SmallVec<[f64; 256]>;
-
-/// The coefficients times (`INVERSE`: divided by) the binomials of every variable, in place.
-fn scale_by_binomials<const INVERSE: bool>(coefficients: &mut [f64], degrees: &[usize]) {
-    let mut inner = 1;
-    for &degree in degrees {
-        if degree >= 2 {
-            let row = binomial::row(degree);
-            let factors: SmallVec<[f64; 32]> = row.iter().map(|&c| if INVERSE { 1.0 / c } else { c }).collect();
-            for block in coefficients.chunks_exact_mut(inner * (degree + 1)) {
-                if inner == 1 {
-                    block.iter_mut().zip(&factors).for_each(|(c, &factor)| *c *= factor);
-                    continue;
-                }
-                for (slice, &factor) in block.chunks_exact_mut(inner).zip(&factors) {
-                    slice.iter_mut().for_each(|c| *c *= factor);
-                }
-            }
-        }
-        inner *= degree + 1;
-    }
-}
-
-/// The product of two blocks of Bernstein coefficients, into `product`, which holds zeros and has the degrees' sums.
-pub(crate) fn multiply_blocks(
-    (degrees_a, a): (&[usize], &[f64]),
-    (degrees_b, b): (&[usize], &[f64]),
-    degrees: &[usize],
-    product: &mut [f64],
-) {
-    let mut scaled_a = Scratch::from_slice(a);
-    let mut scaled_b = Scratch::from_slice(b);
-    scale_by_binomials::<false>(&mut scaled_a, degrees_a);
-    scale_by_binomials::<false>(&mut scaled_b, degrees_b);
-    convolve((degrees_a, &scaled_a), (degrees_b, &scaled_b), degrees, product);
-    scale_by_binomials::<true>(product, degrees);
-}
-
-/// Adds the convolution of two scaled tensors to `product`.
-fn convolve(
-    (degrees_a, a): (&[usize], &[f64]),
-    (degrees_b, b): (&[usize], &[f64]),
-    degrees: &[usize],
-    product: &mut [f64],
-) {
-    // Lay the second operand's rows out with the product's first stride: planes become long rows.
-    let (row_a, row_b) = (degree_of(degrees_a, 0) + 1, degree_of(degrees_b, 0) + 1);
-    let (rows_b, stride) = (degree_of(degrees_b, 1) + 1, degree_of(degrees, 0) + 1);
-    let plane = stride * (rows_b - 1) + row_b;
-    let mut padded = Scratch::from_elem(0.0, plane * (b.len() / (row_b * rows_b)));
-    for (to, from) in padded.chunks_exact_mut(plane).zip(b.chunks_exact(row_b * rows_b)) {
-        for (j, row) in from.chunks_exact(row_b).enumerate() {
-            to[j * stride..j * stride + row_b].copy_from_slice(row);
-        }
-    }
-    let offsets_b = offsets(degrees_b, degrees, 2);
-    let offsets_a = offsets(degrees_a, degrees, 1);
-    for (row, &base) in a.chunks_exact(row_a).zip(&offsets_a) {
-        for (from, &offset) in padded.chunks_exact(plane).zip(&offsets_b) {
-            let start = base + offset;
-            for (i, &factor) in row.iter().enumerate() {
-                accumulate(&mut product[start + i..start + i + plane], from, factor);
-            }
-        }
-    }
-}
-
-/// Where in a tensor of `degrees` each entry of a form of degrees `own` goes that has index 0 in the first `skip` variables.
-fn offsets(own: &[usize], degrees: &[usize], skip: usize) -> SmallVec<[usize; 64]> {
-    let mut offsets = SmallVec::from_slice(&[0]);
-    let mut stride = 1;
-    for (axis, &degree) in degrees.iter().enumerate() {
-        if axis >= skip {
-            let count = offsets.len();
-            for i in 1..=degree_of(own, axis) {
-                for k in 0..count {
-                    let offset = offsets[k] + i * stride;
-                    offsets.push(offset);
-                }
-            }
-        }
-        stride *= degree + 1;
-    }
-    offsets
 }
 
 impl Neg for &Bernstein {

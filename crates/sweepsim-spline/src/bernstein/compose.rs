@@ -1,7 +1,7 @@
 //! Composition: a form of forms.
 
 use super::{Bernstein, BernsteinError, MAX_VARIABLES};
-use crate::kernel::binomial;
+use crate::kernel::{binomial_roundings, binomials};
 use crate::rounding::{UNDERFLOW, gamma, magnitude, up};
 
 impl Bernstein {
@@ -194,11 +194,11 @@ fn basis_of(g: &Bernstein, degree: usize) -> Vec<Bernstein> {
         powers
     };
     let (up, down) = (powers(g), powers(&complement));
-    let row = binomial::row(degree);
+    let row = binomials(degree);
     (0..=degree)
         .map(|i| {
             let mut product = up[i].mul(&down[degree - i]).scale(row[i]);
-            let roundings = binomial::roundings(degree);
+            let roundings = binomial_roundings(degree);
             if roundings > 0 {
                 product.error =
                     crate::rounding::up(product.error + gamma(roundings) * magnitude(&product.coefficients));

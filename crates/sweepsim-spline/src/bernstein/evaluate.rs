@@ -6,6 +6,7 @@
 
 use super::Bernstein;
 use crate::jets::{self, Buffer, Derivatives, contract};
+use crate::kernel;
 use crate::rounding::{UNDERFLOW, gamma, up};
 use smallvec::SmallVec;
 
@@ -160,41 +161,18 @@ fn basis_derivative(degree: usize, x: f64, order: usize) -> Buffer {
 }
 
 /// The Bernstein basis of `degree` at `x`.
-pub(crate) fn basis(degree: usize, x: f64) -> SmallVec<[f64; 16]> {
-    let mut basis: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, degree + 1);
-    basis[0] = 1.0;
-    for step in 1..=degree {
-        raise(&mut basis, step, x);
-    }
+fn basis(degree: usize, x: f64) -> SmallVec<[f64; 16]> {
+    let mut basis = SmallVec::from_elem(0.0, degree + 1);
+    kernel::basis(degree, x, &mut basis);
     basis
 }
 
 /// The Bernstein basis of `degree` at `x`, and its derivative.
-pub(crate) fn basis_with_slope(degree: usize, x: f64) -> (SmallVec<[f64; 16]>, SmallVec<[f64; 16]>) {
-    let mut low: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, degree + 1);
-    low[0] = 1.0;
-    for step in 1..degree {
-        raise(&mut low, step, x);
-    }
-    let mut slope: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, degree + 1);
-    let factor = degree as f64;
-    if degree > 0 {
-        slope[0] = -factor * low[0];
-        slope[degree] = factor * low[degree - 1];
-        for i in 1..degree {
-            slope[i] = factor * (low[i - 1] - low[i]);
-        }
-        raise(&mut low, degree, x);
-    }
-    (low, slope)
-}
-
-/// From the basis of degree `step − 1` to that of degree `step`.
-fn raise(basis: &mut [f64], step: usize, x: f64) {
-    let s = 1.0 - x;
-    basis[step] = x * basis[step - 1];
-    for i in (1..step).rev() {
-        basis[i] = s * basis[i] + x * basis[i - 1];
-    }
-    basis[0] *= s;
+fn basis_with_slope(degree: usize, x: f64) -> (SmallVec<[f64; 16]>, SmallVec<[f64; 16]>) {
+    let (mut basis, mut slopes) = (
+        SmallVec::from_elem(0.0, degree + 1),
+        SmallVec::from_elem(0.0, degree + 1),
+    );
+    kernel::basis_with_slopes(degree, x, &mut basis, &mut slopes);
+    (basis, slopes)
 }

@@ -12,7 +12,7 @@ mod reduce;
 mod subdivide;
 mod variables;
 
-pub(crate) use algebra::{multiply_blocks, product_error};
+pub(crate) use algebra::product_error;
 pub use error::BernsteinError;
 pub use map::BernsteinMap;
 pub use rational::{RationalBernstein, RationalError};

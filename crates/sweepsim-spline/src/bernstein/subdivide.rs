@@ -1,7 +1,7 @@
 //! de Casteljau's algorithm: splitting, restricting, reversing, and fixing a variable.
 
 use super::{Bernstein, Degrees};
-use crate::kernel::{Along, along, blend_rows};
+use crate::kernel::{self, Along, along};
 use crate::rounding::{UNDERFLOW, UNIT, up};
 
 impl Bernstein {
@@ -27,7 +27,7 @@ impl Bernstein {
         let mut left = vec![0.0; self.coefficients.len()];
         let mut right = self.coefficients.clone();
         let view = along(self.degrees.iter().map(|d| d + 1), axis, 1);
-        split_rows(&mut right, &mut left, view, 1.0 - at, at);
+        kernel::split(&mut right, &mut left, view.len - 1, view.inner, 1.0 - at, at);
         let error = self.casteljau_error(self.degrees[axis], 1.0 - at, at, if at == 0.5 { 1.0 } else { 3.0 });
         (
             Self::computed(self.degrees.clone(), left, error),
@@ -58,7 +58,14 @@ impl Bernstein {
         let error = self.casteljau_error(self.degrees[axis], 1.0 - at, at, if at == 0.5 { 1.0 } else { 3.0 });
         left.coefficients.resize(self.coefficients.len(), 0.0);
         let view = along(self.degrees.iter().map(|d| d + 1), axis, 1);
-        split_rows(&mut self.coefficients, &mut left.coefficients, view, 1.0 - at, at);
+        kernel::split(
+            &mut self.coefficients,
+            &mut left.coefficients,
+            view.len - 1,
+            view.inner,
+            1.0 - at,
+            at,
+        );
         self.error = error;
         left.error = error;
     }
@@ -142,7 +149,7 @@ impl Bernstein {
         let mut source = std::borrow::Cow::Borrowed(&self.coefficients);
         let mut error = self.error;
         if at != 0.0 && at != 1.0 && view.len > 1 {
-            upper_rows(source.to_mut(), view, 1.0 - at, at);
+            kernel::keep_upper(source.to_mut(), view.len - 1, view.inner, 1.0 - at, at);
             error = self.casteljau_error(self.degrees[axis], 1.0 - at, at, 3.0);
         }
         let mut coefficients = Vec::with_capacity(view.inner * view.outer);
@@ -154,12 +161,12 @@ impl Bernstein {
 
     fn keep_lower(&mut self, view: Along, s: f64, t: f64, roundings: f64) {
         self.error = self.casteljau_error(view.len - 1, s, t, roundings);
-        lower_rows(&mut self.coefficients, view, s, t);
+        kernel::keep_lower(&mut self.coefficients, view.len - 1, view.inner, s, t);
     }
 
     fn keep_upper(&mut self, view: Along, s: f64, t: f64, roundings: f64) {
         self.error = self.casteljau_error(view.len - 1, s, t, roundings);
-        upper_rows(&mut self.coefficients, view, s, t);
+        kernel::keep_upper(&mut self.coefficients, view.len - 1, view.inner, s, t);
     }
 
     /// The error after `degree` steps `s a + t b`, each with so many relative roundings in its terms.
@@ -186,119 +193,5 @@ impl Bernstein {
             relative * size + degree as f64 * UNDERFLOW
         };
         up(growth * (self.error + rounding))
-    }
-}
-
-/// Splits every line of `right` (the source), which keeps its upper part, the lower part going to `left`.
-///
-/// `s + t = 1`; `left` and `right` have the same length.
-pub(crate) fn split_rows(right: &mut [f64], left: &mut [f64], view: Along, s: f64, t: f64) {
-    let Along { inner, len, .. } = view;
-    if inner == 1 {
-        return split_lines(right, left, len, s, t);
-    }
-    for (right, left) in right
-        .chunks_exact_mut(inner * len)
-        .zip(left.chunks_exact_mut(inner * len))
-    {
-        left[..inner].copy_from_slice(&right[..inner]);
-        for step in 1..len {
-            let last = (len - step) * inner;
-            for i in (0..last).step_by(inner) {
-                let (target, next) = right[i..].split_at_mut(inner);
-                blend_rows(target, &next[..inner], s, t);
-            }
-            left[step * inner..(step + 1) * inner].copy_from_slice(&right[..inner]);
-        }
-    }
-}
-
-/// [`split_rows`] along the contiguous axis.
-fn split_lines(right: &mut [f64], left: &mut [f64], len: usize, s: f64, t: f64) {
-    match len {
-        2 => split_short_lines::<2>(right, left, s, t),
-        3 => split_short_lines::<3>(right, left, s, t),
-        4 => split_short_lines::<4>(right, left, s, t),
-        5 => split_short_lines::<5>(right, left, s, t),
-        6 => split_short_lines::<6>(right, left, s, t),
-        _ => {
-            for (right, left) in right.chunks_exact_mut(len).zip(left.chunks_exact_mut(len)) {
-                left[0] = right[0];
-                for step in 1..len {
-                    for i in 0..len - step {
-                        right[i] = s * right[i] + t * right[i + 1];
-                    }
-                    left[step] = right[0];
-                }
-            }
-        }
-    }
-}
-
-/// [`split_lines`] of a length known to the compiler: four lines abreast, in registers.
-fn split_short_lines<const N: usize>(right: &mut [f64], left: &mut [f64], s: f64, t: f64) {
-    const ABREAST: usize = 4;
-    let mut rights = right.chunks_exact_mut(N * ABREAST);
-    let mut lefts = left.chunks_exact_mut(N * ABREAST);
-    for (right, left) in (&mut rights).zip(&mut lefts) {
-        let mut b = [[0.0; ABREAST]; N];
-        for i in 0..N {
-            for line in 0..ABREAST {
-                b[i][line] = right[line * N + i];
-            }
-        }
-        for step in 0..N {
-            for line in 0..ABREAST {
-                left[line * N + step] = b[0][line];
-            }
-            for i in 0..N - 1 - step {
-                for line in 0..ABREAST {
-                    b[i][line] = s * b[i][line] + t * b[i + 1][line];
-                }
-            }
-        }
-        for i in 0..N {
-            for line in 0..ABREAST {
-                right[line * N + i] = b[i][line];
-            }
-        }
-    }
-    let rest = rights.into_remainder().chunks_exact_mut(N);
-    for (right, left) in rest.zip(lefts.into_remainder().chunks_exact_mut(N)) {
-        let mut b = [0.0; N];
-        b.copy_from_slice(right);
-        for step in 0..N {
-            left[step] = b[0];
-            for i in 0..N - 1 - step {
-                b[i] = s * b[i] + t * b[i + 1];
-            }
-        }
-        right.copy_from_slice(&b);
-    }
-}
-
-/// Every line becomes its upper part.
-pub(crate) fn upper_rows(values: &mut [f64], view: Along, s: f64, t: f64) {
-    let Along { inner, len, .. } = view;
-    for block in values.chunks_exact_mut(inner * len) {
-        for step in 1..len {
-            for i in 0..len - step {
-                let (target, next) = block[i * inner..].split_at_mut(inner);
-                blend_rows(target, &next[..inner], s, t);
-            }
-        }
-    }
-}
-
-/// Every line becomes its lower part.
-pub(crate) fn lower_rows(values: &mut [f64], view: Along, s: f64, t: f64) {
-    let Along { inner, len, .. } = view;
-    for block in values.chunks_exact_mut(inner * len) {
-        for step in 1..len {
-            for i in (step..len).rev() {
-                let (before, target) = block.split_at_mut(i * inner);
-                blend_rows(&mut target[..inner], &before[(i - 1) * inner..], t, s);
-            }
-        }
     }
 }

@@ -5,8 +5,9 @@
 
 use super::pieces::PieceTensor;
 use super::{BSpline, Knots, SplineError};
-use crate::bernstein::{MAX_DEGREE, multiply_blocks, product_error};
+use crate::bernstein::{MAX_DEGREE, product_error};
 use crate::determinant::determinant;
+use crate::kernel::multiply;
 use crate::knots::KnotVector;
 use crate::rounding::{UNDERFLOW, UNIT, gamma, magnitude, up};
 
@@ -189,7 +190,7 @@ impl BSpline {
                     right.clear();
                     right.extend(from_b.iter().map(|&place| b.data[place + j]));
                     one.fill(0.0);
-                    multiply_blocks((&a.degrees, &left), (&b.degrees, &right), &degrees, &mut one);
+                    multiply((&a.degrees, &left), (&b.degrees, &right), &degrees, &mut one);
                     sum.iter_mut().zip(&one).for_each(|(s, t)| *s += t);
                 }
                 for (&place, &c) in places.iter().zip(&sum) {

@@ -3,6 +3,7 @@
 mod bernstein;
 mod bounds;
 mod common;
+mod kernel;
 mod rational;
 mod spline;
 mod spline_domains;
