@@ -42,4 +42,4 @@ pub(crate) use elevate::elevate;
 pub use lines::{Coefficient, derivative, evaluate, product, raised, split_line, wronskian};
 pub(crate) use multiply::{degree_of, multiply};
 pub use restrict::restrict_rectangle;
-pub use subdivide::{keep_lower, keep_upper, split};
+pub use subdivide::{keep_lower, keep_upper, split, split_at};

@@ -1,16 +1,43 @@
 //! De Casteljau's algorithm along one variable of a tensor.
-//!
-//! A step is `s a + t b`, where `s + t = 1`: at the parameter `t`, or at the part `t` of a side whose shares were computed apart.
 
-/// `target = s · target + t · next`, number by number.
+/// A step of the algorithm: the number between two neighbours.
+trait Blend: Copy {
+    fn of(self, a: f64, b: f64) -> f64;
+}
+
+/// `s a + t b`, where `s + t = 1`: for the part of a side whose shares were computed apart.
+#[derive(Clone, Copy)]
+struct Shares(f64, f64);
+
+impl Blend for Shares {
+    #[inline(always)]
+    fn of(self, a: f64, b: f64) -> f64 {
+        self.0 * a + self.1 * b
+    }
+}
+
+/// `a + t (b − a)`: what is constant stays so to the bit.
+#[derive(Clone, Copy)]
+struct Towards(f64);
+
+impl Blend for Towards {
+    #[inline(always)]
+    fn of(self, a: f64, b: f64) -> f64 {
+        a + self.0 * (b - a)
+    }
+}
+
+/// Every number of `target` becomes that between it and its neighbour in `next`.
 #[inline(always)]
-fn blend(target: &mut [f64], next: &[f64], s: f64, t: f64) {
+fn blend(target: &mut [f64], next: &[f64], step: impl Blend) {
     for (a, &b) in target.iter_mut().zip(next) {
-        *a = s * *a + t * b;
+        *a = step.of(*a, b);
     }
 }
 
 /// Both parts of tensors along one variable: the upper one in place, the lower one into `lower`, which is as long.
+///
+/// Steps are `s a + t b`; `s + t = 1`.
 ///
 /// ```
 /// use sweepsim_spline::kernel::split;
@@ -21,6 +48,24 @@ fn blend(target: &mut [f64], next: &[f64], s: f64, t: f64) {
 /// ```
 #[inline]
 pub fn split(upper: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, s: f64, t: f64) {
+    split_by(upper, lower, degree, inner, Shares(s, t));
+}
+
+/// As [`split`] at `t`, by steps `a + t (b − a)`: parts of a constant are that constant to the bit.
+///
+/// ```
+/// use sweepsim_spline::kernel::{split, split_at};
+/// let (mut upper, mut lower) = ([0.7; 4], [0.0; 4]);
+/// split_at(&mut upper, &mut lower, 3, 1, 0.492);
+/// assert_eq!((upper, lower), ([0.7; 4], [0.7; 4]));
+/// ```
+#[inline]
+pub fn split_at(upper: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, t: f64) {
+    split_by(upper, lower, degree, inner, Towards(t));
+}
+
+#[inline]
+fn split_by(upper: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, step: impl Blend) {
     if degree == 0 {
         let count = upper.len().min(lower.len());
         lower[..count].copy_from_slice(&upper[..count]);
@@ -28,43 +73,50 @@ pub fn split(upper: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, 
     }
     match inner {
         0 => {}
-        1 => split_lines(upper, lower, degree + 1, s, t),
-        _ => split_rows(upper, lower, degree + 1, inner, s, t),
+        1 => split_lines(upper, lower, degree + 1, step),
+        _ => split_rows(upper, lower, degree + 1, inner, step),
     }
 }
 
-fn split_rows(upper: &mut [f64], lower: &mut [f64], len: usize, inner: usize, s: f64, t: f64) {
+fn split_rows(upper: &mut [f64], lower: &mut [f64], len: usize, inner: usize, step: impl Blend) {
     let blocks = upper.chunks_exact_mut(inner * len);
     for (upper, lower) in blocks.zip(lower.chunks_exact_mut(inner * len)) {
         lower[..inner].copy_from_slice(&upper[..inner]);
-        for step in 1..len {
-            for i in 0..len - step {
+        for level in 1..len {
+            for i in 0..len - level {
                 let (target, next) = upper[i * inner..(i + 2) * inner].split_at_mut(inner);
-                blend(target, next, s, t);
+                blend(target, next, step);
             }
-            lower[step * inner..(step + 1) * inner].copy_from_slice(&upper[..inner]);
+            lower[level * inner..(level + 1) * inner].copy_from_slice(&upper[..inner]);
         }
     }
 }
 
-/// [`split`] along the contiguous variable.
-fn split_lines(upper: &mut [f64], lower: &mut [f64], len: usize, s: f64, t: f64) {
+/// [`split_by`] along the contiguous variable.
+fn split_lines(upper: &mut [f64], lower: &mut [f64], len: usize, step: impl Blend) {
     match len {
-        2 => split_short_lines::<2>(upper, lower, s, t),
-        3 => split_short_lines::<3>(upper, lower, s, t),
-        4 => split_short_lines::<4>(upper, lower, s, t),
-        5 => split_short_lines::<5>(upper, lower, s, t),
-        6 => split_short_lines::<6>(upper, lower, s, t),
+        2 => split_short_lines::<2>(upper, lower, step),
+        3 => split_short_lines::<3>(upper, lower, step),
+        4 => split_short_lines::<4>(upper, lower, step),
+        5 => split_short_lines::<5>(upper, lower, step),
+        6 => split_short_lines::<6>(upper, lower, step),
+        9 => split_short_lines::<9>(upper, lower, step),
         _ => {
             for (upper, lower) in upper.chunks_exact_mut(len).zip(lower.chunks_exact_mut(len)) {
-                super::split_line(upper, lower, s, t);
+                lower[0] = upper[0];
+                for level in 1..len {
+                    for i in 0..len - level {
+                        upper[i] = step.of(upper[i], upper[i + 1]);
+                    }
+                    lower[level] = upper[0];
+                }
             }
         }
     }
 }
 
 /// [`split_lines`] of a length known to the compiler: four lines abreast, in registers.
-fn split_short_lines<const N: usize>(upper: &mut [f64], lower: &mut [f64], s: f64, t: f64) {
+fn split_short_lines<const N: usize>(upper: &mut [f64], lower: &mut [f64], by: impl Blend) {
     const ABREAST: usize = 4;
     let mut uppers = upper.chunks_exact_mut(N * ABREAST);
     let mut lowers = lower.chunks_exact_mut(N * ABREAST);
@@ -81,7 +133,7 @@ fn split_short_lines<const N: usize>(upper: &mut [f64], lower: &mut [f64], s: f6
             }
             for i in 0..N - 1 - step {
                 for line in 0..ABREAST {
-                    b[i][line] = s * b[i][line] + t * b[i + 1][line];
+                    b[i][line] = by.of(b[i][line], b[i + 1][line]);
                 }
             }
         }
@@ -98,7 +150,7 @@ fn split_short_lines<const N: usize>(upper: &mut [f64], lower: &mut [f64], s: f6
         for step in 0..N {
             lower[step] = b[0];
             for i in 0..N - 1 - step {
-                b[i] = s * b[i] + t * b[i + 1];
+                b[i] = by.of(b[i], b[i + 1]);
             }
         }
         upper.copy_from_slice(&b);
@@ -132,7 +184,7 @@ pub fn keep_upper(values: &mut [f64], degree: usize, inner: usize, s: f64, t: f6
         for level in 0..degree {
             for i in 0..degree - level {
                 let (first, second) = block[i * inner..(i + 2) * inner].split_at_mut(inner);
-                blend(first, second, s, t);
+                blend(first, second, Shares(s, t));
             }
         }
     }
@@ -176,7 +228,7 @@ pub fn keep_lower(values: &mut [f64], degree: usize, inner: usize, s: f64, t: f6
         for level in 0..degree {
             for i in (level + 1..=degree).rev() {
                 let (first, second) = block[(i - 1) * inner..(i + 1) * inner].split_at_mut(inner);
-                blend(second, first, t, s);
+                blend(second, first, Shares(t, s));
             }
         }
     }

@@ -40,6 +40,8 @@ proptest! {
         kernel::keep_upper(&mut above, degree, inner, s, t);
         kernel::keep_lower(&mut below, degree, inner, s, t);
         prop_assert_eq!(&above, &upper);
+        let (mut towards, mut away) = (c.clone(), vec![f64::NAN; c.len()]);
+        kernel::split_at(&mut towards, &mut away, degree, inner, t);
         let x = random.below(65) as f64 / 64.0;
         let other = random.below(65) as f64 / 64.0;
         let point = |x: f64| if along_second { [other, x] } else { [x, other] };
@@ -48,6 +50,8 @@ proptest! {
             prop_assert!(within(&of(&upper, x), &of(&c, t + s * x), bound(degree, 1.0)));
             prop_assert!(within(&of(&lower, x), &of(&c, t * x), bound(degree, 1.0)));
             prop_assert!(within(&of(&below, x), &of(&c, t * x), bound(degree, 1.0)));
+            prop_assert!(within(&of(&towards, x), &of(&c, t + s * x), 2.0 * bound(degree, 1.0)));
+            prop_assert!(within(&of(&away, x), &of(&c, t * x), 2.0 * bound(degree, 1.0)));
         }
     }
 
@@ -134,6 +138,19 @@ proptest! {
         let (mut as_tensor, mut below) = (a.clone(), vec![0.0; p + 1]);
         kernel::split(&mut as_tensor, &mut below, p, 1, 1.0 - x, x);
         prop_assert_eq!((upper, lower), (as_tensor, below));
+    }
+}
+
+/// Parts of a constant are that constant to the bit, at any place: `s a + t a` would not be.
+#[test]
+fn split_at_keeps_constants() {
+    for degree in 0..12 {
+        for inner in [1, 2, 3] {
+            let c = vec![0.1 + 0.2; 4 * inner * (degree + 1)];
+            let (mut upper, mut lower) = (c.clone(), vec![0.0; c.len()]);
+            kernel::split_at(&mut upper, &mut lower, degree, inner, 0.492);
+            assert_eq!((&upper, &lower), (&c, &c));
+        }
     }
 }
 

@@ -1,8 +1,10 @@
 //! Forms of one pair of degrees side by side, evaluated together.
 
-use crate::algebra::bivariate::{Form, MOST, basis};
+use crate::algebra::bivariate::MOST;
 use crate::algebra::quad::quadratics;
 use nalgebra::Vector3;
+use sweepsim_spline::Bernstein;
+use sweepsim_spline::kernel::basis_with_slopes;
 
 /// Forms of one pair of degrees, side by side: per pair of polynomials a number of each.
 #[derive(Clone, Debug)]
@@ -13,10 +15,10 @@ pub(crate) struct Table {
 
 impl Table {
     /// `forms`: of these degrees.
-    pub fn new(forms: &[Form], degrees: [usize; 2]) -> Self {
+    pub fn new(forms: &[Bernstein], degrees: [usize; 2]) -> Self {
         let count = (degrees[0] + 1) * (degrees[1] + 1);
         let c = (0..count)
-            .flat_map(|i| forms.iter().map(move |form| form.c[i]))
+            .flat_map(|i| forms.iter().map(move |form| form.coefficients()[i]))
             .collect();
         Self { degrees, c }
     }
@@ -29,8 +31,8 @@ impl Table {
             [p, q] => {
                 let (mut in_u, mut in_v) = ([[0.0; MOST]; 2], [[0.0; MOST]; 2]);
                 let ([a, da], [b, db]) = (&mut in_u, &mut in_v);
-                basis(p, u, a, da);
-                basis(q, v, b, db);
+                basis_with_slopes(p, u, a, da);
+                basis_with_slopes(q, v, b, db);
                 let mut sums = [[0.0; K]; 3];
                 for (j, line) in self.c.chunks_exact(K * (p + 1)).enumerate() {
                     accumulate::<K>(&mut sums, line, [&in_u[0], &in_u[1]], [in_v[0][j], in_v[1][j]]);

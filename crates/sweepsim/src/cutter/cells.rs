@@ -1,8 +1,9 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
-use crate::algebra::bivariate::{CUT, cut, restrict};
+use crate::algebra::bivariate::CUT;
 use crate::algebra::ranges::Triples;
 use crate::cutter::patch_forms::PatchForms;
+use sweepsim_spline::kernel;
 
 const NONE: u32 = u32::MAX;
 
@@ -92,7 +93,7 @@ impl Cells {
             .map(|slot| (slot, 4));
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
             let range = slot.start..slot.start + count * slot.len();
-            restrict(
+            kernel::restrict_rectangle(
                 &element.whole[range.clone()],
                 slot.degrees,
                 lower,
@@ -191,7 +192,9 @@ impl Cells {
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
             let range = slot.start..slot.start + count * slot.len();
             let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
-            cut(&node.c[range], slot.degrees, axis, CUT, low, high);
+            high.copy_from_slice(&node.c[range]);
+            let inner = if axis == 0 { 1 } else { slot.degrees[0] + 1 };
+            kernel::split_at(high, low, slot.degrees[axis], inner, CUT);
         }
         let at = node.lower[axis] + CUT * (node.upper[axis] - node.lower[axis]);
         let (mut low_end, mut high_start) = (node.upper, node.lower);

@@ -4,13 +4,14 @@
 //! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
-use crate::algebra::bivariate::Form;
+use crate::algebra::bivariate::factors;
 use crate::algebra::quad::add;
 use crate::algebra::table::{Table, position};
 use crate::cutter::revolution::{Revolution, Spot};
 use crate::time::placement::{LocalFrame, Placing};
 use nalgebra::Vector3;
 use sweepsim_motion::{Edge, NormalField, Patch, Tool};
+use sweepsim_spline::Bernstein;
 
 /// Degrees and place of a coefficient tensor in a cell's list.
 #[derive(Clone, Copy, Debug)]
@@ -73,52 +74,41 @@ impl PatchForms {
         Self::new(&edge.position, &edge.weight, &[&edge.before, &edge.after], 1)
     }
 
-    fn new(
-        position: &[sweepsim_spline::Bernstein; 3],
-        weight: &sweepsim_spline::Bernstein,
-        fields: &[&NormalField],
-        variables: usize,
-    ) -> Self {
-        let point = [0, 1, 2].map(|k| Form::of(&position[k]));
-        let weight = Form::of(weight);
+    fn new(point: &[Bernstein; 3], weight: &Bernstein, fields: &[&NormalField], variables: usize) -> Self {
         let mut whole = Vec::new();
-        let mut put = |forms: &[Form]| {
-            let degrees = [0, 1].map(|a| forms.iter().map(|f| f.degrees[a]).max().unwrap_or(0));
+        let mut put = |forms: &[&Bernstein]| {
+            let degrees = common_degrees(forms);
             let start = whole.len();
             for form in forms {
-                whole.extend(form.raised(degrees).c);
+                whole.extend_from_slice(form.elevated_to(&degrees).coefficients());
             }
             Slot { degrees, start }
         };
-        let [x, y, z] = point.clone();
-        let position = put(&[x, y, z, weight.clone()]);
+        let [x, y, z] = point;
+        let position = put(&[x, y, z, weight]);
         let slopes = (0..variables)
             .map(|axis| {
                 // With ω = ω₁(u) ω₂(v): F_u = (F̂_u ω₁ − F̂ ω₁′) / (ω₁² ω₂).
-                let (own, other) = match weight.factors() {
+                let (own, other) = match factors(weight) {
                     Some([in_u, in_v]) if axis == 0 => (in_u, Some(in_v)),
                     Some([in_u, in_v]) => (in_v, Some(in_u)),
                     None => (weight.clone(), None),
                 };
-                let numerator = |f: &Form| f.derivative(axis).times(&own).minus(&f.times(&own.derivative(axis)));
-                let square = own.times(&own);
-                let denominator = other.map_or(square.clone(), |o| square.times(&o));
-                put(&[
-                    numerator(&point[0]),
-                    numerator(&point[1]),
-                    numerator(&point[2]),
-                    denominator,
-                ])
+                let numerator = |f: &Bernstein| f.derivative(axis).mul(&own).sub(&f.mul(&own.derivative(axis)));
+                let square = own.square();
+                let denominator = other.map_or(square.clone(), |o| square.mul(&o));
+                let [x, y, z] = point.each_ref().map(numerator);
+                put(&[&x, &y, &z, &denominator])
             })
             .collect();
         let mut largest = [0.0_f64; 2];
-        let mut all: Vec<Form> = Vec::new();
+        let mut all: Vec<&Bernstein> = Vec::new();
         let fields = fields
             .iter()
             .map(|field| {
-                let forms: Vec<Form> = field.normal.iter().chain(&field.moment).map(Form::of).collect();
+                let forms: Vec<&Bernstein> = field.normal.iter().chain(&field.moment).collect();
                 for (k, form) in forms.iter().enumerate() {
-                    largest[k / 3] = largest[k / 3].max(form.largest());
+                    largest[k / 3] = largest[k / 3].max(form.magnitude());
                 }
                 all.extend_from_slice(&forms);
                 put(&forms)
@@ -137,8 +127,8 @@ impl PatchForms {
             largest_moment: largest[1],
             revolution: None,
             frame: None,
-            places: table(point.iter().chain([&weight])),
-            normals: table(all.iter()),
+            places: table(&[x, y, z, weight]),
+            normals: table(&all),
         }
     }
 
@@ -182,8 +172,14 @@ fn triple(list: &[f64]) -> Vector3<f64> {
     Vector3::new(list[0], list[1], list[2])
 }
 
+/// The largest degree in each variable.
+fn common_degrees(forms: &[&Bernstein]) -> [usize; 2] {
+    [0, 1].map(|axis| forms.iter().map(|form| form.degree(axis)).max().unwrap_or(0))
+}
+
 /// Forms raised to common degrees.
-fn table<'a>(forms: impl Iterator<Item = &'a Form> + Clone) -> Table {
-    let degrees = [0, 1].map(|axis| forms.clone().map(|form| form.degrees[axis]).max().unwrap_or(0));
-    Table::new(&forms.map(|form| form.raised(degrees)).collect::<Vec<_>>(), degrees)
+fn table(forms: &[&Bernstein]) -> Table {
+    let degrees = common_degrees(forms);
+    let raised: Vec<Bernstein> = forms.iter().map(|form| form.elevated_to(&degrees)).collect();
+    Table::new(&raised, degrees)
 }

@@ -4,11 +4,11 @@
 //! (what the tool sees of its own velocity, times one positive factor). Coefficients over weights are control values: their least and greatest
 //! bound a rational form, because it is a convex combination of them.
 
-use crate::algebra::bivariate::CUT;
-use crate::algebra::bivariate::{MOST, basis};
+use crate::algebra::bivariate::{CUT, MOST};
 use crate::time::moment::{Moment, Rows};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
+use sweepsim_spline::kernel;
 
 /// Coefficients of forms of one degree in `t`, one after another: `width` numbers each.
 #[derive(Clone, Debug)]
@@ -39,20 +39,14 @@ impl Channel {
 
     fn split(&self, at: f64) -> [Self; 2] {
         let (mut lower, mut upper) = (self.clone(), self.clone());
-        let (n, width) = (self.len() - 1, self.width);
-        for level in 1..=n {
-            for k in 0..(n + 1 - level) * width {
-                upper.c[k] += at * (upper.c[k + width] - upper.c[k]);
-            }
-            lower.c[level * width..][..width].copy_from_slice(&upper.c[..width]);
-        }
+        kernel::split_at(&mut upper.c, &mut lower.c, self.len() - 1, self.width, at);
         [lower, upper]
     }
 
     /// Value and derivative of component `k`, given the polynomials of this degree.
     fn at(&self, t: f64) -> [Vec<f64>; 2] {
         let (mut values, mut slopes) = ([0.0; MOST], [0.0; MOST]);
-        basis(self.len() - 1, t, &mut values, &mut slopes);
+        kernel::basis_with_slopes(self.len() - 1, t, &mut values, &mut slopes);
         [values, slopes].map(|factors| {
             let mut sum = vec![0.0; self.width];
             for i in 0..self.len() {
