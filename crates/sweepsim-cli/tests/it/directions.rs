@@ -1,10 +1,8 @@
 //! Dexels along other directions than z, and meshes of dexels along all three, as a process.
 
+use crate::support::Workdir;
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output};
 use sweepsim_formats::{read_dexels_file, read_mesh_file};
-use tempfile::TempDir;
 
 /// A groove 4 wide and 3.1 deep, whose walls lie between lines: lines are half a millimetre apart.
 const JOB: &str = r#"Job(
@@ -17,59 +15,38 @@ const GRID: &str = "Grid(min: (-1, -1), max: (21, 11), cells: (44, 24))";
 const STOCK: &str = "Block(min: (0, 0, 0), max: (20, 10, 6))";
 const REMOVED: f64 = 20.0 * 4.0 * 3.1;
 
-struct Place(TempDir);
-
-impl Place {
-    fn new(job: &str) -> Self {
-        let place = Self(tempfile::tempdir().unwrap());
-        fs::write(place.path("job.ron"), job).unwrap();
-        place
+/// Runs `simulate` into a folder; what it prints on standard error, if it fails.
+fn simulate(workdir: &Workdir, out: &str, more: &[&str]) -> Result<(), String> {
+    let arguments = [&["simulate", "job.ron", "--out", out], more].concat();
+    let output = workdir.run(&arguments);
+    if output.status.success() {
+        return Ok(());
     }
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!workdir.path(out).exists(), "nothing is left behind");
+    Err(String::from_utf8_lossy(&output.stderr).into_owned())
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sweepsim"));
-        command.args(arguments).current_dir(self.0.path()).output().unwrap()
-    }
-
-    /// Runs `simulate` into a folder; what it prints on standard error, if it fails.
-    fn simulate(&self, out: &str, more: &[&str]) -> Result<(), String> {
-        let arguments = [&["simulate", "job.ron", "--out", out], more].concat();
-        let output = self.run(&arguments);
-        if output.status.success() {
-            return Ok(());
-        }
-        assert_eq!(output.status.code(), Some(2));
-        assert!(!self.path(out).exists(), "nothing is left behind");
-        Err(String::from_utf8_lossy(&output.stderr).into_owned())
-    }
-
-    fn volume(&self, mesh: &str) -> f64 {
-        let soup = read_mesh_file(&self.path(mesh)).unwrap().soup().unwrap();
-        soup.check_closed().unwrap();
-        soup.volume()
-    }
+fn volume(workdir: &Workdir, mesh: &str) -> f64 {
+    let soup = read_mesh_file(&workdir.path(mesh)).unwrap().soup().unwrap();
+    soup.check_closed().unwrap();
+    soup.volume()
 }
 
 #[test]
 fn walls_between_lines_are_where_they_are() {
-    let place = Place::new(JOB);
-    place.simulate("z", &["--only", "dexels,mesh"]).unwrap();
-    place
-        .simulate("tri", &["--tri", "--only", "dexels,mesh,picture"])
-        .unwrap();
-    let dexels = |out: &str| fs::read(place.path(&format!("{out}/dexels.csv"))).unwrap();
+    let workdir = Workdir::new(JOB);
+    simulate(&workdir, "z", &["--only", "dexels,mesh"]).unwrap();
+    simulate(&workdir, "tri", &["--tri", "--only", "dexels,mesh,picture"]).unwrap();
+    let dexels = |out: &str| fs::read(workdir.path(&format!("{out}/dexels.csv"))).unwrap();
     assert_eq!(dexels("z"), dexels("tri"));
     let exact = 20.0 * 10.0 * 6.0 - REMOVED;
-    let off = (place.volume("tri/part.ply") - exact).abs();
+    let off = (volume(&workdir, "tri/part.ply") - exact).abs();
     assert!(off < 1e-3 * exact, "{off}");
     // Along z a wall is known to half the distance of lines; along y to where the line meets it, and its plane as well as normals
     // are kept, to 6.5e-5.
     for (mesh, least, most) in [("z/part.ply", 0.1, 0.25), ("tri/part.ply", 0.0, 1e-4)] {
-        let mesh = read_mesh_file(&place.path(mesh)).unwrap();
+        let mesh = read_mesh_file(&workdir.path(mesh)).unwrap();
         let faces = mesh.vertices.iter().zip(&mesh.normals);
         let wall = faces.filter(|(v, n)| (v[1] - 5.13).abs() < 3.0 && n[1].abs() > 0.99);
         let off: Vec<f64> = wall.map(|(v, _)| ((v[1] - 5.13).abs() - 2.0).abs()).collect();
@@ -78,16 +55,16 @@ fn walls_between_lines_are_where_they_are() {
             "{off:?}"
         );
     }
-    assert!(fs::read(place.path("tri/part.png")).unwrap().starts_with(b"\x89PNG"));
+    assert!(fs::read(workdir.path("tri/part.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn a_swept_volume_along_three_axes_needs_no_stock() {
-    let place = Place::new(JOB);
+    let workdir = Workdir::new(JOB);
     let arguments = ["sweep", "job.ron", "--out", "out", "--tri", "--only", "mesh"];
-    assert!(place.run(&arguments).status.success());
+    assert!(workdir.run(&arguments).status.success());
     // The box of the lines cuts it off: 22 along x.
-    let (volume, exact) = (place.volume("out/part.ply"), 22.0 * 4.0 * 30.0);
+    let (volume, exact) = (volume(&workdir, "out/part.ply"), 22.0 * 4.0 * 30.0);
     assert!((volume - exact).abs() < 1e-2 * exact, "{volume}");
 }
 
@@ -95,9 +72,9 @@ fn a_swept_volume_along_three_axes_needs_no_stock() {
 fn dexels_stand_along_the_frame() {
     // Lines along x, seen from the right: their x is the world's y, their y its z.
     let frame = "Grid(min: (-1, -1), max: (11, 7), cells: (24, 16), frame: Frame(origin: (0, 0, 0), z: (1, 0, 0), x: (0, 1, 0)))";
-    let place = Place::new(&JOB.replace(GRID, frame));
-    place.simulate("out", &["--only", "dexels,mesh,binary"]).unwrap();
-    let dexels = read_dexels_file(&place.path("out/part.dexels"), None).unwrap();
+    let workdir = Workdir::new(&JOB.replace(GRID, frame));
+    simulate(&workdir, "out", &["--only", "dexels,mesh,binary"]).unwrap();
+    let dexels = read_dexels_file(&workdir.path("out/part.dexels"), None).unwrap();
     assert_eq!(dexels.grid().frame().axes()[2], [1.0, 0.0, 0.0]);
     for (index, line) in dexels.iter() {
         let (i, j) = dexels.grid().place(index);
@@ -109,13 +86,13 @@ fn dexels_stand_along_the_frame() {
     let exact = 20.0 * 10.0 * 6.0 - REMOVED;
     assert!((dexels.volume() - exact).abs() < 0.05 * exact);
     for file in ["job.ron", "out/part.dexels"] {
-        let said = String::from_utf8(place.run(&["inspect", file]).stdout).unwrap();
+        let said = String::from_utf8(workdir.run(&["inspect", file]).stdout).unwrap();
         assert!(
             said.contains("frame  origin (0, 0, 0), dexels along (1.0000, 0, 0)"),
             "{said}"
         );
     }
-    let mesh = read_mesh_file(&place.path("out/part.ply")).unwrap();
+    let mesh = read_mesh_file(&workdir.path("out/part.ply")).unwrap();
     let most = [0, 1, 2].map(|k| mesh.vertices.iter().map(|v| v[k]).fold(f64::MIN, f64::max));
     assert!(
         (most[0] - 20.0).abs() < 1e-9 && (most[1] - 10.0).abs() < 0.3 && (most[2] - 6.0).abs() < 0.3,
@@ -123,12 +100,12 @@ fn dexels_stand_along_the_frame() {
     );
     // A later job goes on where this one ended, on the same grid only.
     let later = JOB.replace(STOCK, "Dexels(\"out/part.dexels\")");
-    fs::write(place.path("job.ron"), later.replace(GRID, frame)).unwrap();
-    place.simulate("again", &["--only", "dexels"]).unwrap();
-    let table = |out: &str| fs::read(place.path(&format!("{out}/dexels.csv"))).unwrap();
+    fs::write(workdir.path("job.ron"), later.replace(GRID, frame)).unwrap();
+    simulate(&workdir, "again", &["--only", "dexels"]).unwrap();
+    let table = |out: &str| fs::read(workdir.path(&format!("{out}/dexels.csv"))).unwrap();
     assert_eq!(table("out"), table("again"));
-    fs::write(place.path("job.ron"), later).unwrap();
-    let message = place.simulate("other", &[]).unwrap_err();
+    fs::write(workdir.path("job.ron"), later).unwrap();
+    let message = simulate(&workdir, "other", &[]).unwrap_err();
     assert!(message.contains("in a frame"), "{message}");
 }
 
@@ -138,23 +115,23 @@ fn what_has_no_three_axes_is_said() {
         "cells: (44, 24)",
         "cells: (44, 24), frame: Frame(z: (1, 0, 0), x: (0, 1, 0))",
     );
-    let place = Place::new(&JOB.replace(GRID, &framed));
-    let message = place.simulate("out", &["--tri"]).unwrap_err();
+    let workdir = Workdir::new(&JOB.replace(GRID, &framed));
+    let message = simulate(&workdir, "out", &["--tri"]).unwrap_err();
     assert!(message.contains("--tri: expected a grid without a frame"), "{message}");
     let bad = framed.replace("x: (0, 1, 0)", "x: (2, 0, 0)");
-    fs::write(place.path("job.ron"), JOB.replace(GRID, &bad)).unwrap();
-    let message = place.simulate("out", &[]).unwrap_err();
+    fs::write(workdir.path("job.ron"), JOB.replace(GRID, &bad)).unwrap();
+    let message = simulate(&workdir, "out", &[]).unwrap_err();
     assert!(
         message.contains("job.ron:2:") && message.contains("parallel"),
         "{message}"
     );
-    fs::write(place.path("job.ron"), JOB).unwrap();
-    place.simulate("first", &["--only", "binary"]).unwrap();
+    fs::write(workdir.path("job.ron"), JOB).unwrap();
+    simulate(&workdir, "first", &["--only", "binary"]).unwrap();
     fs::write(
-        place.path("job.ron"),
+        workdir.path("job.ron"),
         JOB.replace(STOCK, "Union([Dexels(\"first/part.dexels\")])"),
     )
     .unwrap();
-    let message = place.simulate("out", &["--tri"]).unwrap_err();
+    let message = simulate(&workdir, "out", &["--tri"]).unwrap_err();
     assert!(message.contains("--tri: expected a stock without dexels"), "{message}");
 }

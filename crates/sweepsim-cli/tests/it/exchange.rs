@@ -1,10 +1,8 @@
 //! `convert`, `compare` and `inspect` of meshes and dexels, and stock from an earlier run, as a process.
 
+use crate::support::Workdir;
 use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output};
 use sweepsim_formats::{read_dexels_file, read_mesh_file};
-use tempfile::TempDir;
 
 const JOB: &str = r#"Job(
     grid: Grid(min: (0, 0), max: (20, 10), cells: (40, 20)),
@@ -13,101 +11,68 @@ const JOB: &str = r#"Job(
     paths: [Path(tool: 1, poses: [((-4, 5, 3), (0, 0, 1)), ((24, 5, 3), (0.5, 0, 1))])],
 )"#;
 
-struct Place(TempDir);
-
-impl Place {
-    /// A folder with `job.ron` and what `simulate` makes of it, in `out`.
-    fn new() -> Self {
-        let place = Self(tempfile::tempdir().unwrap());
-        fs::write(place.path("job.ron"), JOB).unwrap();
-        let done = place.run(&["simulate", "job.ron", "--out", "out", "--only", "dexels,binary"]);
-        assert!(done.status.success(), "{}", text(&done.stderr));
-        place
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_sweepsim"));
-        command.args(arguments).current_dir(self.0.path()).output().unwrap()
-    }
-
-    /// What is printed by a run that is to succeed.
-    fn good(&self, arguments: &[&str]) -> String {
-        let output = self.run(arguments);
-        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
-        text(&output.stdout)
-    }
-
-    /// The message of a run that is to fail.
-    fn bad(&self, arguments: &[&str]) -> String {
-        let output = self.run(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", text(&output.stdout));
-        text(&output.stderr)
-    }
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
+/// A folder with `job.ron` and the results of `simulate` in `out`.
+fn simulated() -> Workdir {
+    let workdir = Workdir::new(JOB);
+    workdir.good(&["simulate", "job.ron", "--out", "out", "--only", "dexels,binary"]);
+    workdir
 }
 
 #[test]
 fn dexels_go_around_all_formats() {
-    let place = Place::new();
-    let first = read_dexels_file(&place.path("out/part.dexels"), None).unwrap();
+    let workdir = simulated();
+    let first = read_dexels_file(&workdir.path("out/part.dexels"), None).unwrap();
     assert!(first.count() > 700 && first.volume() < 1200.0);
-    place.good(&["convert", "out/part.dexels", "a.npz"]);
-    place.good(&["convert", "a.npz", "b.dexels"]);
-    assert_eq!(read_dexels_file(&place.path("b.dexels"), None).unwrap(), first);
-    place.good(&["convert", "b.dexels", "c.csv"]);
-    let table = |name: &str| fs::read_to_string(place.path(name)).unwrap();
+    workdir.good(&["convert", "out/part.dexels", "a.npz"]);
+    workdir.good(&["convert", "a.npz", "b.dexels"]);
+    assert_eq!(read_dexels_file(&workdir.path("b.dexels"), None).unwrap(), first);
+    workdir.good(&["convert", "b.dexels", "c.csv"]);
+    let table = |name: &str| fs::read_to_string(workdir.path(name)).unwrap();
     assert_eq!(table("c.csv"), table("out/dexels.csv"));
     // A table needs a grid: of the job, of other dexels, or by numbers.
-    assert!(place.bad(&["convert", "c.csv", "d.npz"]).contains("expected --grid"));
+    assert!(workdir.bad(&["convert", "c.csv", "d.npz"]).contains("expected --grid"));
     for grid in [
         &["--grid", "job.ron"][..],
         &["--grid", "a.npz"],
         &["--area", "0,0,20,10", "--cells", "40x20"],
     ] {
-        place.good(&[&["convert", "c.csv", "d.npz"], grid].concat());
-        let back = read_dexels_file(&place.path("d.npz"), None).unwrap();
+        workdir.good(&[&["convert", "c.csv", "d.npz"], grid].concat());
+        let back = read_dexels_file(&workdir.path("d.npz"), None).unwrap();
         assert_eq!((back.grid(), back.volume()), (first.grid(), first.volume()));
     }
-    let wrong = place.bad(&["convert", "c.csv", "d.npz", "--area", "0,0,20,10", "--cells", "4x4"]);
+    let wrong = workdir.bad(&["convert", "c.csv", "d.npz", "--area", "0,0,20,10", "--cells", "4x4"]);
     assert!(wrong.contains("on the grid of 4 x 4"), "{wrong}");
-    place.good(&["convert", "b.dexels", "lines.vtu"]);
-    assert!(fs::read(place.path("lines.vtu")).unwrap().starts_with(b"<?xml"));
-    let seen = place.good(&["inspect", "b.dexels"]);
+    workdir.good(&["convert", "b.dexels", "lines.vtu"]);
+    assert!(fs::read(workdir.path("lines.vtu")).unwrap().starts_with(b"<?xml"));
+    let seen = workdir.good(&["inspect", "b.dexels"]);
     assert!(seen.contains("40 × 20 dexels") && seen.contains("volume"), "{seen}");
-    assert!(place.good(&["inspect", "a.npz"]).contains("ends"));
+    assert!(workdir.good(&["inspect", "a.npz"]).contains("ends"));
 }
 
 #[test]
 fn meshes_go_around_all_formats() {
-    let place = Place::new();
+    let workdir = simulated();
     let mut before = "out/part.dexels".to_owned();
     // The surface is that of the dexels, but for what it rounds off at edges.
-    let volume = read_dexels_file(&place.path(&before), None).unwrap().volume();
+    let volume = read_dexels_file(&workdir.path(&before), None).unwrap().volume();
     let near = |found: f64| (found - volume).abs() < 0.01 * volume;
     for name in ["m.ply", "m.vtp", "m.3mf", "m.glb", "m.stl", "n.ply"] {
-        place.good(&["convert", &before, name]);
-        let mesh = read_mesh_file(&place.path(name)).unwrap();
+        workdir.good(&["convert", &before, name]);
+        let mesh = read_mesh_file(&workdir.path(name)).unwrap();
         assert!(mesh.triangles.len() > 1000);
         let soup = mesh.soup().unwrap();
         soup.check_closed().unwrap();
         assert!(near(soup.volume()), "{name}: {}", soup.volume());
-        let seen = place.good(&["inspect", name]);
+        let seen = workdir.good(&["inspect", name]);
         assert!(seen.contains("closed  yes"), "{name}: {seen}");
         before = name.to_owned();
     }
     // And back to dexels: on the mesh's own area, or another.
-    place.good(&["convert", "n.ply", "n.dexels", "--cells", "40x20"]);
-    let dexels = read_dexels_file(&place.path("n.dexels"), None).unwrap();
+    workdir.good(&["convert", "n.ply", "n.dexels", "--cells", "40x20"]);
+    let dexels = read_dexels_file(&workdir.path("n.dexels"), None).unwrap();
     assert_eq!(dexels.grid().cells(), [40, 20]);
     assert!(near(dexels.volume()), "{}", dexels.volume());
-    place.good(&[
+    workdir.good(&[
         "convert",
         "n.ply",
         "n.png",
@@ -118,25 +83,25 @@ fn meshes_go_around_all_formats() {
         "--camera",
         "top,orthographic",
     ]);
-    assert!(fs::read(place.path("n.png")).unwrap().starts_with(b"\x89PNG"));
+    assert!(fs::read(workdir.path("n.png")).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
 fn paths_become_tables() {
-    let place = Place::new();
+    let workdir = simulated();
     fs::write(
-        place.path("p.ngc"),
+        workdir.path("p.ngc"),
         "G21 G90 G17\nT1 M6\nG0 X0 Y0 Z5\nG1 X10 F100\nG1 Y4\nM2\n",
     )
     .unwrap();
-    place.good(&["convert", "p.ngc", "p.csv"]);
-    let table = fs::read_to_string(place.path("p.csv")).unwrap();
+    workdir.good(&["convert", "p.ngc", "p.csv"]);
+    let table = fs::read_to_string(workdir.path("p.csv")).unwrap();
     assert!(
         table.starts_with("x,y,z,i,j,k") && table.lines().count() >= 3,
         "{table}"
     );
     assert!(
-        place
+        workdir
             .bad(&["convert", "p.ngc", "p.stl"])
             .contains("paths are written as tables only")
     );
@@ -144,11 +109,11 @@ fn paths_become_tables() {
 
 #[test]
 fn what_cannot_be_converted_is_said() {
-    let place = Place::new();
-    fs::write(place.path("text.stl"), "no mesh").unwrap();
+    let workdir = simulated();
+    fs::write(workdir.path("text.stl"), "no mesh").unwrap();
     fs::write(
-        place.path("cut.dexels"),
-        &fs::read(place.path("out/part.dexels")).unwrap()[..900],
+        workdir.path("cut.dexels"),
+        &fs::read(workdir.path("out/part.dexels")).unwrap()[..900],
     )
     .unwrap();
     for (arguments, message) in [
@@ -160,27 +125,27 @@ fn what_cannot_be_converted_is_said() {
         (["convert", "out/part.dexels", "x"], "the extension is not known"),
         (["convert", "x.vtu", "x.ply"], "cannot read this file"),
     ] {
-        let found = place.bad(&arguments);
+        let found = workdir.bad(&arguments);
         assert!(found.contains(message), "{arguments:?}: {found}");
     }
-    let nowhere = place.bad(&["convert", "out/part.dexels", "x.png", "--section", "z=60"]);
+    let nowhere = workdir.bad(&["convert", "out/part.dexels", "x.png", "--section", "z=60"]);
     assert!(nowhere.contains("does not meet the part"), "{nowhere}");
     for name in ["x.ply", "x.step", "x", "x.png"] {
-        assert!(!place.path(name).exists(), "{name}");
+        assert!(!workdir.path(name).exists(), "{name}");
     }
 }
 
 #[test]
 fn comparison_finds_what_was_cut() {
-    let place = Place::new();
+    let workdir = simulated();
     let job = JOB.replace(
         "paths: [Path(tool: 1, poses: [((-4, 5, 3), (0, 0, 1)), ((24, 5, 3), (0.5, 0, 1))])]",
         "paths: []",
     );
-    fs::write(place.path("block.ron"), job).unwrap();
-    place.good(&["simulate", "block.ron", "--out", "block", "--only", "binary,mesh"]);
+    fs::write(workdir.path("block.ron"), job).unwrap();
+    workdir.good(&["simulate", "block.ron", "--out", "block", "--only", "binary,mesh"]);
     let compared = |target: &str| -> serde_json::Value {
-        let json = place.good(&[
+        let json = workdir.good(&[
             "compare",
             "out/part.dexels",
             target,
@@ -214,9 +179,9 @@ fn comparison_finds_what_was_cut() {
         assert!((area - number("area")).abs() < 1e-6 * area);
     }
     for name in ["part.png", "report.json"] {
-        assert!(place.path("cmp").join(name).exists());
+        assert!(workdir.path("cmp").join(name).exists());
     }
-    let same = place.good(&[
+    let same = workdir.good(&[
         "compare",
         "out/dexels.csv",
         "out/part.dexels",
@@ -227,7 +192,7 @@ fn comparison_finds_what_was_cut() {
     ]);
     assert!(same.contains("no end beyond the tolerance"), "{same}");
     assert!(
-        place
+        workdir
             .bad(&["compare", "job.ron", "out/part.dexels"])
             .contains("expected a mesh")
     );
@@ -235,15 +200,17 @@ fn comparison_finds_what_was_cut() {
 
 #[test]
 fn later_runs_begin_with_earlier_ones() {
-    let place = Place::new();
+    let workdir = simulated();
     let job = |stock: &str| JOB.replace("Block(min: (0, 0, 0), max: (20, 10, 6))", stock);
     let volume = |stock: &str| -> f64 {
-        fs::write(place.path("later.ron"), job(stock)).unwrap();
-        let json = place.good(&["simulate", "later.ron", "--out", "later", "--only", "binary", "--json"]);
+        fs::write(workdir.path("later.ron"), job(stock)).unwrap();
+        let json = workdir.good(&["simulate", "later.ron", "--out", "later", "--only", "binary", "--json"]);
         let report: serde_json::Value = serde_json::from_str(&json).unwrap();
         report["volume"].as_f64().unwrap()
     };
-    let left = read_dexels_file(&place.path("out/part.dexels"), None).unwrap().volume();
+    let left = read_dexels_file(&workdir.path("out/part.dexels"), None)
+        .unwrap()
+        .volume();
     for earlier in ["out/part.dexels", "out/dexels.csv"] {
         // The same path again finds nothing more to cut.
         assert!((volume(&format!("Dexels(\"{earlier}\")")) - left).abs() < 1e-9);
@@ -273,8 +240,8 @@ fn later_runs_begin_with_earlier_ones() {
             "later.ron:3:43: centre is NaN",
         ),
     ] {
-        fs::write(place.path("later.ron"), job(stock)).unwrap();
-        let found = place.bad(&["inspect", "later.ron"]);
+        fs::write(workdir.path("later.ron"), job(stock)).unwrap();
+        let found = workdir.bad(&["inspect", "later.ron"]);
         let plain: String = found
             .split('\u{1b}')
             .enumerate()
@@ -290,7 +257,7 @@ fn later_runs_begin_with_earlier_ones() {
         assert!(plain.contains(what) && plain.contains(place_of), "{stock}: {plain}");
     }
     let other = job("Dexels(\"out/part.dexels\")").replace("cells: (40, 20)", "cells: (41, 20)");
-    fs::write(place.path("later.ron"), other).unwrap();
-    let found = place.bad(&["simulate", "later.ron", "--out", "later"]);
+    fs::write(workdir.path("later.ron"), other).unwrap();
+    let found = workdir.bad(&["simulate", "later.ron", "--out", "later"]);
     assert!(found.contains("40 x 20 dexels from (0, 0) to (20, 10) mm"), "{found}");
 }

@@ -3,3 +3,4 @@
 mod command;
 mod directions;
 mod exchange;
+mod support;

@@ -1,25 +1,23 @@
-//! `--tri`: a surface from lines along all three axes.
+//! `--tri`: a surface from dexels along all three axes.
 
+use super::run::{Task, sweeping};
 use crate::arguments::RunOptions;
-use crate::failure::Failure;
-use crate::progress::Progress;
-use crate::run::{Task, cuts_of, failed, phase, sweeping};
-use crate::solid::CRISP;
+use crate::session::{CRISP, Failure, JobSession, phase};
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Mesh, Stock, TriDexels};
 use sweepsim_formats::{Job, Report};
 
-/// A surface, and how many lines along x and y are not certain.
+/// A surface, and the number of uncertified dexels along x and y.
 pub(crate) struct Surface {
     pub mesh: Mesh,
-    pub unsure: usize,
+    pub uncertified: usize,
 }
 
-/// Room above and below the part, in distances of lines: not a whole number, so that no level of lines lies in a flat face that is
-/// a whole number of them from the top.
+/// The margin above and below the part, in units of the spacing. Not a whole number, so that no level of dexels lies in a flat face
+/// that is a whole number of them below the top.
 const ROOM: f64 = 1.37;
 
-/// Whether a job can be seen along three axes.
+/// Checks that a job can be cut along three axes.
 pub(crate) fn check(job: &Job) -> Result<(), Failure> {
     fn turns(stock: &Stock) -> bool {
         match stock {
@@ -31,18 +29,18 @@ pub(crate) fn check(job: &Job) -> Result<(), Failure> {
     }
     if !job.grid.frame().is_world() {
         return Err(Failure::message(
-            "--tri: expected a grid without a frame: lines run along x, y and z",
+            "--tri: expected a grid without a frame: dexels run along x, y and z",
         ));
     }
     if !turns(&job.stock) {
         return Err(Failure::message(
-            "--tri: expected a stock without dexels of an earlier run, which are known along z only",
+            "--tri: expected a stock without dexels of an earlier run, which exist along z only",
         ));
     }
     Ok(())
 }
 
-/// The lowest and highest end.
+/// The lowest and the highest interval end.
 fn heights(dexels: &Dexels) -> Option<[f64; 2]> {
     dexels
         .iter()
@@ -53,19 +51,19 @@ fn heights(dexels: &Dexels) -> Option<[f64; 2]> {
         })
 }
 
-/// The surface of what a job leaves or sweeps, whose dexels along z are known.
+/// The surface of a result whose dexels along z are known.
 pub(crate) fn surface(
     task: Task,
-    job: &Job,
+    session: &JobSession,
     options: &RunOptions,
     along_z: &Dexels,
-    progress: &Progress,
     report: &mut Report,
 ) -> Result<Surface, Failure> {
+    let (job, progress) = (&session.job, &session.progress);
     let Some([low, high]) = heights(along_z) else {
         return Ok(Surface {
             mesh: Mesh::default(),
-            unsure: 0,
+            uncertified: 0,
         });
     };
     let grid = &job.grid;
@@ -81,13 +79,13 @@ pub(crate) fn surface(
         Task::Sweep => TriDexels::empty(min, max, cells),
     });
     let [along_x, along_y, _] = stock.map_err(|error| wrong(&error))?.into_sets();
-    let (cuts, sweeping) = (cuts_of(job), sweeping(job, options));
-    let mut unsure = 0;
+    let (cuts, sweeping) = (session.cuts(), sweeping(job, options));
+    let mut uncertified = 0;
     let mut pass = |set: Dexels, name: &'static str| -> Result<Dexels, Failure> {
         progress.phase(name);
         let done = phase(report, "sweep", || cut(task, set, &cuts, &sweeping, progress));
-        let (set, open) = done.map_err(|error| failed(error, options))?;
-        unsure += open;
+        let (set, open) = done.map_err(|error| session.failed(error))?;
+        uncertified += open;
         Ok(set)
     };
     let sets = [pass(along_x, "along x")?, pass(along_y, "along y")?, along_z.clone()];
@@ -97,11 +95,11 @@ pub(crate) fn surface(
     });
     Ok(Surface {
         mesh: mesh.map_err(|error| wrong(&error))?,
-        unsure,
+        uncertified,
     })
 }
 
-/// One set after the cuts, and how many of its lines are not certain.
+/// One set of dexels after the cuts, and the number of uncertified ones.
 fn cut(
     task: Task,
     set: Dexels,

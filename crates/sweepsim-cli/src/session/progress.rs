@@ -1,6 +1,6 @@
-//! The progress bar, and how a run is interrupted.
+//! The progress bar, and interruption by Ctrl-C.
 
-use crate::failure::Failure;
+use super::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,15 +9,15 @@ use sweepsim::Monitor;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// Shows how far a run is, on a terminal, and asks it to end when the user presses Ctrl-C.
+/// Draws a progress bar on a terminal, and cancels the run when the user presses Ctrl-C.
 pub(crate) struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
-    /// `moves` to go; nothing is drawn when `quiet`.
+    /// A bar for a number of moves; nothing is drawn if `quiet`.
     pub fn new(moves: usize, quiet: bool) -> Self {
-        // A second Ctrl-C ends the process at once. A handler that cannot be set leaves it at the first.
+        // A second Ctrl-C ends the process at once. If the handler cannot be set, the first one does.
         static HANDLER: OnceLock<()> = OnceLock::new();
         HANDLER.get_or_init(|| {
             let _ = ctrlc::set_handler(|| {
@@ -38,17 +38,17 @@ impl Progress {
         Self { bar }
     }
 
-    /// Names what is being done now.
+    /// Names the current phase.
     pub fn phase(&self, name: &'static str) {
         self.bar.set_message(name);
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
 
-    /// Ends a run that the user has interrupted.
+    /// Fails if the user has interrupted the run.
     pub fn check(&self) -> Result<(), Failure> {
         if self.cancelled() {
             self.finish();

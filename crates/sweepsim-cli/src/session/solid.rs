@@ -1,36 +1,36 @@
-//! Parts from files, as meshes or dexels, and their pictures.
+//! Parts from files, as meshes or dexels, and pictures of them.
 
+use super::Failure;
+use super::words::measure;
 use crate::arguments::{GridOptions, ViewOptions};
-use crate::failure::Failure;
-use crate::words::measure;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriangleSoup, surface};
 use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_picture::{Drawing, legend};
 
-/// Dexels along the longer side of a mesh, where nothing else is said.
+/// The default number of dexels along the longer side of a mesh.
 const CELLS: f64 = 300.0;
-/// Cosine of 40°: edges of meshes from files, or of tri-dexels, that are sharper look sharp.
+/// Cosine of 40°: sharper edges of meshes from files, or of tri-dexels, are drawn sharp.
 pub(crate) const CRISP: f64 = 0.766;
 
-/// What a file holds.
+/// The content of a file.
 pub(crate) enum Solid {
     Mesh(Mesh),
     Dexels(Dexels),
 }
 
-/// What kind of file it is, as far as its extension says (and its first line, for tables).
+/// The kind of a file by its extension, and by its first line for tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Job,
     Mesh,
     Dexels,
-    /// A path, or anything else: its reader has the message.
+    /// A path, or anything else, which the path reader then reports.
     Path,
 }
 
 impl Kind {
-    /// That of a file to be read.
+    /// The kind of a file.
     pub fn of(file: &Path) -> Result<Self, Failure> {
         let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         if extension.as_deref() == Some("ron") {
@@ -48,13 +48,13 @@ impl Kind {
 }
 
 impl Solid {
-    /// Reads a mesh or dexels; `grid` is for tables of dexels.
+    /// Reads a mesh or dexels; tables of dexels are placed on `grid`.
     pub fn read(file: &Path, grid: Option<&Grid>) -> Result<Self, Failure> {
         match Kind::of(file)? {
             Kind::Mesh => Ok(Self::Mesh(read_mesh_file(file)?)),
             Kind::Dexels if grid.is_none() && DexelFormat::of(file) == Some(DexelFormat::Csv) => {
                 Err(Failure::message(format!(
-                    "{}: a table of dexels does not say where they stand: expected --grid with the job, or --area and --cells",
+                    "{}: a table of dexels does not contain its grid: expected --grid with the job, or --area and --cells",
                     file.display()
                 )))
             }
@@ -66,7 +66,7 @@ impl Solid {
         }
     }
 
-    /// The grid, if it has one.
+    /// The grid of dexels.
     pub fn grid(&self) -> Option<Grid> {
         match self {
             Self::Dexels(dexels) => Some(*dexels.grid()),
@@ -74,7 +74,7 @@ impl Solid {
         }
     }
 
-    /// The surface, with edges that look sharp.
+    /// The surface, with sharp edges drawn sharp.
     pub fn surface(&self) -> Mesh {
         match self {
             Self::Dexels(dexels) => surface(dexels),
@@ -82,7 +82,7 @@ impl Solid {
         }
     }
 
-    /// The dexels on a grid: their own are taken as they are.
+    /// A mesh as dexels on a grid; dexels are returned as they are.
     pub fn dexels(&self, file: &Path, grid: &Grid) -> Result<Dexels, Failure> {
         match self {
             Self::Dexels(dexels) => Ok(dexels.clone()),
@@ -93,12 +93,12 @@ impl Solid {
     }
 }
 
-/// The triangles of a mesh; readers have made sure that their vertices are there.
+/// The triangles of a mesh; readers have checked that their vertices exist.
 pub(crate) fn soup(mesh: &Mesh) -> TriangleSoup {
     mesh.soup().unwrap_or_default()
 }
 
-/// Lower and upper corner of the box around a mesh, unless it is empty.
+/// The lower and upper corners of a mesh's bounding box, unless it is empty.
 pub(crate) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
     let corners = mesh
         .triangles
@@ -115,7 +115,7 @@ pub(crate) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
 }
 
 impl GridOptions {
-    /// The grid that the options name: whole, or with the area of `around`, if that is known.
+    /// The grid that the options name. Without an area it covers `around`, if that is known.
     pub fn grid(&self, around: Option<[[f64; 3]; 2]>) -> Result<Option<Grid>, Failure> {
         let failed = |error| Failure::message(format!("the grid: {error}"));
         if let Some(file) = &self.grid {
@@ -146,7 +146,7 @@ impl GridOptions {
     }
 }
 
-/// The PNG of a part: by what made its faces, or by a value for each vertex, with the scale from minus to plus the second.
+/// The picture of a part as PNG: coloured by what made its faces, or by a value per vertex on a scale of plus and minus a range.
 pub(crate) fn picture(options: &ViewOptions, mesh: &Mesh, values: Option<(&[f32], f64)>) -> Result<Vec<u8>, Failure> {
     if let Some([low, high]) = bounds(mesh) {
         for section in &options.section {

@@ -1,20 +1,18 @@
-//! `inspect`: what is in a file.
+//! `inspect`: reports what is in a file.
 
-use crate::failure::Failure;
-use crate::solid::{Kind, soup};
-use crate::words::{count, counted, measure, point};
-use std::fmt::Write as _;
+use crate::session::words::{self, count, counted, measure, point};
+use crate::session::{Failure, Kind, Lines, soup, tool_in_words};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
-use sweepsim_motion::{Pose, ProfileSegment, Tool, Turn};
+use sweepsim_motion::Pose;
 use sweepsim_nc::{Note, Options, Program, read_file};
 
 /// Prints what is in a file.
 pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
-    let mut text = Text::default();
+    let mut text = Lines::default();
     match Kind::of(file)? {
         Kind::Job => job(&mut text, &Job::read(file)?),
         Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),
@@ -29,18 +27,10 @@ pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
         Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
         Kind::Path => program(&mut text, &read_file(file, &Options::default())?),
     }
-    crate::print(&text.0)
+    text.print()
 }
 
-#[derive(Default)]
-struct Text(String);
-
-impl Text {
-    fn line(&mut self, label: &str, value: &str) {
-        // A String takes all that is written to it.
-        let _ = writeln!(self.0, "{label:>10}  {value}");
-    }
-
+impl Lines {
     fn bounds(&mut self, points: impl Iterator<Item = [f64; 3]>) {
         let mut range = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for place in points {
@@ -88,64 +78,7 @@ impl Text {
     }
 }
 
-/// A tool in a few words.
-pub(crate) fn tool(tool: &Tool) -> String {
-    let Some(profile) = tool.profile() else {
-        return format!(
-            "{}, {}",
-            counted(tool.patches().len() as u64, "patch").replace("patchs", "patches"),
-            counted(tool.edges().len() as u64, "sharp edge")
-        );
-    };
-    let mut points = vec![profile.start()];
-    let (mut arcs, mut splines) = (0, 0);
-    for segment in profile.segments() {
-        match segment {
-            ProfileSegment::Line { to } => points.push(*to),
-            &ProfileSegment::Arc { to, centre, turn } => {
-                arcs += 1;
-                // An arc may reach farther out than its ends.
-                let from = points[points.len() - 1];
-                let radius = (from[0] - centre[0]).hypot(from[1] - centre[1]);
-                let outwards = match turn {
-                    Turn::Ccw => from[1] <= centre[1] && to[1] >= centre[1],
-                    Turn::Cw => from[1] >= centre[1] && to[1] <= centre[1],
-                };
-                if outwards {
-                    points.push([centre[0] + radius, centre[1]]);
-                }
-                points.push(to);
-            }
-            ProfileSegment::Spline { points: own, .. } => {
-                splines += 1;
-                points.extend(own.last());
-            }
-        }
-    }
-    // A spline reaches farther than its ends and less far than its control points: the patches know.
-    if splines > 0 {
-        let places = tool
-            .patches()
-            .iter()
-            .flat_map(|patch| (0..=64).map(|k| patch.place(0.0, f64::from(k) / 64.0)));
-        points.extend(places.map(|place| [place.x.hypot(place.y), place.z]));
-    }
-    let radius = points.iter().map(|p| p[0]).fold(0.0, f64::max);
-    let length = points.iter().map(|p| p[1]).fold(0.0, f64::max);
-    let lines = profile.segments().len() - arcs - splines;
-    let mut kinds = vec![counted(lines as u64, "line"), counted(arcs as u64, "arc")];
-    if splines > 0 {
-        kinds.push(counted(splines as u64, "spline"));
-    }
-    format!(
-        "radius {}, length {} mm ({})",
-        measure(radius),
-        measure(length),
-        kinds.join(", ")
-    )
-}
-
-fn job(text: &mut Text, job: &Job) {
+fn job(text: &mut Lines, job: &Job) {
     text.line("job", &job.name);
     text.line("tolerance", &format!("{} mm", job.tolerance));
     text.grid(&job.grid);
@@ -172,7 +105,7 @@ fn job(text: &mut Text, job: &Job) {
     };
     text.line("stock", &stock);
     for (number, cutter) in &job.tools {
-        text.line("tool", &format!("{number}: {}", tool(cutter)));
+        text.line("tool", &format!("{number}: {}", tool_in_words(cutter)));
     }
     text.notes(job.notes.iter());
     for path in &job.paths {
@@ -191,7 +124,7 @@ fn tip(pose: &Pose) -> [f64; 3] {
     pose.tip().into()
 }
 
-fn program(text: &mut Text, program: &Program) {
+fn program(text: &mut Lines, program: &Program) {
     let sections = program.sections().count();
     let moves: usize = program.sections().map(|section| section.len() - 1).sum();
     let rapid = program.poses.iter().filter(|pose| pose.joined && pose.rapid).count();
@@ -221,7 +154,7 @@ fn program(text: &mut Text, program: &Program) {
     text.notes(program.notes.iter());
 }
 
-fn mesh(text: &mut Text, mesh: &Mesh) {
+fn mesh(text: &mut Lines, mesh: &Mesh) {
     text.line("vertices", &count(mesh.vertices.len() as u64));
     text.line("triangles", &count(mesh.triangles.len() as u64));
     text.bounds(mesh.vertices.iter().copied());
@@ -235,7 +168,7 @@ fn mesh(text: &mut Text, mesh: &Mesh) {
     }
 }
 
-fn dexels(text: &mut Text, dexels: &Dexels) {
+fn dexels(text: &mut Lines, dexels: &Dexels) {
     text.grid(dexels.grid());
     text.line("intervals", &count(dexels.count() as u64));
     text.line("dexels", &format!("{} with material", count(dexels.covered() as u64)));
@@ -254,10 +187,10 @@ fn dexels(text: &mut Text, dexels: &Dexels) {
         "cut",
         &format!("{} of {}", count(cut as u64), counted(2 * dexels.count() as u64, "end")),
     );
-    text.line("memory", &crate::words::bytes(dexels.bytes() as u64));
+    text.line("memory", &words::bytes(dexels.bytes() as u64));
 }
 
-fn table(text: &mut Text, rows: &[sweepsim_formats::DexelRow]) {
+fn table(text: &mut Lines, rows: &[sweepsim_formats::DexelRow]) {
     text.line("intervals", &count(rows.len() as u64));
     let lines = rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)).count();
     text.line("dexels", &format!("{} with material", count(lines as u64)));

@@ -1,14 +1,8 @@
-//! `compare`: how a part differs from its target.
+//! `compare`: reports how a part differs from its target.
 
 use crate::arguments::{CompareOptions, Output};
-use crate::failure::Failure;
-use crate::outputs::Outputs;
-use crate::run::folder_name;
-use crate::solid::{Solid, bounds, picture, soup};
-use crate::words;
-use std::fmt::Write as _;
+use crate::session::{Failure, Lines, Outputs, Solid, bounds, output_folder, picture, print, soup, words};
 use std::io::Write as _;
-use std::path::Path;
 use std::time::Instant;
 use sweepsim_dexel::{Comparison, DistanceTo, Grid, Mesh, Nearest};
 use sweepsim_formats::{ComparisonReport, Deviation, Furthest, HistogramBar};
@@ -16,7 +10,7 @@ use sweepsim_formats::{ComparisonReport, Deviation, Furthest, HistogramBar};
 /// Bars of the histogram.
 const BARS: usize = 20;
 
-/// Compares, and writes the report and the picture.
+/// Compares two parts, and writes a report and a picture.
 pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let mut report = ComparisonReport {
         part: options.part.display().to_string(),
@@ -27,16 +21,13 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let start = Instant::now();
     let [part, target] = read(options)?;
     let name = options.part.file_stem().unwrap_or_default().to_string_lossy();
-    let folder = options
-        .out
-        .clone()
-        .unwrap_or_else(|| Path::new("out").join(folder_name(&name)));
+    let folder = output_folder(options.out.as_deref(), &name);
     let mut outputs = Outputs::new(folder, &[Output::Picture, Output::Report])?;
     let (mesh, goal) = (part.surface(), target.surface());
-    let around = bounds(&mesh)
-        .ok_or_else(|| Failure::message(format!("{}: there is nothing in this part", options.part.display())))?;
+    let around =
+        bounds(&mesh).ok_or_else(|| Failure::message(format!("{}: this part is empty", options.part.display())))?;
     if bounds(&goal).is_none() {
-        let message = format!("{}: there is nothing in this target", options.target.display());
+        let message = format!("{}: this target is empty", options.target.display());
         return Err(Failure::message(message));
     }
     let grid = match (part.grid(), target.grid(), options.grid.grid(Some(around))?) {
@@ -76,15 +67,15 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
         .map_err(|error| Failure::message(format!("cannot make the report: {error}")))?;
     outputs.write("report.json", |file| file.write_all(json.as_bytes()))?;
     if options.json {
-        crate::print(&json)
+        print(&json)
     } else if options.quiet {
         Ok(())
     } else {
-        crate::print(&summary(&report, &outputs))
+        summary(&report, &outputs).print()
     }
 }
 
-/// Reads both. A table of dexels stands on the grid of the other one, if the options name none.
+/// Reads both parts. A table of dexels takes the grid of the other part, unless the options name one.
 fn read(options: &CompareOptions) -> Result<[Solid; 2], Failure> {
     let given = if options.grid.grid.is_some() || options.grid.area.is_some() {
         options.grid.grid(None)?
@@ -108,7 +99,7 @@ fn read(options: &CompareOptions) -> Result<[Solid; 2], Failure> {
     }
 }
 
-/// End by end of the part's dexels: with the target's on the same grid, or with its surface.
+/// Compares the part's dexels with those of the target on the same grid, or with its surface.
 fn differences(
     options: &CompareOptions,
     grid: &Grid,
@@ -141,11 +132,11 @@ fn furthest_of((place, near): ([f64; 3], Nearest)) -> Furthest {
     }
 }
 
-/// The next larger number of one or two digits, for a scale that is easy to read.
+/// Rounds up to a number of one or two digits, for a readable scale.
 fn round(value: f64) -> f64 {
     let whole = 10_f64.powf(value.log10().floor());
     let steps = [1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 8.0];
-    // Beyond the last, and where the logarithm was rounded down.
+    // For values beyond the last step, or if the logarithm was rounded down.
     steps
         .into_iter()
         .map(|step| step * whole)
@@ -153,7 +144,7 @@ fn round(value: f64) -> f64 {
         .unwrap_or(10.0 * whole)
 }
 
-/// How far each vertex is outside of the target.
+/// The distance of each vertex from the target, positive outside.
 fn values(mesh: &Mesh, tree: &DistanceTo) -> Vec<f32> {
     use rayon::prelude::*;
     let places = mesh.vertices.par_iter();
@@ -162,7 +153,7 @@ fn values(mesh: &Mesh, tree: &DistanceTo) -> Vec<f32> {
         .collect()
 }
 
-/// Fills in what the report says.
+/// Fills in the report.
 fn describe(report: &mut ComparisonReport, options: &CompareOptions, found: &Comparison) {
     report.volume = found.volume;
     report.target_volume = found.target;
@@ -209,13 +200,10 @@ fn describe(report: &mut ComparisonReport, options: &CompareOptions, found: &Com
     }
 }
 
-/// What a person wants to know.
-fn summary(report: &ComparisonReport, outputs: &Outputs) -> String {
-    let mut text = String::new();
-    let mut line = |label: &str, value: &str| {
-        // A String takes all that is written to it.
-        let _ = writeln!(text, "{label:>10}  {value}");
-    };
+/// What the user is told.
+fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
+    let mut lines = Lines::default();
+    let mut line = |label: &str, value: &str| lines.line(label, value);
     let volume = |value: f64| format!("{} mm³", words::measure(value));
     line(
         "volume",
@@ -247,19 +235,18 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> String {
             ),
         );
     }
-    let names: Vec<&str> = outputs.written.iter().map(|(name, _)| *name).collect();
-    line("out", &format!("{}: {}", outputs.folder().display(), names.join(", ")));
-    text
+    line("out", &outputs.listed());
+    lines
 }
 
-/// A distance. What is less than the noise of millimetres in `f64` is 0.
+/// A distance. Values below the rounding errors of millimetres in `f64` are shown as 0.
 fn length(value: f64) -> String {
     words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
 }
 
 fn words_of(deviation: &Deviation) -> String {
     if deviation.count == 0 {
-        return "no end beyond the tolerance".to_owned();
+        return "nothing beyond the tolerance".to_owned();
     }
     let [max, mean] = [deviation.max, deviation.mean].map(length);
     let count = words::counted(deviation.count as u64, "end");

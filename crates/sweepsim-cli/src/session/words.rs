@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers for people.
 
 /// `1234567` as `1,234,567`.
 pub(crate) fn count(number: u64) -> String {
@@ -13,12 +13,12 @@ pub(crate) fn count(number: u64) -> String {
     text
 }
 
-/// `count` of something, in the plural where it is right.
+/// A number of things, with an `s` in the plural.
 pub(crate) fn counted(number: u64, one: &str) -> String {
     format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" })
 }
 
-/// A measure with about five digits that mean something, and thousands apart.
+/// A measure with five significant digits, and thousands separators.
 pub(crate) fn measure(value: f64) -> String {
     if !value.is_finite() {
         return value.to_string();
@@ -38,7 +38,7 @@ pub(crate) fn measure(value: f64) -> String {
     }
 }
 
-/// A time.
+/// A duration in seconds.
 pub(crate) fn seconds(value: f64) -> String {
     if value >= 100.0 {
         format!("{value:.0} s")
@@ -49,7 +49,7 @@ pub(crate) fn seconds(value: f64) -> String {
     }
 }
 
-/// A size of a file.
+/// A file size.
 pub(crate) fn bytes(value: u64) -> String {
     match value {
         0..1_000 => format!("{value} B"),

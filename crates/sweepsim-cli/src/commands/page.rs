@@ -1,7 +1,7 @@
-//! `report.html`: the report for people, in one file, with `part.png` beside it.
+//! `report.html`: the report for people. It shows `part.png`, which must be next to it.
 
-use crate::run::Task;
-use crate::words;
+use super::run::Task;
+use crate::session::{tool_in_words, words};
 use std::fmt::Write as _;
 use sweepsim_formats::{Job, Report};
 
@@ -11,13 +11,13 @@ pub(crate) struct Page<'a> {
     pub job: &'a Job,
     pub report: &'a Report,
     pub threads: usize,
-    /// Seconds from start to end.
+    /// The duration of the run in seconds.
     pub total: f64,
-    /// Whether `part.png` is there.
+    /// Whether `part.png` was written.
     pub picture: bool,
 }
 
-/// How many unresolved dexels get a row.
+/// The most unresolved dexels listed.
 const ROWS: usize = 1000;
 
 const STYLE: &str = "
@@ -55,8 +55,14 @@ fn escape(text: &str) -> String {
     safe
 }
 
-/// The page.
-pub(crate) fn html(page: &Page) -> String {
+impl Page<'_> {
+    /// The page as HTML.
+    pub fn html(&self) -> String {
+        html(self)
+    }
+}
+
+fn html(page: &Page) -> String {
     let (job, report) = (page.job, page.report);
     let name = escape(&report.job);
     let [nx, ny] = report.cells;
@@ -74,12 +80,12 @@ pub(crate) fn html(page: &Page) -> String {
     );
     facts(&mut text, page);
     if page.picture {
-        let _ = writeln!(text, "<img src=\"part.png\" alt=\"The result, from above\">");
+        let _ = writeln!(text, "<img src=\"part.png\" alt=\"The result\">");
     }
     paths(&mut text, page);
     times(&mut text, page);
     if !report.notes.is_empty() {
-        text.push_str("<h2>Notes on reading</h2>\n<ul>\n");
+        text.push_str("<h2>Notes</h2>\n<ul>\n");
         for note in &report.notes {
             let _ = writeln!(text, "<li>{}</li>", escape(note));
         }
@@ -118,7 +124,7 @@ fn facts(text: &mut String, page: &Page) {
     }
     let counts = &report.dexels;
     let audit = if counts.unresolved.is_empty() {
-        "<span class=\"good\">every dexel certain</span>".to_owned()
+        "<span class=\"good\">every dexel certified</span>".to_owned()
     } else {
         let open = words::counted(counts.unresolved.len() as u64, "dexel");
         format!("<span class=\"bad\">{open} unresolved</span>")
@@ -129,7 +135,7 @@ fn facts(text: &mut String, page: &Page) {
     fact(text, "Crossings", &words::count(report.crossings), &covered);
     let sweep = report.seconds.get("sweep").copied().unwrap_or_default();
     let pace = format!(
-        "{} moves a second",
+        "{} moves per second",
         words::count((report.moves as f64 / sweep.max(1e-9)) as u64)
     );
     fact(text, "Time", &words::seconds(page.total), &pace);
@@ -144,7 +150,7 @@ fn paths(text: &mut String, page: &Page) {
             text,
             "<tr><td class=\"n\">{number}<td>{}: {}<td class=\"n\">{}<td>{}</tr>",
             path.tool,
-            escape(&crate::inspect::tool(tool)),
+            escape(&tool_in_words(tool)),
             words::count(path.path.moves() as u64),
             escape(&path.source),
         );
@@ -173,7 +179,7 @@ fn unresolved(text: &mut String, report: &Report) {
         return;
     }
     text.push_str(
-        "<h2>Unresolved dexels</h2>\n<p>Do not trust the intervals of these.</p>\n<table>\n<thead><tr><th>i<th>j<th>Why</tr></thead>\n",
+        "<h2>Unresolved dexels</h2>\n<p>The intervals of these dexels are not certified.</p>\n<table>\n<thead><tr><th>i<th>j<th>Why</tr></thead>\n",
     );
     for dexel in open.iter().take(ROWS) {
         let _ = writeln!(
@@ -188,7 +194,7 @@ fn unresolved(text: &mut String, report: &Report) {
     if open.len() > ROWS {
         let _ = writeln!(
             text,
-            "<p>… and {} more: report.json has them all.</p>",
+            "<p>… and {} more, all listed in report.json.</p>",
             open.len() - ROWS
         );
     }

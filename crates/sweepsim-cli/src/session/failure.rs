@@ -1,16 +1,16 @@
-//! Why the command ends without a result.
+//! Failures of a command, and its exit status.
 
 use std::fmt;
 use std::process::ExitCode;
 use sweepsim_formats::FormatError;
 use sweepsim_nc::NcError;
 
-/// What is printed, and how the process ends.
+/// Why a command ends without a result.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// Bad input or usage.
     Bad(String),
-    /// The user has ended the run.
+    /// The user interrupted the run.
     Interrupted,
 }
 
@@ -24,7 +24,7 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Bad(_) => 2,
-            // As a shell reports a process that SIGINT ended.
+            // What shells report for a process ended by SIGINT.
             Self::Interrupted => 130,
         })
     }
@@ -46,7 +46,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bad(text) => f.write_str(text),
-            Self::Interrupted => f.write_str("interrupted: nothing is written"),
+            Self::Interrupted => f.write_str("interrupted: nothing was written"),
         }
     }
 }

@@ -1,0 +1,196 @@
+//! Parsers of option values.
+
+use sweepsim::systems::Plane;
+use sweepsim_picture::{Axis, Image, Section, View};
+
+/// Parses one of several names, which clap lists in its help.
+pub(super) fn parsed<T, const N: usize>(names: [&'static str; N]) -> clap::builder::ValueParser
+where
+    T: std::str::FromStr<Err: std::error::Error + Send + Sync + 'static> + Clone + Send + Sync + 'static,
+{
+    use clap::builder::TypedValueParser;
+    clap::builder::PossibleValuesParser::new(names)
+        .try_map(|name| name.parse::<T>())
+        .into()
+}
+
+pub(super) fn cells(text: &str) -> Result<[usize; 2], String> {
+    let parts: Vec<_> = text.split(['x', 'X', '×']).map(str::parse).collect();
+    match parts[..] {
+        [Ok(columns), Ok(rows)] => Ok([columns, rows]),
+        _ => Err("expected two whole numbers, like 300x200".to_owned()),
+    }
+}
+
+pub(super) fn size(text: &str) -> Result<[usize; 2], String> {
+    let size = cells(text)?;
+    let most = Image::MAX_SIDE;
+    if size.iter().all(|n| (1..=most).contains(n)) {
+        Ok(size)
+    } else {
+        Err(format!("expected 1 to {most} each way"))
+    }
+}
+
+pub(super) fn area(text: &str) -> Result<[f64; 4], String> {
+    let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
+    match numbers[..] {
+        [Ok(x0), Ok(y0), Ok(x1), Ok(y1)] if x0 < x1 && y0 < y1 && [x0, y0, x1, y1].iter().all(|c| c.is_finite()) => {
+            Ok([x0, y0, x1, y1])
+        }
+        _ => Err("expected four numbers, the lower and the upper corner, like 0,0,60,40".to_owned()),
+    }
+}
+
+pub(super) fn camera(text: &str) -> Result<View, String> {
+    let iso = View::default();
+    let mut view = iso;
+    let mut angles = Vec::new();
+    for word in text.split(',').map(str::trim) {
+        let named = match word {
+            "iso" => Some([iso.azimuth, iso.elevation]),
+            "front" => Some([-90.0, 0.0]),
+            "right" => Some([0.0, 0.0]),
+            "back" => Some([90.0, 0.0]),
+            "left" => Some([180.0, 0.0]),
+            "top" => Some([-90.0, 90.0]),
+            "bottom" => Some([-90.0, -90.0]),
+            _ => None,
+        };
+        match (named, word, word.parse::<f64>()) {
+            (Some(named), ..) if angles.is_empty() => angles.extend(named),
+            (None, "orthographic", _) => view.orthographic = true,
+            (None, "perspective", _) => view.orthographic = false,
+            (None, _, Ok(angle)) if angle.is_finite() && angles.len() < 2 => angles.push(angle),
+            _ => angles.push(f64::NAN),
+        }
+    }
+    match angles[..] {
+        [] => Ok(view),
+        [azimuth, elevation] if azimuth.is_finite() && elevation.abs() <= 90.0 => {
+            (view.azimuth, view.elevation) = (azimuth, elevation);
+            Ok(view)
+        }
+        _ => Err(
+            "expected iso, front, back, left, right, top, bottom or two angles like -58,40 (the second from -90 to 90), \
+             and perhaps orthographic"
+                .to_owned(),
+        ),
+    }
+}
+
+pub(super) fn section(text: &str) -> Result<Section, String> {
+    let parts = text
+        .split_once('=')
+        .map(|(axis, at)| (axis.trim(), at.trim().parse::<f64>()));
+    let axis = match parts {
+        Some(("x", _)) => Some(Axis::X),
+        Some(("y", _)) => Some(Axis::Y),
+        Some(("z", _)) => Some(Axis::Z),
+        _ => None,
+    };
+    match (axis, parts) {
+        (Some(axis), Some((_, Ok(at)))) if at.is_finite() => Ok(Section { axis, at }),
+        _ => Err("expected an axis and a number, like z=5".to_owned()),
+    }
+}
+
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a positive number of millimetres".to_owned()),
+    }
+}
+
+/// `x=1.5`, `y=…`, `z=…`, or `a,b,c=d` for the plane `a x + b y + c z = d`.
+pub(super) fn plane(text: &str) -> Result<Plane, String> {
+    let wrong = || "expected a plane, like x=3.5, or a,b,c=d for a x + b y + c z = d".to_owned();
+    let (normal, offset) = text.split_once('=').ok_or_else(wrong)?;
+    let offset: f64 = offset.trim().parse().map_err(|_| wrong())?;
+    let normal = match normal.trim() {
+        "x" => [1.0, 0.0, 0.0],
+        "y" => [0.0, 1.0, 0.0],
+        "z" => [0.0, 0.0, 1.0],
+        list => {
+            let numbers: Result<Vec<f64>, _> = list.split(',').map(|part| part.trim().parse()).collect();
+            numbers.ok().and_then(|n| n.try_into().ok()).ok_or_else(wrong)?
+        }
+    };
+    let length = normal.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite() && offset.is_finite()) {
+        return Err(wrong());
+    }
+    Ok(Plane { normal, offset })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_and_sections_are_read() {
+        let top = camera("top,orthographic").unwrap();
+        assert_eq!((top.azimuth, top.elevation, top.orthographic), (-90.0, 90.0, true));
+        let other = camera("orthographic, -20.5, 10").unwrap();
+        assert_eq!(
+            (other.azimuth, other.elevation, other.orthographic),
+            (-20.5, 10.0, true)
+        );
+        assert!(!camera("iso").unwrap().orthographic);
+        for bad in [
+            "",
+            "under",
+            "1",
+            "1,2,3",
+            "0,91",
+            "NaN,0",
+            "top,5",
+            "top,front",
+            "inf,1",
+        ] {
+            assert!(camera(bad).is_err(), "{bad}");
+        }
+        let plane = section("y = -2.5").unwrap();
+        assert_eq!((plane.axis, plane.at), (Axis::Y, -2.5));
+        for bad in ["", "x", "x=", "w=1", "x=inf", "x=1=2"] {
+            assert!(section(bad).is_err(), "{bad}");
+        }
+        assert_eq!(area("-1,0,2.5,3"), Ok([-1.0, 0.0, 2.5, 3.0]));
+        for bad in ["", "1,2,3", "0,0,0,1", "0,0,inf,1", "0,0,1,1,1"] {
+            assert!(area(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn cells_are_two_numbers() {
+        assert_eq!(cells("300x200"), Ok([300, 200]));
+        assert_eq!(cells("3×2"), Ok([3, 2]));
+        for bad in ["300", "x", "300x", "3x4x5", "-1x3", "1.5x2", "99999999999999999999x1"] {
+            assert!(cells(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn planes_are_read() {
+        assert_eq!(plane("x=3.5"), Ok(Plane::x(3.5)));
+        assert_eq!(plane(" z = -1 "), Ok(Plane::z(-1.0)));
+        let slanted = Plane {
+            normal: [1.0, 0.0, 2.0],
+            offset: 4.0,
+        };
+        assert_eq!(plane("1,0,2=4"), Ok(slanted));
+        for bad in [
+            "",
+            "x",
+            "x=",
+            "w=1",
+            "1,2=3",
+            "0,0,0=1",
+            "1,2,3,4=5",
+            "x=NaN",
+            "inf,0,0=1",
+        ] {
+            assert!(plane(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! The commands.
+
+mod compare;
+mod convert;
+mod inspect;
+mod page;
+mod run;
+mod section;
+mod summary;
+mod tri_surface;
+
+pub(crate) use compare::compare;
+pub(crate) use convert::convert;
+pub(crate) use inspect::inspect;
+pub(crate) use run::{Task, run};
+pub(crate) use section::section;

@@ -1,0 +1,281 @@
+//! `simulate` and `sweep`: from a job to its output files.
+
+use super::page::Page;
+use super::summary::{NAMED, summary};
+use super::tri_surface;
+use crate::arguments::{Output, RunOptions};
+use crate::session::{Failure, JobSession, phase, picture, print, words};
+use std::io::Write as _;
+use std::process::ExitCode;
+use std::time::Instant;
+use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
+use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
+use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
+
+/// The largest deviation of the triangles of envelope.ply, in millimetres.
+const CHORD: f64 = 0.02;
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// What the tools leave of the stock.
+    Simulate,
+    /// What the tools sweep.
+    Sweep,
+}
+
+/// The result of a run.
+struct Outcome {
+    dexels: Dexels,
+    statistics: Statistics,
+    volume_removed: Option<f64>,
+    /// The number of uncertified dexels along x and y, of which the mesh is made.
+    uncertified: usize,
+}
+
+/// Runs a job and writes its outputs.
+pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure> {
+    let start = Instant::now();
+    let mut report = Report::default();
+    let job = phase(&mut report, "read", || read(options))?;
+    if options.tri {
+        tri_surface::check(&job)?;
+    }
+    let out = options.out.as_deref();
+    let mut session = JobSession::new(&options.job, job, out, &options.only, options.quiet)?;
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = options.threads {
+        builder = builder.num_threads(usize::from(threads));
+    }
+    let pool = builder
+        .build()
+        .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
+    let threads = pool.current_num_threads();
+    let outcome = pool.install(|| work(task, &mut session, options, &mut report));
+    session.progress.finish();
+    let outcome = outcome?;
+    let page = Page {
+        task,
+        job: &session.job,
+        report: &report,
+        threads,
+        total: start.elapsed().as_secs_f64(),
+        picture: session.outputs.wants(Output::Picture),
+    };
+    if session.outputs.wants(Output::Report) {
+        let html = page.html();
+        session
+            .outputs
+            .write("report.html", |file| file.write_all(html.as_bytes()))?;
+        let text = json(&report)?;
+        session
+            .outputs
+            .write("report.json", |file| file.write_all(text.as_bytes()))?;
+    }
+    if options.json {
+        print(&json(&report)?)?;
+    } else if !options.quiet {
+        let total = start.elapsed().as_secs_f64();
+        summary(task, &session, &report, threads, total).print()?;
+    }
+    let certified = outcome.statistics.unresolved.is_empty() && outcome.uncertified == 0;
+    Ok(if certified {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(3)
+    })
+}
+
+/// The job, with the grid and the tolerance that the options name.
+fn read(options: &RunOptions) -> Result<Job, Failure> {
+    let mut job = Job::read(&options.job)?;
+    if let Some(cells) = options.cells {
+        job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
+            .map(|grid| grid.in_frame(*job.grid.frame()))
+            .map_err(|error| Failure::message(format!("--cells: {error}")))?;
+    }
+    job.tolerance = options.tolerance.unwrap_or(job.tolerance);
+    Ok(job)
+}
+
+/// Computes the result, and writes everything but the report.
+fn work(task: Task, session: &mut JobSession, options: &RunOptions, report: &mut Report) -> Result<Outcome, Failure> {
+    let mut outcome = compute(task, session, options, report)?;
+    session.progress.check()?;
+    describe(report, session, options, &outcome);
+    write_dexels(&outcome, session, report)?;
+    if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
+        let mesh = mesh(task, session, options, &mut outcome, report)?;
+        write_mesh(options, &mesh, session, report)?;
+    }
+    if task == Task::Sweep && options.method == Method::Surface && session.outputs.wants(Output::Mesh) {
+        write_envelope(session, report)?;
+    }
+    Ok(outcome)
+}
+
+fn json(report: &Report) -> Result<String, Failure> {
+    report
+        .to_json()
+        .map_err(|error| Failure::message(format!("cannot make the report: {error}")))
+}
+
+/// The options of the sweep.
+pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
+    Options::new(job.tolerance)
+        .method(options.method)
+        .boundary(options.boundary)
+}
+
+/// Computes the dexels along z.
+fn compute(task: Task, session: &JobSession, options: &RunOptions, report: &mut Report) -> Result<Outcome, Failure> {
+    let (job, progress) = (&session.job, &session.progress);
+    let cuts = session.cuts();
+    let sweeping = sweeping(job, options);
+    let failed = |error| session.failed(error);
+    match task {
+        Task::Simulate => {
+            progress.phase("stock");
+            let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
+            let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
+            let before = stock.volume();
+            progress.phase("cut");
+            let done = phase(report, "sweep", || {
+                simulate(stock, &cuts, &sweeping, progress as &dyn Monitor)
+            });
+            let done = done.map_err(failed)?;
+            Ok(Outcome {
+                volume_removed: Some(before - done.remaining.volume()),
+                dexels: done.remaining,
+                statistics: done.statistics,
+                uncertified: 0,
+            })
+        }
+        Task::Sweep => {
+            progress.phase("sweep");
+            let done = phase(report, "sweep", || {
+                sweep_all(&cuts, &job.grid, &sweeping, progress as &dyn Monitor)
+            });
+            let done = done.map_err(failed)?;
+            Ok(Outcome {
+                dexels: done.volume,
+                statistics: done.statistics,
+                volume_removed: None,
+                uncertified: 0,
+            })
+        }
+    }
+}
+
+/// Describes the result in the report.
+fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, outcome: &Outcome) {
+    let job = &session.job;
+    report.job.clone_from(&job.name);
+    report.method = options.method.to_string();
+    report.cells = job.grid.cells();
+    report.moves = job.moves();
+    report.crossings = outcome.statistics.crossings;
+    let unresolved = outcome.statistics.unresolved.iter().map(|dexel| UnresolvedDexel {
+        i: dexel.i,
+        j: dexel.j,
+        reason: dexel.reason.to_string(),
+    });
+    report.dexels = DexelCounts {
+        covered: outcome.dexels.covered(),
+        repaired: outcome.statistics.repaired,
+        unresolved: unresolved.collect(),
+    };
+    report.volume_removed = outcome.volume_removed;
+    report.volume = Some(outcome.dexels.volume());
+    report.notes = session.notes();
+    if options.boundary == BoundaryOperator::Paper {
+        let note = "intervals were found by the paper's boundary operator, which fails where a sweep overlaps itself; nothing was audited";
+        report.notes.push(note.to_owned());
+    }
+}
+
+fn write_dexels(outcome: &Outcome, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
+    let JobSession { outputs, progress, .. } = session;
+    if outputs.wants(Output::Dexels) {
+        progress.phase("dexels");
+        phase(report, "dexels", || {
+            outputs.write("dexels.csv", |file| write_dexels_csv(&outcome.dexels, file))
+        })?;
+    }
+    if outputs.wants(Output::Binary) {
+        progress.phase("dexels");
+        phase(report, "dexels", || {
+            outputs.write("part.dexels", |file| write_dexels_binary(&outcome.dexels, file))
+        })?;
+    }
+    Ok(())
+}
+
+/// The surface of the result.
+fn mesh(
+    task: Task,
+    session: &JobSession,
+    options: &RunOptions,
+    outcome: &mut Outcome,
+    report: &mut Report,
+) -> Result<Mesh, Failure> {
+    if !options.tri {
+        session.progress.phase("mesh");
+        return Ok(phase(report, "mesh", || surface(&outcome.dexels)));
+    }
+    let surface = tri_surface::surface(task, session, options, &outcome.dexels, report)?;
+    outcome.uncertified = surface.uncertified;
+    if surface.uncertified > 0 {
+        let lines = words::counted(surface.uncertified as u64, "dexel");
+        report.notes.push(format!(
+            "{lines} along x or y could not be certified: the mesh may be wrong there"
+        ));
+    }
+    Ok(surface.mesh)
+}
+
+/// Writes the mesh and the picture.
+fn write_mesh(options: &RunOptions, mesh: &Mesh, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
+    let JobSession { outputs, progress, .. } = session;
+    if outputs.wants(Output::Mesh) {
+        phase(report, "mesh", || {
+            outputs.write("part.ply", |file| write_ply(mesh, file))
+        })?;
+    }
+    progress.check()?;
+    if outputs.wants(Output::Picture) {
+        progress.phase("picture");
+        phase(report, "picture", || {
+            let png = picture(&options.view, mesh, None)?;
+            outputs.write("part.png", |file| file.write_all(&png))
+        })?;
+    }
+    Ok(())
+}
+
+/// Writes the envelope: all of it, and the part that bounds the swept volume.
+fn write_envelope(session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
+    session.progress.phase("envelope");
+    let options = Options::new(session.job.tolerance);
+    let monitor = &session.progress as &dyn Monitor;
+    let made = phase(report, "envelope", || {
+        envelope_surfaces(&session.cuts(), CHORD, &options, monitor)
+    });
+    let surfaces = made.map_err(|error| session.failed(error))?;
+    for (name, trimmed) in [("envelope.ply", false), ("envelope-outer.ply", true)] {
+        let (points, triangles) = surfaces.triangles(trimmed);
+        let mesh = Mesh {
+            vertices: points.iter().map(|point| point.position).collect(),
+            normals: points.iter().map(|point| point.normal.map(|x| x as f32)).collect(),
+            cut: vec![true; points.len()],
+            triangles,
+        };
+        session.outputs.write(name, |file| write_ply(&mesh, file))?;
+    }
+    for (path, piece, number) in surfaces.open.iter().take(NAMED) {
+        report.notes.push(format!(
+            "envelope.ply lacks parts of {piece:?} of move {number} of path {path}"
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,18 @@
+//! What the commands share: jobs and parts from files, progress, output files, and what is printed.
+
+mod failure;
+mod job;
+mod lines;
+mod outputs;
+mod progress;
+mod solid;
+mod tool;
+pub(crate) mod words;
+
+pub(crate) use failure::Failure;
+pub(crate) use job::{JobSession, phase};
+pub(crate) use lines::{Lines, print};
+pub(crate) use outputs::{Outputs, output_folder};
+pub(crate) use progress::Progress;
+pub(crate) use solid::{CRISP, Kind, Solid, bounds, picture, soup};
+pub(crate) use tool::tool_in_words;

@@ -1,0 +1,97 @@
+//! The output files of a run. Their folder is checked before the work begins, and each is written completely or not at all.
+
+use super::{Failure, words};
+use crate::arguments::Output;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use sweepsim_formats::{AtomicFile, write_atomically};
+
+/// The output folder, and the files wanted in it.
+#[derive(Debug)]
+pub(crate) struct Outputs {
+    folder: PathBuf,
+    wanted: Vec<Output>,
+    /// Names and sizes of the files written.
+    pub written: Vec<(&'static str, u64)>,
+}
+
+impl Outputs {
+    /// Creates the folder, and checks that files can be written to it.
+    pub fn new(folder: PathBuf, only: &[Output]) -> Result<Self, Failure> {
+        let refused =
+            |error: io::Error| Failure::message(format!("cannot write to the folder {}: {error}", folder.display()));
+        fs::create_dir_all(&folder).map_err(refused)?;
+        // Dropped without a commit, it leaves no file.
+        drop(AtomicFile::create(&folder.join("report.json"))?);
+        let all = [Output::Dexels, Output::Mesh, Output::Picture, Output::Report];
+        let wanted = if only.is_empty() { all.to_vec() } else { only.to_vec() };
+        Ok(Self {
+            folder,
+            wanted,
+            written: Vec::new(),
+        })
+    }
+
+    pub fn wants(&self, output: Output) -> bool {
+        self.wanted.contains(&output)
+    }
+
+    /// Writes one file.
+    pub fn write(
+        &mut self,
+        name: &'static str,
+        write: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+    ) -> Result<(), Failure> {
+        let path = self.folder.join(name);
+        write_atomically(&path, write)?;
+        let size = fs::metadata(&path).map_or(0, |data| data.len());
+        self.written.push((name, size));
+        Ok(())
+    }
+
+    /// The files written, with their sizes, for the last line of a summary.
+    pub fn listed(&self) -> String {
+        let files: Vec<String> = self
+            .written
+            .iter()
+            .map(|(name, size)| format!("{name} ({})", words::bytes(*size)))
+            .collect();
+        format!("{}: {}", self.folder.display(), files.join(", "))
+    }
+}
+
+/// The folder that the options name, or `out/NAME`.
+pub(crate) fn output_folder(out: Option<&Path>, name: &str) -> PathBuf {
+    out.map_or_else(|| Path::new("out").join(folder_name(name)), Path::to_owned)
+}
+
+/// A name made safe for a folder: it cannot lead out of `out/`.
+fn folder_name(name: &str) -> PathBuf {
+    let safe: String = name
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || "-_. ".contains(c) {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    let safe = safe.trim_matches(['.', ' ']);
+    PathBuf::from(if safe.is_empty() { "job" } else { safe })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_leads_out_of_the_folder() {
+        assert_eq!(folder_name("a part-1.2"), Path::new("a part-1.2"));
+        assert_eq!(folder_name("../../etc"), Path::new("_.._etc"));
+        assert_eq!(folder_name(".."), Path::new("job"));
+        assert_eq!(folder_name("a/b\\c"), Path::new("a_b_c"));
+        assert_eq!(folder_name("größe"), Path::new("größe"));
+    }
+}
