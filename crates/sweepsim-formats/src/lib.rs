@@ -36,6 +36,7 @@
 //! What is wrong with a file is a [`FormatError`]: one message with file, line, column, and what was expected. Files are
 //! written whole or not at all ([`AtomicFile`]). No input makes a reader panic.
 
+mod archive;
 mod atomic;
 mod checksum;
 mod dexels;
@@ -46,7 +47,6 @@ mod meshes;
 mod report;
 mod text;
 mod vtk;
-mod zip;
 
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels::{

@@ -103,7 +103,7 @@ fn paths_become_tables() {
     assert!(
         workdir
             .bad(&["convert", "p.ngc", "p.stl"])
-            .contains("paths are written as tables only")
+            .contains("paths can only be written as tables")
     );
 }
 
@@ -117,12 +117,12 @@ fn what_cannot_be_converted_is_said() {
     )
     .unwrap();
     for (arguments, message) in [
-        (["convert", "job.ron", "x.ply"], "a job is not converted"),
+        (["convert", "job.ron", "x.ply"], "jobs cannot be converted"),
         (["convert", "text.stl", "x.ply"], "this is no STL"),
         (["convert", "cut.dexels", "x.ply"], "stops in the middle"),
         (["convert", "none.npz", "x.ply"], "cannot read this file"),
-        (["convert", "out/part.dexels", "x.step"], "the extension is not known"),
-        (["convert", "out/part.dexels", "x"], "the extension is not known"),
+        (["convert", "out/part.dexels", "x.step"], "unknown extension"),
+        (["convert", "out/part.dexels", "x"], "unknown extension"),
         (["convert", "x.vtu", "x.ply"], "cannot read this file"),
     ] {
         let found = workdir.bad(&arguments);
@@ -190,7 +190,7 @@ fn comparison_finds_what_was_cut() {
         "--size",
         "60x40",
     ]);
-    assert!(same.contains("no end beyond the tolerance"), "{same}");
+    assert!(same.contains("nothing beyond the tolerance"), "{same}");
     assert!(
         workdir
             .bad(&["compare", "job.ron", "out/part.dexels"])

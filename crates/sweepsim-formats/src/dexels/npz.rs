@@ -15,8 +15,8 @@ use std::io::Write;
 use sweepsim_dexel::{Dexels, DexelsBuilder, End, Grid, Interval, Source};
 
 use super::binary::{framed_numbers, has_wide_paths, in_frame, source_numbers};
+use crate::archive::{self, Archive};
 use crate::error::{FormatError, Problem};
-use crate::zip::{self, Archive};
 
 /// Most dexels that are read: they take an eighth of a byte each, even if the file has no interval.
 const MOST: usize = 1 << 30;
@@ -105,21 +105,21 @@ pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
     if !grid.frame().is_world() {
         entries.push(frame);
     }
-    zip::write(&entries, writer)
+    archive::write(&entries, writer)
 }
 
 fn problem(message: String) -> FormatError {
     FormatError::new(Problem::syntax(message), None)
 }
 
-/// The numbers of an array: as many bytes each as its type has, and as many numbers a row as `row` says.
-fn array<'a, const N: usize>(
-    archive: &Archive<'a>,
+/// The numbers of an array, whose type has `N` bytes and whose rows have the shape `row`.
+fn array<const N: usize>(
+    archive: &mut Archive<'_>,
     name: &str,
     kind: &str,
     row: &[usize],
-) -> Result<&'a [[u8; N]], FormatError> {
-    let bytes = archive.file(&format!("{name}.npy"))?;
+) -> Result<Vec<[u8; N]>, FormatError> {
+    let bytes = archive.entry(&format!("{name}.npy"))?;
     let wrong = || {
         let row: String = row.iter().map(|n| format!(", {n}")).collect();
         problem(format!(
@@ -148,23 +148,23 @@ fn array<'a, const N: usize>(
                 && tail.is_empty()
                 && row.iter().try_fold(*n, |all, k| all.checked_mul(*k)) == Some(numbers.len()) =>
         {
-            Ok(numbers)
+            Ok(numbers.to_vec())
         }
         _ => Err(wrong()),
     }
 }
 
-/// Reads dexels that [`write_dexels_npz`] wrote, or `numpy.savez` with the same arrays.
+/// Reads dexels that [`write_dexels_npz`] wrote, or `numpy.savez` or `numpy.savez_compressed` with the same arrays.
 ///
 /// # Errors
-/// [`FormatError`]: no such archive, or a compressed one, arrays of other types or shapes, intervals that are out of order.
+/// [`FormatError`]: not an archive, arrays of other types or shapes, intervals out of order.
 pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
-    let archive = Archive::read(bytes)?;
-    let area: Vec<f64> = array(&archive, "area", "<f8", &[2])?
+    let mut archive = Archive::read(bytes)?;
+    let area: Vec<f64> = array(&mut archive, "area", "<f8", &[2])?
         .iter()
         .map(|b| f64::from_le_bytes(*b))
         .collect();
-    let cells: Vec<usize> = array(&archive, "cells", "<u8", &[])?
+    let cells: Vec<usize> = array(&mut archive, "cells", "<u8", &[])?
         .iter()
         .map(|b| usize::try_from(u64::from_le_bytes(*b)).unwrap_or(usize::MAX))
         .collect();
@@ -175,7 +175,7 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
     };
     let grid = Grid::new([x0, y0], [x1, y1], [nx, ny]).map_err(|error| FormatError::new(Problem::Grid(error), None))?;
     let grid = if archive.has("frame.npy") {
-        in_frame(grid, array(&archive, "frame", "<f8", &[3])?)?
+        in_frame(grid, &array(&mut archive, "frame", "<f8", &[3])?)?
     } else {
         grid
     };
@@ -185,16 +185,16 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
             grid.len()
         )));
     }
-    let lines = array::<4>(&archive, "line", "<u4", &[])?;
-    let z = array::<8>(&archive, "z", "<f8", &[2])?;
-    let normals = array::<4>(&archive, "normal", "<f4", &[2, 3])?;
-    let narrow = array::<2>(&archive, "path", "<u2", &[2]).map(|paths| {
+    let lines = array::<4>(&mut archive, "line", "<u4", &[])?;
+    let z = array::<8>(&mut archive, "z", "<f8", &[2])?;
+    let normals = array::<4>(&mut archive, "normal", "<f4", &[2, 3])?;
+    let narrow = array::<2>(&mut archive, "path", "<u2", &[2]).map(|paths| {
         let number = |path: &[u8; 2]| Some(u16::from_le_bytes(*path)).filter(|path| *path < u16::MAX);
         paths.iter().map(|path| number(path).map(u32::from)).collect()
     });
     let paths: Vec<Option<u32>> = match narrow {
         Ok(paths) => paths,
-        Err(error) => match array::<4>(&archive, "path", "<u4", &[2]) {
+        Err(error) => match array::<4>(&mut archive, "path", "<u4", &[2]) {
             Ok(paths) => {
                 let number = |path: &[u8; 4]| Some(u32::from_le_bytes(*path)).filter(|path| *path < u32::MAX);
                 paths.iter().map(number).collect()
@@ -202,8 +202,8 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
             Err(_) => return Err(error),
         },
     };
-    let segments = array::<4>(&archive, "segment", "<u4", &[2])?;
-    let times = array::<4>(&archive, "t", "<f4", &[2])?;
+    let segments = array::<4>(&mut archive, "segment", "<u4", &[2])?;
+    let times = array::<4>(&mut archive, "t", "<f4", &[2])?;
     if [z.len(), normals.len() / 3, paths.len(), segments.len(), times.len()] != [2 * lines.len(); 5] {
         return Err(problem("the arrays of this file have different lengths".to_owned()));
     }

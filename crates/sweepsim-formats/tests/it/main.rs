@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-formats`, in one binary: it links once.
 
+mod archives;
 mod bad_jobs;
 mod dexels_binary;
 mod exchange;
