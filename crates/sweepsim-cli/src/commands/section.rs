@@ -5,7 +5,7 @@ use crate::session::{Failure, JobSession, Lines, words};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
-use sweepsim::{Monitor, Options, BoundaryPiece, Section, section as cut_by_plane};
+use sweepsim::{BoundaryPiece, Monitor, Options, Section, section as cut_by_plane};
 use sweepsim_formats::Job;
 
 /// Cuts the swept volume by the plane, and writes `section.svg` and `section.csv`.
