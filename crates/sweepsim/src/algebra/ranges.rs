@@ -32,7 +32,7 @@ impl<'a> Triples<'a> {
     }
 }
 
-/// Least and greatest of what was taken in.
+/// Least and greatest of what was taken in, but for NaN: see [`all_or_none`].
 struct Band {
     lo: [f64; LANES],
     hi: [f64; LANES],
@@ -64,8 +64,42 @@ impl Band {
             .hi
             .iter()
             .fold(f64::NEG_INFINITY, |a, b| if *b > a { *b } else { a });
-        (lo, hi)
+        if lo <= hi { (lo, hi) } else { UNKNOWN }
     }
+}
+
+/// The range of what is not known: no box may be dropped for it.
+const UNKNOWN: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// Makes all numbers of a list NaN where one of them is not finite.
+///
+/// [`Band`] ignores NaN, which costs nothing in the inner loop. A list that is finite or NaN throughout has its true range, or [`UNKNOWN`]; one
+/// with a single NaN would have too small a range, and solutions would be lost.
+pub(crate) fn all_or_none(list: &mut [f64]) {
+    // The sum of zeros, or NaN.
+    let mut sums = [0.0; LANES];
+    let (fours, rest) = list.as_chunks::<LANES>();
+    for four in fours {
+        for k in 0..LANES {
+            sums[k] += 0.0 * four[k];
+        }
+    }
+    let sum = rest.iter().map(|x| 0.0 * x).sum::<f64>() + sums.iter().sum::<f64>();
+    if sum.is_nan() {
+        list.fill(f64::NAN);
+    }
+}
+
+/// The range of some numbers, [`UNKNOWN`] where one of them is NaN.
+pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values {
+        if value.is_nan() {
+            return UNKNOWN;
+        }
+        (lo, hi) = (lo.min(value), hi.max(value));
+    }
+    if lo <= hi { (lo, hi) } else { UNKNOWN }
 }
 
 /// Four points, component by component.
@@ -170,6 +204,27 @@ pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples;
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn what_is_not_a_number_is_unknown() {
+        for len in 1..14 {
+            for bad in 0..3 * len {
+                let mut list: Vec<f64> = (0..3 * len).map(|k| k as f64).collect();
+                list[bad] = f64::NAN;
+                all_or_none(&mut list);
+                let points = Triples::new(&list, 0, len);
+                let row = [[1.0, 2.0, 3.0]];
+                assert_eq!(products(&row, &points), UNKNOWN);
+                assert_eq!(shifted_products(&row, &[1.0], &points), UNKNOWN);
+                assert_eq!(envelope(&row, &row, &[points, points]), UNKNOWN);
+                assert_eq!(range_of(list), UNKNOWN);
+            }
+        }
+        let mut finite = [1.0, 2.0, 3.0, 4.0, 5.0];
+        all_or_none(&mut finite);
+        assert_eq!(finite, [1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!(range_of([1.0, f64::NAN, 3.0]), UNKNOWN);
+    }
 
     proptest! {
         /// Points in fours and the rest: the range is that of all, one by one.

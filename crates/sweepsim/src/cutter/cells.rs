@@ -1,7 +1,7 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
 use crate::algebra::bivariate::CUT;
-use crate::algebra::ranges::Triples;
+use crate::algebra::ranges::{Triples, all_or_none};
 use crate::cutter::patch_forms::PatchForms;
 use sweepsim_spline::kernel;
 
@@ -123,8 +123,11 @@ impl Cells {
     /// The cell with these homogeneous tensors, its control points put into the other buffer.
     fn node(&self, element: &PatchForms, lower: [f64; 2], upper: [f64; 2], buffers: Buffers) -> CellNode {
         let layout = &element.layout;
-        let Buffers { c, mut points } = buffers;
+        let Buffers { mut c, mut points } = buffers;
         points.resize(self.points, 0.0);
+        for slot in &layout.fields {
+            all_or_none(&mut c[slot.start..][..6 * slot.len()]);
+        }
         for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
             let len = slot.len();
             let of = &c[slot.start..][..4 * len];
@@ -137,6 +140,7 @@ impl Cells {
                 y[i] = of[len + i] * inverse;
                 z[i] = of[2 * len + i] * inverse;
             }
+            all_or_none(&mut points[slot.start..][..3 * len]);
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {

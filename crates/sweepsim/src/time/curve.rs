@@ -5,6 +5,7 @@
 //! bound a rational form, because it is a convex combination of them.
 
 use crate::algebra::bivariate::{CUT, MOST};
+use crate::algebra::ranges::{all_or_none, range_of};
 use crate::time::moment::{Moment, Rows};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
@@ -93,7 +94,13 @@ pub(crate) struct CurveTimes {
 
 fn triples(channel: &Channel) -> Vec<[f64; 3]> {
     let triple = |i: usize| [0, 1, 2].map(|k| channel.row(i)[k]);
-    (0..channel.len()).map(triple).collect()
+    certain((0..channel.len()).map(triple).collect())
+}
+
+/// Rows that ranges may be taken of: see [`all_or_none`].
+fn certain(mut rows: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
+    all_or_none(rows.as_flattened_mut());
+    rows
 }
 
 fn slopes(channel: &Channel, width: f64) -> Vec<[f64; 3]> {
@@ -108,13 +115,12 @@ fn control_rows(channel: &Channel, r: usize) -> Vec<[f64; 3]> {
         let c = channel.row(i);
         [0, 1, 2].map(|k| c[r + 3 * k] / c[9])
     };
-    (0..channel.len()).map(row).collect()
+    certain((0..channel.len()).map(row).collect())
 }
 
 /// The range of component `r` of vectors over their weights.
 fn range(channel: &Channel, r: usize) -> (f64, f64) {
-    let values = values(channel, r).into_iter();
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+    range_of(values(channel, r))
 }
 
 impl CurveTimes {
@@ -158,11 +164,19 @@ impl CurveTimes {
         times
     }
 
+    /// A piece over any interval, `lower ≤ upper`, in the motion or a little beyond it.
     pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
         let channels = self.nodes[0].channels.each_ref().map(|channel| {
-            let [below, _] = channel.split(upper);
-            let [_, part] = below.split(lower / upper);
-            part
+            // Two cuts, the second in what the first has left: that must not be short, because its length is divided by.
+            if upper >= 0.5 {
+                let [below, _] = channel.split(upper);
+                let [_, part] = below.split(lower / upper);
+                part
+            } else {
+                let [_, above] = channel.split(lower);
+                let [part, _] = above.split((upper - lower) / (1.0 - lower));
+                part
+            }
         });
         self.nodes.push(node(lower, upper, channels, self.joint));
         self.nodes.len() as u32 - 1
@@ -263,9 +277,10 @@ impl CurveTimes {
 
 /// Component `r` of vectors over their weights.
 fn values(channel: &Channel, r: usize) -> Vec<f64> {
-    (0..channel.len())
-        .map(|i| channel.row(i)[r] / channel.row(i)[3])
-        .collect()
+    let value = |i: usize| channel.row(i)[r] / channel.row(i)[3];
+    let mut values: Vec<f64> = (0..channel.len()).map(value).collect();
+    all_or_none(&mut values);
+    values
 }
 
 fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {
@@ -282,5 +297,70 @@ fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {
         upper,
         parts: u32::MAX,
         channels,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::path_parts::parts;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Move, Path, Pose, TipArc};
+
+    /// A tip on a quarter of a circle, and an axis that leans on the way.
+    fn times() -> CurveTimes {
+        let pose = |tip: [f64; 3], lean: f64| Pose::new(tip, [lean, 0.0, 1.0]).unwrap();
+        let poses = vec![pose([10.0, 0.0, 0.0], 0.0), pose([0.0, 10.0, 0.0], 0.3)];
+        let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2).unwrap();
+        let path = Path::with_moves(poses, vec![Move::arc(arc)]).unwrap();
+        let parts = parts(&path, &sweepsim_dexel::Frame::WORLD, true, 40.0, 1e-6);
+        CurveTimes::new(&parts[0].segment)
+    }
+
+    fn check(lower: f64, upper: f64) -> Result<(), TestCaseError> {
+        let mut times = times();
+        let piece = times.place(lower, upper);
+        for r in 0..2 {
+            let numbers = times.rows(piece, r).iter().chain(times.spin_rows(piece, r)).flatten();
+            let (tip, velocity) = (times.tip(piece, r), times.velocity(piece, r));
+            let ranges = [tip.0, tip.1, velocity.0, velocity.1];
+            prop_assert!(numbers.chain(&ranges).all(|x| x.is_finite()), "{lower} {upper}");
+            for part in [0.0, 0.3, 1.0] {
+                let moment = times.at(lower + part * (upper - lower));
+                prop_assert!(tip.0 - 1e-12 <= moment.tip[r] && moment.tip[r] <= tip.1 + 1e-12);
+                let place = moment.velocity[r];
+                prop_assert!(velocity.0 - 1e-11 <= place && place <= velocity.1 + 1e-11);
+            }
+        }
+        // The ends of the piece are those of the motion.
+        for (t, row) in [(lower, 0), (upper, times.rows(piece, 0).len() - 1)] {
+            let turn = times.at(t).turn;
+            for k in 0..3 {
+                prop_assert!((times.rows(piece, 0)[row][k] - turn[(0, k)]).abs() < 1e-13);
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn pieces_may_end_at_the_start_of_the_motion() {
+        for (lower, upper) in [
+            (0.0, 0.0),
+            (-1e-3, 0.0),
+            (-1e-3, 1e-300),
+            (0.0, 1e-320),
+            (1e-320, 2e-320),
+            (1.0, 1.0),
+            (1.0, 1.001),
+        ] {
+            check(lower, upper).unwrap();
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn pieces_anywhere_hold_the_motion(lower in -0.01..1.0, width in prop_oneof![Just(0.0), 0.0..1e-9, 0.0..1.0]) {
+            check(lower, f64::min(lower + width, 1.01))?;
+        }
     }
 }

@@ -4,6 +4,7 @@ mod frames;
 mod freeform;
 mod joints;
 mod methods;
+mod misuse;
 mod near_degenerate;
 mod sections;
 mod spline_profiles;
