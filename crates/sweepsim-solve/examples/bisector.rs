@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // |x − p|² = |x − q|², multiplied by W: 2 X·(q − p) = W (|q|² − |p|²).
     let across = [q[0].sub(&p[0]), q[1].sub(&p[1])];
     let equation = dot(&x, &across).scale(2.0).sub(&w.mul(&dot(&q, &q).sub(&dot(&p, &p))));
-    let system = System::new(&[Enclosure::new(0.0, 1.0); 2], [equation])?;
+    let system = System::new(&[Enclosure::UNIT; 2], [equation])?;
     let curves = CurveSolver::new(1e-3).solve(&system, &())?;
     println!(
         "{} arcs, {} loops of feet",

@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (a, b, c) = (1.0, 0.4, 0.2);
     let slopes = height.derivative(0).scale(a).add(&height.derivative(1).scale(b));
     let across = slopes.sub(&Bernstein::constant(2, c));
-    let system = System::new(&[Enclosure::new(0.0, 1.0); 2], [across])?;
+    let system = System::new(&[Enclosure::UNIT; 2], [across])?;
     let mut picture = Picture::new([0, 1]);
     let curves = CurveSolver::new(1e-4).solve(&system, &picture)?;
     eprintln!("{} loops, {} arcs", curves.loops().count(), curves.arcs().count());

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Ok(Equation::sum(vec![own, other]))
     });
     let equations = equations.collect::<Result<Vec<_>, _>>()?;
-    let system = System::new(&[Enclosure::new(0.0, 1.0); 4], equations)?;
+    let system = System::new(&[Enclosure::UNIT; 4], equations)?;
     let curves = CurveSolver::new(1e-3).solve(&system, &())?;
     println!("{} arcs, {} loops", curves.arcs().count(), curves.loops().count());
     for curve in &curves.curves {

@@ -6,7 +6,7 @@ use sweepsim_solve::{Enclosure, PointSolver, System};
 use sweepsim_spline::Bernstein;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let bounds = [Enclosure::new(-2.0, 2.0); 3];
+    let bounds = [Enclosure::new(-2.0, 2.0).unwrap(); 3];
     // x = −2 + 4 u on the domain.
     let x = |axis| {
         Bernstein::variable(3, axis)

@@ -14,7 +14,7 @@ pub struct Named {
 }
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 /// The variable `lo + width·u` as a form.
@@ -68,7 +68,8 @@ pub fn chebyshev_3d() -> Named {
     };
     Named {
         name: "dense_cheb4_3d",
-        system: System::new(&[Enclosure::new(-1.0, 1.0); 3], [form(0), form(1), form(2)]).expect("a valid system"),
+        system: System::new(&[Enclosure::new(-1.0, 1.0).unwrap(); 3], [form(0), form(1), form(2)])
+            .expect("a valid system"),
         roots: 64,
     }
 }
@@ -84,8 +85,11 @@ pub fn cyclohexane() -> Named {
     };
     Named {
         name: "cyclohexane",
-        system: System::new(&[Enclosure::new(-20.0, 20.0); 3], [form(1, 2), form(2, 0), form(0, 1)])
-            .expect("a valid system"),
+        system: System::new(
+            &[Enclosure::new(-20.0, 20.0).unwrap(); 3],
+            [form(1, 2), form(2, 0), form(0, 1)],
+        )
+        .expect("a valid system"),
         roots: 16,
     }
 }

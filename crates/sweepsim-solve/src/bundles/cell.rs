@@ -200,7 +200,7 @@ impl<const N: usize> Blocks<N> {
     /// The range of each equation's left side over the box; none, where a form that shall be zero is not, or conditions do not differ.
     pub fn values(&self, frame: &StackedBox<N>, c: &[f64]) -> Option<[Enclosure; N]> {
         let [position, zeros, conditions] = &self.blocks;
-        let mut values = [Enclosure::new(0.0, 0.0); N];
+        let mut values = [Enclosure::hull(0.0, 0.0); N];
         let targeted = self.targeted();
         for k in 0..zeros.count {
             let (lo, hi) = tensor::range(zeros.form(c, k));
@@ -208,7 +208,7 @@ impl<const N: usize> Blocks<N> {
             if lo > noise || hi < -noise {
                 return None;
             }
-            values[targeted + k] = Enclosure::new(lo - noise, hi + noise);
+            values[targeted + k] = Enclosure::hull(lo - noise, hi + noise);
         }
         if conditions.count == 2 {
             let negative = |k: usize| {
@@ -240,7 +240,7 @@ impl<const N: usize> Blocks<N> {
             let size = lo.abs().max(hi.abs());
             let pad =
                 frame.noise[POSITION] * (1.0 + size) / (least - frame.noise[POSITION]) * (1.0 + 1e-12) + EPSILON * size;
-            values[k] = Enclosure::new(lo - pad, hi + pad);
+            values[k] = Enclosure::hull(lo - pad, hi + pad);
         }
         Some(values)
     }

@@ -78,7 +78,7 @@ where
         }
         let taylor = Taylor::new(self.blocks, frame, c, &values, self.map, self.scratch);
         self.statistics.evaluations += 1;
-        let bounds: [Enclosure; N] = std::array::from_fn(|j| Enclosure::new(frame.lo[j], frame.hi[j]));
+        let bounds: [Enclosure; N] = std::array::from_fn(|j| Enclosure::hull(frame.lo[j], frame.hi[j]));
         let slopes = taylor.slopes();
         let small = |j: usize| frame.hi[j] - frame.lo[j] <= self.options.smallest;
         let idle = |j: usize| (0..N).all(|i| slopes[i][j].magnitude() == 0.0);
@@ -102,7 +102,7 @@ where
             return None;
         }
         *budget -= 1;
-        let domain = [Enclosure::new(0.0, 1.0); N];
+        let domain = [Enclosure::UNIT; N];
         let mut axis = widest(&bounds, &domain, &slopes, &self.map.scales());
         let mut lines = frame.lines;
         if let Some(inverse) = &taylor.inverse {
@@ -274,7 +274,7 @@ where
                                 target: one.preimage.target,
                                 bounds: std::array::from_fn(|j| {
                                     let (x, pad) = (one.preimage.x[j], 4.0 * (one.error[j] + other.error[j]));
-                                    Enclosure::new(x - pad, x + pad)
+                                    Enclosure::hull(x - pad, x + pad)
                                 }),
                                 reason: Reason::Smallest,
                             });

@@ -124,7 +124,7 @@ impl<const N: usize> Taylor<N> {
                 [&mut first_buffer, &mut second_buffer],
             );
             // Targets as far from the centre's value as the range reaches.
-            let reach = (values[r].hi - middle).max(middle - values[r].lo);
+            let reach = (values[r].hi() - middle).max(middle - values[r].lo());
             second[r] = (bends + weight_bends * reach) / least;
             weight[r] = SVector::from(weight_slopes) / least;
         }
@@ -168,7 +168,7 @@ impl<const N: usize> Taylor<N> {
         std::array::from_fn(|i| {
             std::array::from_fn(|j| {
                 let (middle, reach) = (self.jacobian[(i, j)], self.second[i].row(j).sum());
-                Enclosure::new((middle - reach) / self.half[j], (middle + reach) / self.half[j])
+                Enclosure::hull((middle - reach) / self.half[j], (middle + reach) / self.half[j])
             })
         })
     }

@@ -186,8 +186,8 @@ impl<'a, const N: usize> Chart<'a, N> {
     fn owns(&self, s: &SVector<f64, N>) -> bool {
         let x = self.linear.point(s);
         (0..N).all(|i| {
-            let (side, end) = (&self.bounds[i], self.domain[i].hi);
-            x[i] >= side.lo && (x[i] < side.hi || (x[i] <= side.hi && side.hi == end))
+            let (side, end) = (&self.bounds[i], self.domain[i].hi());
+            x[i] >= side.lo() && (x[i] < side.hi() || (x[i] <= side.hi() && side.hi() == end))
         })
     }
 }

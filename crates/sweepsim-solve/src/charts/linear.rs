@@ -98,10 +98,10 @@ impl<const N: usize> Linear<N> {
     }
 
     /// The second values of targets with the other values of `q` that can have a preimage in the box, seen from the centre.
-    pub fn window(&self, value: &[f64; N], q: &[f64; N]) -> Enclosure {
-        let mut window = Enclosure::new(f64::NEG_INFINITY, f64::INFINITY);
+    pub fn window(&self, value: &[f64; N], q: &[f64; N]) -> Option<Enclosure> {
+        let mut window = Enclosure::WHOLE;
         if N < 2 {
-            return window;
+            return Some(window);
         }
         for i in 0..N {
             // |base + factor (q₁ − Φ₁)| ≤ 1 + reach; twice the slack is for the rounding here, of numbers no larger than those of Φ.
@@ -115,10 +115,10 @@ impl<const N: usize> Linear<N> {
             let (lo, hi) = (a.min(b), a.max(b));
             // With a factor of 0 the ends are infinite, or not numbers: they narrow nothing, and targets are tested one by one.
             if lo.is_finite() && hi.is_finite() {
-                window = Enclosure::new(window.lo.max(value[1] + lo), window.hi.min(value[1] + hi));
+                window = window.intersection(Enclosure::hull(value[1] + lo, value[1] + hi))?;
             }
         }
-        window
+        Some(window)
     }
 
     pub fn point(&self, s: &SVector<f64, N>) -> [f64; N] {

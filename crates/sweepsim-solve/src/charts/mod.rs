@@ -82,18 +82,18 @@ pub trait Targets<const N: usize> {
     fn count(&self, range: &[Enclosure; N]) -> usize;
 
     /// Calls `visit` with each target in the range until that returns `false`: row by row, and in each upwards. Of a row, `narrow` is
-    /// shown the lowest, and says which second values are wanted.
+    /// shown the lowest, and says which second values are wanted, if any.
     fn visit(
         &self,
         range: &[Enclosure; N],
-        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
+        narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
         visit: &mut dyn FnMut(&Target<N>) -> bool,
     );
 }
 
 /// Rows that are wanted as they are.
-pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Enclosure {
-    Enclosure::new(f64::NEG_INFINITY, f64::INFINITY)
+pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Option<Enclosure> {
+    Some(Enclosure::WHOLE)
 }
 
 /// A solution `Φ(x) = q` of one target.

@@ -277,7 +277,7 @@ pub(crate) fn collapses<const N: usize>(bounds: &[Enclosure; N], jacobian: &[[En
     let half = bounds.map(Enclosure::radius);
     jacobian.iter().all(|row| {
         let most = (0..N).map(|j| row[j].magnitude() * half[j]).fold(0.0, f64::max);
-        let least = row[axis].lo.max(-row[axis].hi).max(0.0);
+        let least = row[axis].lo().max(-row[axis].hi()).max(0.0);
         row[axis].magnitude() * half[axis] < 0.25 * most && least * half[axis] < 1e-3 * most
     })
 }

@@ -5,7 +5,7 @@ mod enclosure;
 mod matrix;
 
 pub(crate) use double::Double;
-pub use enclosure::Enclosure;
+pub use enclosure::{Enclosure, EnclosureError};
 pub use matrix::MAX_UNKNOWNS;
 pub(crate) use matrix::{Row, Square, ZERO, apply, inverse};
 

@@ -23,7 +23,7 @@ impl PointSolver {
     /// use sweepsim_spline::Bernstein;
     ///
     /// let x = Bernstein::from_fn(&[3], |i| [1.0, -2.0, 2.0, -1.0][i[0]])?;
-    /// let system = System::new(&[Enclosure::new(0.0, 1.0)], [&x])?;
+    /// let system = System::new(&[Enclosure::UNIT], [&x])?;
     /// let points = PointSolver::default().solve_parallel(&system, &())?;
     /// assert_eq!(points.roots.len(), 3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

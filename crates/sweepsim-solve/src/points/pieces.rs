@@ -36,11 +36,11 @@ impl PointSolver {
                     continue;
                 }
                 let ends = root.enclosure.iter().zip(&pieces.domain);
-                let outer = ends.clone().any(|(e, d)| e.lo <= d.lo || e.hi >= d.hi);
+                let outer = ends.clone().any(|(e, d)| e.lo() <= d.lo() || e.hi() >= d.hi());
                 let knots = root.enclosure.iter().zip(system.domain()).zip(&pieces.domain);
                 let inner = knots
                     .into_iter()
-                    .any(|((e, s), d)| (e.lo <= s.lo && s.lo > d.lo) || (e.hi >= s.hi && s.hi < d.hi));
+                    .any(|((e, s), d)| (e.lo() <= s.lo() && s.lo() > d.lo()) || (e.hi() >= s.hi() && s.hi() < d.hi()));
                 root.location = if outer {
                     RootLocation::Boundary
                 } else {
@@ -63,7 +63,7 @@ impl PointSolver {
                     r.enclosure
                         .iter()
                         .zip(&around)
-                        .all(|(a, b)| a.lo <= b.hi && b.lo <= a.hi)
+                        .all(|(a, b)| a.lo() <= b.hi() && b.lo() <= a.hi())
                 };
                 let next = match between.iter().position(meets) {
                     Some(k) => between.remove(k),
@@ -73,7 +73,7 @@ impl PointSolver {
                     },
                 };
                 for (h, e) in hull.iter_mut().zip(&next.enclosure) {
-                    *h = Enclosure::new(h.lo.min(e.lo), h.hi.max(e.hi));
+                    *h = Enclosure::hull(h.lo().min(e.lo()), h.hi().max(e.hi()));
                 }
                 if next.location == RootLocation::Boundary {
                     place = RootLocation::Boundary;
@@ -113,14 +113,14 @@ fn touches(system: &System, hull: &[Enclosure]) -> bool {
         .domain()
         .iter()
         .zip(hull)
-        .all(|(s, h)| s.lo <= h.hi && h.lo <= s.hi)
+        .all(|(s, h)| s.lo() <= h.hi() && h.lo() <= s.hi())
 }
 
 /// A box some times as wide, and wide enough for slopes to mean something.
 fn inflated(hull: &[Enclosure], domain: &[Enclosure]) -> Vec<Enclosure> {
     let wider = |(h, d): (&Enclosure, &Enclosure)| {
-        let pad = 16.0 * h.radius() + NEAR * (d.hi - d.lo);
-        Enclosure::new(h.lo - pad, h.hi + pad)
+        let pad = 16.0 * h.radius() + NEAR * (d.hi() - d.lo());
+        Enclosure::hull(h.lo() - pad, h.hi() + pad)
     };
     hull.iter().zip(domain).map(wider).collect()
 }
@@ -190,11 +190,11 @@ fn one_root(systems: &[&System], bounds: &[Enclosure]) -> Option<(Vec<f64>, Vec<
         return None;
     }
     let reach = largest / (1.0 - contraction);
-    let width = |j: usize| bounds[j].hi - bounds[j].lo;
+    let width = |j: usize| bounds[j].hi() - bounds[j].lo();
     let point = (0..n).map(|j| middle[j] + offset[j] * width(j)).collect();
     let side = |j: usize| {
         let pad = reach * width(j) * (1.0 + 8.0 * f64::EPSILON) + 4.0 * f64::EPSILON * middle[j].abs();
-        Enclosure::new(middle[j] - pad, middle[j] + pad)
+        Enclosure::hull(middle[j] - pad, middle[j] + pad)
     };
     Some((point, (0..n).map(side).collect()))
 }
@@ -207,8 +207,8 @@ impl System {
         let mut s = [0.0; MAX_UNKNOWNS];
         let mut rounding = 0.0;
         for (j, (x, d)) in point.iter().zip(self.domain()).enumerate() {
-            s[j] = (x - d.lo) / (d.hi - d.lo);
-            rounding += 4.0 * f64::EPSILON * (1.0 + d.magnitude() / (d.hi - d.lo));
+            s[j] = (x - d.lo()) / (d.hi() - d.lo());
+            rounding += 4.0 * f64::EPSILON * (1.0 + d.magnitude() / (d.hi() - d.lo()));
         }
         let (mut value, jacobian) = self.layout.evaluate(&cell.c, &s, &mut Vec::new());
         let mut error = [0.0; MAX_UNKNOWNS];
@@ -226,10 +226,10 @@ impl System {
         let mut cell = self.layout.root();
         let mut widths: Row = [1.0; MAX_UNKNOWNS];
         for (j, (b, d)) in bounds.iter().zip(self.domain()).enumerate() {
-            let width = d.hi - d.lo;
+            let width = d.hi() - d.lo();
             // A box of at least some roundings, so that it can be restricted to.
-            let pad = 64.0 * f64::EPSILON * (1.0 + (b.lo.abs().max(b.hi.abs())) / width);
-            let (lo, hi) = ((b.lo - d.lo) / width - pad, (b.hi - d.lo) / width + pad);
+            let pad = 64.0 * f64::EPSILON * (1.0 + (b.lo().abs().max(b.hi().abs())) / width);
+            let (lo, hi) = ((b.lo() - d.lo()) / width - pad, (b.hi() - d.lo()) / width + pad);
             if !(lo > -BEYOND && hi < 1.0 + BEYOND && lo < hi) {
                 return None;
             }
@@ -242,7 +242,7 @@ impl System {
         for e in 0..self.equations() {
             for j in 0..n {
                 // Per unit of the variable, times the box's side.
-                let side = (bounds[j].hi - bounds[j].lo).max(f64::MIN_POSITIVE);
+                let side = (bounds[j].hi() - bounds[j].lo()).max(f64::MIN_POSITIVE);
                 let factor = side / widths[j] / self.layout.factor[e];
                 let (a, b) = (slopes.lo[e][j] * factor, slopes.hi[e][j] * factor);
                 let pad = 8.0 * f64::EPSILON * a.abs().max(b.abs());

@@ -16,7 +16,7 @@ type Drawn = ([Enclosure; 2], u32, Fate);
 ///
 /// let circle = Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[0]] + [1.0, -1.0, 1.0][i[1]] - 0.25)?;
 /// let diagonal = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
-/// let system = System::new(&[Enclosure::new(-1.0, 1.0); 2], [&circle, &diagonal])?;
+/// let system = System::new(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle, &diagonal])?;
 /// let mut picture = Picture::new([0, 1]);
 /// let points = PointSolver::default().solve(&system, &picture)?;
 /// points.roots.iter().for_each(|root| picture.mark(&root.point));
@@ -65,29 +65,29 @@ impl Picture {
     /// The picture, `size` wide or high, whichever is more.
     #[must_use]
     pub fn svg(&self, size: f64) -> String {
-        let mut span = [Enclosure::new(f64::INFINITY, f64::NEG_INFINITY); 2];
+        let mut span = [(f64::INFINITY, f64::NEG_INFINITY); 2];
         let boxes = self.boxes();
         let all = boxes.iter().map(|b| b.0);
         let dots = self.marks.iter().chain(self.lines.iter().flatten());
-        for b in all.chain(dots.map(|m| m.map(|x| Enclosure::new(x, x)))) {
+        for b in all.chain(dots.map(|m| m.map(|x| Enclosure::hull(x, x)))) {
             for (s, side) in span.iter_mut().zip(b) {
-                *s = Enclosure::new(s.lo.min(side.lo), s.hi.max(side.hi));
+                *s = (s.0.min(side.lo()), s.1.max(side.hi()));
             }
         }
-        let width = span.map(|s| if s.hi > s.lo { s.hi - s.lo } else { 1.0 });
+        let width = span.map(|(lo, hi)| if hi > lo { hi - lo } else { 1.0 });
         let scale = size / width[0].max(width[1]);
         let (w, h) = (width[0] * scale, width[1] * scale);
-        let place = |x: f64, y: f64| ((x - span[0].lo) * scale, h - (y - span[1].lo) * scale);
+        let place = |x: f64, y: f64| ((x - span[0].0) * scale, h - (y - span[1].0) * scale);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.1}\" height=\"{h:.1}\" viewBox=\"-4 -4 {:.1} {:.1}\">\n",
             w + 8.0,
             h + 8.0
         );
         for (bounds, depth, fate) in boxes.iter() {
-            let (x, y) = place(bounds[0].lo, bounds[1].hi);
+            let (x, y) = place(bounds[0].lo(), bounds[1].hi());
             let (w, h) = (
-                (bounds[0].hi - bounds[0].lo) * scale,
-                (bounds[1].hi - bounds[1].lo) * scale,
+                (bounds[0].hi() - bounds[0].lo()) * scale,
+                (bounds[1].hi() - bounds[1].lo()) * scale,
             );
             let fill = match fate {
                 Fate::Sign => "#dce6f0",

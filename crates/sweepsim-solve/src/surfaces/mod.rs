@@ -96,7 +96,7 @@ impl Surface {
 /// // A sphere of radius 1/2 about the middle of the unit cube.
 /// let square = |axis| Bernstein::from_fn(&[2, 2, 2], |i| [0.25, -0.25, 0.25][i[axis]]).unwrap();
 /// let sphere = square(0).add(&square(1)).add(&square(2)).sub(&Bernstein::constant(3, 0.16));
-/// let system = System::new(&[Enclosure::new(0.0, 1.0); 3], [&sphere])?;
+/// let system = System::new(&[Enclosure::UNIT; 3], [&sphere])?;
 /// let surface = SurfaceSolver::new(0.01).solve(&system, &())?;
 /// assert_eq!((surface.euler_characteristic(), surface.components()), (2, 1));
 /// assert!(surface.boundary().is_empty() && surface.unresolved.is_empty());
@@ -208,7 +208,7 @@ impl SurfaceSolver {
             if matches!(node.state, State::Plain(_)) {
                 let (lo, hi) = search.grid.bounds(node);
                 let (lo, hi) = (search.grid.outer(&lo), search.grid.outer(&hi));
-                boxes.push([0, 1, 2].map(|j| Enclosure::new(lo[j], hi[j])));
+                boxes.push([0, 1, 2].map(|j| Enclosure::hull(lo[j], hi[j])));
             }
             if let State::Open(cause) = node.state {
                 let (lo, hi) = search.grid.bounds(node);

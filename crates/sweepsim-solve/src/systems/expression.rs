@@ -26,7 +26,7 @@ pub const MAX_FORMS: usize = MAX_UNKNOWNS;
 /// let y = Expression::from(Bernstein::variable(2, 1));
 /// let one = || Expression::constant(1.0);
 /// let first = one() / (one() + x.clone()) + one() / (one() + y.clone() * 2.0) - Expression::constant(1.3);
-/// let system = System::new(&[Enclosure::new(0.0, 1.0); 2], [first, x - y])?;
+/// let system = System::new(&[Enclosure::UNIT; 2], [first, x - y])?;
 /// let points = PointSolver::default().solve(&system, &())?;
 /// assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
 /// let x = points.roots[0].point[0];

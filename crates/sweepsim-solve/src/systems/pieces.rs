@@ -82,27 +82,27 @@ impl Pieces {
         }
         // Boxes with the equations so far, cut further by each spline's knots.
         let mut boxes: Vec<(Vec<Enclosure>, Vec<sweepsim_spline::Bernstein>)> =
-            vec![(domain.iter().map(|d| Enclosure::new(d.0, d.1)).collect(), Vec::new())];
+            vec![(domain.iter().map(|d| Enclosure::hull(d.0, d.1)).collect(), Vec::new())];
         for spline in splines {
             let pieces = spline.pieces()?;
             let mut cut = Vec::new();
             for (bounds, forms) in &boxes {
                 for piece in &pieces {
-                    let common: Vec<Enclosure> = bounds
+                    let common: Option<Vec<Enclosure>> = bounds
                         .iter()
                         .zip(&piece.ranges)
-                        .map(|(b, r)| Enclosure::new(b.lo.max(r.0), b.hi.min(r.1)))
+                        .map(|(b, r)| b.intersection(Enclosure::hull(r.0, r.1)).filter(|c| c.lo() < c.hi()))
                         .collect();
-                    if common.iter().any(|c| c.lo >= c.hi) {
+                    let Some(common) = common else {
                         continue;
-                    }
+                    };
                     let share = |b: &[Enclosure], r: &[(f64, f64)]| -> Vec<(f64, f64)> {
                         let ratio = |(c, (lo, hi)): (&Enclosure, &(f64, f64))| {
-                            ((c.lo - lo) / (hi - lo), (c.hi - lo) / (hi - lo))
+                            ((c.lo() - lo) / (hi - lo), (c.hi() - lo) / (hi - lo))
                         };
                         b.iter().zip(r).map(ratio).collect()
                     };
-                    let old: Vec<(f64, f64)> = bounds.iter().map(|b| (b.lo, b.hi)).collect();
+                    let old: Vec<(f64, f64)> = bounds.iter().map(|b| (b.lo(), b.hi())).collect();
                     let restricted = |f: &sweepsim_spline::Bernstein, shares: &[(f64, f64)]| {
                         if shares.iter().all(|s| *s == (0.0, 1.0)) {
                             f.clone()
@@ -126,7 +126,7 @@ impl Pieces {
             .collect();
         Ok(Self {
             systems: systems?,
-            domain: domain.iter().map(|d| Enclosure::new(d.0, d.1)).collect(),
+            domain: domain.iter().map(|d| Enclosure::hull(d.0, d.1)).collect(),
         })
     }
 

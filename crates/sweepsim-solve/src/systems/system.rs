@@ -72,9 +72,9 @@ impl From<&Bernstein> for Equation {
 /// use sweepsim_spline::Bernstein;
 ///
 /// let x = Bernstein::variable(1, 0);
-/// let infinite = [Enclosure::new(0.0, f64::INFINITY)];
+/// let infinite = [Enclosure::new(0.0, f64::INFINITY).unwrap()];
 /// assert_eq!(System::new(&infinite, [&x]).unwrap_err(), SystemError::Domain { variable: 0 });
-/// let unit = [Enclosure::new(0.0, 1.0)];
+/// let unit = [Enclosure::UNIT];
 /// assert_eq!(System::new::<Bernstein>(&unit, []).unwrap_err(), SystemError::NoEquations);
 /// assert_eq!(System::new::<Bernstein>(&[], []).unwrap_err(), SystemError::Variables { variables: 0 });
 /// let too_many = System::new(&unit, [&x, &x]).unwrap_err();
@@ -84,7 +84,7 @@ impl From<&Bernstein> for Equation {
 /// assert_eq!(other, SystemError::FormVariables { equation: 0, variables: 2, expected: 1 });
 /// let huge = Bernstein::constant(1, f64::NAN);
 /// assert_eq!(System::new(&unit, [&huge]).unwrap_err(), SystemError::NotFinite { equation: 0 });
-/// let outside = System::new(&unit, [&x]).unwrap().within(&[Enclosure::new(0.5, 2.0)]).unwrap_err();
+/// let outside = System::new(&unit, [&x]).unwrap().within(&[Enclosure::new(0.5, 2.0).unwrap()]).unwrap_err();
 /// assert_eq!(outside, SystemError::Region { variable: 0 });
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
@@ -185,8 +185,8 @@ impl System {
             return Err(SystemError::Variables { variables: n });
         }
         for (variable, side) in domain.iter().enumerate() {
-            let width = side.hi - side.lo;
-            let magnitude = side.lo.abs().max(side.hi.abs());
+            let width = side.hi() - side.lo();
+            let magnitude = side.lo().abs().max(side.hi().abs());
             if !(width.is_finite() && width > 64.0 * EPSILON * magnitude && width > f64::MIN_POSITIVE) {
                 return Err(SystemError::Domain { variable });
             }
@@ -228,8 +228,8 @@ impl System {
             });
         }
         for (variable, (part, whole)) in region.iter().zip(&self.domain).enumerate() {
-            let width = whole.hi - whole.lo;
-            let (lo, hi) = ((part.lo - whole.lo) / width, (part.hi - whole.lo) / width);
+            let width = whole.hi() - whole.lo();
+            let (lo, hi) = ((part.lo() - whole.lo()) / width, (part.hi() - whole.lo()) / width);
             if !(lo >= 0.0 && hi <= 1.0 && lo < hi) {
                 return Err(SystemError::Region { variable });
             }
@@ -245,7 +245,7 @@ impl System {
         let n = layout.n;
         Self {
             layout,
-            domain: SmallVec::from_elem(Enclosure::new(0.0, 1.0), n),
+            domain: SmallVec::from_elem(Enclosure::UNIT, n),
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded: self.bounded,
         }
@@ -290,19 +290,20 @@ impl System {
             .iter()
             .enumerate()
             .map(|(j, side)| {
-                let width = side.hi - side.lo;
-                let pad = 4.0 * EPSILON * (side.lo.abs().max(side.hi.abs()) + width * (lo[j].abs().max(hi[j].abs())));
+                let width = side.hi() - side.lo();
+                let pad =
+                    4.0 * EPSILON * (side.lo().abs().max(side.hi().abs()) + width * (lo[j].abs().max(hi[j].abs())));
                 let end = |s: f64| {
                     if s == 0.0 {
-                        (side.lo, 0.0)
+                        (side.lo(), 0.0)
                     } else if s == 1.0 {
-                        (side.hi, 0.0)
+                        (side.hi(), 0.0)
                     } else {
-                        (side.lo + s * width, pad)
+                        (side.lo() + s * width, pad)
                     }
                 };
                 let ((l, lp), (h, hp)) = (end(lo[j]), end(hi[j]));
-                Enclosure::new(l - lp, h + hp)
+                Enclosure::hull(l - lp, h + hp)
             })
             .collect()
     }
@@ -311,16 +312,18 @@ impl System {
     pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
         let outer = self.outward(lo, hi);
         let place = |(j, (o, side)): (usize, (Enclosure, &Enclosure))| {
-            let width = side.hi - side.lo;
-            let (l, h) = (side.lo + lo[j] * width, side.lo + hi[j] * width);
-            Enclosure::new(2.0 * l - o.lo, 2.0 * h - o.hi)
+            let width = side.hi() - side.lo();
+            let (l, h) = (side.lo() + lo[j] * width, side.lo() + hi[j] * width);
+            // Where the box is as narrow as its rounding, nothing is left but its middle.
+            Enclosure::new(2.0 * l - o.lo(), 2.0 * h - o.hi())
+                .unwrap_or_else(|_| Enclosure::hull(0.5 * (l + h), 0.5 * (l + h)))
         };
         outer.into_iter().zip(&self.domain).enumerate().map(place).collect()
     }
 
     /// Length of a side of the domain.
     pub(crate) fn domain_width(&self, variable: usize) -> f64 {
-        self.domain[variable].hi - self.domain[variable].lo
+        self.domain[variable].hi() - self.domain[variable].lo()
     }
 
     /// Whether nothing is known beyond the domain.
@@ -330,7 +333,7 @@ impl System {
 
     /// An inner point in the domain's coordinates.
     pub(crate) fn outer_point(&self, s: &Row) -> Vec<f64> {
-        let place = |(j, side): (usize, &Enclosure)| side.lo + s[j] * (side.hi - side.lo);
+        let place = |(j, side): (usize, &Enclosure)| side.lo() + s[j] * (side.hi() - side.lo());
         self.domain.iter().enumerate().map(place).collect()
     }
 }
@@ -340,7 +343,7 @@ mod tests {
     use super::*;
 
     fn unit(n: usize) -> Vec<Enclosure> {
-        vec![Enclosure::new(0.0, 1.0); n]
+        vec![Enclosure::UNIT; n]
     }
 
     #[test]

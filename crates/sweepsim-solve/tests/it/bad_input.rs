@@ -5,7 +5,7 @@ use sweepsim_solve::{Cause, Enclosure, Equation, Monitor, PointSolver, SolveErro
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 fn solve(forms: &[Bernstein]) -> sweepsim_solve::Points {
@@ -29,7 +29,7 @@ fn domains_are_checked() {
         (-f64::MAX, f64::MAX),
         (1e17, 1e17 + 16.0),
     ] {
-        let bad = System::new(&[Enclosure::new(lo, hi)], [&x]);
+        let bad = System::new(&[Enclosure::new(lo, hi).unwrap()], [&x]);
         assert_eq!(bad.unwrap_err(), SystemError::Domain { variable: 0 }, "{lo} {hi}");
     }
 }
@@ -70,7 +70,7 @@ fn counts_are_checked() {
         });
         assert_eq!(solver.solve(&system, &()).unwrap_err(), SolveError::Smallest);
     }
-    let nine = vec![Enclosure::new(0.0, 1.0); 9];
+    let nine = vec![Enclosure::UNIT; 9];
     let error = System::new(&nine, [Bernstein::variable(9, 0)]).unwrap_err();
     assert_eq!(error, SystemError::Variables { variables: 9 });
 }
@@ -112,7 +112,7 @@ fn a_continuum_does_not_flood() {
             let angle = f64::from(k) * std::f64::consts::TAU / 64.0;
             let radius = 0.1f64.sqrt();
             let p = [0.5 + radius * angle.cos(), 0.5 + radius * angle.sin()];
-            let near = |b: &Enclosure, x: f64| b.lo - 1e-9 <= x && x <= b.hi + 1e-9;
+            let near = |b: &Enclosure, x: f64| b.lo() - 1e-9 <= x && x <= b.hi() + 1e-9;
             assert!(
                 points
                     .unresolved

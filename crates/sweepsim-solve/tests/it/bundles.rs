@@ -23,11 +23,7 @@ impl<const N: usize> Forms<N> {
     fn system(&self, q: &[f64; N]) -> System {
         let numerators = self.numerators.iter().zip(q);
         let equations = numerators.map(|(p, q)| p.sub(&self.weight.scale(*q)));
-        System::new(
-            &[Enclosure::new(0.0, 1.0); N],
-            equations.chain(self.zeros.iter().cloned()),
-        )
-        .unwrap()
+        System::new(&[Enclosure::UNIT; N], equations.chain(self.zeros.iter().cloned())).unwrap()
     }
 }
 
@@ -36,7 +32,7 @@ impl<const N: usize> ChartMap<N> for Forms<N> {
     type Seen = ();
 
     fn bounds(&self, (): &()) -> [Enclosure; N] {
-        [Enclosure::new(0.0, 1.0); N]
+        [Enclosure::UNIT; N]
     }
 
     fn values(&mut self, (): &()) -> Option<[Enclosure; N]> {

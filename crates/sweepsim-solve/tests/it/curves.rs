@@ -26,7 +26,7 @@ impl Random {
 }
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 /// Components by marching squares on a fine grid, saddles by the value in the middle: (loops, arcs); `None` where two grids disagree.
@@ -156,9 +156,9 @@ fn symmetries_change_no_topology() {
             .map(|f| Bernstein::from_fn(&[2, 2, 3], |i| f.coefficients()[2 - i[0] + 3 * i[1] + 9 * i[2]]).unwrap());
         assert_eq!(topology(&mirrored, &unit(3)), plain, "{number}: mirrored");
         let far = [
-            Enclosure::new(-5.0, 400.0),
-            Enclosure::new(1e3, 1e3 + 1.0),
-            Enclosure::new(0.0, 1e-3),
+            Enclosure::new(-5.0, 400.0).unwrap(),
+            Enclosure::new(1e3, 1e3 + 1.0).unwrap(),
+            Enclosure::new(0.0, 1e-3).unwrap(),
         ];
         assert_eq!(topology(&forms, &far), plain, "{number}: another box");
         let mixed = [

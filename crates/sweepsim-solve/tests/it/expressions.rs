@@ -9,7 +9,7 @@ use sweepsim_solve::{
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 fn solve<E: Into<Equation>>(equations: Vec<E>) -> Points {
@@ -27,7 +27,7 @@ fn same(a: &Points, b: &Points, what: &str) {
     for root in &a.roots {
         let meets = |other: &&sweepsim_solve::Root| {
             let mut sides = root.enclosure.iter().zip(&other.enclosure);
-            sides.all(|(x, y)| x.lo <= y.hi && y.lo <= x.hi)
+            sides.all(|(x, y)| x.lo() <= y.hi() && y.lo() <= x.hi())
         };
         assert_eq!(b.roots.iter().filter(meets).count(), 1, "{what}: {root:?}");
         assert!(
@@ -133,12 +133,12 @@ fn remainders_count_within_expressions() {
     let points = solve(vec![Expression::from(x) * 3.0 - Expression::constant(1.5)]);
     assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
     let enclosure = points.roots[0].enclosure[0];
-    assert!(enclosure.lo <= 0.49 && enclosure.hi >= 0.51 && enclosure.radius() < 0.011);
+    assert!(enclosure.lo() <= 0.49 && enclosure.hi() >= 0.51 && enclosure.radius() < 0.011);
     let whole = Expression::from(Bernstein::variable(1, 0)) * 3.0 - Expression::constant(1.5);
     let points = solve(vec![Equation::from(whole).with_remainder(0.03, 0.15)]);
     assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
     let enclosure = points.roots[0].enclosure[0];
-    assert!(enclosure.lo <= 0.49 && enclosure.hi >= 0.51 && enclosure.radius() < 0.011);
+    assert!(enclosure.lo() <= 0.49 && enclosure.hi() >= 0.51 && enclosure.radius() < 0.011);
 }
 
 #[test]

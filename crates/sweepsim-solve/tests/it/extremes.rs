@@ -7,7 +7,7 @@ use sweepsim_solve::{CurveSolver, Enclosure, Equation, PointSolver, Points, Syst
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 fn solve(system: &System) -> Points {
@@ -89,7 +89,7 @@ fn scales_do_not_matter() {
     for (a, b) in [(1e-300, 1e300), (1e-160, 1e-160), (5e-290, 3.0), (1e307, 1e307)] {
         let forms = [circle.scale(a).assumed_exact(), line.scale(b).assumed_exact()];
         for bounds in [[1e-200, 1e-200], [1e150, 1e-150], [1.0, 1e8]] {
-            let domain = bounds.map(|w: f64| Enclosure::new(-w, w));
+            let domain = bounds.map(|w: f64| Enclosure::new(-w, w).unwrap());
             let found = solve(&System::new(&domain, &forms).unwrap());
             assert_eq!(
                 (found.roots.len(), found.unresolved.len()),

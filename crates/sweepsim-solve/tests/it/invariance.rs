@@ -89,7 +89,7 @@ impl Change {
     /// The box of `y` with the image `[−1, 1]ⁿ`; for a rotation, `[−1, 1]ⁿ` again.
     fn bounds(&self) -> Vec<Enclosure> {
         let n = self.shift.len();
-        let unit = vec![Enclosure::new(-1.0, 1.0); n];
+        let unit = vec![Enclosure::new(-1.0, 1.0).unwrap(); n];
         if !self.keeps_boxes {
             return unit;
         }
@@ -99,7 +99,7 @@ impl Change {
                 let i = (0..n).find(|i| self.forward[*i][j] != RBig::ZERO).unwrap();
                 let end = |x: f64| ((exact(x) - &self.shift[i]) / &self.forward[i][j]).to_f64().value();
                 let (a, b) = (end(-1.0), end(1.0));
-                Enclosure::new(a.min(b), a.max(b))
+                Enclosure::new(a.min(b), a.max(b)).unwrap()
             })
             .collect()
     }
@@ -145,7 +145,7 @@ fn points_stay_the_same() {
     for number in 0..60 {
         let n = 2 + usize::from(number % 3 == 2);
         let polynomials: Vec<Polynomial> = (0..n).map(|_| random_cubic(n, &mut random)).collect();
-        let plain = points(&polynomials, &vec![Enclosure::new(-1.0, 1.0); n], &[1.0; 3]);
+        let plain = points(&polynomials, &vec![Enclosure::new(-1.0, 1.0).unwrap(); n], &[1.0; 3]);
         assert!(plain.unresolved.is_empty(), "{number}");
         for change in Change::all(n) {
             let x = change.x();
@@ -198,7 +198,7 @@ fn curves_stay_the_same() {
             assert!(curves.singular.is_empty(), "{texts:?}");
             (curves.loops().count(), curves.arcs().count())
         };
-        let plain = topology(&polynomials, &vec![Enclosure::new(-1.0, 1.0); n], &[1.0; 3]);
+        let plain = topology(&polynomials, &vec![Enclosure::new(-1.0, 1.0).unwrap(); n], &[1.0; 3]);
         assert!(
             plain.0 + plain.1 > 0 && (plain.1 == 0) == closed,
             "{texts:?}: {plain:?}"
@@ -233,7 +233,7 @@ fn surfaces_stay_the_same() {
             assert_eq!(surface.boundary().is_empty(), closed, "{text}");
             (surface.euler_characteristic(), surface.components())
         };
-        let plain = topology(&polynomial, &[Enclosure::new(-1.0, 1.0); 3], 1.0);
+        let plain = topology(&polynomial, &[Enclosure::new(-1.0, 1.0).unwrap(); 3], 1.0);
         for change in Change::all(3).iter().filter(|c| c.keeps_boxes || closed) {
             let moved = substitute(&polynomial, &change.x());
             for factor in POSITIVE {

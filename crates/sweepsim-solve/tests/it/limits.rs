@@ -5,7 +5,7 @@ use sweepsim_solve::{Cause, CurveSolver, Curves, Enclosure, Monitor, SolveOption
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 /// `Σ (xⱼ − 1/2)² − r²`.

@@ -12,7 +12,7 @@ use sweepsim_solve::{CurveSolver, Curves, Enclosure, PointSolver, Surface, Surfa
 use sweepsim_spline::Bernstein;
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 /// Runs cases; prints and counts what went how.
@@ -139,7 +139,7 @@ fn sturm_points(number: u64) -> Outcome {
     let found = PointSolver::default().solve(&system, &()).unwrap();
     for root in &found.roots {
         for bounds in [root.enclosure[0], root.unique_in[0]] {
-            let count = between(&exact(bounds.lo), &exact(bounds.hi));
+            let count = between(&exact(bounds.lo()), &exact(bounds.hi()));
             assert_eq!(count, 1, "case {number}: {root:?}");
         }
     }
@@ -178,10 +178,10 @@ fn winding_points(number: u64) -> Outcome {
 /// Turns of `f` along a box's boundary; `None` if it turns too fast for the samples.
 fn winding(forms: &[Bernstein; 2], b: &[Enclosure]) -> Option<i32> {
     let corners = [
-        [b[0].lo, b[1].lo],
-        [b[0].hi, b[1].lo],
-        [b[0].hi, b[1].hi],
-        [b[0].lo, b[1].hi],
+        [b[0].lo(), b[1].lo()],
+        [b[0].hi(), b[1].lo()],
+        [b[0].hi(), b[1].hi()],
+        [b[0].lo(), b[1].hi()],
     ];
     let mut turned = 0.0;
     let angle = |x: [f64; 2]| forms[1].evaluate(&x).atan2(forms[0].evaluate(&x));
@@ -321,7 +321,7 @@ fn planted_space_curves(number: u64) -> Outcome {
         };
         (cylinder, loops)
     };
-    let bounds = [Enclosure::new(-0.1, 1.1); 3];
+    let bounds = [Enclosure::new(-0.1, 1.1).unwrap(); 3];
     let system = System::new(&bounds, [sphere.equation(&bounds), other.equation(&bounds)]).unwrap();
     let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
     compare_curves(&curves, (loops, 0), number)

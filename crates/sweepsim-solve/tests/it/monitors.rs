@@ -40,7 +40,7 @@ impl Monitor for After {
 }
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 /// `Σ (xⱼ − 1/2)² − r²`.
@@ -162,22 +162,28 @@ impl ChartMap<2> for Fold {
     }
 
     fn values(&mut self, [x, y]: &Self::Cell) -> Option<[Enclosure; 2]> {
-        let sum = Enclosure::new(x.lo * x.lo + y.lo - 1e-15, x.hi * x.hi + y.hi + 1e-15);
-        Some([sum, Enclosure::new(x.lo * y.lo - 1e-15, x.hi * y.hi + 1e-15)])
+        let sum = Enclosure::new(x.lo() * x.lo() + y.lo() - 1e-15, x.hi() * x.hi() + y.hi() + 1e-15).unwrap();
+        Some([
+            sum,
+            Enclosure::new(x.lo() * y.lo() - 1e-15, x.hi() * y.hi() + 1e-15).unwrap(),
+        ])
     }
 
     fn jacobian(&mut self, [x, y]: &Self::Cell) -> [[Enclosure; 2]; 2] {
         [
-            [Enclosure::new(2.0 * x.lo, 2.0 * x.hi), Enclosure::new(1.0, 1.0)],
+            [
+                Enclosure::new(2.0 * x.lo(), 2.0 * x.hi()).unwrap(),
+                Enclosure::new(1.0, 1.0).unwrap(),
+            ],
             [*y, *x],
         ]
     }
 
     fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2] {
-        let middle = 0.5 * (cell[axis].lo + cell[axis].hi);
+        let middle = 0.5 * (cell[axis].lo() + cell[axis].hi());
         let (mut lower, mut upper) = (*cell, *cell);
-        lower[axis] = Enclosure::new(cell[axis].lo, middle);
-        upper[axis] = Enclosure::new(middle, cell[axis].hi);
+        lower[axis] = Enclosure::new(cell[axis].lo(), middle).unwrap();
+        upper[axis] = Enclosure::new(middle, cell[axis].hi()).unwrap();
         [lower, upper]
     }
 
@@ -212,7 +218,7 @@ fn charts_are_cancelled_soon() {
     is_cancelled_soon(60, |monitor| {
         let mut answer = Answer::default();
         let mut solver = ChartSolver::new(ChartOptions::default());
-        solver.solve(&mut Fold, [Enclosure::new(0.0, 1.0); 2], &targets, &mut answer, monitor);
+        solver.solve(&mut Fold, [Enclosure::UNIT; 2], &targets, &mut answer, monitor);
         if monitor.patience == u64::MAX {
             assert!(answer.found.len() + answer.open.len() >= targets.0.len());
         }
@@ -223,7 +229,7 @@ fn charts_are_cancelled_soon() {
 #[test]
 fn a_chart_of_many_targets_is_cancelled_among_them() {
     // Where x is near 1 and y near 0, one box is a chart.
-    let corner = [Enclosure::new(0.9, 1.0), Enclosure::new(0.0, 0.1)];
+    let corner = [Enclosure::new(0.9, 1.0).unwrap(), Enclosure::new(0.0, 0.1).unwrap()];
     let lattice =
         (0..90).flat_map(|i| (0..90).map(move |k| [0.9005 + 1e-3 * f64::from(i), 5e-4 + 1e-3 * f64::from(k)]));
     let targets = List(lattice.map(|x| Fold.evaluate(&x).value).collect());
@@ -276,7 +282,7 @@ impl Monitor for Count {
     }
 
     fn visit(&self, bounds: &[Enclosure], _: u32, fate: Fate) {
-        assert!(bounds.iter().all(|b| b.lo < b.hi));
+        assert!(bounds.iter().all(|b| b.lo() < b.hi()));
         self.0.lock().unwrap().push(fate);
     }
 }

@@ -29,7 +29,7 @@ fn threads_change_no_answer() {
             .map(|_| (0..n).map(|_| random.coordinate()).collect())
             .collect();
         let case = case(&points, &mut random);
-        let system = System::new(&vec![Enclosure::new(0.0, 1.0); n], &case.forms).unwrap();
+        let system = System::new(&vec![Enclosure::UNIT; n], &case.forms).unwrap();
         let solve = |threads| in_pool(threads, || PointSolver::default().solve_parallel(&system, &()).unwrap());
         let [one, two, five] = [1, 2, 5].map(solve);
         assert_eq!(one, two, "{number}");
@@ -47,7 +47,7 @@ fn stopping_leaves_boxes_open() {
     let mut random = Random(10);
     let points: Vec<Vec<f64>> = (0..5).map(|_| vec![random.unit(), random.unit()]).collect();
     let case = case(&points, &mut random);
-    let system = System::new(&[Enclosure::new(0.0, 1.0); 2], &case.forms).unwrap();
+    let system = System::new(&[Enclosure::UNIT; 2], &case.forms).unwrap();
     let stopped = PointSolver::default().solve_parallel(&system, &Stop).unwrap();
     assert!(stopped.unresolved.iter().any(|u| u.cause == Cause::Cancelled));
     audit(&case, &stopped, "stopped");

@@ -9,7 +9,7 @@ use sweepsim_spline::Bernstein;
 
 fn solve(forms: &[Bernstein]) -> Points {
     let n = forms.len();
-    let system = System::new(&vec![Enclosure::new(0.0, 1.0); n], forms).unwrap();
+    let system = System::new(&vec![Enclosure::UNIT; n], forms).unwrap();
     PointSolver::new(SolveOptions::default()).solve(&system, &()).unwrap()
 }
 
@@ -93,7 +93,7 @@ fn dense_systems_agree_with_winding_numbers_and_newton() {
         assert!(found.unresolved.is_empty(), "case {number}");
         total += found.roots.len();
         let sum: i32 = found.roots.iter().map(|r| i32::from(r.orientation)).sum();
-        let unit = [Enclosure::new(0.0, 1.0); 2];
+        let unit = [Enclosure::UNIT; 2];
         assert_eq!(sum, winding(&forms, &unit), "case {number}");
         for root in &found.roots {
             assert_eq!(
@@ -135,10 +135,10 @@ fn dense_systems_agree_with_winding_numbers_and_newton() {
 /// Turns of `f` along the boundary, by dense sampling.
 fn winding(forms: &[Bernstein; 2], b: &[Enclosure]) -> i32 {
     let corners = [
-        (b[0].lo, b[1].lo),
-        (b[0].hi, b[1].lo),
-        (b[0].hi, b[1].hi),
-        (b[0].lo, b[1].hi),
+        (b[0].lo(), b[1].lo()),
+        (b[0].hi(), b[1].lo()),
+        (b[0].hi(), b[1].hi()),
+        (b[0].lo(), b[1].hi()),
     ];
     let mut turned = 0.0;
     let mut before: Option<f64> = None;
@@ -195,7 +195,7 @@ fn symmetries_change_no_answer() {
             );
         }
         // Another box.
-        let far = [Enclosure::new(-1e3, 1e4), Enclosure::new(5.0, 5.5)];
+        let far = [Enclosure::new(-1e3, 1e4).unwrap(), Enclosure::new(5.0, 5.5).unwrap()];
         let system = System::new(&far, &forms).unwrap();
         let moved = PointSolver::default().solve(&system, &()).unwrap();
         assert_eq!(counts(&moved), counts(&plain));

@@ -8,7 +8,7 @@ use sweepsim_solve::{Enclosure, SolveOptions, SurfaceSolver, System};
 
 fn system(expression: &str, half: f64) -> System {
     let names = ["x", "y", "z"].map(String::from);
-    let bounds = [Enclosure::new(-half, half); 3];
+    let bounds = [Enclosure::new(-half, half).unwrap(); 3];
     let polynomial = Polynomial::of(&parse(expression, &names), 3).unwrap();
     System::new(&bounds, [polynomial.equation(&bounds)]).unwrap()
 }
@@ -113,7 +113,7 @@ fn singular_surfaces_are_named() {
         cone.unresolved[0]
             .bounds
             .iter()
-            .all(|b| b.contains(0.0) && b.hi - b.lo < 0.1)
+            .all(|b| b.contains(0.0) && b.hi() - b.lo() < 0.1)
     );
     // Two disks with a hole around the apex each: annuli.
     assert_eq!((cone.euler_characteristic(), cone.components()), (0, 2));
@@ -134,7 +134,7 @@ fn bad_input_is_an_error() {
         assert!(SurfaceSolver::new(tolerance).solve(&sphere, &()).is_err());
     }
     let names = ["x", "y"].map(String::from);
-    let bounds = [Enclosure::new(-1.0, 1.0); 2];
+    let bounds = [Enclosure::new(-1.0, 1.0).unwrap(); 2];
     let plane = Polynomial::of(&parse("x", &names), 2).unwrap().equation(&bounds);
     let flat = System::new(&bounds, [plane]).unwrap();
     assert!(SurfaceSolver::new(0.1).solve(&flat, &()).is_err());

@@ -27,8 +27,8 @@ impl AnyBox<3> for PatchMap<'_> {
     }
 
     fn place(&mut self, [u, v, t]: &[Enclosure; 3]) -> Self::Cell {
-        let cell = self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi]);
-        (cell, self.times.place(t.lo, t.hi))
+        let cell = self.cells.place(self.element, [u.lo(), v.lo()], [u.hi(), v.hi()]);
+        (cell, self.times.place(t.lo(), t.hi()))
     }
 
     fn mark(&self) -> [usize; 2] {
@@ -47,8 +47,8 @@ impl AnyBox<2> for EdgeMap<'_> {
     }
 
     fn place(&mut self, [r, t]: &[Enclosure; 2]) -> Self::Cell {
-        let cell = self.cells.place(self.element, [r.lo, 0.0], [r.hi, 1.0]);
-        (cell, self.times.place(t.lo, t.hi))
+        let cell = self.cells.place(self.element, [r.lo(), 0.0], [r.hi(), 1.0]);
+        (cell, self.times.place(t.lo(), t.hi()))
     }
 
     fn mark(&self) -> [usize; 2] {
@@ -67,7 +67,7 @@ impl AnyBox<2> for PlacedMap<'_> {
     }
 
     fn place(&mut self, [u, v]: &[Enclosure; 2]) -> Self::Cell {
-        self.cells.place(self.element, [u.lo, v.lo], [u.hi, v.hi])
+        self.cells.place(self.element, [u.lo(), v.lo()], [u.hi(), v.hi()])
     }
 
     fn mark(&self) -> [usize; 2] {

@@ -19,7 +19,7 @@ fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
 
 #[inline]
 pub(super) fn interval((lo, hi): (f64, f64)) -> Enclosure {
-    Enclosure::new(lo, hi)
+    Enclosure::hull(lo, hi)
 }
 
 /// The size of things: what differences count as large, and how far rounding reaches.
@@ -68,11 +68,11 @@ pub(super) fn plane_values(
     [0, 1].map(|r| {
         if let Some([offsets, _]) = times.offsets(piece, r) {
             let (lo, hi) = shifted_products(times.rows(piece, r), offsets, &position);
-            return Enclosure::new(lo - size.slack, hi + size.slack);
+            return Enclosure::hull(lo - size.slack, hi + size.slack);
         }
         let (lo, hi) = products(times.rows(piece, r), &position);
         let (a, b) = times.tip(piece, r);
-        Enclosure::new(lo + a - size.slack, hi + b + size.slack)
+        Enclosure::hull(lo + a - size.slack, hi + b + size.slack)
     })
 }
 
@@ -86,7 +86,7 @@ pub(super) fn turning(element: &PatchForms, cells: &Cells, times: &Times, (cell,
         }
         let (lo, hi) = scaled(products(rows, &position), pace);
         let (slowest, fastest) = times.velocity(piece, r);
-        Enclosure::new(lo + slowest, hi + fastest)
+        Enclosure::hull(lo + slowest, hi + fastest)
     })
 }
 

@@ -44,11 +44,11 @@ impl ChartMap<3> for PatchMap<'_> {
             return None;
         }
         let [x, y] = plane_values(self.element, self.cells, self.times, *cell, &self.size);
-        Some([x, y, Enclosure::new(g.0 - error, g.1 + error)])
+        Some([x, y, Enclosure::hull(g.0 - error, g.1 + error)])
     }
 
     fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 3]; 3] {
-        let zero = Enclosure::new(0.0, 0.0);
+        let zero = Enclosure::hull(0.0, 0.0);
         let mut jacobian = [[zero; 3]; 3];
         for axis in 0..2 {
             let slope = self.cells.slope(self.element, cell.0, axis);

@@ -118,7 +118,7 @@ impl ChartMap<2> for PlacedMap<'_> {
         let position = self.cells.position(self.element, *cell);
         Some([0, 1].map(|r| {
             let (lo, hi) = products(&self.row(r), &position);
-            Enclosure::new(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
+            Enclosure::hull(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
         }))
     }
 

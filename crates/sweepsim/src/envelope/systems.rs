@@ -114,7 +114,7 @@ impl MotionForms {
 }
 
 fn unit(n: usize) -> Vec<Enclosure> {
-    vec![Enclosure::new(0.0, 1.0); n]
+    vec![Enclosure::UNIT; n]
 }
 
 fn system(n: usize, equations: Vec<Bernstein>) -> Result<System, SystemError> {

@@ -64,13 +64,13 @@ impl<'a> Lattice<'a> {
                 n.clamp(window[0] as f64, window[1] as f64)
             }
         };
-        let mut lo = number(range.lo, window[0]) as usize;
-        let mut hi = (number(range.hi, window[1]) as usize + 1).min(window[1]);
+        let mut lo = number(range.lo(), window[0]) as usize;
+        let mut hi = (number(range.hi(), window[1]) as usize + 1).min(window[1]);
         // The product only guessed: the lines' own coordinates decide.
-        while lo <= hi && self.coordinate(axis, lo) < range.lo {
+        while lo <= hi && self.coordinate(axis, lo) < range.lo() {
             lo += 1;
         }
-        while hi >= lo && self.coordinate(axis, hi) > range.hi {
+        while hi >= lo && self.coordinate(axis, hi) > range.hi() {
             if hi == 0 {
                 return None;
             }
@@ -104,7 +104,7 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
     fn visit(
         &self,
         range: &[Enclosure; N],
-        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
+        narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
         visit: &mut dyn FnMut(&Target<N>) -> bool,
     ) {
         let Some([is, js]) = self.range(range[0], range[1]) else {
@@ -114,9 +114,8 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
         for i in is.0..=is.1 {
             value[0] = self.coordinate(0, i);
             value[1] = self.coordinate(1, js.0);
-            let window = narrow(&value);
-            let ends = Enclosure::new(window.lo.max(range[1].lo), window.hi.min(range[1].hi));
-            let Some(wanted) = self.numbers(1, ends) else {
+            let ends = narrow(&value).and_then(|window| window.intersection(range[1]));
+            let Some(wanted) = ends.and_then(|ends| self.numbers(1, ends)) else {
                 continue;
             };
             for j in wanted.0.max(js.0)..=wanted.1.min(js.1) {

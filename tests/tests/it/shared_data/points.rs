@@ -21,16 +21,16 @@ fn solve_in_cells(stored: &Stored, cells: usize) -> (Points, Duration) {
         .bounds
         .iter()
         .map(|b| {
-            let step = (b.hi - b.lo) / cells as f64;
-            let at = |i: usize| if i == cells { b.hi } else { b.lo + i as f64 * step };
-            (0..cells).map(|i| Enclosure::new(at(i), at(i + 1))).collect()
+            let step = (b.hi() - b.lo()) / cells as f64;
+            let at = |i: usize| if i == cells { b.hi() } else { b.lo() + i as f64 * step };
+            (0..cells).map(|i| Enclosure::new(at(i), at(i + 1)).unwrap()).collect()
         })
         .collect();
     let mut solver = solver();
     for x in &sides[0] {
         for y in &sides[1] {
             let cell = [*x, *y];
-            let frame = cell.map(|s| Enclosure::new(s.lo - 0.05 * s.radius(), s.hi + 0.05 * s.radius()));
+            let frame = cell.map(|s| Enclosure::new(s.lo() - 0.05 * s.radius(), s.hi() + 0.05 * s.radius()).unwrap());
             let equations = stored.expressions.iter().map(|e| taylor::equation(e, &frame));
             let system = System::new(&frame, equations).unwrap().within(&cell).unwrap();
             let start = Instant::now();
@@ -43,7 +43,7 @@ fn solve_in_cells(stored: &Stored, cells: usize) -> (Points, Duration) {
                 a.enclosure
                     .iter()
                     .zip(&b.unique_in)
-                    .all(|(e, u)| u.lo <= e.lo && e.hi <= u.hi)
+                    .all(|(e, u)| u.lo() <= e.lo() && e.hi() <= u.hi())
             };
             for root in found.roots {
                 if !points.roots.iter().any(|r| same(&root, r) || same(r, &root)) {
@@ -101,7 +101,7 @@ fn check(stored: &Stored) -> (String, Option<String>) {
         let near = |bounds: &[Enclosure]| {
             root.iter().zip(bounds).all(|(x, b)| {
                 let slack = 1e-9 * (1.0 + x.abs());
-                b.lo - slack <= *x && *x <= b.hi + slack
+                b.lo() - slack <= *x && *x <= b.hi() + slack
             })
         };
         let covered =

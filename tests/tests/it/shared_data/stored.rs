@@ -36,7 +36,7 @@ fn read(json: &serde_json::Value) -> Stored {
         |v: &serde_json::Value| -> Vec<f64> { v.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect() };
     let variables = strings(&json["vars"]);
     let bounds = json["box"].as_array().unwrap().iter().map(&numbers);
-    let bounds: Vec<Enclosure> = bounds.map(|b| Enclosure::new(b[0], b[1])).collect();
+    let bounds: Vec<Enclosure> = bounds.map(|b| Enclosure::new(b[0], b[1]).unwrap()).collect();
     let expressions = strings(&json["equations"])
         .iter()
         .map(|e| parse(e, &variables))

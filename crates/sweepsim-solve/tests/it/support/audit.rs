@@ -26,8 +26,8 @@ pub fn audit_curves(curves: &Curves, region: &[Enclosure], name: &str) {
             (ends[1], &curve.points[curve.points.len() - 1]),
         ] {
             let on_boundary = region.iter().zip(&point.point).any(|(r, x)| {
-                let slack = (1e-12 + 3.0 * curves.skin) * (r.hi - r.lo);
-                (x - r.lo).abs() <= slack || (x - r.hi).abs() <= slack
+                let slack = (1e-12 + 3.0 * curves.skin) * (r.hi() - r.lo());
+                (x - r.lo()).abs() <= slack || (x - r.hi()).abs() <= slack
             });
             assert!(on_boundary || end != CurveEnd::Boundary, "{name}: {point:?}");
         }

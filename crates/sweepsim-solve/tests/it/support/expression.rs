@@ -274,8 +274,8 @@ impl Polynomial {
         let mut stride = 1;
         for j in 0..n {
             let d = degrees[j];
-            let lo = exact(bounds[j].lo);
-            let width = exact(bounds[j].hi) - &lo;
+            let lo = exact(bounds[j].lo());
+            let width = exact(bounds[j].hi()) - &lo;
             let matrix = power_to_bernstein(d, &lo, &width);
             for start in 0..len {
                 if (start / stride) % (d + 1) != 0 {

@@ -104,7 +104,7 @@ pub fn case(points: &[Vec<f64>], random: &mut Random) -> Case {
     let planes: Vec<Vec<Plane>> = (0..n)
         .map(|_| points.iter().map(|p| Plane::through(p, random)).collect())
         .collect();
-    let unit = vec![Enclosure::new(0.0, 1.0); n];
+    let unit = vec![Enclosure::UNIT; n];
     let forms = planes
         .iter()
         .map(|factors| {
@@ -133,7 +133,7 @@ pub fn holds(bounds: &[Enclosure], x: &[RBig]) -> bool {
     bounds
         .iter()
         .zip(x)
-        .all(|(b, x)| exact(b.lo) <= *x && *x <= exact(b.hi))
+        .all(|(b, x)| exact(b.lo()) <= *x && *x <= exact(b.hi()))
 }
 
 /// No root is lost, none is certified twice, no certified box holds two.

@@ -14,7 +14,7 @@ impl<const N: usize> Targets<N> for List<N> {
     fn visit(
         &self,
         range: &[Enclosure; N],
-        narrow: &dyn Fn(&[f64; N]) -> Enclosure,
+        narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
         visit: &mut dyn FnMut(&Target<N>) -> bool,
     ) {
         for (number, value) in self.0.iter().enumerate() {
@@ -23,7 +23,8 @@ impl<const N: usize> Targets<N> for List<N> {
                 place: [number, 0],
                 value: *value,
             };
-            let wanted = (0..N).all(|i| range[i].contains(value[i])) && narrow(value).contains(value[1]);
+            let wanted =
+                (0..N).all(|i| range[i].contains(value[i])) && narrow(value).is_some_and(|w| w.contains(value[1]));
             if wanted && !visit(&target) {
                 return;
             }

@@ -28,9 +28,9 @@ pub(super) fn minor_is_definite<const N: usize>(jacobian: &[[Enclosure; N]; N], 
             let [p, q] = [jacobian[0][a], jacobian[0][b]];
             let [r, s] = [jacobian[2][a], jacobian[2][b]];
             let (first, second) = (product(p, s), product(q, r));
-            (first.lo - second.hi, first.hi - second.lo)
+            (first.lo() - second.hi(), first.hi() - second.lo())
         }
-        (Some(a), None) => (jacobian[0][a].lo, jacobian[0][a].hi),
+        (Some(a), None) => (jacobian[0][a].lo(), jacobian[0][a].hi()),
         _ => (0.0, 0.0),
     };
     let margin = 8.0 * f64::EPSILON * lo.abs().max(hi.abs());
@@ -38,8 +38,8 @@ pub(super) fn minor_is_definite<const N: usize>(jacobian: &[[Enclosure; N]; N], 
 }
 
 fn product(a: Enclosure, b: Enclosure) -> Enclosure {
-    let all = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
-    Enclosure::new(
+    let all = [a.lo() * b.lo(), a.lo() * b.hi(), a.hi() * b.lo(), a.hi() * b.hi()];
+    Enclosure::hull(
         all.iter().fold(f64::INFINITY, |m, x| m.min(*x)),
         all.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)),
     )

@@ -97,7 +97,7 @@ impl Slicer {
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         // With a skin, curves run on beyond the domain: at most this far.
-        let region = Enclosure::new(-2.0 * skin, 1.0 + 2.0 * skin);
+        let region = Enclosure::hull(-2.0 * skin, 1.0 + 2.0 * skin);
         let mut cutting = Cutting {
             map,
             lattice: query.lines,
@@ -118,7 +118,7 @@ impl Slicer {
                 if let Some(from) = from {
                     let within = std::array::from_fn(|j| {
                         let (lo, hi) = (from.x[j].min(to.x[j]), from.x[j].max(to.x[j]));
-                        Enclosure::new((lo - tolerance).max(region.lo), (hi + tolerance).min(region.hi))
+                        Enclosure::hull((lo - tolerance).max(region.lo()), (hi + tolerance).min(region.hi()))
                     });
                     if !cutting.span(&from, &to, within, DEPTH) {
                         return false;

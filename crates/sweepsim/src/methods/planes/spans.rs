@@ -134,7 +134,7 @@ where
         (target, y): (usize, f64),
         within: &[Enclosure; N],
     ) -> Option<(Preimage<N, M::Seen>, [f64; N])> {
-        let mut x: [f64; N] = std::array::from_fn(|k| guess[k].clamp(within[k].lo, within[k].hi));
+        let mut x: [f64; N] = std::array::from_fn(|k| guess[k].clamp(within[k].lo(), within[k].hi()));
         for _ in 0..STEPS {
             let sample = self.evaluate(&x);
             let wanted = [self.x, y, 0.0];
@@ -149,7 +149,7 @@ where
             }
             if step.amax() <= self.accept {
                 // The box holds one point of the span with this Y: if Newton's method found it, it is in the box.
-                let inside = (0..N).all(|k| next[k] >= within[k].lo - 1e-9 && next[k] <= within[k].hi + 1e-9);
+                let inside = (0..N).all(|k| next[k] >= within[k].lo() - 1e-9 && next[k] <= within[k].hi() + 1e-9);
                 let found = Preimage {
                     target,
                     x: next,
@@ -159,7 +159,7 @@ where
                 };
                 return inside.then(|| (found, std::array::from_fn(|k| inverse[(k, 1)])));
             }
-            x = std::array::from_fn(|k| next[k].clamp(within[k].lo, within[k].hi));
+            x = std::array::from_fn(|k| next[k].clamp(within[k].lo(), within[k].hi()));
         }
         None
     }
@@ -185,7 +185,7 @@ where
         let middle = self.on_curve(p, q, over, at, within)?;
         let parts = [p, q].map(|end| {
             let mut part = *within;
-            part[over] = Enclosure::new(end.x[over].min(at), end.x[over].max(at));
+            part[over] = Enclosure::hull(end.x[over].min(at), end.x[over].max(at));
             part
         });
         let parts = parts.map(|part| self.shrunk(part, over));
@@ -216,7 +216,7 @@ where
                 return None;
             }
             for (k, n) in (0..N).filter(|k| *k != over).zip(0..) {
-                x[k] = (x[k] - step[n]).clamp(within[k].lo, within[k].hi);
+                x[k] = (x[k] - step[n]).clamp(within[k].lo(), within[k].hi());
             }
             let size = step.amax();
             if size <= 1e-15 || (size <= 1e-11 && size >= 0.25 * before) {
@@ -261,8 +261,9 @@ where
                 reach += ((row[j] - unit).abs() + spread[j] + 1e-14) * part[j].radius();
             }
             let (lo, hi) = (centre[k] + shift - reach - 1e-15, centre[k] + shift + reach + 1e-15);
-            let cut = Enclosure::new(part[k].lo.max(lo), part[k].hi.min(hi));
-            if cut.lo < cut.hi {
+            if let Some(cut) = part[k].intersection(Enclosure::hull(lo, hi))
+                && cut.lo() < cut.hi()
+            {
                 smaller[k] = cut;
             }
         }
