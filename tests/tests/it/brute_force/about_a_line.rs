@@ -1,7 +1,7 @@
 //! A level tool whose tip goes round a dexel line, exactly or almost: the line stays at one height of the tool all along, where it grazes it.
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
-use crate::brute_force::motions::pose;
+use crate::brute_force::named_motions::pose;
 use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use sweepsim::Method;

@@ -1,7 +1,7 @@
 //! Circle-segment cutters, which touch tangentially where radii differ a hundredfold, judged by brute force.
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
-use crate::brute_force::motions::{grid, motions};
+use crate::brute_force::named_motions::{grid, motions};
 use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use sweepsim::Method;

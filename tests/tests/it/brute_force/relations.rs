@@ -2,7 +2,7 @@
 
 use crate::brute_force::corpus::tools;
 use crate::brute_force::judge::{Tally, same_sweeps, swept_along};
-use crate::brute_force::motions::{Named, grid, motions, pose};
+use crate::brute_force::named_motions::{Named, grid, motions, pose};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
