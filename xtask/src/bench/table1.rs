@@ -110,9 +110,9 @@ fn table1_here() -> Result<(), String> {
 /// The largest distance of a tool's control points from its axis.
 fn reach(tool: &Tool) -> f64 {
     let points = tool.patches().iter().flat_map(|patch| {
-        let weights = patch.weight.coefficients();
+        let weights = patch.weight().coefficients();
         (0..weights.len()).map(move |i| {
-            let coordinate = |k: usize| patch.position[k].coefficients()[i] / weights[i];
+            let coordinate = |k: usize| patch.position()[k].coefficients()[i] / weights[i];
             coordinate(0).hypot(coordinate(1))
         })
     });

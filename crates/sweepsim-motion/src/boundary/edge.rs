@@ -1,6 +1,7 @@
 //! Sharp edges of a boundary.
 
-use super::NormalField;
+use super::normals::{check_form, check_normals, check_place};
+use super::{NormalField, PatchError};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
@@ -18,19 +19,68 @@ pub enum Fold {
 }
 
 /// A sharp edge `C(r) = position / weight` on `[0, 1]` between the faces A and B; `C_r ×` (direction from A to B) points out.
+///
+/// Invariants: finite forms in one variable, of degree at most 7; positive weights; normals of both faces that are normal to the curve.
 #[derive(Clone, Debug)]
 pub struct Edge {
-    /// Numerator of `C(r)`.
-    pub position: [Bernstein; 3],
-    /// Denominator of `C(r)`: positive coefficients.
-    pub weight: Bernstein,
-    /// Normals of face A along the edge.
-    pub before: NormalField,
-    /// Normals of face B along the edge.
-    pub after: NormalField,
+    pub(super) position: [Bernstein; 3],
+    pub(super) weight: Bernstein,
+    pub(super) before: NormalField,
+    pub(super) after: NormalField,
 }
 
 impl Edge {
+    /// The edge `position / weight` with the normals of face A and of face B along it.
+    ///
+    /// # Errors
+    /// [`PatchError`]: forms in other than one variable, a degree above 7, weights that are not positive, normals that vanish inside or are not
+    /// normal to the curve, moments that are not `C × N`; both to within a bound of the rounding errors.
+    pub fn new(
+        position: [Bernstein; 3],
+        weight: Bernstein,
+        before: NormalField,
+        after: NormalField,
+    ) -> Result<Self, PatchError> {
+        check_place(&position, &weight, 1)?;
+        for field in [&before, &after] {
+            for form in field.normal().iter().chain(field.moment()) {
+                check_form(form, "the normals", 1, usize::MAX)?;
+            }
+            field.check(&position, &weight)?;
+            check_normals(field.normal())?;
+        }
+        Ok(Self {
+            position,
+            weight,
+            before,
+            after,
+        })
+    }
+
+    /// Numerator of `C(r)`.
+    #[must_use]
+    pub fn position(&self) -> &[Bernstein; 3] {
+        &self.position
+    }
+
+    /// Denominator of `C(r)`: positive coefficients.
+    #[must_use]
+    pub fn weight(&self) -> &Bernstein {
+        &self.weight
+    }
+
+    /// Normals of face A along the edge.
+    #[must_use]
+    pub fn before(&self) -> &NormalField {
+        &self.before
+    }
+
+    /// Normals of face B along the edge.
+    #[must_use]
+    pub fn after(&self) -> &NormalField {
+        &self.after
+    }
+
     /// How the boundary is folded at `r` in `[0, 1]`: an edge may change from the one to the other on its way.
     #[must_use]
     pub fn fold(&self, r: f64) -> Fold {

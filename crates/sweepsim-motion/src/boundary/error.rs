@@ -3,15 +3,17 @@
 use sweepsim_spline::SplineError;
 use thiserror::Error;
 
-/// Why a surface is no patch of a tool.
+/// Why forms do not make a patch or an edge of a tool.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PatchError {
-    /// A form does not depend on two variables.
-    #[error("a patch needs forms in two variables, but {what} has {found}")]
+    /// A form has the wrong number of variables.
+    #[error("{what} must be a form in {expected} variables (2 in a patch, 1 along an edge), but has {found}")]
     Variables {
         /// Which form.
         what: &'static str,
+        /// How many variables it must have.
+        expected: usize,
         /// How many variables it has.
         found: usize,
     },
@@ -45,9 +47,43 @@ pub enum PatchError {
         /// Where.
         v: f64,
     },
+    /// The moments are not those of the normals.
+    #[error(
+        "the moments are not F × N: w M − P × N has a coefficient of {off:e}, and rounding accounts for {allowed:e}"
+    )]
+    Moment {
+        /// The largest coefficient of what should be 0.
+        off: f64,
+        /// What rounding may make of 0.
+        allowed: f64,
+    },
+    /// The normals are not at right angles to the surface or curve.
+    #[error(
+        "the normals are not at right angles to the direction of variable {axis}: off by {off:e}, and rounding accounts for {allowed:e}"
+    )]
+    NotNormal {
+        /// The variable along whose direction they are not.
+        axis: usize,
+        /// The largest coefficient of what should be 0.
+        off: f64,
+        /// What rounding may make of 0.
+        allowed: f64,
+    },
+    /// The normals point to the other side of the surface.
+    #[error("the normals point against F_u × F_v: reverse them, or swap u and v")]
+    Inward,
+    /// A frame that is not a rotation and a finite origin.
+    #[error("the frame is not a rotation with a finite origin")]
+    Frame,
+    /// A parameter outside of the patch.
+    #[error("the parameter {parameter} is outside of [0, 1]")]
+    Outside {
+        /// Its value.
+        parameter: f64,
+    },
 }
 
-/// Why patches enclose no tool.
+/// Why patches do not enclose a tool.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {

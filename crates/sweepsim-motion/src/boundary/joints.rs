@@ -9,6 +9,7 @@
 use super::side_curve::{PLACES, SideCurve};
 use super::stretch::JointStretch;
 use super::{Edge, Patch, Side, ToolError};
+use nalgebra::Vector3;
 
 /// The sides cut at the corners that lie on them.
 fn stretches(curves: &[SideCurve], tolerance: f64) -> Vec<JointStretch<'_>> {
@@ -101,9 +102,10 @@ fn volume(patches: &[Patch]) -> f64 {
             for j in 0..STEPS {
                 let h = 0.5 / STEPS as f64;
                 let (u, v) = (middle(i), middle(j));
-                let along_u = patch.place(u + h, v) - patch.place(u - h, v);
-                let along_v = patch.place(u, v + h) - patch.place(u, v - h);
-                sum += patch.place(u, v).dot(&along_u.cross(&along_v));
+                let at = |u: f64, v: f64| Vector3::from(patch.point(u, v));
+                let along_u = at(u + h, v) - at(u - h, v);
+                let along_v = at(u, v + h) - at(u, v - h);
+                sum += at(u, v).dot(&along_u.cross(&along_v));
             }
         }
     }

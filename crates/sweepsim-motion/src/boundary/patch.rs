@@ -1,83 +1,19 @@
-//! Patches of a boundary, and their normals.
+//! Patches of a boundary.
 
-use super::{PatchError, recognised};
-use nalgebra::{Matrix3, Vector3};
+use super::normals::{check_form, check_normals, check_place, normals, scaled};
+use super::{NormalField, PatchError, Revolved, recognised};
+use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
-/// A field of surface normals `N` and their moments `M = F × N`, as Bernstein forms with one common positive factor.
-#[derive(Clone, Debug)]
-pub struct NormalField {
-    /// `N`, pointing out of the tool.
-    pub normal: [Bernstein; 3],
-    /// `M = F × N`.
-    pub moment: [Bernstein; 3],
-}
-
 /// A smooth piece of a tool's boundary: `F = position / weight` on `[0, 1]²`, with `F_u × F_v` pointing out of the tool.
+///
+/// Invariants: finite forms in two variables, of degree at most 7; positive weights; no fold inside; normals that are normal to the surface and point out.
 #[derive(Clone, Debug)]
 pub struct Patch {
-    /// Numerator of `F(u, v)`.
-    pub position: [Bernstein; 3],
-    /// Denominator of `F(u, v)`: positive coefficients.
-    pub weight: Bernstein,
-    /// Its normals.
-    pub field: NormalField,
-    /// The same as products of functions of `u` and of `v`, where it is a piece of a surface of revolution.
-    pub revolved: Option<Revolved>,
-}
-
-/// A piece of a surface of revolution about the third axis of a frame of its own, as products of quadratic Bernstein forms.
-///
-/// In that frame, with circle `c, s, w` in `u` and meridian `ρ, ζ, ω, n_ρ, n_ζ, m` in `v`:
-/// `F = (c ρ, s ρ, w ζ) / (w ω)`, `N = (c n_ρ, s n_ρ, w n_ζ)`, `F × N = (−s m, c m, 0)`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Revolved {
-    /// Coefficients in `u`: cosine, sine and weight.
-    pub circle: [[f64; 3]; 3],
-    /// Coefficients in `v`: radius, height and weight, then of the normal its radius and height, then the moment.
-    pub meridian: [[f64; 3]; 6],
-    /// How the frame is turned and where its origin is in the tool; `None` when it is the tool's.
-    pub frame: Option<(Matrix3<f64>, Vector3<f64>)>,
-}
-
-/// Highest degree of a patch: that of the moments, four times as high, must still be evaluated well.
-const MOST: usize = 7;
-
-fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
-    [0, 1, 2].map(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        a[i].mul(&b[j]).sub(&a[j].mul(&b[i]))
-    })
-}
-
-fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
-    [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
-}
-
-/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments.
-pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> NormalField {
-    let first = weight.coefficients()[0];
-    let polynomial = weight.coefficients().iter().all(|w| *w == first);
-    let (pu, pv) = (
-        [0, 1, 2].map(|k| position[k].derivative(0)),
-        [0, 1, 2].map(|k| position[k].derivative(1)),
-    );
-    let both = cross(&pu, &pv);
-    let (normal, moment) = if polynomial {
-        // F = P / w with a constant weight: the moment of F is that of P over it.
-        let moment = cross(position, &both).map(|form| form.scale(1.0 / first));
-        (both, moment)
-    } else {
-        let (wu, wv) = (weight.derivative(0), weight.derivative(1));
-        let (with_u, with_v) = (cross(position, &pu), cross(position, &pv));
-        let hat = [0, 1, 2].map(|k| {
-            let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
-            sum.sub(&wu.mul(&with_v[k]))
-        });
-        let moment = cross(position, &hat);
-        (hat.map(|form| weight.mul(&form)), moment)
-    };
-    NormalField { normal, moment }
+    pub(super) position: [Bernstein; 3],
+    pub(super) weight: Bernstein,
+    pub(super) field: NormalField,
+    pub(super) revolved: Option<Revolved>,
 }
 
 impl Patch {
@@ -91,23 +27,7 @@ impl Patch {
     /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the inside (along the sides it
     /// may vanish: poles).
     pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
-        for (form, what) in position.iter().zip(["x", "y", "z"]).chain([(&weight, "the weight")]) {
-            if form.variables() != 2 {
-                return Err(PatchError::Variables {
-                    what,
-                    found: form.variables(),
-                });
-            }
-            if let Some(&degree) = form.degrees().iter().find(|degree| **degree > MOST) {
-                return Err(PatchError::Degree { degree, most: MOST });
-            }
-            if !form.coefficients().iter().all(|c| c.is_finite()) {
-                return Err(PatchError::NotFinite { what });
-            }
-        }
-        if let Some((index, &value)) = weight.coefficients().iter().enumerate().find(|(_, w)| **w <= 0.0) {
-            return Err(PatchError::Weight { index, value });
-        }
+        check_place(&position, &weight, 2)?;
         let found = recognised::field(&position, &weight);
         let NormalField { normal, moment } = found.unwrap_or_else(|| normals(&position, &weight));
         let largest = normal.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
@@ -127,42 +47,83 @@ impl Patch {
         })
     }
 
-    /// The place at `(u, v)`.
-    #[must_use]
-    pub fn place(&self, u: f64, v: f64) -> Vector3<f64> {
-        let weight = self.weight.evaluate(&[u, v]);
-        Vector3::from([0, 1, 2].map(|k| self.position[k].evaluate(&[u, v]) / weight))
+    /// The patch `position / weight` with normals of your own, for surfaces whose normals have a lower degree than [`new`](Self::new) would find.
+    ///
+    /// They are verified: `field` must be normal to the surface and its moments `F × N`, both to within a bound of the rounding
+    /// errors, must vanish nowhere inside, and point to the side of `F_u × F_v`.
+    ///
+    /// # Errors
+    /// [`PatchError`]: as [`new`](Self::new), and [`Moment`](PatchError::Moment), [`NotNormal`](PatchError::NotNormal), [`Inward`](PatchError::Inward).
+    pub fn with_normals(position: [Bernstein; 3], weight: Bernstein, field: NormalField) -> Result<Self, PatchError> {
+        for form in field.normal.iter().chain(&field.moment) {
+            check_form(form, "the normals", 2, usize::MAX)?;
+        }
+        let own = Self::new(position, weight)?;
+        field.check(&own.position, &own.weight)?;
+        check_normals(&field.normal)?;
+        // Both fields are along the same line and vanish nowhere inside: one place decides. The one where that is clearest.
+        let at =
+            |field: &NormalField, u: f64, v: f64| Vector3::from([0, 1, 2].map(|k| field.normal[k].evaluate(&[u, v])));
+        let places = [0.21, 0.37, 0.52, 0.68, 0.83];
+        let products = places
+            .into_iter()
+            .flat_map(|u| places.map(|v| at(&field, u, v).dot(&at(&own.field, u, v))));
+        let clearest = products.fold(
+            0.0_f64,
+            |best, product| if product.abs() > best.abs() { product } else { best },
+        );
+        if !(clearest > 0.0) {
+            return Err(PatchError::Inward);
+        }
+        Ok(Self { field, ..own })
     }
-}
 
-/// Boxes of the inside are cut until the normals of each lie in a half space; boxes at the sides may stay undecided.
-fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
-    const DEPTH: usize = 14;
-    let mut stack = vec![(normal.clone(), [[0.0, 1.0]; 2], 0)];
-    while let Some((forms, sides, depth)) = stack.pop() {
-        let count = forms[0].coefficients().len();
-        let vector = |i: usize| Vector3::from([0, 1, 2].map(|k| forms[k].coefficients()[i]));
-        let mean: Vector3<f64> = (0..count).map(vector).sum();
-        if (0..count).all(|i| vector(i).dot(&mean) > 0.0) {
-            continue;
+    pub(super) fn with_revolved(self, revolved: Revolved) -> Self {
+        Self {
+            revolved: Some(revolved),
+            ..self
         }
-        if depth == DEPTH {
-            let at_a_side = sides.iter().any(|side| side[0] == 0.0 || side[1] == 1.0);
-            if at_a_side {
-                continue;
-            }
-            let [u, v] = sides.map(|side| 0.5 * (side[0] + side[1]));
-            return Err(PatchError::NoNormal { u, v });
-        }
-        let axis = depth % 2;
-        let halves = [0, 1, 2].map(|k| forms[k].split(axis, 0.5));
-        let [a, b, c] = halves;
-        let middle = 0.5 * (sides[axis][0] + sides[axis][1]);
-        let (mut low, mut high) = (sides, sides);
-        low[axis][1] = middle;
-        high[axis][0] = middle;
-        stack.push(([a.0, b.0, c.0], low, depth + 1));
-        stack.push(([a.1, b.1, c.1], high, depth + 1));
     }
-    Ok(())
+
+    /// Numerator of `F(u, v)`.
+    #[must_use]
+    pub fn position(&self) -> &[Bernstein; 3] {
+        &self.position
+    }
+
+    /// Denominator of `F(u, v)`: positive coefficients.
+    #[must_use]
+    pub fn weight(&self) -> &Bernstein {
+        &self.weight
+    }
+
+    /// Its normals.
+    #[must_use]
+    pub fn field(&self) -> &NormalField {
+        &self.field
+    }
+
+    /// The same as products of functions of `u` and of `v`, where it is a piece of a surface of revolution.
+    #[must_use]
+    pub fn revolved(&self) -> Option<&Revolved> {
+        self.revolved.as_ref()
+    }
+
+    /// The point at `(u, v)`. Outside `[0, 1]²` the surface goes on.
+    #[must_use]
+    pub fn point(&self, u: f64, v: f64) -> [f64; 3] {
+        let weight = self.weight.evaluate(&[u, v]);
+        [0, 1, 2].map(|k| self.position[k].evaluate(&[u, v]) / weight)
+    }
+
+    /// The point at `(u, v)` in `[0, 1]²`.
+    ///
+    /// # Errors
+    /// [`PatchError::Outside`].
+    pub fn try_point(&self, u: f64, v: f64) -> Result<[f64; 3], PatchError> {
+        match [u, v].into_iter().find(|x| !(0.0..=1.0).contains(x)) {
+            Some(parameter) => Err(PatchError::Outside { parameter }),
+            None => Ok(self.point(u, v)),
+        }
+    }
 }

@@ -172,7 +172,7 @@ pub(super) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<Nor
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::boundary::patch::normals;
+    use crate::boundary::normals::normals;
     use nalgebra::Vector3;
     use proptest::prelude::*;
 

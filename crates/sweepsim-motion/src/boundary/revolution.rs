@@ -89,7 +89,7 @@ fn half_ball(radius: f64, zeta: f64, above: bool) -> Vec<Patch> {
 }
 
 /// A patch of the tool's own frame turned by `turn`, then moved by `shift`.
-fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Patch {
+pub(super) fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Patch {
     let combine = |forms: &[Bernstein; 3], row: usize, extra: &[(f64, &Bernstein)]| {
         let mut coefficients = vec![0.0; forms[0].coefficients().len()];
         let terms = (0..3).map(|k| (turn[(row, k)], &forms[k])).chain(extra.iter().copied());

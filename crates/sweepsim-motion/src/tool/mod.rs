@@ -2,6 +2,7 @@
 
 mod apt;
 mod circle_segment;
+mod surfaces;
 
 pub use apt::{Apt, AptError, AptWarning};
 
@@ -256,7 +257,7 @@ impl Tool {
     /// # Errors
     /// As [`Tool::from_patches`], and when a surface is none or has a fold.
     pub fn from_surfaces(surfaces: &[RationalSpline], tolerance: f64) -> Result<Self, ToolError> {
-        Self::from_patches(boundary::patches_of_surfaces(surfaces)?, tolerance)
+        Self::from_patches(surfaces::patches(surfaces)?, tolerance)
     }
 
     /// The outline of a solid of revolution; none for tools of other shapes.
@@ -269,8 +270,8 @@ impl Tool {
     #[must_use]
     pub fn reach(&self) -> f64 {
         let control = |patch: &Patch| {
-            let weights = patch.weight.coefficients();
-            let point = |i: usize| Vector3::from([0, 1, 2].map(|k| patch.position[k].coefficients()[i] / weights[i]));
+            let weights = patch.weight().coefficients();
+            let point = |i: usize| Vector3::from([0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weights[i]));
             (0..weights.len()).map(|i| point(i).norm()).fold(0.0, f64::max)
         };
         self.patches.iter().map(control).fold(0.0, f64::max)

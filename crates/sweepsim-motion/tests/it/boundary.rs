@@ -46,15 +46,15 @@ fn at(form: &Bernstein, u: f64, v: f64) -> [f64; 3] {
 
 /// `F, F_u, F_v` of a patch.
 fn surface(patch: &Patch, u: f64, v: f64) -> [Vector3<f64>; 3] {
-    let w = at(&patch.weight, u, v);
-    let parts = [0, 1, 2].map(|k| at(&patch.position[k], u, v));
+    let w = at(patch.weight(), u, v);
+    let parts = [0, 1, 2].map(|k| at(&patch.position()[k], u, v));
     let point = Vector3::from([0, 1, 2].map(|k| parts[k][0] / w[0]));
     let slope = |d: usize| Vector3::from([0, 1, 2].map(|k| (parts[k][d] - point[k] * w[d]) / w[0]));
     [point, slope(1), slope(2)]
 }
 
 fn field(field: &NormalField, u: f64, v: f64) -> [Vector3<f64>; 2] {
-    [&field.normal, &field.moment].map(|forms| Vector3::from([0, 1, 2].map(|k| at(&forms[k], u, v)[0])))
+    [field.normal(), field.moment()].map(|forms| Vector3::from([0, 1, 2].map(|k| at(&forms[k], u, v)[0])))
 }
 
 fn form_tool() -> Tool {
@@ -152,7 +152,7 @@ fn normals_are_normals_and_moments_are_moments() {
         for patch in tool.patches() {
             for (u, v) in (0..=8).flat_map(|i| (0..=8).map(move |j| (f64::from(i) / 8.0, f64::from(j) / 8.0))) {
                 let [f, f_u, f_v] = surface(patch, u, v);
-                let [n, m] = field(&patch.field, u, v);
+                let [n, m] = field(patch.field(), u, v);
                 let size = n.norm();
                 assert!(size > 0.1, "{name}: the normal vanishes");
                 assert!(
@@ -166,9 +166,9 @@ fn normals_are_normals_and_moments_are_moments() {
         for edge in tool.edges() {
             for i in 0..=8 {
                 let r = f64::from(i) / 8.0;
-                let w = at(&edge.weight, r, 0.0)[0];
-                let c = Vector3::from([0, 1, 2].map(|k| at(&edge.position[k], r, 0.0)[0] / w));
-                for side in [&edge.before, &edge.after] {
+                let w = at(edge.weight(), r, 0.0)[0];
+                let c = Vector3::from([0, 1, 2].map(|k| at(&edge.position()[k], r, 0.0)[0] / w));
+                for side in [edge.before(), edge.after()] {
                     let [n, m] = field(side, r, 0.0);
                     assert!(
                         (m - c.cross(&n)).norm() < 1e-13 * n.norm() * 50.0,

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-motion`, in one binary: it links once.
 
 mod boundary;
+mod checked_boundary;
 mod motions;
 mod spline_profiles;

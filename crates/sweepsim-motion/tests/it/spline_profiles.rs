@@ -56,7 +56,7 @@ proptest! {
         let spans = 6 - degree;
         prop_assert_eq!(tool.patches().len(), 1 + 4 * spans + 4 + 1);
         for (number, patch) in tool.patches()[1..=4 * spans].iter().enumerate() {
-            let place = patch.place(u, v);
+            let place = Vector3::from(patch.point(u, v));
             let rho = place.x.hypot(place.y);
             // The pace within a piece is another: the nearest point of the span, by ternary search around the nearest of many.
             let distance = |t: f64| {
@@ -73,13 +73,13 @@ proptest! {
             }
             prop_assert!(distance(0.5 * (low + high)) < 1e-10);
             let at = |forms: &[sweepsim_spline::Bernstein; 3]| Vector3::from([0, 1, 2].map(|k| forms[k].evaluate(&[u, v])));
-            let (normal, moment) = (at(&patch.field.normal), at(&patch.field.moment));
+            let (normal, moment) = (at(patch.field().normal()), at(patch.field().moment()));
             prop_assert!(normal.norm() > 1e-4);
             let size = normal.norm();
             // Rounding of forms of degree at most 13 with coefficients of at most 10, and of steps of 1e-6.
             prop_assert!((moment - place.cross(&normal)).norm() < 1e-12);
             let h = 1e-6;
-            let along = |du: f64, dv: f64| (patch.place(u + du, v + dv) - patch.place(u - du, v - dv)) / (2.0 * h);
+            let along = |du: f64, dv: f64| (Vector3::from(patch.point(u + du, v + dv)) - Vector3::from(patch.point(u - du, v - dv))) / (2.0 * h);
             let (f_u, f_v) = (along(h, 0.0), along(0.0, h));
             let n = normal / size;
             prop_assert!(n.dot(&f_u).abs() < 1e-4 && n.dot(&f_v).abs() < 1e-7);
@@ -103,8 +103,8 @@ proptest! {
         }
         if let Ok(tool) = with(spline(degree, &points, knots, weights)) {
             for patch in tool.patches() {
-                prop_assert!(patch.field.normal.iter().chain(&patch.field.moment).all(sweepsim_spline::Bernstein::is_finite));
-                prop_assert!(patch.place(0.3, 0.6).iter().all(|c| c.is_finite()));
+                prop_assert!(patch.field().normal().iter().chain(patch.field().moment()).all(sweepsim_spline::Bernstein::is_finite));
+                prop_assert!(Vector3::from(patch.point(0.3, 0.6)).iter().all(|c| c.is_finite()));
             }
         }
     }
@@ -142,7 +142,7 @@ fn a_spline_that_is_an_arc_encloses_what_the_arc_does() {
     );
     for (a, b) in arc.patches().iter().zip(same.patches()) {
         for (u, v) in [(0.0, 0.0), (0.3, 0.7), (1.0, 0.5), (0.9, 1.0)] {
-            assert!((a.place(u, v) - b.place(u, v)).norm() < 1e-14);
+            assert!((Vector3::from(a.point(u, v)) - Vector3::from(b.point(u, v))).norm() < 1e-14);
         }
     }
 }

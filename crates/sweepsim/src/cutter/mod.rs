@@ -23,9 +23,9 @@ impl Cutter {
             .patches()
             .iter()
             .flat_map(|patch| {
-                let weights = patch.weight.coefficients();
+                let weights = patch.weight().coefficients();
                 (0..weights.len()).map(move |i| {
-                    Vector3::from([0, 1, 2].map(|k| patch.position[k].coefficients()[i] / weights[i])).norm()
+                    Vector3::from([0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weights[i])).norm()
                 })
             })
             .fold(0.0, f64::max);

@@ -10,7 +10,7 @@ use crate::algebra::table::{Table, position};
 use crate::cutter::revolution::{Revolution, Spot};
 use crate::time::placement::{LocalFrame, Placing};
 use nalgebra::Vector3;
-use sweepsim_motion::{Edge, NormalField, Patch, Tool};
+use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
 use sweepsim_spline::Bernstein;
 
 /// Degrees and place of a coefficient tensor in a cell's list.
@@ -62,16 +62,19 @@ impl PatchForms {
     }
 
     fn patch(patch: &Patch) -> Self {
-        let element = Self::new(&patch.position, &patch.weight, &[&patch.field], 2);
+        let element = Self::new(patch.position(), patch.weight(), &[patch.field()], 2);
         Self {
-            revolution: patch.revolved.as_ref().map(Revolution::new),
-            frame: patch.revolved.as_ref().and_then(|revolved| revolved.frame),
+            revolution: patch.revolved().map(Revolution::new),
+            frame: patch
+                .revolved()
+                .and_then(Revolved::frame)
+                .map(|(turn, origin)| (turn, origin.into())),
             ..element
         }
     }
 
     fn edge(edge: &Edge) -> Self {
-        Self::new(&edge.position, &edge.weight, &[&edge.before, &edge.after], 1)
+        Self::new(edge.position(), edge.weight(), &[edge.before(), edge.after()], 1)
     }
 
     fn new(point: &[Bernstein; 3], weight: &Bernstein, fields: &[&NormalField], variables: usize) -> Self {
@@ -106,7 +109,7 @@ impl PatchForms {
         let fields = fields
             .iter()
             .map(|field| {
-                let forms: Vec<&Bernstein> = field.normal.iter().chain(&field.moment).collect();
+                let forms: Vec<&Bernstein> = field.normal().iter().chain(field.moment()).collect();
                 for (k, form) in forms.iter().enumerate() {
                     largest[k / 3] = largest[k / 3].max(form.magnitude());
                 }

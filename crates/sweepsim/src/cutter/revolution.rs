@@ -15,10 +15,10 @@ pub(crate) struct Revolution {
 
 impl Revolution {
     pub fn new(revolved: &Revolved) -> Self {
-        let [c, s, w] = &revolved.circle;
+        let [c, s, w] = revolved.circle();
         Self {
             circle: [0, 1, 2].map(|i| [c[i], s[i], w[i], 0.0]),
-            meridian: [0, 1, 2].map(|i| revolved.meridian.map(|form| form[i])),
+            meridian: [0, 1, 2].map(|i| revolved.meridian().map(|form| form[i])),
         }
     }
 
@@ -140,7 +140,7 @@ mod tests {
                         }
                         prop_assert_eq!(turned.envelope(&twist), both[0]);
                     }
-                    let written = |u: f64, v: f64| turn * patch.place(u, v) + tip;
+                    let written = |u: f64, v: f64| turn * Vector3::from(patch.point(u, v)) + tip;
                     let [u, v] = at;
                     prop_assert!((vector(&spot.place) - written(u, v)).amax() <= 1e-13 * size);
                     let h = 1e-5;

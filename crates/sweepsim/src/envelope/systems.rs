@@ -105,11 +105,11 @@ impl MotionForms {
             let term = |k: usize| forms[k].tensor_product(&in_time(list.iter().map(|v| v[k]).collect(), error));
             term(0).add(&term(1)).add(&term(2))
         };
-        let travelling = along(&self.travels, &field.normal);
+        let travelling = along(&self.travels, field.normal());
         if self.spins.iter().all(|spin| *spin == Vector3::zeros()) {
             return travelling;
         }
-        travelling.add(&along(&self.spins, &field.moment))
+        travelling.add(&along(&self.spins, field.moment()))
     }
 }
 
@@ -134,8 +134,8 @@ impl PatchMotion {
     pub fn new(patch: &Patch, segment: &Segment) -> Self {
         let motion = MotionForms::new(segment);
         Self {
-            place: motion.place(&patch.position, &patch.weight),
-            envelope: motion.envelope(&patch.field),
+            place: motion.place(patch.position(), patch.weight()),
+            envelope: motion.envelope(patch.field()),
         }
     }
 
@@ -194,8 +194,8 @@ impl EdgeMotion {
     pub fn new(edge: &Edge, segment: &Segment) -> Self {
         let motion = MotionForms::new(segment);
         Self {
-            place: motion.place(&edge.position, &edge.weight),
-            conditions: [motion.envelope(&edge.before), motion.envelope(&edge.after)],
+            place: motion.place(edge.position(), edge.weight()),
+            conditions: [motion.envelope(edge.before()), motion.envelope(edge.after())],
         }
     }
 
@@ -242,14 +242,14 @@ impl PlacedPatch {
     #[must_use]
     pub fn new(patch: &Patch, turn: &Matrix3<f64>, tip: &Vector3<f64>) -> Self {
         let numerators = [0, 1, 2].map(|r| {
-            (0..3).fold(patch.weight.scale(tip[r]), |sum, k| {
-                sum.add(&patch.position[k].scale(turn[(r, k)]))
+            (0..3).fold(patch.weight().scale(tip[r]), |sum, k| {
+                sum.add(&patch.position()[k].scale(turn[(r, k)]))
             })
         });
         Self {
             place: MovingPoint {
                 numerators,
-                weight: patch.weight.clone(),
+                weight: patch.weight().clone(),
             },
         }
     }

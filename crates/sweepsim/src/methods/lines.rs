@@ -58,7 +58,7 @@ impl PartBundles {
                 let place = PlacedPatch::new(patch, &turn, &tip);
                 let ([x, y, _], weight) = place.position();
                 let bundle = Bundle::new(vec![x.clone(), y.clone()], weight, vec![]).ok()?;
-                let [before, after] = [before, after].map(|side| condition(&side, &patch.field));
+                let [before, after] = [before, after].map(|side| condition(&side, patch.field()));
                 bundle.where_signs_differ(before?, after?).ok()
             };
             tool.patches().iter().map(bundle).collect()
@@ -147,8 +147,8 @@ fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
         Side::Moving(twist) => twist,
     };
     let pairs = || {
-        let turning = twist.spin.iter().zip(&field.moment);
-        turning.chain(twist.travel.iter().zip(&field.normal))
+        let turning = twist.spin.iter().zip(field.moment());
+        turning.chain(twist.travel.iter().zip(field.normal()))
     };
     let sum = pairs().fold(Bernstein::constant(2, 0.0), |sum, (factor, form)| {
         if *factor == 0.0 {
@@ -226,7 +226,7 @@ mod tests {
                 prop_assert!(near(sample.value[0], a) && near(sample.value[1], b));
                 let origin = [at[0], at[1]];
                 for (near_side, side) in [(sample.seen.before, before), (sample.seen.after, after)] {
-                    let form = condition(&side, &patch.field).unwrap();
+                    let form = condition(&side, patch.field()).unwrap();
                     prop_assert!(near(near_side.at(&origin, &origin), form.evaluate(&origin)));
                 }
             }

@@ -182,8 +182,8 @@ fn of_part(
     let fastest = tool
         .patches()
         .iter()
-        .map(|patch| stretch(&patch.position, &patch.weight));
-    let fastest = fastest.chain(tool.edges().iter().map(|edge| stretch(&edge.position, &edge.weight)));
+        .map(|patch| stretch(patch.position(), patch.weight()));
+    let fastest = fastest.chain(tool.edges().iter().map(|edge| stretch(edge.position(), edge.weight())));
     let fastest = fastest.fold(speed, f64::max).max(f64::MIN_POSITIVE);
     let options = SolveOptions {
         smallest: 1e-10,

@@ -124,7 +124,7 @@ fn of_part(
         let (vertices, mut triangles) = match piece {
             BoundaryPiece::Patch(k) => {
                 let patch = &tool.patches()[k];
-                let fastest = stretch(&patch.position, &patch.weight).max(speed);
+                let fastest = stretch(patch.position(), patch.weight()).max(speed);
                 let options = SolveOptions {
                     boxes: BOXES,
                     unresolved: 64,

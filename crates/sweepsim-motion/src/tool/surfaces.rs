@@ -1,13 +1,13 @@
 //! B-spline surfaces as patches.
 
-use super::{Patch, ToolError};
+use crate::boundary::{Patch, ToolError};
 use sweepsim_spline::{Bernstein, RationalSpline};
 
 /// The pieces between knots of B-spline surfaces, as patches.
 ///
 /// # Errors
 /// [`ToolError`]: not surfaces in space, or a piece that is no patch.
-pub(crate) fn patches(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolError> {
+pub(super) fn patches(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolError> {
     let mut patches = Vec::new();
     for (surface, spline) in surfaces.iter().enumerate() {
         if (spline.variables(), spline.dimension()) != (2, 3) {

@@ -1,0 +1,194 @@
+//! Fields of surface normals: how they are made from a surface, and what must hold of them.
+
+use super::PatchError;
+use nalgebra::Vector3;
+use sweepsim_spline::Bernstein;
+
+/// Highest degree of a patch or an edge.
+pub(super) const MOST: usize = 7;
+
+/// Highest degree of normals and moments: those of a patch of the highest degree have four times its degree.
+const MOST_OF_NORMALS: usize = 4 * MOST;
+
+/// So many roundings of the largest coefficients may have gone into normals and moments that a caller computed.
+const ROUNDINGS: f64 = 64.0;
+
+/// A field of surface normals `N` and their moments `M = F × N`, as Bernstein forms with one common positive factor.
+///
+/// Invariants: six forms in the same variables, one or two; finite; of degrees that can be evaluated well. That they belong to a surface is
+/// checked where they meet it: by [`Patch::with_normals`](crate::Patch::with_normals) and [`Edge::new`](crate::Edge::new).
+#[derive(Clone, Debug)]
+pub struct NormalField {
+    pub(super) normal: [Bernstein; 3],
+    pub(super) moment: [Bernstein; 3],
+}
+
+impl NormalField {
+    /// The field of these normals and moments.
+    ///
+    /// # Errors
+    /// [`PatchError`]: forms in other than one or two variables or not all in the same, a degree above 28, coefficients that are not finite,
+    /// normals that are 0.
+    pub fn new(normal: [Bernstein; 3], moment: [Bernstein; 3]) -> Result<Self, PatchError> {
+        let expected = normal[0].variables().clamp(1, 2);
+        for (form, what) in normal
+            .iter()
+            .map(|form| (form, "the normal"))
+            .chain(moment.iter().map(|form| (form, "the moment")))
+        {
+            check_form(form, what, expected, MOST_OF_NORMALS)?;
+        }
+        if normal.iter().all(|form| form.magnitude() == 0.0) {
+            return Err(PatchError::NoNormal { u: 0.5, v: 0.5 });
+        }
+        Ok(Self { normal, moment })
+    }
+
+    /// `N`, pointing out of the tool.
+    #[must_use]
+    pub fn normal(&self) -> &[Bernstein; 3] {
+        &self.normal
+    }
+
+    /// `M = F × N`.
+    #[must_use]
+    pub fn moment(&self) -> &[Bernstein; 3] {
+        &self.moment
+    }
+
+    /// Whether the field is normal to `position / weight`, and its moments are `F × N`, as far as rounding lets one see.
+    ///
+    /// With `P` the position and `w` the weight, `w M − P × N`, and `w ⟨N, P′⟩ − w′ ⟨N, P⟩` for each variable, are 0. Their coefficients are computed with a
+    /// bound of their rounding errors; the caller's own roundings add `64 ε` of the largest coefficients.
+    pub(super) fn check(&self, position: &[Bernstein; 3], weight: &Bernstein) -> Result<(), PatchError> {
+        let largest = |forms: &[Bernstein; 3]| forms.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
+        let (p, n, m, w) = (
+            largest(position),
+            largest(&self.normal),
+            largest(&self.moment),
+            weight.magnitude(),
+        );
+        let crossed = cross(position, &self.normal);
+        for (moment, crossed) in self.moment.iter().zip(&crossed) {
+            let rest = weight.mul(moment).sub(crossed);
+            let allowed = rest.error() + ROUNDINGS * f64::EPSILON * (w * m + 2.0 * p * n);
+            let off = rest.magnitude();
+            if !(off <= allowed) {
+                return Err(PatchError::Moment { off, allowed });
+            }
+        }
+        for axis in 0..weight.variables() {
+            let slopes = [0, 1, 2].map(|k| position[k].derivative(axis));
+            let along = weight.mul(&dot(&self.normal, &slopes));
+            let rest = along.sub(&weight.derivative(axis).mul(&dot(&self.normal, position)));
+            let degree =
+                (position.iter().map(|form| form.degree(axis)).max().unwrap_or(0)).max(weight.degree(axis)) as f64;
+            // A derivative has coefficients up to twice its degree times as large.
+            let allowed = rest.error() + ROUNDINGS * f64::EPSILON * 12.0 * degree * w * p * n;
+            let off = rest.magnitude();
+            if !(off <= allowed) {
+                return Err(PatchError::NotNormal { axis, off, allowed });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Finite, in `expected` variables, of a degree that is not too high.
+pub(super) fn check_form(form: &Bernstein, what: &'static str, expected: usize, most: usize) -> Result<(), PatchError> {
+    let found = form.variables();
+    if found != expected {
+        return Err(PatchError::Variables { what, expected, found });
+    }
+    if let Some(&degree) = form.degrees().iter().find(|degree| **degree > most) {
+        return Err(PatchError::Degree { degree, most });
+    }
+    if !form.coefficients().iter().all(|c| c.is_finite()) {
+        return Err(PatchError::NotFinite { what });
+    }
+    Ok(())
+}
+
+/// Position and weight of a patch or an edge.
+pub(super) fn check_place(position: &[Bernstein; 3], weight: &Bernstein, variables: usize) -> Result<(), PatchError> {
+    for (form, what) in position.iter().zip(["x", "y", "z"]).chain([(weight, "the weight")]) {
+        check_form(form, what, variables, MOST)?;
+    }
+    match weight.coefficients().iter().enumerate().find(|(_, w)| **w <= 0.0) {
+        Some((index, &value)) => Err(PatchError::Weight { index, value }),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
+    [0, 1, 2].map(|k| {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        a[i].mul(&b[j]).sub(&a[j].mul(&b[i]))
+    })
+}
+
+pub(super) fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
+    [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
+}
+
+/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments.
+pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> NormalField {
+    let first = weight.coefficients()[0];
+    let polynomial = weight.coefficients().iter().all(|w| *w == first);
+    let (pu, pv) = (
+        [0, 1, 2].map(|k| position[k].derivative(0)),
+        [0, 1, 2].map(|k| position[k].derivative(1)),
+    );
+    let both = cross(&pu, &pv);
+    let (normal, moment) = if polynomial {
+        // F = P / w with a constant weight: the moment of F is that of P over it.
+        let moment = cross(position, &both).map(|form| form.scale(1.0 / first));
+        (both, moment)
+    } else {
+        let (wu, wv) = (weight.derivative(0), weight.derivative(1));
+        let (with_u, with_v) = (cross(position, &pu), cross(position, &pv));
+        let hat = [0, 1, 2].map(|k| {
+            let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
+            sum.sub(&wu.mul(&with_v[k]))
+        });
+        let moment = cross(position, &hat);
+        (hat.map(|form| weight.mul(&form)), moment)
+    };
+    NormalField { normal, moment }
+}
+
+fn dot(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> Bernstein {
+    a[0].mul(&b[0]).add(&a[1].mul(&b[1])).add(&a[2].mul(&b[2]))
+}
+
+/// Whether normals in one or two variables vanish nowhere inside. Boxes of the inside are cut until the normals of each lie in a half space; boxes at the sides may stay undecided.
+pub(super) fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
+    const DEPTH: usize = 14;
+    let mut stack = vec![(normal.clone(), [[0.0, 1.0]; 2], 0)];
+    while let Some((forms, sides, depth)) = stack.pop() {
+        let count = forms[0].coefficients().len();
+        let vector = |i: usize| Vector3::from([0, 1, 2].map(|k| forms[k].coefficients()[i]));
+        let mean: Vector3<f64> = (0..count).map(vector).sum();
+        if (0..count).all(|i| vector(i).dot(&mean) > 0.0) {
+            continue;
+        }
+        if depth == DEPTH {
+            let at_a_side = sides.iter().any(|side| side[0] == 0.0 || side[1] == 1.0);
+            if at_a_side {
+                continue;
+            }
+            let [u, v] = sides.map(|side| 0.5 * (side[0] + side[1]));
+            return Err(PatchError::NoNormal { u, v });
+        }
+        let axis = depth % normal[0].variables().max(1);
+        let halves = [0, 1, 2].map(|k| forms[k].split(axis, 0.5));
+        let [a, b, c] = halves;
+        let middle = 0.5 * (sides[axis][0] + sides[axis][1]);
+        let (mut low, mut high) = (sides, sides);
+        low[axis][1] = middle;
+        high[axis][0] = middle;
+        stack.push(([a.0, b.0, c.0], low, depth + 1));
+        stack.push(([a.1, b.1, c.1], high, depth + 1));
+    }
+    Ok(())
+}
