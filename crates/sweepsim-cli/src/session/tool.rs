@@ -42,8 +42,8 @@ pub(crate) fn tool_in_words(tool: &Tool) -> String {
         let places = tool
             .patches()
             .iter()
-            .flat_map(|patch| (0..=64).map(|k| patch.place(0.0, f64::from(k) / 64.0)));
-        points.extend(places.map(|place| [place.x.hypot(place.y), place.z]));
+            .flat_map(|patch| (0..=64).map(|k| patch.point(0.0, f64::from(k) / 64.0)));
+        points.extend(places.map(|[x, y, z]| [x.hypot(y), z]));
     }
     let radius = points.iter().map(|p| p[0]).fold(0.0, f64::max);
     let length = points.iter().map(|p| p[1]).fold(0.0, f64::max);

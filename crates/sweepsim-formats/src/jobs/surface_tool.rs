@@ -149,7 +149,7 @@ mod tests {
     fn a_box_is_a_tool() {
         let tool = parse(&cube(), 25.4).unwrap();
         assert_eq!((tool.patches().len(), tool.edges().len()), (6, 12));
-        assert!((tool.patches()[1].place(0.5, 0.5).z - 4.0 * 25.4).abs() < 1e-12);
+        assert!((tool.patches()[1].point(0.5, 0.5)[2] - 4.0 * 25.4).abs() < 1e-12);
     }
 
     #[test]
