@@ -4,6 +4,7 @@ mod archives;
 mod bad_jobs;
 mod dexels_binary;
 mod exchange;
+mod guide;
 mod jobs;
 mod motions;
 mod round_trips;
