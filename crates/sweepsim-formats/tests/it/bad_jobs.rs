@@ -1,36 +1,10 @@
-//! Jobs with one thing wrong: each gives one line that names the file, the line and the column, and what was expected.
+//! Jobs with one fault: each gives one line that names the file, the line and the column, and what was expected.
 
 use std::path::Path;
 
-use proptest::prelude::*;
 use sweepsim_formats::Job;
 
-/// A job without a fault, with marks to put one in.
-const GOOD: &str = "\
-Job(
-    units: Mm,
-    tolerance: 1e-6,
-    grid: Grid(min: (0, 0), max: (10, 10), cells: (4, 5)),
-    stock: Block(min: (0, 0, 0), max: (10, 10, 5)),
-    tools: {
-        1: Ball(radius: 2.0, length: 30.0),
-    },
-    paths: [
-        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),
-    ],
-)
-";
-
-fn message(text: &str, folder: &Path) -> String {
-    let file = folder.join("job.ron");
-    std::fs::write(&file, text).unwrap();
-    let error = Job::read(&file).expect_err(text);
-    let rendered = error.render(false);
-    assert!(rendered.contains(&error.problem().to_string()), "{rendered}");
-    let message = error.to_string();
-    assert!(!message.contains('\n'), "one line: {message}");
-    message.replace(&format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR), "")
-}
+use crate::support::{GOOD, check, message};
 
 #[test]
 fn the_good_one_is_good() {
@@ -64,16 +38,6 @@ fn one_message_with_its_place() {
     let tool = "Ball(radius: 2.0, length: 30.0)";
     let grid = "Grid(min: (0, 0), max: (10, 10), cells: (4, 5))";
     let poses = "poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]";
-    file(
-        "bad-motion.ron",
-        "Motion(\n    tip: Curve(degree: 2, points: [(0, 0, 0), (1, 0, 0)]),\n)\n",
-    );
-    let motion = |from: &str, to: &str| {
-        let good = "motion: Motion(tip: Curve(degree: 2, points: [(0, 0, 5), (1, 1, 5), (2, 0, 5)]), \
-                    orientation: Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)]))";
-        assert!(good.contains(from), "{from}");
-        good.replacen(from, to, 1)
-    };
     let profile = |segments: &str| format!("Profile(start: (0, 0), segments: [{segments}])");
     let cases: Vec<(&str, String, &str)> = vec![
         // Grammar.
@@ -314,93 +278,6 @@ fn one_message_with_its_place() {
             "file: \"bad.ngc\", arc_tolerance: -1".into(),
             "job.ron:10:55: arc_tolerance is -1",
         ),
-        // Motions.
-        (
-            poses,
-            motion("degree: 2", "degree: 3"),
-            "job.ron:10:68: the number of points of the tip is 3",
-        ),
-        (poses, motion("(2, 0, 5)", "(2, 0)"), "job.ron:10:"),
-        (
-            poses,
-            motion("(2, 0, 5)", "(2, 0, NaN)"),
-            "job.ron:10:91: point 2 of the tip has a number that is not finite",
-        ),
-        (
-            poses,
-            motion("(2, 0, 5)]", "(2, 0, 5)], weights: [1, -1, 1]"),
-            "job.ron:10:112: the tip: ",
-        ),
-        (
-            poses,
-            motion("(2, 0, 5)]", "(2, 0, 5)], weights: [1, 1]"),
-            "job.ron:10:112: the number of weights of the tip is 2",
-        ),
-        (
-            poses,
-            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 1, 1]"),
-            "job.ron:10:110: the number of knots of the tip is 4, but must be 6",
-        ),
-        (
-            poses,
-            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 0, 1, 0, 1]"),
-            "job.ron:10:110: the knots of the tip: ",
-        ),
-        (
-            poses,
-            motion("(1, 0, 0, 0.1)]", "(-1, 0, 0, 0)]"),
-            "job.ron:10:148: the quaternion vanishes",
-        ),
-        (
-            poses,
-            motion("(1, 0, 0, 0.1)]", "(-1, 0, 0, 0)], knots: [0, 0, 2, 2]"),
-            "job.ron:10:148: the quaternion vanishes",
-        ),
-        (
-            poses,
-            motion(
-                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
-                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0.1, 1))])",
-            ),
-            "job.ron:10:145: the orientation is no rotation",
-        ),
-        (
-            poses,
-            motion(
-                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
-                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0, -1))])",
-            ),
-            "job.ron:10:145: the orientation is a reflection",
-        ),
-        (
-            poses,
-            motion(
-                "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
-                "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0, 1))], tolerance: 1)",
-            ),
-            "job.ron:10:193: the tolerance 1 is none",
-        ),
-        (
-            poses,
-            motion("(2, 0, 5)]", "(2, 0, 5)], knots: [0, 0, 0, 1, 1, 1]")
-                .replace("0.1)]", "0.1)], knots: [0, 0, 2, 2]"),
-            "job.ron:10:214: the orientation runs over [0, 2] and the tip over [0, 1]",
-        ),
-        (
-            poses,
-            format!("{poses}, {}", motion("", "")),
-            "job.ron:10:88: `motion` with `poses`",
-        ),
-        (
-            poses,
-            "file: \"bad-motion.ron\"".into(),
-            "bad-motion.ron:2:35: the number of points of the tip is 2",
-        ),
-        (
-            poses,
-            "law: ConstantSpeed, file: \"bad-motion.ron\"".into(),
-            "job.ron:10:28: `law` with the file of a motion",
-        ),
         // Target and limits.
         (
             "    ],\n)",
@@ -413,65 +290,7 @@ fn one_message_with_its_place() {
             "job.ron:12:32: gouge is -1",
         ),
     ];
-    let mut wrong = String::new();
-    for (from, to, expected) in cases {
-        assert!(GOOD.contains(from), "{from}");
-        let found = message(&GOOD.replace(from, &to), folder.path());
-        if !found.starts_with(expected) {
-            wrong += &format!("{to}\n  expected {expected}\n  found    {found}\n");
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong}");
+    check(&cases, folder.path());
     let text = GOOD.replace(poses, "file: \"two.ngc\"").replace("tool: 1, ", "");
     assert!(message(&text, folder.path()).starts_with("two.ngc:2:1: there is no tool 7 in this job"));
-}
-
-#[test]
-fn files_that_are_no_jobs() {
-    let folder = tempfile::tempdir().unwrap();
-    let missing = Job::read(&folder.path().join("none.ron")).unwrap_err().to_string();
-    assert!(missing.contains("none.ron: cannot read this file"), "{missing}");
-    assert!(message("", folder.path()).starts_with("job.ron:1:1: "));
-    assert!(message("Job(", folder.path()).starts_with("job.ron:1:"));
-    let file = folder.path().join("bytes.ron");
-    std::fs::write(&file, b"Job(\n name: \"\xff\"").unwrap();
-    let error = Job::read(&file).unwrap_err().to_string();
-    assert!(error.contains("bytes.ron:2:9: this is no text"), "{error}");
-    // Deeper than any job: an error, not an overflow.
-    assert!(message(&"(".repeat(100_000), folder.path()).starts_with("job.ron:1:"));
-}
-
-#[test]
-fn rendered_with_the_line() {
-    let text = GOOD.replace("radius: 2.0", "radius: -2.0");
-    let error = Job::parse(&text, Path::new("jobs/part.ron")).unwrap_err();
-    let expected = "\
-error: tool 1: radius is -2, but must be positive
- --> jobs/part.ron:7:25
-  |
-7 |         1: Ball(radius: -2.0, length: 30.0),
-  |                         ^^^^";
-    assert_eq!(error.render(false), expected);
-    assert!(error.render(true).contains("\u{1b}["));
-}
-
-proptest! {
-    /// Whatever is changed: a job, or an error with its place in the text.
-    #[test]
-    fn changes_are_read_or_refused_with_a_place(
-        at in any::<prop::sample::Index>(),
-        length in 0usize..6,
-        with in prop::sample::select(&["", "(", ")", "]", "}", "\"", ",", ":", "-", "0", "9e999", "inf", "NaN", "x", "\n", "/*", "//", "'", "r#", "é", "Some(", "tool: "][..]),
-    ) {
-        let at = at.index(GOOD.len());
-        let end = (at + length).min(GOOD.len());
-        let text = format!("{}{with}{}", &GOOD[..at], &GOOD[end..]);
-        if let Err(error) = Job::parse(&text, Path::new("job.ron")) {
-            let place = error.position();
-            prop_assert!(place.is_some(), "{error}");
-            let lines = text.lines().count() + 1;
-            prop_assert!(place.is_some_and(|place| (1..=lines).contains(&place.line) && place.column >= 1));
-            let _ = error.render(true);
-        }
-    }
 }

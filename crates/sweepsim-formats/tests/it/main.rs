@@ -2,9 +2,12 @@
 
 mod archives;
 mod bad_jobs;
+mod bad_motions;
+mod bad_texts;
 mod dexels_binary;
 mod exchange;
 mod guide;
 mod jobs;
 mod motions;
 mod round_trips;
+mod support;
