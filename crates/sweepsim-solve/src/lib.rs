@@ -29,7 +29,7 @@ pub use charts::{
 };
 pub use coefficients::MAX_DEGREE;
 pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveSolver, Curves, Singular};
-pub use numbers::{Enclosure, EnclosureError, MAX_UNKNOWNS};
+pub use numbers::{CUT, Enclosure, EnclosureError, MAX_UNKNOWNS};
 pub use points::{PointSolver, Points, Root, RootLocation};
 pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOptions, SolveStatistics, UnresolvedBox};
 pub use surfaces::{Surface, SurfaceSolver};

@@ -31,19 +31,21 @@
 mod algebra;
 mod cutter;
 mod envelope;
+mod error;
 mod methods;
 mod sections;
 mod sweep;
 mod time;
+mod tolerances;
 
 pub use envelope::systems;
+pub use error::SweepError;
 pub use sections::{
     BoundaryPiece, BoundaryPoint, EnvelopeSurface, EnvelopeSurfaces, Section, SectionCurve, envelope_surfaces, section,
 };
 pub use sweep::{
-    BoundaryOperator, Cut, Method, Options, Simulation, Statistics, Sweep, SweepError, TriSimulation,
-    UnknownBoundaryOperator, UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate, simulate_tri, sweep,
-    sweep_all,
+    BoundaryOperator, Cut, Method, Options, Simulation, Statistics, Sweep, TriSimulation, UnknownBoundaryOperator,
+    UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate, simulate_tri, sweep, sweep_all,
 };
 
 pub use sweepsim_solve::Monitor;

@@ -2,6 +2,7 @@
 
 use super::taylor::{MARGIN, Square, Taylor};
 use crate::charts::ChartMap;
+use crate::numbers::SINGULAR;
 use nalgebra::SVector;
 
 /// Newton's steps on one box.
@@ -60,7 +61,7 @@ pub(super) fn inverse<const N: usize>(m: &Square<N>) -> Option<(Square<N>, i8)> 
     }
     // Of Hadamard's bound.
     let size: f64 = (0..N).map(|j| m.column(j).norm()).product();
-    let regular = determinant.abs() > 1e-11 * size && size.is_finite();
+    let regular = determinant.abs() > SINGULAR * size && size.is_finite();
     if !regular {
         return None;
     }

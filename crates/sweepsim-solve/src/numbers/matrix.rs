@@ -1,6 +1,8 @@
 //! Small dense matrices in fixed arrays: inverses for preconditioning. Nothing here needs to be rigorous: what is done with
 //! an inverse always bounds `I − K A` for the `K` at hand.
 
+use crate::numbers::SINGULAR;
+
 /// The most variables that a system may have.
 pub const MAX_UNKNOWNS: usize = 8;
 
@@ -11,9 +13,6 @@ pub(crate) type Square = [Row; MAX_UNKNOWNS];
 
 /// Zero.
 pub(crate) const ZERO: Square = [[0.0; MAX_UNKNOWNS]; MAX_UNKNOWNS];
-
-/// Below this pivot, with rows and columns scaled to 1, a matrix counts as singular.
-const SINGULAR: f64 = 1e-11;
 
 /// The inverse and the sign of the determinant; `None` if the matrix is nearly singular or not finite.
 pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {

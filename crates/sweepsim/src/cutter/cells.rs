@@ -1,8 +1,8 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
-use crate::algebra::bivariate::CUT;
 use crate::algebra::ranges::{Triples, all_or_none};
 use crate::cutter::patch_forms::PatchForms;
+use sweepsim_solve::CUT;
 use sweepsim_spline::kernel;
 
 const NONE: u32 = u32::MAX;

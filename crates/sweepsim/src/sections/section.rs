@@ -2,14 +2,16 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
+use crate::error::SweepError;
 use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
-use crate::sweep::{Cut, Options, Plan, SweepError, probe};
+use crate::sweep::{Cut, Options, Plan, probe};
 use crate::time::path_parts::PathPart;
+use crate::tolerances::{ChordTolerance, Tolerances, curve_options};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
-use sweepsim_solve::{CancelOnly, CurveSolver, Monitor, SolveOptions, System, SystemError};
+use sweepsim_solve::{CancelOnly, CurveSolver, Monitor, System, SystemError};
 
 /// A curve of a section.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,8 +62,6 @@ impl Section {
     }
 }
 
-/// How far off its surface a point is looked at to say whether the volume ends there, in tolerances.
-const OFF: f64 = 20.0;
 /// Boxes that the curves of one piece may take.
 const BOXES: u64 = 20_000;
 
@@ -92,9 +92,7 @@ pub fn section(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Section, SweepError> {
-    if !(chord > 0.0 && chord.is_finite()) {
-        return Err(SweepError::Tolerance(chord));
-    }
+    let chord = ChordTolerance::new(chord)?;
     let mut section = Section {
         plane: *plane,
         curves: Vec::new(),
@@ -135,9 +133,10 @@ pub(crate) fn outer(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Vec<bool>, SweepError> {
+    let off = Tolerances::new(options.tolerance, 0.0)?.outside();
     let outside: Vec<[f64; 3]> = points
         .iter()
-        .map(|point| [0, 1, 2].map(|k| point.position[k] + OFF * options.tolerance * point.normal[k]))
+        .map(|point| [0, 1, 2].map(|k| point.position[k] + off * point.normal[k]))
         .collect();
     let lines: Vec<[f64; 2]> = outside.iter().map(|p| [p[0], p[1]]).collect();
     let mut outer = vec![true; points.len()];
@@ -172,7 +171,7 @@ fn of_part(
     cutter: &Cutter,
     (parts, at): (&[PathPart], usize),
     plane: &Plane,
-    chord: f64,
+    chord: ChordTolerance,
     monitor: &dyn Monitor,
 ) -> Found {
     let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
@@ -185,13 +184,7 @@ fn of_part(
         .map(|patch| stretch(patch.position(), patch.weight()));
     let fastest = fastest.chain(tool.edges().iter().map(|edge| stretch(edge.position(), edge.weight())));
     let fastest = fastest.fold(speed, f64::max).max(f64::MIN_POSITIVE);
-    let options = SolveOptions {
-        smallest: 1e-10,
-        boxes: BOXES,
-        unresolved: 16,
-        ..SolveOptions::default()
-    };
-    let mut solver = CurveSolver::with_options((chord / (2.0 * fastest)).clamp(1e-9, 0.03), options);
+    let mut solver = CurveSolver::with_options(chord.of_curve(fastest), curve_options(BOXES, 16));
     let (mut curves, mut open) = (Vec::new(), Vec::new());
     let number = parts[at].number;
     for piece in moving.pieces(tool) {

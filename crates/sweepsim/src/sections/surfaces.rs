@@ -2,10 +2,12 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::PatchMotion;
+use crate::error::SweepError;
 use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
 use crate::sections::section::{outer, stretch};
-use crate::sweep::{Cut, Options, Plan, SweepError};
+use crate::sweep::{Cut, Options, Plan};
 use crate::time::path_parts::PathPart;
+use crate::tolerances::ChordTolerance;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -75,9 +77,7 @@ pub fn envelope_surfaces(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<EnvelopeSurfaces, SweepError> {
-    if !(chord > 0.0 && chord.is_finite()) {
-        return Err(SweepError::Tolerance(chord));
-    }
+    let chord = ChordTolerance::new(chord)?;
     let mut all = EnvelopeSurfaces::default();
     for (number, Cut { tool, path }) in cuts.iter().enumerate() {
         let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::empty(), options)?;
@@ -110,7 +110,7 @@ fn of_part(
     (tool, cut): (&Tool, usize),
     cutter: &Cutter,
     (parts, at): (&[PathPart], usize),
-    chord: f64,
+    chord: ChordTolerance,
     monitor: &dyn Monitor,
 ) -> EnvelopeSurfaces {
     let moving = Moving::new(&cutter.patches, &cutter.edges, parts, at);
@@ -130,7 +130,7 @@ fn of_part(
                     unresolved: 64,
                     ..SurfaceSolver::new(0.1).options
                 };
-                let flatness = (chord / fastest).clamp(1e-6, 0.05);
+                let flatness = chord.of_surface(fastest);
                 let surface = PatchMotion::new(patch, segment).envelope().ok().and_then(|system| {
                     SurfaceSolver::with_options(flatness, options)
                         .solve(&system, &CancelOnly(monitor))
@@ -177,7 +177,7 @@ fn orient(vertices: &[BoundaryPoint], triangles: &mut [[u32; 3]]) {
 }
 
 /// A piece with two parameters over a grid, where it belongs to the boundary of its move.
-fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: f64) -> (Vec<BoundaryPoint>, Vec<[u32; 3]>) {
+fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: ChordTolerance) -> (Vec<BoundaryPoint>, Vec<[u32; 3]>) {
     let place = |x: [f64; 2]| Vector3::from(moving.see(piece, &x).point.position);
     // Steps in each direction: as many as keep the middles of steps within half the chord, on a few lines.
     let steps = [0, 1].map(|axis| {
@@ -190,7 +190,7 @@ fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: f64) -> (Vec<BoundaryPo
                 let [a, m, b] = [0.0, 0.5, 1.0].map(|part| place(at(start + part * width, across)));
                 (m - 0.5 * (a + b)).norm()
             });
-            if off.fold(0.0, f64::max) <= 0.5 * chord {
+            if off.fold(0.0, f64::max) <= chord.of_step() {
                 break;
             }
             steps *= 2;

@@ -1,11 +1,13 @@
 //! Crossings counted to intervals, audited, and repaired.
 
+use crate::error::SweepError;
 use crate::methods::harvest::{Harvest, Numbered};
 use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::{self, BoundaryOperator};
-use crate::sweep::report::{Statistics, SweepError, UnresolvedDexel, UnresolvedReason};
-use crate::sweep::schedule::{ATTEMPTS, Job};
-use crate::time::path_parts::{self, PathPart};
+use crate::sweep::report::{Statistics, UnresolvedDexel, UnresolvedReason};
+use crate::sweep::schedule::Job;
+use crate::time::path_parts::PathPart;
+use crate::tolerances::Tolerances;
 use rayon::prelude::*;
 use sweepsim_dexel::{AuditFailure, Dexels, Interval, Operation, cover};
 use sweepsim_solve::Reason;
@@ -33,7 +35,7 @@ impl Job<'_> {
         }
         let mut wrong: Vec<u32> = match self.boundary {
             BoundaryOperator::Coverage => {
-                let same = path_parts::same(self.tolerance);
+                let same = self.tolerances.same_height();
                 let failures = volume.update_by_crossings(Operation::Union, &crossings, same);
                 failures.into_iter().map(|(line, _)| line).collect()
             }
@@ -80,7 +82,7 @@ impl Job<'_> {
         space: &mut Workspace,
     ) -> Result<Vec<Interval>, UnresolvedReason> {
         let mut reason = UnresolvedReason::Budget;
-        for attempt in first..=ATTEMPTS {
+        for attempt in first..=Tolerances::REPAIRS {
             if self.monitor.cancelled() {
                 break;
             }
@@ -107,7 +109,7 @@ impl Job<'_> {
         match self.boundary {
             BoundaryOperator::Coverage => {
                 let mut intervals = Vec::new();
-                cover(&mut crossings, path_parts::same(self.tolerance), &mut intervals)?;
+                cover(&mut crossings, self.tolerances.same_height(), &mut intervals)?;
                 Ok(intervals)
             }
             BoundaryOperator::Paper => Ok(boundary_operator::by_normals(&mut crossings)),

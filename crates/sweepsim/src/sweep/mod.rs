@@ -15,7 +15,7 @@ pub use boundary_operator::{BoundaryOperator, UnknownBoundaryOperator};
 pub use options::{Method, Options, UnknownMethod};
 pub(crate) use plan::Plan;
 pub use probe::probe;
-pub use report::{Statistics, Sweep, SweepError, UnresolvedDexel, UnresolvedReason};
+pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use tri::{TriSimulation, simulate_tri};

@@ -1,9 +1,9 @@
 //! The intervals of a sweep on single lines.
 
+use crate::error::SweepError;
 use crate::methods::workspace::Workspace;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
-use crate::sweep::report::SweepError;
 use crate::sweep::schedule::CHUNK;
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -47,7 +47,7 @@ pub fn probe(
             .lock()
             .ok()?
             .pop()
-            .unwrap_or_else(|| Workspace::new(&plan.cutter, plan.accept));
+            .unwrap_or_else(|| Workspace::new(&plan.cutter, plan.tolerances.last_step()));
         let mut volume = Dexels::empty(grid);
         let mut established = true;
         for chunk in plan.parts.chunks(CHUNK) {

@@ -72,25 +72,3 @@ pub struct Sweep {
     /// What was done.
     pub statistics: Statistics,
 }
-
-/// Why there is no sweep.
-#[derive(Clone, Debug, Error, PartialEq)]
-#[non_exhaustive]
-pub enum SweepError {
-    /// The monitor asked to give up.
-    #[error("cancelled")]
-    Cancelled,
-    /// The tolerance is not a positive number.
-    #[error("the tolerance is {0}, but must be positive")]
-    Tolerance(f64),
-    /// The tolerance is finer than numbers of the path's size resolve.
-    #[error("the tolerance {tolerance} is too fine for coordinates of up to {size}: at least {least} is needed")]
-    TooFine {
-        /// The tolerance.
-        tolerance: f64,
-        /// The largest coordinate.
-        size: f64,
-        /// The finest tolerance there.
-        least: f64,
-    },
-}

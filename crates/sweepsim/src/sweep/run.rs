@@ -1,9 +1,10 @@
 //! The sweep of a path on a grid, chunk by chunk.
 
+use crate::error::SweepError;
 use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
-use crate::sweep::report::{Statistics, Sweep, SweepError, UnresolvedDexel};
+use crate::sweep::report::{Statistics, Sweep, UnresolvedDexel};
 use crate::sweep::schedule::CHUNK;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};

@@ -2,6 +2,7 @@
 
 use crate::cutter::Cutter;
 use crate::envelope::Size;
+use crate::error::SweepError;
 use crate::methods::charts::Charts;
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
@@ -14,8 +15,8 @@ use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
-use crate::sweep::report::SweepError;
-use crate::time::path_parts::{self, PathPart};
+use crate::time::path_parts::PathPart;
+use crate::tolerances::Tolerances;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim_dexel::Grid;
@@ -24,8 +25,6 @@ use sweepsim_solve::Monitor;
 
 /// Segments whose crossings are counted together. Longer chunks save caps, shorter ones memory.
 pub(super) const CHUNK: usize = 256;
-/// Times that a line is solved again, each time moved elsewhere.
-pub(super) const ATTEMPTS: usize = 5;
 
 impl Plan {
     pub(super) fn job<'a>(
@@ -39,15 +38,15 @@ impl Plan {
             tool,
             cutter: &self.cutter,
             grid,
-            tolerance: options.tolerance,
+            tolerances: self.tolerances,
             method: options.method,
             boundary: options.boundary,
             path: options.path_number,
             size: Size {
                 spacing: grid.spacing(),
-                slack: 64.0 * f64::EPSILON * self.size,
+                slack: self.tolerances.rounding(),
             },
-            accept: self.accept,
+
             spaces: Mutex::new(Vec::new()),
             monitor,
         }
@@ -59,12 +58,11 @@ pub(super) struct Job<'a> {
     pub tool: &'a Tool,
     pub cutter: &'a Cutter,
     pub grid: &'a Grid,
-    pub tolerance: f64,
+    pub tolerances: Tolerances,
     pub method: Method,
     pub boundary: BoundaryOperator,
     pub path: u32,
     pub size: Size,
-    pub accept: f64,
     /// Workspaces that no worker uses just now.
     pub spaces: Mutex<Vec<Workspace>>,
     pub monitor: &'a dyn Monitor,
@@ -74,7 +72,7 @@ impl Job<'_> {
     /// Runs `work` with a workspace.
     pub fn with_space<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.spaces.lock().map(|mut spaces| spaces.pop()).unwrap_or_default();
-        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter, self.accept));
+        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter, self.tolerances.last_step()));
         let result = work(&mut space);
         if let Ok(mut spaces) = self.spaces.lock() {
             spaces.push(space);
@@ -106,7 +104,7 @@ impl Job<'_> {
 
     fn by<'c, M: CrossingMethod<'c>>(&'c self, chunk: &'c [PathPart]) -> Result<Harvest, SweepError> {
         let method = M::prepare(self.tool, chunk);
-        let shift = path_parts::shift(self.tolerance, 0);
+        let shift = self.tolerances.line_displacement(0);
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
             .map(|share| {
@@ -138,7 +136,7 @@ impl Job<'_> {
 
     /// The crossings of one line, moved as in the given attempt.
     pub fn line(&self, chunk: &[PathPart], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let lines = Lattice::one(self.grid, line, path_parts::shift(self.tolerance, attempt));
+        let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
         let search = self.search(&Charts, chunk, &lines);
         for at in 0..chunk.len() {
             if self.monitor.cancelled() {

@@ -1,7 +1,8 @@
 //! Several cuts: what they take out of a stock, or sweep together.
 
+use crate::error::SweepError;
 use crate::sweep::options::Options;
-use crate::sweep::report::{Statistics, SweepError};
+use crate::sweep::report::Statistics;
 use crate::sweep::run::sweep;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};

@@ -1,7 +1,8 @@
 //! Cuts in tri-dexels: walls of any direction are met squarely by the lines of one set.
 
+use crate::error::SweepError;
 use crate::sweep::options::Options;
-use crate::sweep::report::{Statistics, SweepError};
+use crate::sweep::report::Statistics;
 use crate::sweep::simulate::{Cut, Simulation, simulate};
 use sweepsim_dexel::{Dexels, TriDexels};
 use sweepsim_solve::Monitor;

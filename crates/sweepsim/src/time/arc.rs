@@ -1,9 +1,9 @@
 //! The motion of an arc (straight tip, turn about one axis) cut into pieces of `t`: the simplest of motions, in its lowest degrees.
 
-use crate::algebra::bivariate::CUT;
 use crate::time::moment::Moment;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
+use sweepsim_solve::CUT;
 
 type Rows = [[f64; 3]; 3];
 

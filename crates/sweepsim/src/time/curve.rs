@@ -4,11 +4,12 @@
 //! (what the tool sees of its own velocity, times one positive factor). Coefficients over weights are control values: their least and greatest
 //! bound a rational form, because it is a convex combination of them.
 
-use crate::algebra::bivariate::{CUT, MOST};
+use crate::algebra::bivariate::MOST;
 use crate::algebra::ranges::{all_or_none, range_of};
 use crate::time::moment::{Moment, Rows};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
+use sweepsim_solve::CUT;
 use sweepsim_spline::kernel;
 
 /// Coefficients of forms of one degree in `t`, one after another: `width` numbers each.
@@ -304,6 +305,7 @@ fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {
 mod tests {
     use super::*;
     use crate::time::path_parts::parts;
+    use crate::tolerances::Tolerances;
     use proptest::prelude::*;
     use sweepsim_motion::{Move, Path, Pose, TipArc};
 
@@ -313,7 +315,13 @@ mod tests {
         let poses = vec![pose([10.0, 0.0, 0.0], 0.0), pose([0.0, 10.0, 0.0], 0.3)];
         let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2).unwrap();
         let path = Path::with_moves(poses, vec![Move::arc(arc)]).unwrap();
-        let parts = parts(&path, &sweepsim_dexel::Frame::WORLD, true, 40.0, 1e-6);
+        let parts = parts(
+            &path,
+            &sweepsim_dexel::Frame::WORLD,
+            true,
+            40.0,
+            &Tolerances::new(1e-6, 100.0).unwrap(),
+        );
         CurveTimes::new(&parts[0].segment)
     }
 

@@ -1,44 +1,9 @@
-//! Generic position: moves and lines are displaced by a small part of the tolerance, so that nothing is degenerate.
-//!
-//! Programs are full of coincidences: a flat bottom moving sideways (`g ≡ 0` on a whole patch), a wall along a row of
-//! dexels, a tip exactly over a line. The result is exact for tips within [`TIPS`] and lines within [`LINES`] of the given
-//! ones, both in parts of the tolerance.
-//!
-//! Every tip is moved a little farther along one fixed direction than the one before it. So each translation changes by the
-//! *same* generic vector, the sign of `g` on a patch that it decides is the same for all moves, and no kink arises.
+//! The parts of a path: its motions as seen from a frame, in generic position (see [`Tolerances`]).
 
+use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Segment};
-
-/// Tips move by at most this part of the tolerance.
-const TIPS: f64 = 1e-2;
-/// Motions follow their law to within this part of the tolerance.
-const LAW: f64 = 5e-2;
-/// Lines move by this part of the tolerance.
-const LINES: f64 = 1e-3;
-/// Crossings of a line within this part of the tolerance are one height.
-const SAME: f64 = 1e-3;
-/// After so many poses the displacement starts again from zero.
-const PERIOD: usize = 61;
-
-/// A direction without a simple relation to anything.
-fn direction() -> Vector3<f64> {
-    Vector3::new(0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331).normalize()
-}
-
-/// How far the lines are moved, at the given attempt: each farther, and another way, than the one before.
-pub(crate) fn shift(tolerance: f64, attempt: usize) -> [f64; 2] {
-    let reach = LINES * tolerance * [1.0, 3.0, 10.0, 30.0, 100.0][attempt.min(4)];
-    // Steps of the golden angle.
-    let angle = 0.7391 + 2.399_963_229_728_653 * attempt as f64;
-    [reach * angle.cos(), reach * angle.sin()]
-}
-
-/// Heights that differ by no more are the same.
-pub(crate) fn same(tolerance: f64) -> f64 {
-    SAME * tolerance
-}
 
 /// A motion, and what it is of the path.
 #[derive(Clone, Debug)]
@@ -54,8 +19,8 @@ pub(crate) struct PathPart {
 /// The motions along a path as seen from a frame, tips displaced. Moves that do not move are left out.
 ///
 /// A tool that is not `symmetric` about its axis is carried along without turning about it, where the poses do not say how it turns.
-/// Motions that are not exact are within [`LAW`] of the tolerance for a tool of this `reach`.
-pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tolerance: f64) -> Vec<PathPart> {
+/// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
+pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tolerances: &Tolerances) -> Vec<PathPart> {
     let poses = path.poses();
     let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
     let shift = -turn * Vector3::from(frame.origin());
@@ -68,10 +33,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     };
     let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip().into()));
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
-    let displaced = |k: usize| {
-        let part = (k % PERIOD) as f64 / PERIOD as f64;
-        direction() * (TIPS * tolerance * part)
-    };
+    let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(poses.len());
     let mut put = |number: usize, segments: Vec<Segment>, tips: [Vector3<f64>; 2], by: [Vector3<f64>; 2]| {
         let share = 1.0 / segments.len() as f64;
@@ -102,9 +64,9 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     for to in 1..poses.len() {
         if !path.rests(from, to) {
             let segments = if symmetric {
-                path.segments_of_symmetric(to - 1, reach, LAW * tolerance)
+                path.segments_of_symmetric(to - 1, reach, tolerances.law_deviation())
             } else {
-                path.segments(to - 1, reach, LAW * tolerance)
+                path.segments(to - 1, reach, tolerances.law_deviation())
             };
             let segments = segments.into_iter().map(seen).collect();
             let tips = [tip(from), tip(to)];
@@ -117,7 +79,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     {
         // A tool that stands still: sweep it along the displacement.
         let by = displaced(0);
-        let still = [by, by + direction() * (TIPS * tolerance)];
+        let still = [by, by + tolerances.standstill()];
         let segments = Segment::between(pose, pose).into_iter().map(seen);
         put(0, segments.collect(), [tip(0); 2], still);
     }

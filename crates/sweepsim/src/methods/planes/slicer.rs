@@ -13,10 +13,9 @@
 use crate::envelope::AnyBox;
 use crate::methods::method::Query;
 use crate::methods::planes::spans::{Cutting, DEPTH, Vertex};
+use crate::tolerances::curve_options;
 use nalgebra::{Const, DimMin, ToTypenum};
-use sweepsim_solve::{
-    CancelOnly, ChartStatistics, CurveSolver, Curves, Enclosure, Sink, SolveOptions, System, SystemError,
-};
+use sweepsim_solve::{CancelOnly, ChartStatistics, CurveSolver, Curves, Enclosure, Sink, System, SystemError};
 
 /// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
 /// is tried where a span of the one before could not be decided.
@@ -36,14 +35,8 @@ pub(crate) struct Slicer {
 
 impl Slicer {
     pub fn new() -> Self {
-        let options = SolveOptions {
-            smallest: 1e-10,
-            boxes: BOXES,
-            unresolved: 4,
-            ..SolveOptions::default()
-        };
         Self {
-            curves: CurveSolver::with_options(TOLERANCES[0], options),
+            curves: CurveSolver::with_options(TOLERANCES[0], curve_options(BOXES, 4)),
             statistics: ChartStatistics::default(),
         }
     }

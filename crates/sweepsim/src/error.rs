@@ -1,0 +1,31 @@
+//! Why there is no result.
+
+use thiserror::Error;
+
+/// Why there is no sweep.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// The monitor cancelled the sweep.
+    #[error("cancelled")]
+    Cancelled,
+    /// The tolerance, or the chord error, is not a positive number.
+    #[error("the tolerance is {0}, but must be positive")]
+    Tolerance(f64),
+    /// Coordinates so large that products of them overflow.
+    #[error("coordinates of up to {size} are too large")]
+    TooLarge {
+        /// The largest coordinate.
+        size: f64,
+    },
+    /// The tolerance is finer than numbers of the path's size resolve.
+    #[error("the tolerance {tolerance} is too fine for coordinates of up to {size}: at least {least} is needed")]
+    TooFine {
+        /// The tolerance.
+        tolerance: f64,
+        /// The largest coordinate.
+        size: f64,
+        /// The finest tolerance there.
+        least: f64,
+    },
+}

@@ -1,0 +1,222 @@
+//! Every length and limit that is derived from the tolerance, in one table.
+//!
+//! Programs are full of coincidences: a flat bottom moving sideways (`g ≡ 0` on a whole patch), a wall along a row of dexels, a tip exactly
+//! over a line. So that none of them is met, tips and lines are displaced by small parts of the tolerance. The dexels are those of the
+//! displaced input, up to rounding and the last step of Newton's method. In parts of the tolerance `τ`:
+//!
+//! | what | at most | |
+//! | --- | --- | --- |
+//! | a tip of the path | 1/100 | [`tip_displacement`](Tolerances::tip_displacement) |
+//! | a motion that has no exact rational form, from its law | 1/20 | [`law_deviation`](Tolerances::law_deviation) |
+//! | a line | 1/1000 | [`line_displacement`](Tolerances::line_displacement), attempt 0 |
+//! | a line that is solved again because its audit failed | 1/300 … 1/5 | the same, attempts 1 to 5 |
+//! | heights that count as one crossing's | 1/1000 | [`same_height`](Tolerances::same_height) |
+//! | the last step of Newton's method leaves | 1/1000 | [`last_step`](Tolerances::last_step) |
+//!
+//! Together they stay below `τ/3`: the dexels are those of an input that is within a third of the tolerance of the given one.
+
+use crate::error::SweepError;
+use nalgebra::Vector3;
+use sweepsim_solve::SolveOptions;
+
+/// The most that a tip is displaced.
+const TIP: f64 = 1e-2;
+/// How far motions may be from their law.
+const LAW: f64 = 5e-2;
+/// How far lines are displaced at first.
+const LINE: f64 = 1e-3;
+/// How many times as far attempt by attempt: each farther than the one before.
+const ATTEMPTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 200.0];
+/// Crossings of a line as near as this have one height.
+const SAME: f64 = 1e-3;
+/// What the last step of Newton's method may leave.
+const REST: f64 = 1e-3;
+/// How far off its surface a point is tested for being outside the volume: well above the sum of all displacements, even where the surface is
+/// steep.
+const OUTSIDE: f64 = 20.0;
+/// After so many poses the displacement of tips starts again from zero.
+const PERIOD: usize = 61;
+
+/// Coordinates are right to within this part of the largest: a few dozen roundings.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// The least tolerance, in parts of the largest coordinate. The smallest displacement, a thousandth of it, is then twenty roundings: lines are
+/// where they are said to be.
+const FINEST: f64 = 2e4 * f64::EPSILON;
+/// Sums of products of three such coordinates stay far from overflow.
+const LARGEST: f64 = 1e90;
+
+/// A tolerance, and what follows from it for coordinates of some size.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tolerances {
+    tolerance: f64,
+    size: f64,
+}
+
+impl Tolerances {
+    /// `size`: no coordinate that occurs is larger.
+    pub fn new(tolerance: f64, size: f64) -> Result<Self, SweepError> {
+        if !(tolerance > 0.0 && tolerance.is_finite()) {
+            return Err(SweepError::Tolerance(tolerance));
+        }
+        if !(size <= LARGEST) {
+            return Err(SweepError::TooLarge { size });
+        }
+        let least = FINEST * size;
+        if tolerance < least {
+            return Err(SweepError::TooFine { tolerance, size, least });
+        }
+        Ok(Self { tolerance, size })
+    }
+
+    /// How often a line is solved again, displaced farther each time, before its dexel is reported as unresolved.
+    pub const REPAIRS: usize = ATTEMPTS.len() - 1;
+
+    /// By how much a line is displaced at an attempt, 0 to [`REPAIRS`](Self::REPAIRS): farther, and in another direction, than at the one before.
+    pub fn line_displacement(&self, attempt: usize) -> [f64; 2] {
+        let reach = LINE * self.tolerance * ATTEMPTS[attempt.min(Self::REPAIRS)];
+        // Steps of the golden angle.
+        let angle = 0.7391 + 2.399_963_229_728_653 * attempt as f64;
+        [reach * angle.cos(), reach * angle.sin()]
+    }
+
+    /// By how much the tip of a pose is displaced: a sawtooth along a fixed direction without a simple relation to anything.
+    ///
+    /// Each translation is changed by the *same* vector, so that the sign of `g` on a patch that it decides is the same for all of them, and no
+    /// kinks arise between collinear moves. The exception is every 61st, which takes all of the displacement back: before and after it there may be
+    /// kinks, as thin as the displacement, which are counted like any others.
+    pub fn tip_displacement(&self, pose: usize) -> Vector3<f64> {
+        direction() * (TIP * self.tolerance * ((pose % PERIOD) as f64 / PERIOD as f64))
+    }
+
+    /// A translation for a tool that stands still: as long as the largest displacement of a tip.
+    pub fn standstill(&self) -> Vector3<f64> {
+        direction() * (TIP * self.tolerance)
+    }
+
+    /// How far motions may be from their law.
+    pub fn law_deviation(&self) -> f64 {
+        LAW * self.tolerance
+    }
+
+    /// Heights that differ by no more are the same.
+    pub fn same_height(&self) -> f64 {
+        SAME * self.tolerance
+    }
+
+    /// How far off its surface a point is tested for being outside the volume.
+    pub fn outside(&self) -> f64 {
+        OUTSIDE * self.tolerance
+    }
+
+    /// What rounding may do to a coordinate.
+    pub fn rounding(&self) -> f64 {
+        ROUNDING * self.size
+    }
+
+    /// The longest last step of Newton's method, in parts of the parameters' ranges: its square, times lengths of the size of the coordinates, is
+    /// what it leaves.
+    pub fn last_step(&self) -> f64 {
+        (REST * self.tolerance / self.size).sqrt().clamp(1e-9, 1e-5)
+    }
+}
+
+fn direction() -> Vector3<f64> {
+    Vector3::new(0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331).normalize()
+}
+
+/// Limits that follow from the chord error of a polyline or a mesh.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChordTolerance(f64);
+
+impl ChordTolerance {
+    /// `chord`: how far the middle of a chord may be from the curve.
+    pub fn new(chord: f64) -> Result<Self, SweepError> {
+        if !(chord > 0.0 && chord.is_finite()) {
+            return Err(SweepError::Tolerance(chord));
+        }
+        Ok(Self(chord))
+    }
+
+    /// The chord error of a curve in its parameters, where none moves a point by more than `fastest`: half of it, as the ends of a chord may be off
+    /// as well.
+    pub fn of_curve(self, fastest: f64) -> f64 {
+        (self.0 / (2.0 * fastest)).clamp(1e-9, 0.03)
+    }
+
+    /// The same of a surface. Meshes finer than a millionth of the parameters' ranges are never built.
+    pub fn of_surface(self, fastest: f64) -> f64 {
+        (self.0 / fastest).clamp(1e-6, 0.05)
+    }
+
+    /// How far the middle of a step of a grid may be off: half, as triangles have diagonals.
+    pub fn of_step(self) -> f64 {
+        0.5 * self.0
+    }
+}
+
+/// Limits of the curves of a section: boxes smaller than `1e-10` of the parameters' ranges are singular points to them.
+pub(crate) fn curve_options(boxes: u64, unresolved: usize) -> SolveOptions {
+    SolveOptions {
+        smallest: 1e-10,
+        boxes,
+        unresolved,
+        ..SolveOptions::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_attempt_displaces_a_line_farther_than_the_one_before() {
+        let tolerances = Tolerances::new(1e-6, 100.0).unwrap();
+        let mut before = 0.0;
+        for attempt in 0..=Tolerances::REPAIRS {
+            let [x, y] = tolerances.line_displacement(attempt);
+            let reach = x.hypot(y);
+            assert!(
+                reach > 1.5 * before && reach <= 0.2 * 1e-6 * (1.0 + 1e-12),
+                "attempt {attempt}"
+            );
+            before = reach;
+        }
+        let [x, y] = tolerances.line_displacement(0);
+        assert!(x.hypot(y) <= 1e-3 * 1e-6 * (1.0 + 1e-12));
+    }
+
+    #[test]
+    fn all_displacements_together_stay_below_a_third() {
+        assert!(TIP + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
+    }
+
+    #[test]
+    fn translations_change_alike_but_where_the_sawtooth_wraps() {
+        let tolerances = Tolerances::new(1e-6, 100.0).unwrap();
+        let change = |k: usize| tolerances.tip_displacement(k + 1) - tolerances.tip_displacement(k);
+        for k in 0..3 * PERIOD {
+            assert!(tolerances.tip_displacement(k).norm() < TIP * 1e-6);
+            if (k + 1) % PERIOD == 0 {
+                assert!(change(k).dot(&change(0)) < 0.0, "{k}");
+            } else {
+                assert!((change(k) - change(0)).norm() < 1e-12 * TIP * 1e-6, "{k}");
+            }
+        }
+    }
+
+    #[test]
+    fn tolerances_that_numbers_cannot_hold_are_refused() {
+        for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(Tolerances::new(tolerance, 1.0), Err(SweepError::Tolerance(_))));
+            assert!(matches!(ChordTolerance::new(tolerance), Err(SweepError::Tolerance(_))));
+        }
+        assert!(matches!(Tolerances::new(1e-12, 1.0), Err(SweepError::TooFine { .. })));
+        for size in [1e100, f64::INFINITY, f64::NAN] {
+            assert!(matches!(Tolerances::new(1e90, size), Err(SweepError::TooLarge { .. })));
+        }
+        // The smallest displacement of a line is more than the rounding of a coordinate.
+        let finest = Tolerances::new(FINEST * 100.0, 100.0).unwrap();
+        let [x, y] = finest.line_displacement(0);
+        assert!(x.abs().min(y.abs()) > 8.0 * f64::EPSILON * 100.0);
+    }
+}
