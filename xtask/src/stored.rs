@@ -44,9 +44,12 @@ impl Stored {
         let mut sample = Dexels::empty(Grid::new(min, max, chosen).map_err(|error| error.to_string())?);
         for i in 0..chosen[0] {
             for j in 0..chosen[1] {
-                let index = sample.grid().index(i, j);
+                let Some(index) = sample.grid().index(i, j) else {
+                    continue;
+                };
                 let (i, j) = place(i, j);
-                sample.set(index, &dexels.intervals(i, j).to_vec());
+                let line = dexels.intervals(i, j).to_vec();
+                sample.set(index, &line).map_err(|error| error.to_string())?;
             }
         }
         let intervals = dexels.count();
@@ -174,7 +177,8 @@ mod tests {
     fn tells_a_change_between_the_stored_dexels() {
         let stored = block(2.0);
         let mut found = stored.clone();
-        found.set(found.grid().index(4, 5), &[]);
+        let line = found.grid().index(4, 5).unwrap();
+        found.set(line, &[]).unwrap();
         let lines = compared(&stored, &found);
         assert!(lines.len() == 1 && lines[0].starts_with("all dexels"), "{lines:?}");
     }

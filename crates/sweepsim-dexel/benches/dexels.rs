@@ -46,14 +46,16 @@ fn updates(c: &mut Criterion) {
     group.bench_function("unite", |b| {
         b.iter(|| {
             let mut dexels = Dexels::empty(grid());
-            cuts.iter().for_each(|(index, cut)| dexels.unite(*index, &[*cut]));
+            cuts.iter()
+                .for_each(|(index, cut)| dexels.unite(*index, &[*cut]).expect("a line of the grid"));
             dexels
         })
     });
     group.bench_function("subtract", |b| {
         b.iter(|| {
             let mut dexels = stock.clone();
-            cuts.iter().for_each(|(index, cut)| dexels.subtract(*index, &[*cut]));
+            cuts.iter()
+                .for_each(|(index, cut)| dexels.subtract(*index, &[*cut]).expect("a line of the grid"));
             dexels
         })
     });
@@ -63,7 +65,9 @@ fn updates(c: &mut Criterion) {
 fn whole(c: &mut Criterion) {
     let stock = block();
     let mut other = Dexels::empty(grid());
-    cuts().iter().for_each(|(index, cut)| other.unite(*index, &[*cut]));
+    cuts()
+        .iter()
+        .for_each(|(index, cut)| other.unite(*index, &[*cut]).expect("a line of the grid"));
     let mut group = c.benchmark_group("whole grids");
     group
         .sample_size(10)

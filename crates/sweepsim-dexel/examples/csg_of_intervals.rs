@@ -6,9 +6,9 @@ use sweepsim_dexel::{Dexels, Grid, IntervalSet, Stock};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Sets on one line, of plain heights. Ends cost eight bytes.
-    let plate = IntervalSet::from([[0.0, 10.0]]);
-    let slot = IntervalSet::from([[7.0, 12.0]]);
-    let bores = IntervalSet::from([[2.0, 4.0], [4.0 + 1e-9, 5.0]]);
+    let plate = IntervalSet::try_from([[0.0, 10.0]])?;
+    let slot = IntervalSet::try_from([[7.0, 12.0]])?;
+    let bores = IntervalSet::try_from([[2.0, 4.0], [4.0 + 1e-9, 5.0]])?;
     let rest = plate.difference(&slot).difference(&bores);
     println!("exactly: {:?}", rest.pieces());
     // A film of a nanometre is left between the bores. Merging takes it out, and no wall that is thicker.

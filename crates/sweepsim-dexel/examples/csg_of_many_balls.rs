@@ -41,7 +41,9 @@ fn cuts(grid: &Grid, axis: usize) -> Vec<(u32, Interval)> {
                     },
                 };
                 let (lower, upper) = (end(-1.0), end(1.0));
-                cuts.push((grid.index(i, j) as u32, Interval { lower, upper }));
+                if let Some(index) = grid.index(i, j) {
+                    cuts.push((index as u32, Interval { lower, upper }));
+                }
             }
         }
     }
@@ -62,7 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (axis, set) in sets.iter_mut().enumerate() {
         let cuts = cuts(set.grid(), axis);
         updates += cuts.len();
-        set.update(Operation::Difference, &cuts);
+        set.update(Operation::Difference, &cuts)?;
     }
     let solid = TriDexels::from_sets(sets)?;
     let csg = start.elapsed().as_secs_f64();

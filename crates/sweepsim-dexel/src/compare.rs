@@ -185,7 +185,7 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> 
                     let place = [grid.x(i), grid.y(j), end.z];
                     let nearest = tree.nearest_facing(place, end.normal.map(f64::from), reach);
                     part.deviations.push(Deviation {
-                        line: grid.index(i, j) as u32,
+                        line: grid.number(i, j) as u32,
                         end: number as u32,
                         distance: nearest.map(|nearest| nearest.distance),
                         area: area(&end, dx * dy),
@@ -231,7 +231,7 @@ fn column(dexels: &Dexels, target: &Dexels, i: usize, reach: f64) -> Comparison 
                 }
             }
             part.deviations.push(Deviation {
-                line: grid.index(i, j) as u32,
+                line: grid.number(i, j) as u32,
                 end: number as u32,
                 distance: nearest.map(|(_, distance)| distance),
                 area: area(&end, dx * dy),

@@ -14,7 +14,8 @@
 //! let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [5, 5])?;
 //! let mut part = Stock::Block { min: [0.0, 0.0, 0.0], max: [10.0, 10.0, 4.0] }.dexels(&grid)?;
 //! let end = |z, up| End { z, normal: [0.0, 0.0, up], source: Source::Cut { path: 0, segment: 3, t: 0.5 } };
-//! part.subtract(grid.index(2, 2), &[Interval { lower: end(1.0, -1.0), upper: end(9.0, 1.0) }]);
+//! let line = grid.index(2, 2).ok_or("beyond the grid")?;
+//! part.subtract(line, &[Interval { lower: end(1.0, -1.0), upper: end(9.0, 1.0) }])?;
 //! assert_eq!(part.intervals(2, 2).to_vec()[0].upper.z, 1.0);
 //! assert_eq!(part.volume(), 400.0 - 3.0 * 4.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -30,9 +31,11 @@ mod surface;
 mod tri;
 
 pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
-pub use dexels::{Dexels, DexelsBuilder, GridMismatch, Line, LineIter, Operation, pack_normal, unpack_normal};
+pub use dexels::{
+    Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, pack_normal, unpack_normal,
+};
 pub use grid::{Frame, FrameError, Grid, GridError};
-pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalSet, Source, cover};
+pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};
 pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, TriangleSoup};
 pub use stock::{Stock, StockError};
 pub use surface::surface;

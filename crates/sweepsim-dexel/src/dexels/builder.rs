@@ -3,7 +3,7 @@
 use super::Dexels;
 use super::chunk::{Chunk, LINES, PackedInterval, is_normal};
 use crate::grid::Grid;
-use crate::intervals::{Interval, normalise};
+use crate::intervals::{Interval, IntervalError, check_lengths, normalise};
 
 /// Builds [`Dexels`] from their first line to the last. Memory grows with the lines that came, not with the grid, so that a
 /// file that promises much and holds little costs little.
@@ -13,9 +13,9 @@ use crate::intervals::{Interval, normalise};
 /// let grid = Grid::new([0.0, 0.0], [2.0, 2.0], [2, 2])?;
 /// let mut builder = DexelsBuilder::new(grid);
 /// builder.skip(3);
-/// builder.push(&[Interval::between(0.0, 5.0)]);
+/// builder.push(&[Interval::between(0.0, 5.0)])?;
 /// assert_eq!(builder.finish().intervals(1, 1).length(), 5.0);
-/// # Ok::<(), sweepsim_dexel::GridError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct DexelsBuilder {
@@ -63,11 +63,16 @@ impl DexelsBuilder {
         self.step(lines.min(self.grid.len().saturating_sub(self.lines)));
     }
 
-    /// The next line, with intervals in any order. A line beyond the grid is nothing.
-    pub fn push(&mut self, intervals: &[Interval]) {
-        if self.lines >= self.grid.len() {
-            return;
+    /// The next line, with intervals in any order.
+    ///
+    /// # Errors
+    /// [`IntervalError`]: an interval has no positive length, or the grid has no further line. Nothing is changed then.
+    pub fn push(&mut self, intervals: &[Interval]) -> Result<(), IntervalError> {
+        let (line, lines) = (self.lines, self.grid.len());
+        if line >= lines {
+            return Err(IntervalError::Line { line, lines });
         }
+        check_lengths(intervals)?;
         let mut sorted = Vec::new();
         let intervals = if is_normal(intervals) {
             intervals
@@ -83,6 +88,7 @@ impl DexelsBuilder {
             chunk.replace(self.lines % LINES, &self.packed);
         }
         self.step(1);
+        Ok(())
     }
 
     /// The dexels; lines that did not come have no material.

@@ -3,15 +3,19 @@
 mod builder;
 mod chunk;
 mod line;
+mod nearest;
 mod packed;
 mod segments;
 mod update;
 
 use crate::grid::Grid;
-use crate::intervals::{Interval, Run, difference, intersection, normalise, union};
+use crate::intervals::{
+    Interval, IntervalError, Run, check_lengths, check_normal, difference, intersection, normalise, union,
+};
 pub use builder::DexelsBuilder;
 use chunk::{Chunk, LINES, PackedInterval, is_normal};
 pub use line::{Line, LineIter};
+pub use nearest::NearestEnd;
 use packed::Packed;
 pub use packed::{pack_normal, unpack_normal};
 use rayon::prelude::*;
@@ -88,18 +92,38 @@ impl Dexels {
     ///
     /// Lines are asked for in parallel, in the current rayon pool.
     ///
+    /// # Errors
+    /// [`IntervalError::Length`]: an interval has no positive length; of several, one on the first line that has any.
+    ///
     /// ```
     /// use sweepsim_dexel::{Dexels, Grid, Interval};
     /// let grid = Grid::new([0.0, 0.0], [4.0, 4.0], [4, 4])?;
     /// let stairs = Dexels::from_fn(grid, |index, line| {
     ///     let (i, _) = grid.place(index);
     ///     line.push(Interval::between(0.0, 1.0 + i as f64));
-    /// });
+    /// })?;
     /// assert_eq!(stairs.volume(), 4.0 * (1.0 + 2.0 + 3.0 + 4.0));
-    /// # Ok::<(), sweepsim_dexel::GridError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
-    pub fn from_fn(grid: Grid, write: impl Fn(usize, &mut Vec<Interval>) + Sync) -> Self {
+    pub fn from_fn(grid: Grid, write: impl Fn(usize, &mut Vec<Interval>) + Sync) -> Result<Self, IntervalError> {
+        let wrong = std::sync::Mutex::new(None::<(usize, IntervalError)>);
+        let dexels = Self::filled(grid, |index, line| {
+            write(index, line);
+            if let Err(error) = check_lengths(line.iter())
+                && let Ok(mut wrong) = wrong.lock()
+                && wrong.is_none_or(|(first, _)| index < first)
+            {
+                *wrong = Some((index, error));
+            }
+        });
+        match wrong.into_inner() {
+            Ok(Some((_, error))) => Err(error),
+            _ => Ok(dexels),
+        }
+    }
+
+    /// As [`Dexels::from_fn`]; intervals without a positive length are left out.
+    pub(crate) fn filled(grid: Grid, write: impl Fn(usize, &mut Vec<Interval>) + Sync) -> Self {
         let mut dexels = Self::empty(grid);
         let chunks = dexels.chunks.par_iter_mut().enumerate();
         chunks.for_each_init(Vec::new, |scratch, (number, slot)| {
@@ -133,14 +157,24 @@ impl Dexels {
         }
     }
 
-    /// The intervals of column `i`, row `j`.
+    /// The intervals of column `i`, row `j`; none beyond the grid.
     #[must_use]
     pub fn intervals(&self, i: usize, j: usize) -> Line<'_> {
-        self.at(self.grid.index(i, j))
+        self.grid.index(i, j).map_or(Line::EMPTY, |index| self.at(index))
     }
 
     /// Replaces the intervals of a line. They are put in order; those that overlap or touch become one.
-    pub fn set(&mut self, index: usize, intervals: &[Interval]) {
+    ///
+    /// # Errors
+    /// [`IntervalError`]: an interval has no positive length, or the grid has no such line. Nothing is changed then.
+    pub fn set(&mut self, index: usize, intervals: &[Interval]) -> Result<(), IntervalError> {
+        self.check_line(index)?;
+        check_lengths(intervals)?;
+        self.put(index, intervals);
+        Ok(())
+    }
+
+    fn put(&mut self, index: usize, intervals: &[Interval]) {
         if is_normal(intervals) {
             self.change(index, intervals, |_, new, out| out.extend_from_slice(new));
         } else {
@@ -150,32 +184,59 @@ impl Dexels {
         }
     }
 
-    /// Takes intervals (sorted, disjoint) away from a line. New ends get their normals flipped: out of the remaining material.
-    pub fn subtract(&mut self, index: usize, cut: &[Interval]) {
+    /// Subtracts intervals from a line: sorted, with gaps between them. The normals of new ends are flipped, so that they point out of the remaining material.
+    ///
+    /// # Errors
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
+    /// changed then.
+    pub fn subtract(&mut self, index: usize, cut: &[Interval]) -> Result<(), IntervalError> {
+        self.check_line(index)?;
+        check_normal(cut)?;
         if !(cut.is_empty() || self.at(index).is_empty()) {
             self.change(index, cut, difference);
         }
+        Ok(())
     }
 
-    /// Adds intervals (sorted, disjoint) to a line.
-    pub fn unite(&mut self, index: usize, more: &[Interval]) {
+    /// Adds intervals to a line: sorted, with gaps between them.
+    ///
+    /// # Errors
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
+    /// changed then.
+    pub fn unite(&mut self, index: usize, more: &[Interval]) -> Result<(), IntervalError> {
+        self.check_line(index)?;
+        check_normal(more)?;
         if !more.is_empty() {
             self.change(index, more, union);
         }
+        Ok(())
     }
 
-    /// Leaves of a line what is in intervals (sorted, disjoint).
-    pub fn intersect(&mut self, index: usize, with: &[Interval]) {
+    /// Keeps only what a line has in common with intervals: sorted, with gaps between them.
+    ///
+    /// # Errors
+    /// [`IntervalError`]: the intervals are out of order, or one has no positive length, or the grid has no such line. Nothing is
+    /// changed then.
+    pub fn intersect(&mut self, index: usize, with: &[Interval]) -> Result<(), IntervalError> {
+        self.check_line(index)?;
+        check_normal(with)?;
         if !self.at(index).is_empty() {
             self.change(index, with, intersection);
+        }
+        Ok(())
+    }
+
+    fn check_line(&self, line: usize) -> Result<(), IntervalError> {
+        let lines = self.grid.len();
+        if line < lines {
+            Ok(())
+        } else {
+            Err(IntervalError::Line { line, lines })
         }
     }
 
     /// Replaces a line by what `operation` makes of it and of `more`.
     fn change(&mut self, index: usize, more: &[Interval], operation: Run<Packed>) {
-        if index >= self.grid.len() {
-            return;
-        }
         let slot = &mut self.chunks[index / LINES];
         let chunk = slot.get_or_insert_default();
         let [packed, result] = &mut self.scratch;

@@ -56,13 +56,15 @@ proptest! {
         let operation = OPERATIONS[kind];
         let grid = grid([15, 10]);
         let filled = |pieces: &[(u32, Interval)]| Dexels::from_fn(grid, |index, line| {
-            line.extend(pieces.iter().filter(|(at, _)| *at as usize == index).map(|(_, i)| *i));
-        });
+            let own = pieces.iter().filter(|(at, i)| *at as usize == index && i.length() > 0.0);
+            line.extend(own.map(|(_, i)| *i));
+        }).unwrap();
         let (first, second) = (filled(&a), filled(&b));
         let mut combined = first.clone();
         combined.combine(operation, &second).unwrap();
         let mut updated = first.clone();
-        updated.update(operation, &b);
+        let longer: Vec<(u32, Interval)> = b.iter().copied().filter(|(_, i)| i.length() > 0.0).collect();
+        updated.update(operation, &longer).unwrap();
         let mut one_by_one = first.clone();
         for index in 0..grid.len() {
             let line = second.at(index).to_vec();
@@ -71,6 +73,7 @@ proptest! {
                 Operation::Difference => one_by_one.subtract(index, &line),
                 Operation::Intersection => one_by_one.intersect(index, &line),
             }
+            .unwrap();
         }
         for line in 0..LINES_IN_TEST {
             for k in 0..50 {
@@ -82,7 +85,7 @@ proptest! {
         prop_assert_eq!(&combined, &one_by_one);
         let mut set = Dexels::empty(grid);
         for index in 0..grid.len() {
-            set.set(index, &combined.at(index).to_vec());
+            set.set(index, &combined.at(index).to_vec()).unwrap();
         }
         prop_assert_eq!(&set, &combined);
         prop_assert_eq!(combined.iter().map(|(_, line)| line.len()).sum::<usize>(), combined.count());
@@ -122,7 +125,7 @@ fn the_same_at_any_thread_count() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut dexels = Dexels::empty(grid);
-            dexels.update(Operation::Union, &many);
+            dexels.update(Operation::Union, &many).unwrap();
             dexels
         })
     };
@@ -135,12 +138,14 @@ fn beyond_the_grid_there_is_nothing() {
     let mut dexels = Dexels::empty(grid([3, 3]));
     let piece = Interval::between(0.0, 1.0);
     for index in [9, 63, 64, usize::MAX] {
-        dexels.set(index, &[piece]);
-        dexels.unite(index, &[piece]);
-        dexels.subtract(index, &[piece]);
+        dexels.set(index, &[piece]).unwrap();
+        dexels.unite(index, &[piece]).unwrap();
+        dexels.subtract(index, &[piece]).unwrap();
         assert!(dexels.at(index).is_empty());
     }
-    dexels.update(Operation::Union, &[(9, piece), (u32::MAX, piece)]);
+    dexels
+        .update(Operation::Union, &[(9, piece), (u32::MAX, piece)])
+        .unwrap();
     assert_eq!(dexels, Dexels::empty(grid([3, 3])));
     assert_eq!(
         dexels.combine(Operation::Union, &Dexels::empty(grid([3, 2]))),
@@ -195,14 +200,14 @@ fn memory_is_as_promised() {
     // Lines without material among others.
     let mut half = dexels;
     for index in (0..lines).step_by(2) {
-        half.set(index, &[]);
+        half.set(index, &[]).unwrap();
     }
     half.shrink();
     assert!(half.bytes() <= lines / 2 * 32 + 21 * lines / 4, "{}", half.bytes());
     // Growing one by one wastes little.
     let mut grown = Dexels::empty(*half.grid());
     for index in 0..lines {
-        grown.set(index, &[Interval::between(0.0, 1.0)]);
+        grown.set(index, &[Interval::between(0.0, 1.0)]).unwrap();
     }
     assert!(grown.bytes() <= lines * (32 + 5 + 4), "{}", grown.bytes());
 }

@@ -2,7 +2,7 @@
 
 use super::chunk::{LINES, PackedInterval};
 use super::{Dexels, Operation};
-use crate::intervals::{AuditFailure, Crossing, Interval, cover, normalise};
+use crate::intervals::{AuditFailure, Crossing, Interval, IntervalError, check_lengths, cover, normalise};
 use rayon::prelude::*;
 
 /// The lines of crossings (or intervals) and their numbers, sorted: counted into chunks of lines, then sorted in each. Those beyond the last
@@ -34,8 +34,17 @@ fn numbered_by_line<T>(crossings: &[(u32, T)], chunks: usize) -> Vec<(u32, u32)>
 
 impl Dexels {
     /// Unites with, subtracts or intersects with intervals on numbered lines, in parallel. They may come in any order and
-    /// overlap. Those beyond the grid or without length change nothing.
-    pub fn update(&mut self, operation: Operation, intervals: &[(u32, Interval)]) {
+    /// overlap.
+    ///
+    /// # Errors
+    /// [`IntervalError`]: an interval has no positive length, or the grid has no such line. Nothing is changed then.
+    pub fn update(&mut self, operation: Operation, intervals: &[(u32, Interval)]) -> Result<(), IntervalError> {
+        check_lengths(intervals.iter().map(|(_, interval)| interval))?;
+        let lines = self.grid.len();
+        if let Some((line, _)) = intervals.iter().find(|(line, _)| *line as usize >= lines) {
+            let line = *line as usize;
+            return Err(IntervalError::Line { line, lines });
+        }
         let sorted = numbered_by_line(intervals, self.chunks.len());
         self.update_by(operation, &sorted, |group, (): &mut (), out| {
             out.extend(group.iter().map(|(_, number)| intervals[*number as usize].1));
@@ -43,6 +52,7 @@ impl Dexels {
             out.sort_by(|a, b| a.lower.z.total_cmp(&b.lower.z));
             normalise(out);
         });
+        Ok(())
     }
 
     /// [Counts](cover) the crossings of numbered lines to intervals and does with them as [`Dexels::update`], in parallel.

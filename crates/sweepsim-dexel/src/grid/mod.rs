@@ -131,13 +131,20 @@ impl Grid {
         self.centre(1, j)
     }
 
-    /// The number of a dexel: sorted by `i`, then `j`.
+    /// The number of the dexel in column `i`, row `j`: sorted by `i`, then `j`. `None` beyond the grid.
     #[must_use]
-    pub fn index(&self, i: usize, j: usize) -> usize {
+    #[inline]
+    pub fn index(&self, i: usize, j: usize) -> Option<usize> {
+        (i < self.cells[0] && j < self.cells[1]).then(|| self.number(i, j))
+    }
+
+    /// The number of a dexel that is known to be on the grid.
+    #[inline]
+    pub(crate) fn number(&self, i: usize, j: usize) -> usize {
         i * self.cells[1] + j
     }
 
-    /// The column and row of a dexel.
+    /// The column and row of a dexel; those of a number beyond the grid are beyond it, too.
     #[must_use]
     pub fn place(&self, index: usize) -> (usize, usize) {
         (index / self.cells[1], index % self.cells[1])

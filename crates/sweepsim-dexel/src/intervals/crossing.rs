@@ -24,7 +24,7 @@ pub struct Crossing {
 
 /// Crossings of a line do not add up.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("the coverage count does not close: it ends at {sum}, and falls to {lowest} at z = {z}")]
+#[error("the coverage count does not close: it ends at {sum} and falls to {lowest} at z = {z}")]
 pub struct AuditFailure {
     /// Sum of all jumps: 0 when right.
     pub sum: i32,
@@ -42,7 +42,7 @@ pub struct AuditFailure {
 /// there the count goes on from crossing to crossing, so no wall and no gap thicker than `same` is lost.
 ///
 /// # Errors
-/// [`AuditFailure`]: the jumps do not add up to 0, or a sum between groups is negative. `intervals` is then empty.
+/// [`AuditFailure`]: the jumps do not add up to 0, a sum between groups is negative, or a height is not finite. `intervals` is then empty.
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     crossings.sort_by(|a, b| {
         a.z.total_cmp(&b.z)
@@ -50,6 +50,19 @@ pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval
             .then_with(|| a.source.rank().cmp(&b.source.rank()))
     });
     intervals.clear();
+    // Sorted: heights that are no numbers, or infinite, are the first or the last.
+    let odd = [crossings.first(), crossings.last()]
+        .into_iter()
+        .flatten()
+        .find(|c| !c.z.is_finite());
+    if let Some(odd) = odd {
+        let sum = crossings.iter().map(|crossing| i32::from(crossing.jump)).sum();
+        return Err(AuditFailure {
+            sum,
+            lowest: sum.min(0),
+            z: odd.z,
+        });
+    }
     let (mut sum, mut lowest, mut place) = (0_i32, 0_i32, f64::NAN);
     let mut lower: Option<End> = None;
     let mut chains = false;

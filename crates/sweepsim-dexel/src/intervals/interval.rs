@@ -1,5 +1,7 @@
 //! Intervals of material on a line, and what their ends remember.
 
+use thiserror::Error;
+
 /// What made an end of an interval: the stock itself, or a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Source {
@@ -31,6 +33,77 @@ impl Source {
             Self::Stock => (u64::MAX, 0, 0),
         }
     }
+}
+
+/// Why intervals are refused.
+///
+/// ```
+/// use sweepsim_dexel::{IntervalError, IntervalSet};
+/// let error = IntervalSet::try_from([[3.0, 2.0]]).unwrap_err();
+/// assert_eq!(error, IntervalError::Length { number: 0, lower: 3.0, upper: 2.0 });
+/// ```
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum IntervalError {
+    /// The interval is empty or reversed, or an end is NaN.
+    #[error("interval {number} from {lower} to {upper} has no positive length")]
+    Length {
+        /// Which interval, from 0.
+        number: usize,
+        /// Its lower end.
+        lower: f64,
+        /// Its upper end.
+        upper: f64,
+    },
+    /// The intervals are not sorted, overlap or touch.
+    #[error("interval {number} begins at {lower}, but must begin above {upper}, where the one before it ends")]
+    Order {
+        /// Which interval, from 0.
+        number: usize,
+        /// Its lower end.
+        lower: f64,
+        /// The upper end of the interval before it.
+        upper: f64,
+    },
+    /// The grid has no such line.
+    #[error("line {line} is beyond the {lines} lines of the grid")]
+    Line {
+        /// The line.
+        line: usize,
+        /// How many there are.
+        lines: usize,
+    },
+}
+
+/// Whether all intervals have a positive length.
+pub(crate) fn check_lengths<'a, E: Endpoint + 'a>(
+    intervals: impl IntoIterator<Item = &'a Interval<E>>,
+) -> Result<(), IntervalError> {
+    for (number, interval) in intervals.into_iter().enumerate() {
+        let (lower, upper) = (interval.lower.height(), interval.upper.height());
+        // False for NaN.
+        let positive = lower < upper;
+        if !positive {
+            return Err(IntervalError::Length { number, lower, upper });
+        }
+    }
+    Ok(())
+}
+
+/// Whether intervals are in normal form: of positive length, sorted, with gaps between them.
+pub(crate) fn check_normal<E: Endpoint>(intervals: &[Interval<E>]) -> Result<(), IntervalError> {
+    check_lengths(intervals)?;
+    for (number, pair) in intervals.windows(2).enumerate() {
+        let (upper, lower) = (pair[0].upper.height(), pair[1].lower.height());
+        if lower <= upper {
+            return Err(IntervalError::Order {
+                number: number + 1,
+                lower,
+                upper,
+            });
+        }
+    }
+    Ok(())
 }
 
 /// What an interval can end with: a height, and perhaps more that is known there.

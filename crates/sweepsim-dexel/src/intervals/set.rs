@@ -1,21 +1,22 @@
 //! Sets of intervals on a line.
 
-use super::interval::{Endpoint, Interval};
+use super::interval::{Endpoint, Interval, IntervalError, check_lengths};
 use super::operations::{Run, difference, intersection, merge, normalise, union};
 
 /// A set of points of a line: intervals in normal form, that is sorted, each of positive length, with gaps between them.
 ///
 /// Sets of points that differ by single points are one: whether ends belong to intervals has no meaning here. Ends may be plain
-/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is a [`Endpoint`]; an end costs what
+/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is an [`Endpoint`]; an end costs what
 /// its type costs. Heights may be infinite.
 ///
 /// ```
 /// use sweepsim_dexel::IntervalSet;
-/// let stock = IntervalSet::from([[0.0, 10.0]]);
-/// let holes = IntervalSet::from([[2.0, 3.0], [2.5, 4.0], [9.0, 12.0]]);
+/// let stock = IntervalSet::try_from([[0.0, 10.0]])?;
+/// let holes = IntervalSet::try_from([[2.0, 3.0], [2.5, 4.0], [9.0, 12.0]])?;
 /// assert_eq!(holes.len(), 2);
-/// assert_eq!(stock.difference(&holes), IntervalSet::from([[0.0, 2.0], [4.0, 9.0]]));
+/// assert_eq!(stock.difference(&holes), IntervalSet::try_from([[0.0, 2.0], [4.0, 9.0]])?);
 /// assert_eq!(stock.intersection(&holes).length(), 3.0);
+/// # Ok::<(), sweepsim_dexel::IntervalError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntervalSet<E = f64> {
@@ -33,6 +34,17 @@ impl<E: Endpoint> IntervalSet<E> {
     #[must_use]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// The set of these intervals, which may come in any order, and overlap.
+    ///
+    /// # Errors
+    /// [`IntervalError::Length`]: an interval is empty or reversed, or one of its ends is NaN.
+    pub fn from_intervals(intervals: impl IntoIterator<Item = Interval<E>>) -> Result<Self, IntervalError> {
+        let mut pieces: Vec<Interval<E>> = intervals.into_iter().collect();
+        check_lengths(&pieces)?;
+        normalise(&mut pieces);
+        Ok(Self { pieces })
     }
 
     /// The intervals, from the lowest up.
@@ -97,9 +109,11 @@ impl<E: Endpoint> IntervalSet<E> {
     }
 
     /// What of `range` is not in the set. Ends of the set are flipped.
-    #[must_use]
-    pub fn complement(&self, range: Interval<E>) -> Self {
-        Self::from_iter([range]).difference(self)
+    ///
+    /// # Errors
+    /// [`IntervalError::Length`]: the range is empty or reversed, or one of its ends is NaN.
+    pub fn complement(&self, range: Interval<E>) -> Result<Self, IntervalError> {
+        Ok(Self::from_intervals([range])?.difference(self))
     }
 
     /// Without what is too thin to mean anything: gaps of at most `tolerance` are filled, then intervals of at most
@@ -117,22 +131,12 @@ impl<E: Endpoint> IntervalSet<E> {
     }
 }
 
-/// Intervals in any order that may overlap. Those that have no positive length (or a NaN) are left out.
-impl<E: Endpoint> FromIterator<Interval<E>> for IntervalSet<E> {
-    fn from_iter<I: IntoIterator<Item = Interval<E>>>(pieces: I) -> Self {
-        let mut pieces: Vec<Interval<E>> = pieces.into_iter().collect();
-        normalise(&mut pieces);
-        Self { pieces }
-    }
-}
+/// As [`IntervalSet::from_intervals`], from pairs `[lower, upper]`.
+impl<E: Endpoint, const N: usize> TryFrom<[[E; 2]; N]> for IntervalSet<E> {
+    type Error = IntervalError;
 
-/// As [`FromIterator`], from pairs `[lower, upper]`.
-impl<E: Endpoint, const N: usize> From<[[E; 2]; N]> for IntervalSet<E> {
-    fn from(pieces: [[E; 2]; N]) -> Self {
-        pieces
-            .into_iter()
-            .map(|[lower, upper]| Interval { lower, upper })
-            .collect()
+    fn try_from(pieces: [[E; 2]; N]) -> Result<Self, IntervalError> {
+        Self::from_intervals(pieces.map(|[lower, upper]| Interval { lower, upper }))
     }
 }
 
@@ -157,10 +161,8 @@ mod tests {
     }
 
     fn set(pieces: &[[i32; 2]]) -> IntervalSet<End> {
-        pieces
-            .iter()
-            .map(|[a, b]| Interval::between(f64::from(*a), f64::from(*b)))
-            .collect()
+        let pieces = pieces.iter().filter(|[a, b]| a < b);
+        IntervalSet::from_intervals(pieces.map(|[a, b]| Interval::between(f64::from(*a), f64::from(*b)))).unwrap()
     }
 
     /// The model: which unit cells are covered, by looking at every interval.
@@ -187,6 +189,7 @@ mod tests {
     }
 
     fn operations(a: &[[i32; 2]], b: &[[i32; 2]], lo: i32, hi: i32) -> Result<(), TestCaseError> {
+        prop_assume!(lo < hi);
         let (p, q) = (cells(a), cells(b));
         let (x, y) = (set(a), set(b));
         let model =
@@ -197,14 +200,17 @@ mod tests {
             (x.intersection(&y), model(&|p, q| p && q)),
             (x.difference(&y), model(&|p, q| p && !q)),
             (x.symmetric_difference(&y), model(&|p, q| p != q)),
-            (x.complement(Interval::between(f64::from(lo), f64::from(hi))), {
-                let outside = p.iter().zip(lo.min(60)..).enumerate();
-                boundary(
-                    &outside
-                        .map(|(k, (p, _))| !p && lo <= k as i32 && (k as i32) < hi)
-                        .collect::<Vec<_>>(),
-                )
-            }),
+            (
+                x.complement(Interval::between(f64::from(lo), f64::from(hi))).unwrap(),
+                {
+                    let outside = p.iter().zip(lo.min(60)..).enumerate();
+                    boundary(
+                        &outside
+                            .map(|(k, (p, _))| !p && lo <= k as i32 && (k as i32) < hi)
+                            .collect::<Vec<_>>(),
+                    )
+                },
+            ),
         ];
         for (k, (found, expected)) in cases.iter().enumerate() {
             prop_assert_eq!(&ends(found), expected, "case {}", k);
@@ -222,18 +228,17 @@ mod tests {
         let x = set(a);
         let merged = x.clone().merged(f64::from(tolerance));
         let thick = |set: &IntervalSet<End>| -> IntervalSet<End> {
-            set.into_iter()
-                .filter(|i| i.length() > f64::from(tolerance))
-                .copied()
-                .collect()
+            let long = set.into_iter().filter(|i| i.length() > f64::from(tolerance));
+            IntervalSet::from_intervals(long.copied()).unwrap()
         };
         let all = Interval::between(-100.0, 200.0);
         prop_assert!(thick(&x).difference(&merged).is_empty());
-        prop_assert!(thick(&x.complement(all)).intersection(&merged).is_empty());
+        prop_assert!(thick(&x.complement(all).unwrap()).intersection(&merged).is_empty());
         prop_assert!(merged.into_iter().all(|i| i.length() > f64::from(tolerance)));
         prop_assert!(
             merged
                 .complement(all)
+                .unwrap()
                 .into_iter()
                 .all(|i| i.length() > f64::from(tolerance))
         );
@@ -267,10 +272,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_interval_is_left_out() {
-        let odd = IntervalSet::from([[f64::NAN, 1.0], [0.0, f64::NAN], [3.0, 2.0], [f64::NEG_INFINITY, -1.0]]);
-        assert_eq!(odd, IntervalSet::from([[f64::NEG_INFINITY, -1.0]]));
-        assert_eq!(odd.clone().merged(f64::NAN), odd);
+    fn what_is_no_interval_is_refused() {
+        for odd in [[f64::NAN, 1.0], [0.0, f64::NAN], [3.0, 2.0], [1.0, 1.0]] {
+            assert!(IntervalSet::try_from([[5.0, 6.0], odd]).is_err(), "{odd:?}");
+            let [lower, upper] = odd;
+            assert!(IntervalSet::<f64>::new().complement(Interval { lower, upper }).is_err());
+        }
+        let endless = IntervalSet::try_from([[f64::NEG_INFINITY, -1.0]]).unwrap();
+        assert_eq!(endless.clone().merged(f64::NAN), endless);
         assert!(IntervalSet::<f64>::new().merged(1.0).is_empty());
         assert_eq!(size_of::<Interval<f64>>(), 16);
     }

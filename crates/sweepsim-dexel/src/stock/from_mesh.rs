@@ -59,7 +59,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
                     let jump = if normal[2] < 0.0 { 1 } else { -1 };
                     let normal = normal.map(|c| (c / length) as f32);
                     Some((
-                        grid.index(i, j) as u32,
+                        grid.number(i, j) as u32,
                         Crossing {
                             z,
                             jump,

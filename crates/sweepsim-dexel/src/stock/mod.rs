@@ -145,7 +145,7 @@ fn ball(grid: &Grid, centre: [f64; 3], radius: f64) -> Result<Dexels, StockError
         return Err(StockError::Ball { radius });
     }
     let centre = grid.frame().from_world(centre);
-    Ok(Dexels::from_fn(*grid, |index, line| {
+    Ok(Dexels::filled(*grid, |index, line| {
         let (i, j) = grid.place(index);
         let [x, y] = [grid.x(i) - centre[0], grid.y(j) - centre[1]];
         let square = radius * radius - x * x - y * y;
@@ -173,7 +173,7 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
     }
     let frame = grid.frame();
     let along = frame.axes()[2];
-    Ok(Dexels::from_fn(*grid, |index, line| {
+    Ok(Dexels::filled(*grid, |index, line| {
         let (i, j) = grid.place(index);
         let from = frame.to_world([grid.x(i), grid.y(j), 0.0]);
         let (mut lower, mut upper) = (end(f64::NEG_INFINITY, [0.0; 3]), end(f64::INFINITY, [0.0; 3]));
@@ -214,7 +214,7 @@ fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f6
     }
     let a = grid.frame().turn_from_world(axis.map(|c| c / length));
     let base = grid.frame().from_world(base);
-    Ok(Dexels::from_fn(*grid, |index, line| {
+    Ok(Dexels::filled(*grid, |index, line| {
         let (i, j) = grid.place(index);
         // The line (x, y, z): along the axis at s = p·a + z a_z, across it at q + z e with e = z-direction less a_z a.
         let p = [grid.x(i) - base[0], grid.y(j) - base[1], -base[2]];

@@ -170,7 +170,7 @@ impl<'a> Field<'a> {
                 outside: self.stock,
             };
         }
-        let index = grid.index(si - 1, sj - 1);
+        let index = grid.number(si - 1, sj - 1);
         Dexel {
             line: self.line(index),
             at: [grid.x(si - 1), grid.y(sj - 1)],
@@ -225,7 +225,7 @@ fn outside(dexels: &Dexels) -> Vec<bool> {
     let mut outside = vec![false; grid.len()];
     let mut open = Vec::new();
     let mut reach = |i: usize, j: usize, open: &mut Vec<(usize, usize)>| {
-        let index = grid.index(i, j);
+        let index = grid.number(i, j);
         if !outside[index] && dexels.at(index).is_empty() {
             outside[index] = true;
             open.push((i, j));

@@ -58,7 +58,7 @@ fn filled(n: usize, mut line: impl FnMut(usize, usize) -> Vec<(f64, f64)>) -> De
     for i in 0..n {
         for j in 0..n {
             let intervals: Vec<Interval> = line(i, j).iter().map(|(a, b)| Interval::between(*a, *b)).collect();
-            dexels.set(dexels.grid().index(i, j), &intervals);
+            dexels.set(dexels.grid().number(i, j), &intervals).unwrap();
         }
     }
     dexels
@@ -186,7 +186,7 @@ fn tangents_meet_in_a_crease() {
         };
         let mut interval = Interval::between(-5.0, top + slope * (x - at));
         interval.upper.normal = unit(n).map(|c| c as f32);
-        dexels.set(index, &[interval]);
+        dexels.set(index, &[interval]).unwrap();
     }
     let mesh = surface(&dexels);
     assert!(volume(&mesh) > 0.0);
@@ -238,7 +238,7 @@ proptest! {
                 interval.upper.normal = n[1];
                 interval
             }).collect();
-            dexels.set(index, &intervals);
+            dexels.set(index, &intervals).unwrap();
         }
         let mesh = surface(&dexels);
         prop_assert!(mesh.vertices.iter().flatten().all(|c| c.is_finite()));

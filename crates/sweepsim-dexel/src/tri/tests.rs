@@ -332,6 +332,7 @@ proptest! {
                     }
                 }
             })
+            .unwrap()
         };
         let solid = TriDexels::from_sets([set(0), set(1), set(2)]).unwrap();
         prop_assert_eq!(solid.disagreements(), 0);

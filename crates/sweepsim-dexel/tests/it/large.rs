@@ -22,7 +22,7 @@ fn ten_thousand_by_ten_thousand_dexels_of_a_block_fit_in_six_gibibytes() {
     assert!((dexels.volume() - 1e8).abs() < 1e-2);
     // And it can still be cut.
     for index in (0..grid.len()).step_by(997) {
-        dexels.subtract(index, &[Interval::between(40.0, 60.0)]);
+        dexels.subtract(index, &[Interval::between(40.0, 60.0)]).unwrap();
     }
     assert_eq!(dexels.count(), 100_000_000 + grid.len().div_ceil(997));
     let bytes = dexels.bytes() as u64;

@@ -193,7 +193,7 @@ fn decode(payload: &[u8], lines: usize, builder: &mut DexelsBuilder) -> Option<u
             }
             intervals.push(Interval { lower, upper });
         }
-        builder.push(&intervals);
+        builder.push(&intervals).ok()?;
         before.take(&mut line);
         read += 1;
         total += count as u64;

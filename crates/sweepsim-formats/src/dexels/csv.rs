@@ -134,21 +134,24 @@ fn row(line: &str, index: usize, before: Option<&DexelRow>) -> Result<DexelRow, 
 /// The dexels of `rows` on `grid`. Normals and sources are not known: those of horizontal faces stand for them.
 ///
 /// # Errors
-/// [`Problem::Value`] when a row is not on the grid.
+/// [`Problem::Value`] when a row is not on the grid, or an interval has no positive length.
 pub fn dexels_from_rows(grid: Grid, rows: &[DexelRow]) -> Result<Dexels, FormatError> {
     let [nx, ny] = grid.cells();
-    if let Some(row) = rows.iter().find(|row| row.i >= nx || row.j >= ny) {
-        let problem = Problem::value(
-            "a dexel",
-            format!("({}, {})", row.i, row.j),
-            format!("on the grid of {nx} x {ny}"),
-        );
-        return Err(FormatError::new(problem, None));
-    }
+    let refused = |row: &DexelRow, found: String, expected: String| {
+        let problem = Problem::value("a dexel", format!("({}, {}){found}", row.i, row.j), expected);
+        FormatError::new(problem, None)
+    };
     let mut dexels = Dexels::empty(grid);
     for chunk in rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)) {
         let intervals: Vec<Interval> = chunk.iter().map(|row| Interval::between(row.z0, row.z1)).collect();
-        dexels.set(grid.index(chunk[0].i, chunk[0].j), &intervals);
+        let Some(line) = grid.index(chunk[0].i, chunk[0].j) else {
+            let expected = format!("on the grid of {nx} x {ny}");
+            return Err(refused(&chunk[0], String::new(), expected));
+        };
+        dexels.set(line, &intervals).map_err(|error| {
+            let expected = "intervals of positive length".to_owned();
+            refused(&chunk[0], format!(": {error}"), expected)
+        })?;
     }
     Ok(dexels)
 }

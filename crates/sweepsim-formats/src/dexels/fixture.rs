@@ -128,8 +128,10 @@ impl Fixture {
     pub fn dexels(&self) -> Dexels {
         Dexels::from_fn(self.grid, |index, line| {
             let ends = self.ends(index);
-            line.extend(ends.as_chunks().0.iter().map(|[z0, z1]| Interval::between(*z0, *z1)));
+            let pairs = ends.as_chunks().0.iter().filter(|[z0, z1]| z0 < z1);
+            line.extend(pairs.map(|[z0, z1]| Interval::between(*z0, *z1)));
         })
+        .unwrap_or_else(|_| Dexels::empty(self.grid))
     }
 
     /// The name of the job.

@@ -234,7 +234,7 @@ pub fn read_dexels_npz(bytes: &[u8]) -> Result<Dexels, FormatError> {
         line.push(interval);
         if next.is_none_or(|next| u32::from_le_bytes(*next) as usize != number) {
             builder.skip(number - builder.lines());
-            builder.push(&line);
+            builder.push(&line).map_err(|error| problem(error.to_string()))?;
             line.clear();
         }
     }

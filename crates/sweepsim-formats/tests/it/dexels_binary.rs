@@ -40,6 +40,7 @@ fn dexels() -> impl Strategy<Value = Dexels> {
                 out.push(interval);
             }
         })
+        .unwrap()
     })
 }
 
@@ -144,7 +145,8 @@ fn large_dexels_have_many_blocks() {
             let z = (i as f64).sqrt() + k as f64;
             line.push(Interval::between(z, z + 0.4 + (j as f64).sin() * 0.1));
         }
-    });
+    })
+    .unwrap();
     let file = written(&slope);
     assert!(file.len() < 20 * slope.count(), "{} bytes", file.len());
     assert_eq!(read_dexels_binary(&mut &file[..]).unwrap(), slope);
@@ -165,6 +167,7 @@ fn cut_by(paths: &[u32]) -> Dexels {
         };
         out.push(interval);
     })
+    .unwrap()
 }
 
 #[test]

@@ -31,6 +31,7 @@ fn dexels() -> Dexels {
             line.push(interval);
         }
     })
+    .unwrap()
 }
 
 fn written(write: impl Fn(&mut Vec<u8>) -> std::io::Result<()>) -> Vec<u8> {
@@ -48,7 +49,8 @@ fn what_is_written_is_read() {
     let side = Frame::new([1.0, 2.0, 3.0], [1.0, 0.2, 0.1], [0.0, 0.0, 1.0]).unwrap();
     let framed = Dexels::from_fn(dexels.grid().in_frame(side), |index, line| {
         line.extend(dexels.at(index))
-    });
+    })
+    .unwrap();
     let npz = written(|file| write_dexels_npz(&framed, file));
     assert_eq!(read_dexels_npz(&npz).unwrap(), framed);
     let model = read_3mf(&written(|file| write_3mf(&mesh, file))).unwrap();

@@ -37,7 +37,7 @@ fn dexels() -> impl Strategy<Value = Dexels> {
                 Interval::between(lower, at)
             });
             let intervals: Vec<Interval> = intervals.collect();
-            dexels.set(index, &intervals);
+            dexels.set(index, &intervals).unwrap();
         }
         dexels
     })
@@ -189,12 +189,12 @@ fn reports() {
 fn fixtures_name_what_differs() {
     let grid = Grid::new([0.0; 2], [1.0; 2], [2, 2]).unwrap();
     let mut dexels = Dexels::empty(grid);
-    dexels.set(1, &[Interval::between(0.0, 1.0)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0)]).unwrap();
     let fixture = Fixture::new("job", &dexels, 1e-3).unwrap();
-    dexels.set(1, &[Interval::between(0.0, 1.0019)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0019)]).unwrap();
     assert!(fixture.differences(&dexels).unwrap().is_empty());
-    dexels.set(1, &[Interval::between(0.0, 1.0021)]);
-    dexels.set(2, &[Interval::between(0.0, 1.0)]);
+    dexels.set(1, &[Interval::between(0.0, 1.0021)]).unwrap();
+    dexels.set(2, &[Interval::between(0.0, 1.0)]).unwrap();
     let found: Vec<String> = fixture
         .differences(&dexels)
         .unwrap()

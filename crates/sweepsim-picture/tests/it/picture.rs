@@ -23,7 +23,7 @@ fn block(cut: bool) -> Mesh {
             };
             groove.lower.source = source;
             groove.upper.source = source;
-            dexels.subtract(index, &[groove]);
+            dexels.subtract(index, &[groove]).unwrap();
         }
     }
     surface(&dexels)

@@ -120,8 +120,11 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
             };
             for j in wanted.0.max(js.0)..=wanted.1.min(js.1) {
                 value[1] = self.coordinate(1, j);
+                let Some(number) = self.grid.index(i, j) else {
+                    continue;
+                };
                 let target = Target {
-                    number: self.grid.index(i, j),
+                    number,
                     place: [i, j],
                     value,
                 };

@@ -9,7 +9,7 @@ use crate::sweep::schedule::Job;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
-use sweepsim_dexel::{AuditFailure, Dexels, Interval, Operation, cover};
+use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Operation, cover};
 use sweepsim_solve::Reason;
 
 impl Job<'_> {
@@ -41,11 +41,14 @@ impl Job<'_> {
             }
             BoundaryOperator::Paper => {
                 crossings.sort_by_key(|(line, _)| *line);
+                let mut wrong = Vec::new();
                 for group in crossings.chunk_by(|a, b| a.0 == b.0) {
                     let mut line: Vec<_> = group.iter().map(|(_, crossing)| *crossing).collect();
-                    volume.unite(group[0].0 as usize, &boundary_operator::by_normals(&mut line));
+                    if volume.unite(group[0].0 as usize, &in_order(&mut line)).is_err() {
+                        wrong.push(group[0].0);
+                    }
                 }
-                Vec::new()
+                wrong
             }
         };
         wrong.extend(&bad);
@@ -59,11 +62,9 @@ impl Job<'_> {
             return Err(SweepError::Cancelled);
         }
         for (line, result) in wrong.into_iter().zip(repaired) {
-            match result {
-                Ok(intervals) => {
-                    statistics.repaired += 1;
-                    volume.unite(line as usize, &intervals);
-                }
+            let united = result.and_then(|intervals| Ok(volume.unite(line as usize, &intervals)?));
+            match united {
+                Ok(()) => statistics.repaired += 1,
                 Err(reason) => {
                     let (i, j) = self.grid.place(line as usize);
                     failed.push(UnresolvedDexel { i, j, reason });
@@ -112,7 +113,16 @@ impl Job<'_> {
                 cover(&mut crossings, self.tolerances.same_height(), &mut intervals)?;
                 Ok(intervals)
             }
-            BoundaryOperator::Paper => Ok(boundary_operator::by_normals(&mut crossings)),
+            BoundaryOperator::Paper => Ok(in_order(&mut crossings)),
         }
     }
+}
+
+/// The intervals that Algorithm 2 makes of the crossings of a line, those that overlap united. Where crossings are missing it may make some without
+/// length.
+fn in_order(crossings: &mut [Crossing]) -> Vec<Interval> {
+    let intervals = boundary_operator::by_normals(crossings).into_iter();
+    IntervalSet::from_intervals(intervals.filter(|interval| interval.lower.z < interval.upper.z))
+        .map(|set| set.pieces().to_vec())
+        .unwrap_or_default()
 }

@@ -51,10 +51,10 @@ pub fn probe(
         let mut volume = Dexels::empty(grid);
         let mut established = true;
         for chunk in plan.parts.chunks(CHUNK) {
-            match job.repair(chunk, 0, 0, &mut own) {
-                Ok(intervals) => volume.unite(0, &intervals),
-                Err(_) => established = false,
-            }
+            let united = job
+                .repair(chunk, 0, 0, &mut own)
+                .map(|intervals| volume.unite(0, &intervals));
+            established &= matches!(united, Ok(Ok(())));
         }
         space.lock().ok()?.push(own);
         established.then(|| volume.at(0).to_vec())

@@ -1,6 +1,6 @@
 //! What comes out of a sweep: its volume, what was done, and what could not be.
 
-use sweepsim_dexel::{AuditFailure, Dexels};
+use sweepsim_dexel::{AuditFailure, Dexels, IntervalError};
 use thiserror::Error;
 
 /// A dexel whose intervals are not certain.
@@ -28,6 +28,9 @@ pub enum UnresolvedReason {
     /// The crossings do not add up: one is missing, or there is one too many.
     #[error("the coverage count does not close: sum {}, lowest {}, at z = {}", .0.sum, .0.lowest, .0.z)]
     Audit(AuditFailure),
+    /// The crossings make no sorted, disjoint intervals.
+    #[error(transparent)]
+    Intervals(#[from] IntervalError),
 }
 
 /// What a sweep did.

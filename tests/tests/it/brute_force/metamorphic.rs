@@ -105,7 +105,7 @@ fn a_right_angle_about_z_turns_the_volume() {
         for index in 0..grid.len() {
             let (i, j) = grid.place(index);
             let intervals = other.volume.intervals(cells[1] - 1 - j, i).to_vec();
-            back.set(index, &intervals);
+            back.set(index, &intervals).unwrap();
         }
         other.volume = back;
         same_volume(case, &grid, &one, &other)

@@ -307,7 +307,7 @@ fn back(
             interval.lower.z += lift;
             interval.upper.z += lift;
         }
-        volume.set(index, &intervals);
+        volume.set(index, &intervals).unwrap();
     }
     volume
 }

@@ -157,7 +157,8 @@ fn a_right_angle_about_z_turns_the_volume() {
         let mut back = one.volume.clone();
         for index in 0..grid.len() {
             let (i, j) = grid.place(index);
-            back.set(index, &other.volume.intervals(cells[1] - 1 - j, i).to_vec());
+            back.set(index, &other.volume.intervals(cells[1] - 1 - j, i).to_vec())
+                .unwrap();
         }
         other.volume = back;
         let tally = same_sweeps(profile, &named.motion, &grid, &one, &other);

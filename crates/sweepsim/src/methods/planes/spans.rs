@@ -110,7 +110,9 @@ where
             if (p.y < y) == (q.y < y) {
                 continue;
             }
-            let target = self.lattice.grid.index(self.lattice.i[0], j);
+            let Some(target) = self.lattice.grid.index(self.lattice.i[0], j) else {
+                continue;
+            };
             let part = ((y - from.y) / (q.y - from.y)).clamp(0.0, 1.0);
             let between = std::array::from_fn(|k| from.x[k] + part * (q.x[k] - from.x[k]));
             let guess = guess(&before, y).unwrap_or(between);

@@ -1,0 +1,174 @@
+//! The interval end nearest to a point: what made the surface there.
+
+use super::Dexels;
+use crate::intervals::{End, Source};
+
+/// An interval end, and how far it is from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NearestEnd {
+    /// Number of the end's line.
+    pub line: usize,
+    /// The end, in the frame of its grid.
+    pub end: End,
+    /// Its distance from the point.
+    pub distance: f64,
+}
+
+impl Dexels {
+    /// The interval end nearest to a point of the world. `None` if there is no material, or the point is not finite.
+    ///
+    /// Of ends at the same distance, that of the lowest line and height is taken. The search looks at lines around the point, ring by ring,
+    /// until none further away can have a nearer end.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Grid, Source, Stock};
+    /// let grid = Grid::new([0.0, 0.0], [10.0, 10.0], [10, 10])?;
+    /// let block = Stock::Block { min: [0.0; 3], max: [10.0, 10.0, 4.0] }.dexels(&grid)?;
+    /// let nearest = block.nearest_end([5.1, 5.2, 4.5]).unwrap();
+    /// assert_eq!((nearest.end.z, nearest.end.source), (4.0, Source::Stock));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn nearest_end(&self, point: impl Into<[f64; 3]>) -> Option<NearestEnd> {
+        self.nearest_of(point.into(), |_| true)
+    }
+
+    /// What made the surface at a point of the world, or next to it: the source of the nearest interval end, if one is within `reach`.
+    #[must_use]
+    pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {
+        let nearest = self.nearest_end(point)?;
+        (nearest.distance <= reach).then_some(nearest.end.source)
+    }
+
+    /// The nearest of those ends that are wanted.
+    pub(crate) fn nearest_of(&self, point: [f64; 3], wanted: impl Fn(&End) -> bool) -> Option<NearestEnd> {
+        if !point.iter().all(|c| c.is_finite()) {
+            return None;
+        }
+        let grid = &self.grid;
+        let p = grid.frame().from_world(point);
+        let (cells, spacing) = (grid.cells(), grid.spacing());
+        // The line next to the point, or on the grid's rim.
+        let home = [0, 1].map(|k| ((p[k] - grid.min()[k]) / spacing[k]).clamp(0.0, cells[k] as f64 - 1.0) as usize);
+        let finest = spacing[0].min(spacing[1]);
+        let mut best: Option<NearestEnd> = None;
+        for ring in 0..cells[0].max(cells[1]) {
+            // Lines of this ring are at least so far from the point, if it is on the grid; from others, further.
+            let least = (ring as f64 - 0.5).max(0.0) * finest;
+            if best.as_ref().is_some_and(|best| best.distance < least) {
+                break;
+            }
+            for [i, j] in ring_around(home, ring, cells) {
+                let flat = (grid.x(i) - p[0]).hypot(grid.y(j) - p[1]);
+                let line = grid.number(i, j);
+                if best.as_ref().is_some_and(|best| best.distance < flat) {
+                    continue;
+                }
+                for interval in self.at(line) {
+                    for end in [interval.lower, interval.upper] {
+                        let distance = flat.hypot(end.z - p[2]);
+                        let nearer = |best: &NearestEnd| {
+                            distance < best.distance || (distance == best.distance && line < best.line)
+                        };
+                        if wanted(&end) && best.as_ref().is_none_or(nearer) {
+                            best = Some(NearestEnd { line, end, distance });
+                        }
+                    }
+                }
+            }
+        }
+        best
+    }
+}
+
+/// The cells whose greater distance from `home`, along either axis, is `ring`.
+fn ring_around(home: [usize; 2], ring: usize, cells: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    let range = move |k: usize| home[k].saturating_sub(ring)..=(home[k] + ring).min(cells[k] - 1);
+    range(0).flat_map(move |i| {
+        let whole = i.abs_diff(home[0]) == ring;
+        let below = home[1].checked_sub(ring).filter(|_| !whole);
+        let above = Some(home[1] + ring).filter(|j| !whole && ring > 0 && *j < cells[1]);
+        let all = if whole { Some(range(1)) } else { None };
+        all.into_iter().flatten().chain(below).chain(above).map(move |j| [i, j])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Frame, Grid, Interval, Stock};
+
+    #[test]
+    fn rings_have_every_cell_once() {
+        for home in [[0, 0], [3, 1], [6, 4], [2, 4]] {
+            let cells = [7, 5];
+            let mut all: Vec<[usize; 2]> = (0..7).flat_map(|ring| ring_around(home, ring, cells)).collect();
+            all.sort_unstable();
+            let expected: Vec<[usize; 2]> = (0..7).flat_map(|i| (0..5).map(move |j| [i, j])).collect();
+            assert_eq!(all, expected);
+        }
+    }
+
+    #[test]
+    fn the_nearest_end_is_that_of_all_ends() {
+        let frame = Frame::new([1.0, -2.0, 0.5], [0.3, 0.2, 1.0], [1.0, 0.1, 0.0]).unwrap();
+        for grid in [
+            Grid::new([-3.0, -2.0], [3.0, 2.0], [11, 23]).unwrap(),
+            Grid::new([-3.0, -2.0], [3.0, 2.0], [25, 9]).unwrap().in_frame(frame),
+        ] {
+            let ball = Stock::Ball {
+                centre: [0.2, 0.1, 0.3],
+                radius: 1.5,
+            };
+            let dexels = ball.dexels(&grid).unwrap();
+            for k in 0..200 {
+                let at = |a: f64| (f64::from(k) * a).sin() * 4.0;
+                let point = [at(1.3), at(2.7), at(3.1)];
+                let local = grid.frame().from_world(point);
+                let least = dexels
+                    .iter()
+                    .flat_map(|(line, intervals)| {
+                        let (i, j) = grid.place(line);
+                        let flat = (grid.x(i) - local[0]).hypot(grid.y(j) - local[1]);
+                        intervals
+                            .heights()
+                            .flatten()
+                            .map(move |z| flat.hypot(z - local[2]))
+                            .collect::<Vec<_>>()
+                    })
+                    .fold(f64::INFINITY, f64::min);
+                assert_eq!(dexels.nearest_end(point).unwrap().distance, least, "{point:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_cut_that_made_a_point_is_known() {
+        let grid = Grid::new([0.0; 2], [10.0; 2], [10, 10]).unwrap();
+        let block = Stock::Block {
+            min: [0.0; 3],
+            max: [10.0, 10.0, 5.0],
+        };
+        let mut dexels = block.dexels(&grid).unwrap();
+        for j in 0..10 {
+            let mut groove = Interval::between(3.0, 9.0);
+            let source = |t| Source::Cut { path: 1, segment: j, t };
+            (groove.lower.source, groove.upper.source) = (source(0.25), source(0.75));
+            dexels.subtract(grid.number(4, j as usize), &[groove]).unwrap();
+        }
+        let found = |point: [f64; 3]| dexels.source_at(point, 0.5);
+        assert_eq!(
+            found([4.5, 6.4, 3.1]),
+            Some(Source::Cut {
+                path: 1,
+                segment: 6,
+                t: 0.25
+            })
+        );
+        assert_eq!(found([7.5, 6.4, 5.1]), Some(Source::Stock));
+        assert_eq!(found([7.5, 6.4, 2.5]), None);
+        assert_eq!(found([f64::NAN; 3]), None);
+        assert_eq!(Dexels::empty(grid).nearest_end([0.0; 3]), None);
+    }
+}
