@@ -52,6 +52,20 @@ pub enum BernsteinError {
         /// How many were given.
         found: usize,
     },
+    /// A point has not one coordinate for each variable.
+    #[error("the point has {found} coordinates: expected {expected}")]
+    Coordinates {
+        /// The number of variables.
+        expected: usize,
+        /// The number of coordinates.
+        found: usize,
+    },
+    /// A coordinate of a point is outside `[0, 1]`, or not a number.
+    #[error("coordinate {axis} of the point is outside [0, 1]")]
+    Outside {
+        /// The variable.
+        axis: usize,
+    },
     /// A hyperplane does not cut the direction of the variable to be eliminated.
     #[error("the hyperplane's normal has no finite, non-zero entry for variable {axis}")]
     Hyperplane {

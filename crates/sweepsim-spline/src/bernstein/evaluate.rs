@@ -4,7 +4,7 @@
 //! value has a small *relative* error), then one contraction a variable, the last (slowest) first, so that the long
 //! sums run over contiguous rows.
 
-use super::Bernstein;
+use super::{Bernstein, BernsteinError};
 use crate::jets::{self, Buffer, Derivatives, contract};
 use crate::kernel;
 use crate::rounding::{UNDERFLOW, gamma, up};
@@ -29,6 +29,25 @@ impl Bernstein {
             contract(&mut values, inner, &basis);
         }
         values[0]
+    }
+
+    /// The value at `point`, which must be in `[0,1]ⁿ`.
+    ///
+    /// ```
+    /// use sweepsim_spline::{Bernstein, BernsteinError};
+    /// let f = Bernstein::variable(2, 0);
+    /// assert_eq!(f.try_evaluate(&[0.5, 0.25]), Ok(0.5));
+    /// assert_eq!(f.try_evaluate(&[0.5]), Err(BernsteinError::Coordinates { expected: 2, found: 1 }));
+    /// assert_eq!(f.try_evaluate(&[0.5, 1.25]), Err(BernsteinError::Outside { axis: 1 }));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Coordinates`](BernsteinError::Coordinates) unless there is one coordinate for each variable; [`Outside`](BernsteinError::Outside) for one that
+    /// is outside `[0, 1]` or NaN.
+    pub fn try_evaluate(&self, point: &[f64]) -> Result<f64, BernsteinError> {
+        check_point(self.variables(), point)?;
+        Ok(self.evaluate(point))
     }
 
     /// The value at `point`, and a bound on its distance from that of the exact form at that very point.
@@ -140,6 +159,20 @@ impl Bernstein {
             index[j] += 1;
             all.get(&index).map_or(0.0, |v| v[0])
         })
+    }
+}
+
+/// Whether a point has as many coordinates as there are variables, all in `[0, 1]`.
+pub(super) fn check_point(variables: usize, point: &[f64]) -> Result<(), BernsteinError> {
+    if point.len() != variables {
+        return Err(BernsteinError::Coordinates {
+            expected: variables,
+            found: point.len(),
+        });
+    }
+    match point.iter().position(|x| !(0.0..=1.0).contains(x)) {
+        Some(axis) => Err(BernsteinError::Outside { axis }),
+        None => Ok(()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Vector-valued Bernstein forms: one scalar form a component, each of its own degrees.
 
+use super::evaluate::check_point;
 use crate::bernstein::{Bernstein, BernsteinError};
 use crate::determinant::determinant;
 use crate::jets::Derivatives;
@@ -80,6 +81,16 @@ impl BernsteinMap {
     /// The largest error bound of a component.
     pub fn error(&self) -> f64 {
         self.components.iter().map(Bernstein::error).fold(0.0, f64::max)
+    }
+
+    /// The value at `point`, which must be in `[0,1]ⁿ`: one number a component.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bernstein::try_evaluate`].
+    pub fn try_evaluate(&self, point: &[f64]) -> Result<Vec<f64>, BernsteinError> {
+        check_point(self.variables(), point)?;
+        Ok(self.evaluate(point))
     }
 
     /// The value at `point`, one number a component.

@@ -1,5 +1,6 @@
 //! Rational Bernstein maps, and circular arcs as the first of them.
 
+use super::evaluate::check_point;
 use crate::bernstein::BernsteinMap;
 use crate::bernstein::{Bernstein, BernsteinError};
 use crate::jets::Derivatives;
@@ -253,6 +254,17 @@ impl RationalBernstein {
             })
         };
         numerators.iter().map(range).collect()
+    }
+
+    /// The point at `parameters`, which must be in `[0,1]ⁿ`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Bernstein::try_evaluate`].
+    pub fn try_evaluate(&self, parameters: &[f64]) -> Result<Vec<f64>, RationalError> {
+        let numerators = self.numerators().iter().map(Bernstein::variables).max();
+        check_point(self.weight().variables().max(numerators.unwrap_or(0)), parameters)?;
+        Ok(self.evaluate(parameters))
     }
 
     /// The point at `parameters`, one coordinate a numerator.

@@ -3,7 +3,7 @@
 //! The control points of the one span that a point is in, contracted with the basis functions, the last variable first:
 //! the sums run over contiguous rows of points.
 
-use super::BSpline;
+use super::{BSpline, SplineError};
 use crate::jets::{self, Buffer, Derivatives, contract};
 use crate::rounding::{UNDERFLOW, gamma, up};
 use smallvec::SmallVec;
@@ -11,7 +11,37 @@ use smallvec::SmallVec;
 type Spans = SmallVec<[usize; 4]>;
 
 impl BSpline {
-    /// The value at `point` (one coordinate a variable): `dimension()` numbers.
+    /// The value at `point`, which must be in the domain: `dimension()` numbers.
+    ///
+    /// ```
+    /// use sweepsim_spline::{BSpline, KnotVector, SplineError};
+    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// let curve = BSpline::new(vec![KnotVector::bernstein(1, 0.0, 2.0)?], 1, vec![0.0, 4.0])?;
+    /// assert_eq!(curve.try_evaluate(&[0.5])?, [1.0]);
+    /// assert_eq!(curve.try_evaluate(&[2.5]), Err(SplineError::Outside { axis: 0, value: 2.5 }));
+    /// assert_eq!(curve.try_evaluate(&[]), Err(SplineError::Count { expected: 1, found: 0 }));
+    /// # Ok(()) }
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`Count`](SplineError::Count) unless there is one coordinate for each variable; [`Outside`](SplineError::Outside) for one that is outside the domain (of
+    /// periodic knots, outside of the period that is stored) or NaN.
+    pub fn try_evaluate(&self, point: &[f64]) -> Result<Vec<f64>, SplineError> {
+        let (expected, found) = (self.variables(), point.len());
+        if found != expected {
+            return Err(SplineError::Count { expected, found });
+        }
+        for (axis, (&value, knots)) in point.iter().zip(self.knots()).enumerate() {
+            let (lo, hi) = knots.domain();
+            if !(lo..=hi).contains(&value) {
+                return Err(SplineError::Outside { axis, value });
+            }
+        }
+        Ok(self.evaluate(point))
+    }
+
+    /// The value at `point` (one coordinate a variable): `dimension()` numbers. Outside the domain the polynomials at its border go on.
     pub fn evaluate(&self, point: &[f64]) -> Vec<f64> {
         let mut value = vec![0.0; self.dimension];
         self.evaluate_into(point, &mut value);

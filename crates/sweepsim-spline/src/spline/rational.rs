@@ -137,7 +137,17 @@ impl RationalSpline {
         self.homogeneous.points().map(divide)
     }
 
-    /// The point at `parameters`.
+    /// The point at `parameters`, which must be in the domain.
+    ///
+    /// # Errors
+    ///
+    /// As [`BSpline::try_evaluate`].
+    pub fn try_evaluate(&self, parameters: &[f64]) -> Result<Vec<f64>, SplineError> {
+        self.homogeneous.try_evaluate(parameters)?;
+        Ok(self.evaluate(parameters))
+    }
+
+    /// The point at `parameters`. Outside the domain the polynomials at its border go on.
     pub fn evaluate(&self, parameters: &[f64]) -> Vec<f64> {
         let mut value = self.homogeneous.evaluate(parameters);
         let weight = value.pop().unwrap_or(f64::NAN);

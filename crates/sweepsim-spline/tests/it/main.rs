@@ -4,6 +4,7 @@ mod bernstein;
 mod bounds;
 mod common;
 mod kernel;
+mod misuse;
 mod rational;
 mod spline;
 mod spline_domains;
