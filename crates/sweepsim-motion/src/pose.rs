@@ -83,20 +83,28 @@ impl Pose {
 
     /// The tip.
     #[must_use]
-    pub fn tip(&self) -> Vector3<f64> {
+    pub fn tip(&self) -> [f64; 3] {
+        self.tip.into()
+    }
+
+    /// The axis, from the tip towards the holder: a unit vector.
+    #[must_use]
+    pub fn axis(&self) -> [f64; 3] {
+        self.axis.into_inner().into()
+    }
+
+    /// Where the tool's `x` points, if the pose says so: a unit vector.
+    #[must_use]
+    pub fn side(&self) -> Option<[f64; 3]> {
+        self.side.map(|side| side.into_inner().into())
+    }
+
+    pub(crate) fn tip_vector(&self) -> Vector3<f64> {
         self.tip
     }
 
-    /// The axis, from the tip towards the holder.
-    #[must_use]
-    pub fn axis(&self) -> Unit<Vector3<f64>> {
+    pub(crate) fn axis_vector(&self) -> Unit<Vector3<f64>> {
         self.axis
-    }
-
-    /// Where the tool's `x` points, if the pose says so.
-    #[must_use]
-    pub fn side(&self) -> Option<Unit<Vector3<f64>>> {
-        self.side
     }
 
     /// The rotation from the tool's directions to those of space, if the pose says how the tool is turned about its axis.

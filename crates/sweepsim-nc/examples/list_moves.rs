@@ -40,7 +40,7 @@ fn main() {
     };
     for pose in &program.poses {
         let kind = if pose.rapid { "rapid" } else { "feed" };
-        let [x, y, z]: [f64; 3] = pose.pose.tip().into();
+        let [x, y, z]: [f64; 3] = pose.pose.tip();
         println!("line {:>4}  {kind:>5} to ({x:.3}, {y:.3}, {z:.3})", pose.line);
     }
     for note in &program.notes {

@@ -202,8 +202,8 @@ impl Motion {
 }
 
 fn add_move(segment: usize, from: &Pose, to: &Pose, arcs: &mut Vec<Arc>) {
-    let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
-    let (p0, p1) = (from.tip(), to.tip());
+    let (o0, o1) = (Vector3::from(from.axis()), Vector3::from(to.axis()));
+    let (p0, p1) = (Vector3::from(from.tip()), Vector3::from(to.tip()));
     let cross = o0.cross(&o1);
     let sine = cross.norm();
     let angle = sine.atan2(o0.dot(&o1));
@@ -243,7 +243,7 @@ fn add_free(segment: usize, place: &Place, tip_speed: f64, turn_speed: f64, part
 
 /// A move at constant speed: the definition, in sines and cosines.
 fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<Arc>) {
-    let (p0, p1) = (from.tip(), to.tip());
+    let (p0, p1) = (Vector3::from(from.tip()), Vector3::from(to.tip()));
     let tip: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
     let (tip_speed, round);
     match way.course {
@@ -252,7 +252,11 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
             tip = Shared::new(move |t| p0 + (p1 - p0) * t);
         }
         Course::Arc(arc) => {
-            let (centre, normal, angle) = (arc.centre(), arc.normal(), arc.angle());
+            let (centre, normal, angle) = (
+                Vector3::from(arc.centre()),
+                nalgebra::Unit::new_unchecked(Vector3::from(arc.normal())),
+                arc.angle(),
+            );
             let turned = move |t: f64| centre + Rotation3::from_axis_angle(&normal, angle * t) * (p0 - centre);
             let missing = p1 - turned(1.0);
             round = angle.abs();
@@ -276,7 +280,7 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
             }
         });
     } else {
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let (o0, o1) = (Vector3::from(from.axis()), Vector3::from(to.axis()));
         let cross = o0.cross(&o1);
         let angle = cross.norm().atan2(o0.dot(&o1));
         let ahead = if angle > 0.0 {

@@ -31,13 +31,13 @@ fn swept(tool: &Tool, poses: Vec<Pose>, grid: &Grid, method: Method) -> Dexels {
 /// The pose at a part of the way, with its whole orientation (the bit is only almost symmetric): the angle of a rational arc of less than
 /// 90°, the tip on a line.
 fn between(a: &Pose, b: &Pose, t: f64) -> Pose {
-    let (o, p) = (a.axis().into_inner(), b.axis().into_inner());
+    let (o, p) = (Vector3::from(a.axis()), Vector3::from(b.axis()));
     let k = o.cross(&p);
     let angle = k.norm().atan2(o.dot(&p));
     let (b0, b1, b2) = ((1.0 - t).powi(2), 2.0 * t * (1.0 - t), t * t);
     let at = (b1 * (0.5 * angle).sin() + b2 * angle.sin()).atan2(b0 + b1 * (0.5 * angle).cos() + b2 * angle.cos());
     let turn = Rotation3::from_axis_angle(&Unit::new_normalize(k), at);
-    let tip = a.tip() + (b.tip() - a.tip()) * t;
+    let tip = Vector3::from(a.tip()) + (Vector3::from(b.tip()) - Vector3::from(a.tip())) * t;
     let side = o.cross(&Vector3::y()).normalize();
     Pose::with_side(tip.into(), (turn * o).into(), (turn * side).into()).expect("a pose")
 }

@@ -139,8 +139,8 @@ fn path(which: usize) -> Result<Path, String> {
 fn bounds(path: &Path, radius: f64, length: f64) -> ([f64; 2], [f64; 2]) {
     let (mut min, mut max) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for pose in path.poses() {
-        let tip = pose.tip();
-        let top = tip + pose.axis().into_inner() * length;
+        let tip = nalgebra::Vector3::from(pose.tip());
+        let top = tip + nalgebra::Vector3::from(pose.axis()) * length;
         for k in 0..2 {
             min[k] = min[k].min(tip[k] - radius).min(top[k] - radius);
             max[k] = max[k].max(tip[k] + radius).max(top[k] + radius);

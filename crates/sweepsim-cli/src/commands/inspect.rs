@@ -121,7 +121,7 @@ fn job(text: &mut Lines, job: &Job) {
 }
 
 fn tip(pose: &Pose) -> [f64; 3] {
-    pose.tip().into()
+    pose.tip()
 }
 
 fn program(text: &mut Lines, program: &Program) {
@@ -141,7 +141,7 @@ fn program(text: &mut Lines, program: &Program) {
     let tilt = program
         .poses
         .iter()
-        .map(|pose| pose.pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees())
+        .map(|pose| pose.pose.axis()[2].clamp(-1.0, 1.0).acos().to_degrees())
         .fold(0.0, f64::max);
     text.line("axis", &format!("up to {} degrees from z", measure(tilt)));
     let mut tools: Vec<u32> = program.poses.iter().filter_map(|pose| pose.tool).collect();

@@ -162,7 +162,7 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
                 (1..=10_000, schema::Turn::Cw) => -i32::from(turns),
                 _ => return Err(fault(Problem::value("`turns` of an arc", turns, "from 1 to 10000"))),
             };
-            let arc = TipArc::between(from.tip().into(), to.tip().into(), centre, normal, signed);
+            let arc = TipArc::between(from.tip(), to.tip(), centre, normal, signed);
             arcs.push((
                 index - 1,
                 arc.map_err(|error| fault(Problem::syntax(error.to_string())))?,

@@ -81,17 +81,17 @@ Job(
     // The motion has a move between each two knots; the orientation's are over the range of the tip's.
     assert_eq!(job.moves(), 1 + 1 + 1 + 2 + 2 + 1);
     let knot = &job.paths[4].path.poses()[1];
-    assert!((knot.tip().x - 1.25 * 25.4).abs() < 1e-12, "{knot:?}");
-    assert_eq!(job.paths[5].path.poses()[1].tip().x, 25.4);
+    assert!((knot.tip()[0] - 1.25 * 25.4).abs() < 1e-12, "{knot:?}");
+    assert_eq!(job.paths[5].path.poses()[1].tip()[0], 25.4);
     assert_eq!(
-        job.paths[0].path.poses()[1].tip().as_slice(),
+        job.paths[0].path.poses()[1].tip(),
         [20.0 * 25.4, 10.0 * 25.4, 8.0 * 25.4]
     );
     let last = &job.paths[3];
     assert_eq!(last.lines, [4, 5, 6]);
-    assert_eq!(last.path.poses()[2].axis().as_slice(), [0.0, 1.0, 0.0]);
+    assert_eq!(last.path.poses()[2].axis(), [0.0, 1.0, 0.0]);
     assert_eq!(
-        last.path.poses()[2].tip().x,
+        last.path.poses()[2].tip()[0],
         25.4,
         "the job's units hold for programs that say none"
     );

@@ -44,7 +44,7 @@ fn whole_orientations() {
     let path = "Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1), (1, 1, 0)), ((20, 5, 3), (0, 0, 1), (0, 1, 0))])";
     let job = job(path).unwrap();
     let pose = job.paths[0].path.poses()[0];
-    assert!((pose.side().unwrap().x - 0.5_f64.sqrt()).abs() < 1e-15);
+    assert!((pose.side().unwrap()[0] - 0.5_f64.sqrt()).abs() < 1e-15);
     let mixed = message("Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1), (1, 1, 0)), ((20, 5, 3), (0, 0, 1))])");
     assert!(mixed.contains("differ in whether"), "{mixed}");
     let along = message("Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1),\n(0, 0, 2))])");

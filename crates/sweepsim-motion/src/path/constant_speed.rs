@@ -86,10 +86,10 @@ impl Turns {
         if let (Some((k, angle)), Some(start)) = (turn_between(from, to), from.orientation()) {
             return one(start, k.into_inner(), angle);
         }
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let (o0, o1) = (from.axis_vector().into_inner(), to.axis_vector().into_inner());
         let cross = o0.cross(&o1);
         let sine = cross.norm();
-        let start = frame(from.axis());
+        let start = frame(from.axis_vector());
         if sine < NO_TURN {
             return Self::None(start);
         }
@@ -153,7 +153,7 @@ fn own_turn(from: &Pose, to: &Pose, way: &Move) -> Option<f64> {
     if matches!(way.turning, Turning::Rotary { from, to, .. } if from[0] != to[0] || from[1] != to[1]) {
         return None;
     }
-    let along = [from, to].map(|pose| pose.axis().dot(&arc.normal()));
+    let along = [from, to].map(|pose| pose.axis_vector().dot(&arc.normal_vector()));
     let near = along.iter().all(|cosine| cosine.abs() >= NEAR) && along[0] * along[1] > 0.0;
     near.then(|| arc.angle().copysign(arc.angle() * along[0]))
 }
@@ -184,8 +184,12 @@ fn with_own_turn((turns, weights, spins): Turned, angle: f64, n: usize, m: usize
 impl Tip {
     fn new(from: &Pose, to: &Pose, course: &Course) -> Self {
         match course {
-            Course::Straight => Self::Straight([from.tip(), to.tip()]),
-            Course::Arc(arc) => Self::Arc(*arc, from.tip(), to.tip() - arc.turned(from.tip(), 1.0)),
+            Course::Straight => Self::Straight([from.tip_vector(), to.tip_vector()]),
+            Course::Arc(arc) => Self::Arc(
+                *arc,
+                from.tip_vector(),
+                to.tip_vector() - arc.turned(from.tip_vector(), 1.0),
+            ),
         }
     }
 
@@ -231,7 +235,7 @@ impl Tip {
                 let start = arc.turned(*from, begin);
                 let out = arc.radius_vector(start);
                 let foot = start - out;
-                let (turns, weights, _) = rational_turn(arc.normal().into_inner(), arc.angle() / m as f64);
+                let (turns, weights, _) = rational_turn(arc.normal_vector().into_inner(), arc.angle() / m as f64);
                 let circle = [0, 1, 2].map(|i| foot * weights[i] + turns[i] * out);
                 if way.norm() <= 4.0 * f64::EPSILON * (start.norm() + out.norm()) {
                     return (circle.to_vec(), weights.to_vec());

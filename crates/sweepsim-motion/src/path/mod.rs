@@ -84,7 +84,7 @@ impl Path {
                 let angles: Vec<[f64; 2]> = poses
                     .iter()
                     .map(|pose| {
-                        last = table.angles(pose.axis().into_inner().into(), last);
+                        last = table.angles(pose.axis(), last);
                         last
                     })
                     .collect();
@@ -140,7 +140,7 @@ impl Path {
             if let Turning::Rotary { table, from, to } = path.way(index).turning {
                 let good = |pose: &Pose, angles: [f64; 2]| {
                     let finite = angles.iter().all(|angle| angle.abs() <= 1e6);
-                    finite && pose.side().is_none() && table.points_along(angles, pose.axis())
+                    finite && pose.side().is_none() && table.points_along(angles, pose.axis_vector())
                 };
                 if !good(&pair[0], from) || !good(&pair[1], to) {
                     return Err(PathError::Rotary { index });
@@ -152,7 +152,7 @@ impl Path {
             }
             // Of opposite unit vectors the sum is as long as the angle that is missing to half a turn. Poses with all of an
             // orientation turn about another axis, which is determined.
-            let sum: Vector3<f64> = pair[0].axis().into_inner() + pair[1].axis().into_inner();
+            let sum: Vector3<f64> = pair[0].axis_vector().into_inner() + pair[1].axis_vector().into_inner();
             if pair[0].side().is_none() && sum.norm() <= OPPOSITE {
                 return Err(PathError::OppositeAxes { index });
             }
@@ -250,7 +250,7 @@ impl Path {
     /// A bound of the size of all coordinates of tips.
     #[must_use]
     pub fn size(&self) -> f64 {
-        let poses = self.poses.iter().flat_map(|pose| <[f64; 3]>::from(pose.tip()));
+        let poses = self.poses.iter().flat_map(|pose| pose.tip());
         let ends = poses.map(f64::abs).fold(0.0, f64::max);
         match &self.ways {
             Ways::Slerp => ends,
@@ -262,7 +262,9 @@ impl Path {
                     Course::Straight => size,
                     // A circle, the rise, and what the rise is measured from.
                     Course::Arc(arc) => size.max(
-                        arc.turned(from.tip(), 0.0).norm() + 2.0 * arc.radius_vector(from.tip()).norm() + 2.0 * ends,
+                        arc.turned(from.tip_vector(), 0.0).norm()
+                            + 2.0 * arc.radius_vector(from.tip_vector()).norm()
+                            + 2.0 * ends,
                     ),
                 }),
         }

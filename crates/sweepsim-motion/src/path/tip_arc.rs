@@ -113,13 +113,17 @@ impl TipArc {
 
     /// A point of its axis.
     #[must_use]
-    pub fn centre(&self) -> Vector3<f64> {
-        self.centre
+    pub fn centre(&self) -> [f64; 3] {
+        self.centre.into()
     }
 
-    /// The direction of its axis.
+    /// The direction of its axis: a unit vector.
     #[must_use]
-    pub fn normal(&self) -> Unit<Vector3<f64>> {
+    pub fn normal(&self) -> [f64; 3] {
+        self.normal.into_inner().into()
+    }
+
+    pub(crate) fn normal_vector(&self) -> Unit<Vector3<f64>> {
         self.normal
     }
 

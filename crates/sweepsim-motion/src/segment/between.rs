@@ -64,14 +64,14 @@ impl Segment {
                 count *= 2;
             }
             let step = angle / count as f64;
-            let tip = |n: usize| from.tip() + (to.tip() - from.tip()) * (n as f64 / count as f64);
+            let tip = |n: usize| from.tip_vector() + (to.tip_vector() - from.tip_vector()) * (n as f64 / count as f64);
             let part = |n: usize| {
                 let turned = Rotation3::from_axis_angle(&k, step * n as f64) * start;
                 Self::turning([tip(n), tip(n + 1)], turned, k.into_inner(), step)
             };
             return (0..count).map(part).collect();
         }
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let (o0, o1) = (from.axis_vector().into_inner(), to.axis_vector().into_inner());
         let cross = o0.cross(&o1);
         let angle = cross.norm().atan2(o0.dot(&o1));
         if angle <= FRAC_PI_2 * (1.0 + 1e-12) {
@@ -80,16 +80,16 @@ impl Segment {
         let k = cross.normalize();
         let half = 0.5 * angle;
         let axis = Unit::new_normalize(o0 * half.cos() + k.cross(&o0) * half.sin());
-        let middle = Pose::at(0.5 * (from.tip() + to.tip()), axis);
+        let middle = Pose::at(0.5 * (from.tip_vector() + to.tip_vector()), axis);
         let mut parts = Self::between(from, &middle);
         parts.extend(Self::between(&middle, to));
         parts
     }
 
     fn arc(from: &Pose, to: &Pose) -> Self {
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
-        let start = frame(from.axis());
-        let tips = [from.tip(), to.tip()];
+        let (o0, o1) = (from.axis_vector().into_inner(), to.axis_vector().into_inner());
+        let start = frame(from.axis_vector());
+        let tips = [from.tip_vector(), to.tip_vector()];
         let cross = o0.cross(&o1);
         let sine = cross.norm();
         let angle = sine.atan2(o0.dot(&o1));

@@ -22,19 +22,22 @@ fn axis() -> impl Strategy<Value = [f64; 3]> {
 /// The law of a move in sines and cosines: the axis and the tip at a time.
 fn law(from: &Pose, to: &Pose, way: &Move, time: f64) -> (Vector3<f64>, Vector3<f64>) {
     let tip = match way.course {
-        Course::Straight => from.tip() + (to.tip() - from.tip()) * time,
+        Course::Straight => Vector3::from(from.tip()) + (Vector3::from(to.tip()) - Vector3::from(from.tip())) * time,
         Course::Arc(arc) => {
             let turned = |part: f64| {
-                arc.centre()
-                    + Rotation3::from_axis_angle(&arc.normal(), arc.angle() * part) * (from.tip() - arc.centre())
+                Vector3::from(arc.centre())
+                    + Rotation3::from_axis_angle(
+                        &nalgebra::Unit::new_unchecked(Vector3::from(arc.normal())),
+                        arc.angle() * part,
+                    ) * (Vector3::from(from.tip()) - Vector3::from(arc.centre()))
             };
-            turned(time) + (to.tip() - turned(1.0)) * time
+            turned(time) + (Vector3::from(to.tip()) - turned(1.0)) * time
         }
     };
     let axis = if let Turning::Rotary { table, from, to } = way.turning {
         Vector3::from(table.axis([0, 1].map(|k| from[k] + (to[k] - from[k]) * time)))
     } else {
-        let (o0, o1) = (from.axis().into_inner(), to.axis().into_inner());
+        let (o0, o1) = (Vector3::from(from.axis()), Vector3::from(to.axis()));
         let cross = o0.cross(&o1);
         let angle = cross.norm().atan2(o0.dot(&o1));
         if angle < 1e-12 {
@@ -167,7 +170,7 @@ proptest! {
         let [a, b] = tilts.map(|(tilt, round): (f64, f64)| [tilt.sin() * round.cos(), tilt.sin() * round.sin(), sign * tilt.cos()]);
         let arc = TipArc::new([1.0, 2.0, 0.5], [normal.0, normal.1, 1.0], angle).expect("an arc");
         // Level, or rising by whatever the end is off.
-        let end = if change == 1 { to } else { (arc.centre() + Rotation3::from_axis_angle(&arc.normal(), angle) * (Vector3::from(from) - arc.centre())).into() };
+        let end = if change == 1 { to } else { (Vector3::from(arc.centre()) + Rotation3::from_axis_angle(&nalgebra::Unit::new_unchecked(Vector3::from(arc.normal())), angle) * (Vector3::from(from) - Vector3::from(arc.centre()))).into() };
         let poses = vec![Pose::new(from, a).expect("a pose"), Pose::new(end, if change == 0 { a } else { b }).expect("a pose")];
         let path = Path::with_moves(poses.clone(), vec![Move::arc(arc)]).expect("a path");
         let parts = path.segments_of_symmetric(0, REACH, limit);

@@ -43,7 +43,7 @@ use crate::program::Program;
 /// let program = gcode::read(text, &Options::default())?;
 /// assert_eq!(program.poses.len(), 3);
 /// assert!(program.poses[0].rapid && !program.poses[2].rapid);
-/// assert_eq!(program.poses[2].pose.axis().as_slice(), [1.0, 0.0, 0.0]);
+/// assert_eq!(program.poses[2].pose.axis(), [1.0, 0.0, 0.0]);
 ///
 /// let error = gcode::read("G0 X0 Y0 Z5\nG5 X1", &Options::default()).unwrap_err();
 /// assert!(error.to_string().starts_with("2:1: G5"));

@@ -11,8 +11,8 @@ const TOLERANCE: f64 = 1e-6;
 /// The pose in the coordinates of a frame.
 fn seen(pose: &Pose, frame: &Frame) -> Pose {
     let turn = |v: Vector3<f64>| frame.turn_from_world(v.into());
-    let tip = frame.from_world(pose.tip().into());
-    Pose::new(tip, turn(pose.axis().into_inner())).expect("a pose")
+    let tip = frame.from_world(pose.tip());
+    Pose::new(tip, turn(Vector3::from(pose.axis()))).expect("a pose")
 }
 
 /// Ends of the two agree wherever both have as many; lines near a silhouette may differ. Says how many lines were compared, and differed.

@@ -35,7 +35,7 @@ pub enum Window {
 
 impl Case {
     pub fn grid(&self) -> Grid {
-        let tip = self.poses[0].tip();
+        let tip = Vector3::from(self.poses[0].tip());
         let radius = self.cutter.radius;
         let (middle, half, lines) = match self.window {
             Window::Free { shift, half, lines } => {
@@ -58,7 +58,7 @@ impl fmt::Debug for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}, poses (tip, axis) [", self.cutter.name)?;
         for pose in &self.poses {
-            let (tip, axis): ([f64; 3], [f64; 3]) = (pose.tip().into(), pose.axis().into_inner().into());
+            let (tip, axis): ([f64; 3], [f64; 3]) = (pose.tip(), pose.axis());
             writeln!(f, "    ({tip:?}, {axis:?}),")?;
         }
         let grid = self.grid();

@@ -96,7 +96,7 @@ fn a_right_angle_about_z_turns_the_volume() {
         let turned: Vec<Pose> = case
             .poses
             .iter()
-            .map(|p| pose(quarter(p.tip()), quarter(p.axis().into_inner())))
+            .map(|p| pose(quarter(Vector3::from(p.tip())), quarter(Vector3::from(p.axis()))))
             .collect();
         let one = swept(case, &case.poses, &grid, Method::Charts)?;
         let mut other = swept(case, &turned, &turned_grid, Method::Charts)?;
@@ -140,7 +140,10 @@ fn any_turn_about_z_is_as_good() {
     let cases = (five_axis(), 0.0..TAU).prop_map(|(mut case, angle)| {
         let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
         for p in &mut case.poses {
-            *p = pose((turn * p.tip()).into(), (turn * p.axis().into_inner()).into());
+            *p = pose(
+                (turn * Vector3::from(p.tip())).into(),
+                (turn * Vector3::from(p.axis())).into(),
+            );
         }
         case
     });

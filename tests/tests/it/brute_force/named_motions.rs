@@ -53,7 +53,7 @@ fn rotary(name: &str, table: RotaryTable, places: &[([f64; 3], [f64; 2])]) -> Na
 }
 
 pub fn arc(name: &str, from: Pose, to: Pose, centre: [f64; 3], normal: [f64; 3], turns: i32) -> Named {
-    let arc = TipArc::between(from.tip().into(), to.tip().into(), centre, normal, turns).expect("an arc");
+    let arc = TipArc::between(from.tip(), to.tip(), centre, normal, turns).expect("an arc");
     named(name, vec![from, to], vec![Move::arc(arc)])
 }
 
@@ -316,7 +316,7 @@ pub fn motions() -> Vec<Named> {
 
 /// Every third grid has lines in walls of the tool at its first pose, and through its axis.
 pub fn grid(number: usize, path: &Path) -> Grid {
-    let tip = path.poses()[0].tip();
+    let tip = Vector3::from(path.poses()[0].tip());
     let (middle, half) = if number.is_multiple_of(3) {
         ([tip.x, tip.y], 4.5)
     } else {

@@ -66,7 +66,7 @@ impl Drawn {
         let course = match moves[0].course {
             Course::Straight => [Course::Straight; 2],
             Course::Arc(arc) => [part, 1.0 - part].map(|share| {
-                let (centre, normal) = (arc.centre(), arc.normal().into_inner());
+                let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
                 Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
             }),
         };
@@ -93,13 +93,13 @@ impl Drawn {
                     .expect("a rigid motion"),
             ),
             Self::Moves(poses, moves) => {
-                let place = |p: &Pose| pose((p.tip() + by).into(), p.axis().into_inner().into());
+                let place = |p: &Pose| pose((Vector3::from(p.tip()) + by).into(), p.axis());
                 let shift = |way: &Move| Move {
                     course: match way.course {
                         Course::Straight => Course::Straight,
                         Course::Arc(arc) => {
-                            let normal = arc.normal().into_inner();
-                            let centre = arc.centre() + by;
+                            let normal = Vector3::from(arc.normal());
+                            let centre = Vector3::from(arc.centre()) + by;
                             Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle()).expect("an arc"))
                         }
                     },
@@ -166,7 +166,7 @@ fn moves() -> impl Strategy<Value = Drawn> {
     let round = (place(), tilt(), tilt(), arc(), prop_oneof![Just(0.0), -2.0..2.0]).prop_map(
         |(from, a, b, (centre, normal, angle), rise)| {
             let arc = TipArc::new(centre, normal, angle).expect("an arc");
-            let end = Vector3::from(on(&arc, from)) + arc.normal().into_inner() * rise;
+            let end = Vector3::from(on(&arc, from)) + Vector3::from(arc.normal()) * rise;
             Drawn::Moves(vec![pose(from, a), pose(end.into(), b)], vec![Move::arc(arc)])
         },
     );
@@ -175,8 +175,9 @@ fn moves() -> impl Strategy<Value = Drawn> {
 
 /// Where an arc ends.
 fn on(arc: &TipArc, from: [f64; 3]) -> [f64; 3] {
-    let turn = nalgebra::Rotation3::from_axis_angle(&arc.normal(), arc.angle());
-    (arc.centre() + turn * (Vector3::from(from) - arc.centre())).into()
+    let turn =
+        nalgebra::Rotation3::from_axis_angle(&nalgebra::Unit::new_unchecked(Vector3::from(arc.normal())), arc.angle());
+    (Vector3::from(arc.centre()) + turn * (Vector3::from(from) - Vector3::from(arc.centre()))).into()
 }
 
 fn splines() -> impl Strategy<Value = Drawn> {

@@ -97,7 +97,7 @@ fn moves_cut_in_two_sweep_the_same() {
                     Course::Straight => [Course::Straight; 2],
                     Course::Arc(arc) => {
                         let part = |share: f64| {
-                            let (centre, normal) = (arc.centre(), arc.normal().into_inner());
+                            let (centre, normal) = (Vector3::from(arc.centre()), Vector3::from(arc.normal()));
                             Course::Arc(TipArc::new(centre.into(), normal.into(), arc.angle() * share).expect("an arc"))
                         };
                         [part(cut), part(1.0 - cut)]
@@ -128,8 +128,11 @@ fn a_right_angle_about_z_turns_the_volume() {
             course: match way.course {
                 Course::Straight => Course::Straight,
                 Course::Arc(arc) => {
-                    let normal = arc.normal().into_inner();
-                    Course::Arc(TipArc::new(quarter(arc.centre()), quarter(normal), arc.angle()).expect("an arc"))
+                    let normal = Vector3::from(arc.normal());
+                    Course::Arc(
+                        TipArc::new(quarter(Vector3::from(arc.centre())), quarter(normal), arc.angle())
+                            .expect("an arc"),
+                    )
                 }
             },
             turning: match way.turning {
@@ -147,7 +150,7 @@ fn a_right_angle_about_z_turns_the_volume() {
             .path
             .poses()
             .iter()
-            .map(|p| pose(quarter(p.tip()), quarter(p.axis().into_inner())));
+            .map(|p| pose(quarter(Vector3::from(p.tip())), quarter(Vector3::from(p.axis()))));
         let path = Path::with_moves(poses.collect(), turned).expect("a path");
         let grid = grid(1, &named.path);
         let (min, max, cells) = (grid.min(), grid.max(), grid.cells());

@@ -56,7 +56,12 @@ fn grid(lines: usize) -> Grid {
 
 fn turned(poses: &[Pose], angle: f64) -> Vec<Pose> {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
-    let turned = |p: &Pose| Pose::new((turn * p.tip()).into(), (turn * p.axis().into_inner()).into());
+    let turned = |p: &Pose| {
+        Pose::new(
+            (turn * Vector3::from(p.tip())).into(),
+            (turn * Vector3::from(p.axis())).into(),
+        )
+    };
     poses.iter().map(|p| turned(p).expect("a pose")).collect()
 }
 

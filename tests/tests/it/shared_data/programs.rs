@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use sweepsim_nc::{Options, Program, read_file};
 
 fn tilt(pose: &sweepsim_motion::Pose) -> f64 {
-    pose.axis().z.clamp(-1.0, 1.0).acos().to_degrees()
+    pose.axis()[2].clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 fn read(file: &Path) -> Program {
@@ -31,7 +31,7 @@ fn impeller() {
     assert_eq!(program.sections().count(), 1);
     // The first cutting move, by hand from A -71.841, C -35.930.
     let pose = program.poses[2].pose;
-    assert_eq!(pose.tip().as_slice(), [6.302, -11.560, 27.743]);
+    assert_eq!(pose.tip(), [6.302, -11.560, 27.743]);
     let (a, c) = (f64::to_radians(-71.841), f64::to_radians(-35.930));
     let axis = [c.sin() * a.sin(), c.cos() * a.sin(), a.cos()];
     assert!(
