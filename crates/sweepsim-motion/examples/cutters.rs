@@ -1,6 +1,6 @@
 //! Tools by name, with what their boundaries are made of.
 
-use sweepsim_motion::{Apt, Tool};
+use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Tool};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let drill = Apt {
@@ -25,10 +25,43 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("ball", Tool::ball(5.0, 40.0)?),
         ("flat", Tool::flat(5.0, 40.0)?),
         ("bull", Tool::bull(5.0, 1.0, 40.0)?),
-        ("lollipop", Tool::lollipop(5.0, 2.0, 40.0)?),
-        ("dovetail", Tool::dovetail(8.0, 60.0, 5.0, 3.0, 40.0)?),
-        ("barrel", Tool::barrel(5.0, 60.0, 20.0, 40.0)?),
-        ("lens", Tool::lens(5.0, 20.0, 40.0)?),
+        (
+            "lollipop",
+            Tool::lollipop(Lollipop {
+                radius: 5.0,
+                neck: 2.0,
+                length: 40.0,
+            })?,
+        ),
+        (
+            "dovetail",
+            Tool::dovetail(Dovetail {
+                radius: 8.0,
+                angle: 60.0,
+                height: 5.0,
+                neck: 3.0,
+                length: 40.0,
+            })?,
+        ),
+        (
+            "barrel",
+            Tool::barrel(Barrel {
+                radius: 5.0,
+                flank: 60.0,
+                height: 20.0,
+                corner: 0.0,
+                length: 40.0,
+            })?,
+        ),
+        (
+            "lens",
+            Tool::lens(Lens {
+                radius: 5.0,
+                bottom: 20.0,
+                corner: 0.0,
+                length: 40.0,
+            })?,
+        ),
         ("APT drill", Tool::apt(&drill)?.0),
         ("APT taper", Tool::apt(&taper)?.0),
     ];

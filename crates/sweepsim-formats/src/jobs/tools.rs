@@ -1,6 +1,9 @@
 //! The tools of a job.
 
-use sweepsim_motion::{Apt, AptError, AptWarning, Profile, ProfileError, ProfileSegment, SplineFault, Tool, Turn};
+use sweepsim_motion::{
+    Apt, AptError, AptWarning, Barrel, Dovetail, Lens, Lollipop, Oval, Profile, ProfileError, ProfileSegment,
+    SplineFault, Taper, Tool, Turn,
+};
 
 use super::schema;
 use crate::error::Problem;
@@ -78,14 +81,24 @@ pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, F
                     }
                 });
         }
-        schema::Tool::Lollipop { radius, neck, length } => Tool::lollipop(radius * unit, neck * unit, length * unit),
+        schema::Tool::Lollipop { radius, neck, length } => Tool::lollipop(Lollipop {
+            radius: radius * unit,
+            neck: neck * unit,
+            length: length * unit,
+        }),
         schema::Tool::Dovetail {
             radius,
             angle,
             height,
             neck,
             length,
-        } => Tool::dovetail(radius * unit, angle, height * unit, neck * unit, length * unit),
+        } => Tool::dovetail(Dovetail {
+            radius: radius * unit,
+            angle,
+            height: height * unit,
+            neck: neck * unit,
+            length: length * unit,
+        }),
         schema::Tool::Barrel {
             radius,
             flank,
@@ -94,11 +107,13 @@ pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, F
             length,
         } => {
             let [radius, flank, height, corner, length] = [radius, flank, height, corner, length].map(|c| c * unit);
-            if corner == 0.0 {
-                Tool::barrel(radius, flank, height, length)
-            } else {
-                Tool::barrel_with_corner(radius, flank, height, corner, length)
-            }
+            Tool::barrel(Barrel {
+                radius,
+                flank,
+                height,
+                corner,
+                length,
+            })
         }
         schema::Tool::Lens {
             radius,
@@ -107,25 +122,37 @@ pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, F
             length,
         } => {
             let [radius, bottom, corner, length] = [radius, bottom, corner, length].map(|c| c * unit);
-            if corner == 0.0 {
-                Tool::lens(radius, bottom, length)
-            } else {
-                Tool::lens_with_corner(radius, bottom, corner, length)
-            }
+            Tool::lens(Lens {
+                radius,
+                bottom,
+                corner,
+                length,
+            })
         }
         schema::Tool::Oval {
             radius,
             tip,
             flank,
             length,
-        } => Tool::oval(radius * unit, tip * unit, flank * unit, length * unit),
+        } => Tool::oval(Oval {
+            radius: radius * unit,
+            tip: tip * unit,
+            flank: flank * unit,
+            length: length * unit,
+        }),
         schema::Tool::Taper {
             radius,
             tip,
             flank,
             angle,
             length,
-        } => Tool::taper(radius * unit, tip * unit, flank * unit, angle, length * unit),
+        } => Tool::taper(Taper {
+            radius: radius * unit,
+            tip: tip * unit,
+            flank: flank * unit,
+            angle,
+            length: length * unit,
+        }),
         schema::Tool::Profile { start, ref segments } => profile(start, segments, unit),
         schema::Tool::Surface(ref name) => {
             return Err(Fault {

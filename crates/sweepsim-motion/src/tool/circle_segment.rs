@@ -9,7 +9,8 @@
 //!
 //! Two circles touch from inside where the distance of their centres is the difference of their radii; the point is on the line through both centres.
 
-use super::{Tool, check};
+use super::cutters::check;
+use super::{Barrel, Lens, Oval, Taper, Tool};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
@@ -36,21 +37,38 @@ fn made(segments: Vec<ProfileSegment>) -> Result<Tool, ProfileError> {
 }
 
 impl Tool {
-    /// An oval form cutter (tangential barrel): a ball of radius `tip`, a flank of radius `flank` that is tangent to it, and a shank of `radius` that
-    /// is tangent to the flank; `length` from the tip to the top.
+    /// An oval form cutter (tangential barrel): a ball, a flank that is tangent to it, and a shank that is tangent to the flank.
     ///
     /// # Errors
     /// [`ProfileError::Measure`] unless `0 < tip < radius < flank` and `length` is above the flank.
-    pub fn oval(radius: f64, tip: f64, flank: f64, length: f64) -> Result<Self, ProfileError> {
-        Self::taper(radius, tip, flank, 0.0, length)
+    pub fn oval(measures: Oval) -> Result<Self, ProfileError> {
+        let Oval {
+            radius,
+            tip,
+            flank,
+            length,
+        } = measures;
+        Self::taper(Taper {
+            radius,
+            tip,
+            flank,
+            angle: 0.0,
+            length,
+        })
     }
 
-    /// A taper form cutter (conical barrel): as [`oval`](Self::oval), but where the flank reaches the shank's `radius` it leans outwards by `angle`
-    /// degrees.
+    /// A taper form cutter (conical barrel): as [`oval`](Self::oval), but the flank still leans outwards where it reaches the shank.
     ///
     /// # Errors
     /// [`ProfileError::Measure`] unless `0 < tip < radius < flank · cos(angle)`, `0 ≤ angle < 90`, and `length` is above the flank.
-    pub fn taper(radius: f64, tip: f64, flank: f64, angle: f64, length: f64) -> Result<Self, ProfileError> {
+    pub fn taper(measures: Taper) -> Result<Self, ProfileError> {
+        let Taper {
+            radius,
+            tip,
+            flank,
+            angle,
+            length,
+        } = measures;
         check("radius", radius, radius > 0.0, "positive")?;
         let expected = "positive and less than the radius";
         check("tip", tip, tip > 0.0 && tip < radius, expected)?;
@@ -74,21 +92,41 @@ impl Tool {
         ])
     }
 
-    /// A barrel with a rounded rim: as [`barrel`](Self::barrel), but between the bottom and the flank an arc of radius `corner` is tangent to both.
+    /// A barrel cutter: a flat bottom, a flank that is an arc, widest in the middle of its height, and a shank above it that is as thick as the flank
+    /// leaves it. The rim between the bottom and the flank is sharp, or an arc that is tangent to both.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] as [`barrel`](Self::barrel), and unless `corner` is positive, below half the height, and leaves a bottom.
-    pub fn barrel_with_corner(
-        radius: f64,
-        flank: f64,
-        height: f64,
-        corner: f64,
-        length: f64,
-    ) -> Result<Self, ProfileError> {
-        // The measures that both have.
-        Self::barrel(radius, flank, height, length)?;
+    /// [`ProfileError::Measure`] unless all are positive (`corner` may be 0), the arc is less than half a circle and leaves a bottom, `corner` is below half the height and
+    /// leaves a bottom, and `length` is above `height`.
+    pub fn barrel(measures: Barrel) -> Result<Self, ProfileError> {
+        let Barrel {
+            radius,
+            flank,
+            height,
+            corner,
+            length,
+        } = measures;
+        check("radius", radius, radius > 0.0, "positive")?;
+        check("height", height, height > 0.0, "positive")?;
+        check("flank", flank, 2.0 * flank > height, "more than half the height")?;
         let half = 0.5 * height;
-        let expected = "positive and less than half the height";
+        let bottom = radius - flank + ((flank - half) * (flank + half)).sqrt();
+        check(
+            "flank",
+            flank,
+            bottom > 0.0,
+            "so large that the arc ends outside of the axis",
+        )?;
+        check("length", length, length > height, "greater than the height")?;
+        if corner == 0.0 {
+            return made(vec![
+                line(bottom, 0.0),
+                arc([bottom, height], [radius - flank, half]),
+                line(bottom, length),
+                line(0.0, length),
+            ]);
+        }
+        let expected = "0 for a sharp rim, or positive and less than half the height";
         check("corner", corner, corner > 0.0 && corner < half, expected)?;
         let centre = [radius - flank, half];
         let reach = (flank - half) * (flank + half - 2.0 * corner);
@@ -104,14 +142,29 @@ impl Tool {
         ])
     }
 
-    /// A lens with a rounded rim: as [`lens`](Self::lens), but between the bottom and the shank an arc of radius `corner` is tangent to both.
+    /// A lens cutter: a bottom that is part of a ball, and a shank. The rim between them is sharp, or an arc that is tangent to both.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < corner < radius < bottom` and `length` is above the corner.
-    pub fn lens_with_corner(radius: f64, bottom: f64, corner: f64, length: f64) -> Result<Self, ProfileError> {
+    /// [`ProfileError::Measure`] unless `0 < radius < bottom`, `0 ≤ corner < radius`, and `length` is above the rim.
+    pub fn lens(measures: Lens) -> Result<Self, ProfileError> {
+        let Lens {
+            radius,
+            bottom,
+            corner,
+            length,
+        } = measures;
         check("radius", radius, radius > 0.0, "positive")?;
         check("bottom", bottom, bottom > radius, "greater than the radius")?;
-        let expected = "positive and less than the radius";
+        if corner == 0.0 {
+            let rim = bottom - ((bottom - radius) * (bottom + radius)).sqrt();
+            check("length", length, length > rim, "greater than the height of the rim")?;
+            return made(vec![
+                arc([radius, rim], [0.0, bottom]),
+                line(radius, length),
+                line(0.0, length),
+            ]);
+        }
+        let expected = "0 for a sharp rim, or positive and less than the radius";
         check("corner", corner, corner > 0.0 && corner < radius, expected)?;
         let centre = [0.0, bottom];
         let down = ((bottom - radius) * (bottom + radius - 2.0 * corner)).sqrt();
@@ -169,19 +222,45 @@ mod tests {
     fn everything_that_is_to_be_tangent_is() {
         let sizes = [(4.0, 1.0, 85.0), (8.0, 2.0, 1500.0), (3.0, 0.2, 3.5)];
         for (radius, tip, flank) in sizes {
-            let oval = Tool::oval(radius, tip, flank, 200.0).expect("a cutter");
+            let oval = Tool::oval(Oval {
+                radius,
+                tip,
+                flank,
+                length: 200.0,
+            })
+            .expect("a cutter");
             let turns: Vec<f64> = joints(&oval).into_iter().map(angle).collect();
             assert!(turns[..2].iter().all(|turn| turn.abs() < 1e-10), "{turns:?}");
             // No sharp edge but the rim of the top: as a ball end has.
             let ball = Tool::ball(radius, 200.0).expect("a cutter");
             assert_eq!(oval.edges().len(), ball.edges().len(), "{radius} {tip} {flank}");
-            let taper = Tool::taper(radius, tip, flank, 12.0, 200.0).expect("a cutter");
+            let taper = Tool::taper(Taper {
+                radius,
+                tip,
+                flank,
+                angle: 12.0,
+                length: 200.0,
+            })
+            .expect("a cutter");
             let turns: Vec<f64> = joints(&taper).into_iter().map(angle).collect();
             assert!(turns[0].abs() < 1e-10 && (turns[1] - 12.0).abs() < 1e-10, "{turns:?}");
-            let lens = Tool::lens_with_corner(radius, 2.0 * flank, tip, 200.0).expect("a cutter");
+            let lens = Tool::lens(Lens {
+                radius,
+                bottom: 2.0 * flank,
+                corner: tip,
+                length: 200.0,
+            })
+            .expect("a cutter");
             let turns: Vec<f64> = joints(&lens).into_iter().map(angle).collect();
             assert!(turns[..2].iter().all(|turn| turn.abs() < 1e-10), "{turns:?}");
-            let barrel = Tool::barrel_with_corner(radius, 2.0 * flank, 3.0 * tip, tip, 200.0).expect("a cutter");
+            let barrel = Tool::barrel(Barrel {
+                radius,
+                flank: 2.0 * flank,
+                height: 3.0 * tip,
+                corner: tip,
+                length: 200.0,
+            })
+            .expect("a cutter");
             let turns: Vec<f64> = joints(&barrel).into_iter().map(angle).collect();
             assert!(turns[..2].iter().all(|turn| turn.abs() < 1e-10), "{turns:?}");
         }
@@ -197,7 +276,13 @@ mod tests {
             segments(tool).iter().map(end).collect()
         };
         // A right-angled triangle with sides 3, 4, 5: flank − tip = 5, flank − radius = 4.
-        let oval = Tool::oval(2.0, 1.0, 6.0, 20.0).expect("a cutter");
+        let oval = Tool::oval(Oval {
+            radius: 2.0,
+            tip: 1.0,
+            flank: 6.0,
+            length: 20.0,
+        })
+        .expect("a cutter");
         let [touch, top, ..] = ends(&oval)[..] else {
             panic!("{oval:?}")
         };
@@ -207,7 +292,13 @@ mod tests {
         );
         assert_eq!(top, [2.0, 4.0]);
         // The same triangle: bottom − corner = 5, radius − corner = 3.
-        let lens = Tool::lens_with_corner(4.0, 6.0, 1.0, 20.0).expect("a cutter");
+        let lens = Tool::lens(Lens {
+            radius: 4.0,
+            bottom: 6.0,
+            corner: 1.0,
+            length: 20.0,
+        })
+        .expect("a cutter");
         let [touch, rim, ..] = ends(&lens)[..] else {
             panic!("{lens:?}")
         };
@@ -217,8 +308,22 @@ mod tests {
         );
         assert_eq!(rim, [4.0, 2.0]);
         // A barrel's widest point is in the middle of its height.
-        let barrel = Tool::barrel_with_corner(5.0, 40.0, 20.0, 1.0, 50.0).expect("a cutter");
-        let plain = Tool::barrel(5.0, 40.0, 20.0, 50.0).expect("a cutter");
+        let barrel = Tool::barrel(Barrel {
+            radius: 5.0,
+            flank: 40.0,
+            height: 20.0,
+            corner: 1.0,
+            length: 50.0,
+        })
+        .expect("a cutter");
+        let plain = Tool::barrel(Barrel {
+            radius: 5.0,
+            flank: 40.0,
+            height: 20.0,
+            corner: 0.0,
+            length: 50.0,
+        })
+        .expect("a cutter");
         assert_eq!(ends(&barrel)[2], ends(&plain)[1]);
     }
 
@@ -228,16 +333,108 @@ mod tests {
             Err(ProfileError::Measure { what, .. }) => what,
             other => panic!("{other:?}"),
         };
-        assert_eq!(blame(Tool::oval(2.0, 2.0, 6.0, 20.0)), "tip");
-        assert_eq!(blame(Tool::oval(2.0, 1.0, 2.0, 20.0)), "flank");
-        assert_eq!(blame(Tool::oval(2.0, 1.0, 6.0, 4.0)), "length");
-        assert_eq!(blame(Tool::oval(f64::NAN, 1.0, 6.0, 4.0)), "radius");
-        assert_eq!(blame(Tool::oval(2.0, 1.0, f64::INFINITY, 4.0)), "flank");
-        assert_eq!(blame(Tool::taper(2.0, 1.0, 6.0, 90.0, 20.0)), "angle");
-        assert_eq!(blame(Tool::taper(2.0, 1.0, 6.0, 75.0, 20.0)), "flank");
-        assert_eq!(blame(Tool::barrel_with_corner(5.0, 40.0, 20.0, 10.0, 50.0)), "corner");
-        assert_eq!(blame(Tool::barrel_with_corner(5.0, 9.0, 20.0, 1.0, 50.0)), "flank");
-        assert_eq!(blame(Tool::lens_with_corner(4.0, 6.0, 4.0, 20.0)), "corner");
-        assert_eq!(blame(Tool::lens_with_corner(4.0, 6.0, 1.0, 2.0)), "length");
+        assert_eq!(
+            blame(Tool::oval(Oval {
+                radius: 2.0,
+                tip: 2.0,
+                flank: 6.0,
+                length: 20.0
+            })),
+            "tip"
+        );
+        assert_eq!(
+            blame(Tool::oval(Oval {
+                radius: 2.0,
+                tip: 1.0,
+                flank: 2.0,
+                length: 20.0
+            })),
+            "flank"
+        );
+        assert_eq!(
+            blame(Tool::oval(Oval {
+                radius: 2.0,
+                tip: 1.0,
+                flank: 6.0,
+                length: 4.0
+            })),
+            "length"
+        );
+        assert_eq!(
+            blame(Tool::oval(Oval {
+                radius: f64::NAN,
+                tip: 1.0,
+                flank: 6.0,
+                length: 4.0
+            })),
+            "radius"
+        );
+        assert_eq!(
+            blame(Tool::oval(Oval {
+                radius: 2.0,
+                tip: 1.0,
+                flank: f64::INFINITY,
+                length: 4.0
+            })),
+            "flank"
+        );
+        assert_eq!(
+            blame(Tool::taper(Taper {
+                radius: 2.0,
+                tip: 1.0,
+                flank: 6.0,
+                angle: 90.0,
+                length: 20.0
+            })),
+            "angle"
+        );
+        assert_eq!(
+            blame(Tool::taper(Taper {
+                radius: 2.0,
+                tip: 1.0,
+                flank: 6.0,
+                angle: 75.0,
+                length: 20.0
+            })),
+            "flank"
+        );
+        assert_eq!(
+            blame(Tool::barrel(Barrel {
+                radius: 5.0,
+                flank: 40.0,
+                height: 20.0,
+                corner: 10.0,
+                length: 50.0
+            })),
+            "corner"
+        );
+        assert_eq!(
+            blame(Tool::barrel(Barrel {
+                radius: 5.0,
+                flank: 9.0,
+                height: 20.0,
+                corner: 1.0,
+                length: 50.0
+            })),
+            "flank"
+        );
+        assert_eq!(
+            blame(Tool::lens(Lens {
+                radius: 4.0,
+                bottom: 6.0,
+                corner: 4.0,
+                length: 20.0
+            })),
+            "corner"
+        );
+        assert_eq!(
+            blame(Tool::lens(Lens {
+                radius: 4.0,
+                bottom: 6.0,
+                corner: 1.0,
+                length: 2.0
+            })),
+            "length"
+        );
     }
 }

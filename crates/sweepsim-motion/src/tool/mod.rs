@@ -2,12 +2,15 @@
 
 mod apt;
 mod circle_segment;
+mod cutters;
+mod measures;
 mod surfaces;
 
 pub use apt::{Apt, AptError, AptWarning};
+pub use measures::{Barrel, Dovetail, Lens, Lollipop, Oval, Taper};
 
 use crate::boundary::{self, Edge, Patch, ToolError};
-use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
+use crate::profile::Profile;
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
 
@@ -19,187 +22,7 @@ pub struct Tool {
     edges: Vec<Edge>,
 }
 
-/// A measure that must be good and finite.
-pub(crate) fn check(what: &'static str, value: f64, good: bool, expected: &'static str) -> Result<(), ProfileError> {
-    if good && value.is_finite() {
-        Ok(())
-    } else {
-        Err(ProfileError::Measure { what, value, expected })
-    }
-}
-
 impl Tool {
-    /// A ball end: a half ball of `radius` with a shank of the same radius, `length` from the tip to the top.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < radius < length`.
-    pub fn ball(radius: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check("length", length, length > radius, "greater than the radius")?;
-        let segments = vec![
-            ProfileSegment::Arc {
-                to: [radius, radius],
-                centre: [0.0, radius],
-                turn: Turn::Ccw,
-            },
-            ProfileSegment::Line { to: [radius, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A flat end: a cylinder of `radius` and `length`.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless both are positive.
-    pub fn flat(radius: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check("length", length, length > 0.0, "positive")?;
-        let segments = vec![
-            ProfileSegment::Line { to: [radius, 0.0] },
-            ProfileSegment::Line { to: [radius, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A bull nose: a flat end whose rim is rounded with radius `corner`.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < corner < radius` and `corner < length`.
-    pub fn bull(radius: f64, corner: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check(
-            "corner",
-            corner,
-            corner > 0.0 && corner < radius,
-            "positive and less than the radius",
-        )?;
-        check("length", length, length > corner, "greater than the corner radius")?;
-        let segments = vec![
-            ProfileSegment::Line {
-                to: [radius - corner, 0.0],
-            },
-            ProfileSegment::Arc {
-                to: [radius, corner],
-                centre: [radius - corner, corner],
-                turn: Turn::Ccw,
-            },
-            ProfileSegment::Line { to: [radius, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A lollipop: a ball of `radius` on a thinner neck of radius `neck`, `length` from the tip to the top.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < neck < radius` and the top is above the ball's joint with the neck.
-    pub fn lollipop(radius: f64, neck: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check(
-            "neck",
-            neck,
-            neck > 0.0 && neck < radius,
-            "positive and less than the radius",
-        )?;
-        let joint = radius + ((radius - neck) * (radius + neck)).sqrt();
-        check(
-            "length",
-            length,
-            length > joint,
-            "greater than the height of the joint of ball and neck",
-        )?;
-        let segments = vec![
-            ProfileSegment::Arc {
-                to: [neck, joint],
-                centre: [0.0, radius],
-                turn: Turn::Ccw,
-            },
-            ProfileSegment::Line { to: [neck, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A dovetail cutter: widest at its flat bottom, of `radius` there, with flanks that lean inwards at `angle` degrees above the horizontal up to
-    /// `height`, then a neck of radius `neck`.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no thicker than the flanks leave it.
-    pub fn dovetail(radius: f64, angle: f64, height: f64, neck: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check("angle", angle, angle > 0.0 && angle < 90.0, "between 0 and 90 degrees")?;
-        check("height", height, height > 0.0, "positive")?;
-        let top = radius - height / angle.to_radians().tan();
-        check(
-            "neck",
-            neck,
-            neck > 0.0 && neck <= top,
-            "positive and no more than the flanks leave at their top",
-        )?;
-        check("length", length, length > height, "greater than the height")?;
-        let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
-        let mut segments = vec![line(radius, 0.0), line(top, height)];
-        if neck < top {
-            segments.push(line(neck, height));
-        }
-        segments.extend([line(neck, length), line(0.0, length)]);
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A barrel cutter: its flank is an arc of radius `flank`, from the flat bottom up to `height`, widest in the middle, of `radius` there. Above it the
-    /// shank is as thick as the bottom.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless all are positive, the arc is less than half a circle and leaves a bottom, and `length` is above `height`.
-    pub fn barrel(radius: f64, flank: f64, height: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check("height", height, height > 0.0, "positive")?;
-        check("flank", flank, 2.0 * flank > height, "more than half the height")?;
-        let half = 0.5 * height;
-        let bottom = radius - flank + ((flank - half) * (flank + half)).sqrt();
-        check(
-            "flank",
-            flank,
-            bottom > 0.0,
-            "so large that the arc ends outside of the axis",
-        )?;
-        check("length", length, length > height, "greater than the height")?;
-        let segments = vec![
-            ProfileSegment::Line { to: [bottom, 0.0] },
-            ProfileSegment::Arc {
-                to: [bottom, height],
-                centre: [radius - flank, half],
-                turn: Turn::Ccw,
-            },
-            ProfileSegment::Line { to: [bottom, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
-    /// A lens cutter: a bottom that is part of a ball of radius `bottom`, with a sharp rim of `radius`, and a shank above it.
-    ///
-    /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < radius < bottom` and `length` is above the rim.
-    pub fn lens(radius: f64, bottom: f64, length: f64) -> Result<Self, ProfileError> {
-        check("radius", radius, radius > 0.0, "positive")?;
-        check("bottom", bottom, bottom > radius, "greater than the radius")?;
-        let rim = bottom - ((bottom - radius) * (bottom + radius)).sqrt();
-        check("length", length, length > rim, "greater than the height of the rim")?;
-        let segments = vec![
-            ProfileSegment::Arc {
-                to: [radius, rim],
-                centre: [0.0, bottom],
-                turn: Turn::Ccw,
-            },
-            ProfileSegment::Line { to: [radius, length] },
-            ProfileSegment::Line { to: [0.0, length] },
-        ];
-        Ok(Self::from_profile(Profile::new([0.0, 0.0], segments)?))
-    }
-
     /// The seven-parameter cutter of APT, and what is odd about it.
     ///
     /// # Errors

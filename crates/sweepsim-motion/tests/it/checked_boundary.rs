@@ -2,16 +2,33 @@
 
 use nalgebra::Matrix3;
 use proptest::prelude::*;
-use sweepsim_motion::{Edge, NormalField, Patch, PatchError, Revolved, Tool};
+use sweepsim_motion::{Edge, Lens, Lollipop, NormalField, Oval, Patch, PatchError, Revolved, Tool};
 use sweepsim_spline::Bernstein;
 
 fn tools() -> Vec<Tool> {
-    let oval = Tool::oval(5.0, 1.0, 80.0, 60.0).expect("a cutter");
-    let lens = Tool::lens(8.0, 20.0, 30.0).expect("a cutter");
+    let oval = Tool::oval(Oval {
+        radius: 5.0,
+        tip: 1.0,
+        flank: 80.0,
+        length: 60.0,
+    })
+    .expect("a cutter");
+    let lens = Tool::lens(Lens {
+        radius: 8.0,
+        bottom: 20.0,
+        corner: 0.0,
+        length: 30.0,
+    })
+    .expect("a cutter");
     vec![
         Tool::ball(5.0, 30.0).expect("a cutter"),
         Tool::bull(5.0, 1.0, 30.0).expect("a cutter"),
-        Tool::lollipop(5.0, 2.0, 40.0).expect("a cutter"),
+        Tool::lollipop(Lollipop {
+            radius: 5.0,
+            neck: 2.0,
+            length: 40.0,
+        })
+        .expect("a cutter"),
         oval,
         lens,
     ]

@@ -5,16 +5,58 @@ use crate::brute_force::named_motions::{grid, motions};
 use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use sweepsim::Method;
-use sweepsim_motion::Tool;
+use sweepsim_motion::{Barrel, Lens, Oval, Taper, Tool};
 
 #[test]
 fn circle_segment_cutters_along_motions_of_every_kind() {
     let tools = [
-        ("oval", Tool::oval(2.0, 0.5, 40.0, 14.0)),
-        ("oval, almost a ball", Tool::oval(2.0, 1.9999, 2.01, 9.0)),
-        ("taper", Tool::taper(2.0, 0.3, 150.0, 20.0, 9.0)),
-        ("barrel", Tool::barrel_with_corner(2.0, 15.0, 6.0, 0.4, 8.0)),
-        ("lens", Tool::lens_with_corner(2.0, 9.0, 0.3, 8.0)),
+        (
+            "oval",
+            Tool::oval(Oval {
+                radius: 2.0,
+                tip: 0.5,
+                flank: 40.0,
+                length: 14.0,
+            }),
+        ),
+        (
+            "oval, almost a ball",
+            Tool::oval(Oval {
+                radius: 2.0,
+                tip: 1.9999,
+                flank: 2.01,
+                length: 9.0,
+            }),
+        ),
+        (
+            "taper",
+            Tool::taper(Taper {
+                radius: 2.0,
+                tip: 0.3,
+                flank: 150.0,
+                angle: 20.0,
+                length: 9.0,
+            }),
+        ),
+        (
+            "barrel",
+            Tool::barrel(Barrel {
+                radius: 2.0,
+                flank: 15.0,
+                height: 6.0,
+                corner: 0.4,
+                length: 8.0,
+            }),
+        ),
+        (
+            "lens",
+            Tool::lens(Lens {
+                radius: 2.0,
+                bottom: 9.0,
+                corner: 0.3,
+                length: 8.0,
+            }),
+        ),
     ]
     .map(|(name, tool)| (name, tool.expect("a cutter")));
     let motions = motions();

@@ -7,7 +7,7 @@ use crate::brute_force::sample::sample;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use sweepsim::{BoundaryOperator, Method, Options, sweep};
-use sweepsim_motion::{Apt, Path, Pose, Profile, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Apt, Lens, Path, Pose, Profile, ProfileSegment, Tool, Turn};
 use sweepsim_tests::tools::{drill, lollipop, scaled_concave};
 
 /// Where a tool's tip is and where its axis points.
@@ -70,7 +70,16 @@ pub fn tools() -> Vec<(&'static str, Tool)> {
         ("dovetail", dovetail),
         ("taper", taper),
         ("barrel", barrel),
-        ("lens", Tool::lens(2.0, 5.0, 7.0).expect("a lens")),
+        (
+            "lens",
+            Tool::lens(Lens {
+                radius: 2.0,
+                bottom: 5.0,
+                corner: 0.0,
+                length: 7.0,
+            })
+            .expect("a lens"),
+        ),
         ("hollow end", apt([4.0, 0.0, 0.0, 0.0, -12.0, 4.0, 6.0])),
         ("rounded taper with a point", rounded_taper()),
     ]

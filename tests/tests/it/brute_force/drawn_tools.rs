@@ -2,7 +2,7 @@
 
 use crate::brute_force::cases::{Cutter, any_tool};
 use proptest::prelude::*;
-use sweepsim_motion::{Profile, ProfileSegment, Tool, Turn};
+use sweepsim_motion::{Profile, ProfileSegment, Taper, Tool, Turn};
 
 fn line(rho: f64, zeta: f64) -> ProfileSegment {
     ProfileSegment::Line { to: [rho, zeta] }
@@ -51,9 +51,16 @@ pub fn tools() -> impl Strategy<Value = Cutter> {
     let barrel = (0.2..0.9, 1.05..40.0, 0.0..20.0).prop_map(|(tip, flank, angle): (f64, f64, f64)| {
         let (radius, angle) = (2.0, f64::min(angle, 15.0 * (flank - 1.04)));
         let (tip, flank) = (tip * radius, flank * radius / angle.to_radians().cos());
+        let measures = Taper {
+            radius,
+            tip,
+            flank,
+            angle,
+            length: 90.0,
+        };
         Cutter {
-            name: format!("Tool::taper({radius:?}, {tip:?}, {flank:?}, {angle:?}, 90.0)"),
-            tool: Tool::taper(radius, tip, flank, angle, 90.0).expect("a cutter"),
+            name: format!("Tool::taper({measures:?})"),
+            tool: Tool::taper(measures).expect("a cutter"),
             radius,
         }
     });

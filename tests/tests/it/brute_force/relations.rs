@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Course, Law, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
+use sweepsim_motion::{Course, Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
 use sweepsim_tests::oracle::Motion;
 
 /// Checks all named motions that `relate` makes another path of, with two tools.
@@ -175,7 +175,7 @@ fn a_right_angle_about_z_turns_the_volume() {
 #[test]
 fn a_union_of_tools_sweeps_the_union() {
     let (radius, neck, length) = (2.0, 0.7, 9.0);
-    let whole = Tool::lollipop(radius, neck, length).expect("a lollipop");
+    let whole = Tool::lollipop(Lollipop { radius, neck, length }).expect("a lollipop");
     let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };
     let solid = |start: f64, segments| Tool::from_profile(Profile::new([0.0, start], segments).expect("a profile"));
     let ball = solid(
