@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
-use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock, TriDexels, surface};
+use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock, TriDexels};
 
 const CELLS: usize = 300;
 
@@ -93,11 +93,11 @@ fn meshes(c: &mut Criterion) {
     };
     let dexels = cylinder.dexels(&grid()).expect("a cylinder");
     let mut group = c.benchmark_group("meshes");
-    let triangles = surface(&dexels).triangles.len();
+    let triangles = dexels.surface().unwrap().triangles.len();
     group.sample_size(10).throughput(Throughput::Elements(triangles as u64));
     group.bench_function("surface", |b| b.iter(|| surface(black_box(&dexels))));
     let solid = TriDexels::new([-10.0; 3], [10.0; 3], [150; 3], &cylinder).expect("a cylinder");
-    let triangles = solid.surface().triangles.len();
+    let triangles = solid.surface().unwrap().triangles.len();
     group.throughput(Throughput::Elements(triangles as u64));
     group.bench_function("sharp", |b| b.iter(|| black_box(&solid).surface()));
     group.finish();

@@ -69,7 +69,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let solid = TriDexels::from_sets(sets)?;
     let csg = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let mesh = solid.surface();
+    let mesh = solid.surface()?;
     let meshing = start.elapsed().as_secs_f64();
     let balls = centres().count() as f64;
     let exact = SIZE.iter().product::<f64>() - balls * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);

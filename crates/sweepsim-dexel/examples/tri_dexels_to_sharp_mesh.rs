@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         solid.disagreements()
     );
 
-    let mesh = solid.surface();
+    let mesh = solid.surface()?;
     println!("{} vertices, {} triangles", mesh.vertices.len(), mesh.triangles.len());
     // How many of the vertices are on the upper rim of the bore?
     let on_rim = |v: &&[f64; 3]| ((v[0] + 5.0).hypot(v[1]) - 3.0).abs() < 1e-3 && (v[2] - 8.0).abs() < 1e-9;
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     };
     // For a picture every vertex gets the normal of its face: those on edges become several.
-    let mesh = mesh.crisp(0.8);
+    let mesh = mesh.crisp(0.8)?;
     let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
     for v in &mesh.vertices {
         writeln!(file, "v {} {} {}", v[0], v[1], v[2])?;

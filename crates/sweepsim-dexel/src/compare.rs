@@ -159,7 +159,7 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
 /// ```
 /// use sweepsim_dexel::{Grid, Stock, TriDexels, compare_with_mesh};
 /// let ball = Stock::Ball { centre: [0.0; 3], radius: 4.0 };
-/// let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?.surface();
+/// let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?.surface().unwrap();
 /// let grid = Grid::new([-5.0; 2], [5.0; 2], [60, 60])?;
 /// let found = compare_with_mesh(&ball.dexels(&grid)?, &mesh.soup().ok_or("no mesh")?, 1.0)?;
 /// // What the triangles of a fifth of a millimetre are off from the ball.
@@ -171,7 +171,7 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> 
     // All in the frame of the grid: distances are the same.
     let target = target.seen_from(grid.frame());
     let goal = mesh_dexels(&grid.in_frame(Frame::WORLD), &target)?;
-    let tree = DistanceTo::new(&target);
+    let tree = DistanceTo::new(&target)?;
     let [columns, _] = grid.cells();
     let [dx, dy] = grid.spacing();
     let parts: Vec<Comparison> = (0..columns)

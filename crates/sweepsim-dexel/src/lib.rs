@@ -38,7 +38,6 @@ pub use grid::{Frame, FrameError, Grid, GridError};
 pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};
 pub use mesh::{DistanceTo, Mesh, MeshError, Nearest, TriangleSoup};
 pub use stock::{Stock, StockError};
-pub use surface::surface;
 pub use tri::{TriDexels, TriDexelsError};
 
 /// The README's example is tested.

@@ -3,7 +3,7 @@
 //! `cargo run --release --example stl_to_dexels_to_mesh -- IN.stl OUT.ply [DISTANCE]`
 
 use std::path::Path;
-use sweepsim_dexel::{Grid, Stock, compare, surface};
+use sweepsim_dexel::{Grid, Stock, compare};
 use sweepsim_formats::{read_stl, write_atomically, write_ply};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         dexels.bytes()
     );
     println!("volume {:.6}", dexels.volume());
-    let mesh = surface(&dexels);
+    let mesh = dexels.surface()?;
     println!("{} triangles", mesh.triangles.len());
     // How good is it? Its dexels tell.
     let triangles = mesh

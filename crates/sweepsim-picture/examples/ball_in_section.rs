@@ -4,7 +4,7 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use sweepsim_dexel::{Grid, Stock, surface};
+use sweepsim_dexel::{Grid, Stock};
 use sweepsim_picture::{Axis, Drawing, Section, View};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let part = Stock::Difference(ball.into(), vec![slot]);
     let grid = Grid::new([-21.0, -21.0], [21.0, 21.0], [210, 210])?;
-    let mesh = surface(&part.dexels(&grid)?);
+    let mesh = part.dexels(&grid)?.surface()?;
 
     let mut view = View::default();
     view.size = [800, 600];

@@ -5,12 +5,12 @@
 //! cut the part open. The same mesh gives the same bytes at any number of threads.
 //!
 //! ```
-//! use sweepsim_dexel::{Grid, Stock, surface};
+//! use sweepsim_dexel::{Grid, Stock};
 //! use sweepsim_picture::{Axis, Drawing, Section, View};
 //!
 //! let grid = Grid::new([-12.0, -12.0], [12.0, 12.0], [48, 48])?;
 //! let ball = Stock::Ball { centre: [0.0; 3], radius: 10.0 }.dexels(&grid)?;
-//! let mesh = surface(&ball);
+//! let mesh = ball.surface()?;
 //!
 //! let mut view = View::default();
 //! view.size = [200, 150];

@@ -23,7 +23,7 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let name = options.part.file_stem().unwrap_or_default().to_string_lossy();
     let folder = output_folder(options.out.as_deref(), &name);
     let mut outputs = Outputs::new(folder, &[Output::Picture, Output::Report])?;
-    let (mesh, goal) = (part.surface(), target.surface());
+    let (mesh, goal) = (part.surface()?, target.surface()?);
     let around =
         bounds(&mesh).ok_or_else(|| Failure::message(format!("{}: this part is empty", options.part.display())))?;
     if bounds(&goal).is_none() {
@@ -39,11 +39,11 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let found = differences(options, &grid, [&part, &target], [&mesh, &goal])?;
     describe(&mut report, options, &found);
     report.cells = grid.cells();
-    let tree = DistanceTo::new(&soup(&goal));
+    let tree = DistanceTo::new(&soup(&goal))?;
     let [dx, dy] = grid.spacing();
     let furthest = |tree: &DistanceTo, of: &Mesh| tree.furthest(&soup(of), dx.min(dy)).map(furthest_of);
     report.furthest_of_part = furthest(&tree, &mesh);
-    report.furthest_of_target = furthest(&DistanceTo::new(&soup(&mesh)), &goal);
+    report.furthest_of_target = furthest(&DistanceTo::new(&soup(&mesh))?, &goal);
     report
         .seconds
         .insert("compare".to_owned(), start.elapsed().as_secs_f64());

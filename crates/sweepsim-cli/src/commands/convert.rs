@@ -42,15 +42,15 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     let (input, output) = (&options.input, &options.output);
     let extension = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if extension.as_deref() == Some("png") {
-        let png = picture(&options.view, &solid.surface(), None)?;
+        let png = picture(&options.view, &solid.surface()?, None)?;
         return Ok(write_atomically(output, |file| file.write_all(&png))?);
     }
     if let Some(format) = MeshFormat::of(output) {
         let mesh = match solid {
             Solid::Mesh(mesh) => mesh.clone(),
             // 3D printers need triangles that share vertices.
-            Solid::Dexels(_) if format == MeshFormat::ThreeMf => soup(&solid.surface()).indexed(),
-            Solid::Dexels(_) => solid.surface(),
+            Solid::Dexels(_) if format == MeshFormat::ThreeMf => soup(&solid.surface()?).indexed()?,
+            Solid::Dexels(_) => solid.surface()?,
         };
         line("triangles", &words::count(mesh.triangles.len() as u64));
         if format == MeshFormat::Stl || format == MeshFormat::Glb {

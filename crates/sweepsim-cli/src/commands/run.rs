@@ -9,7 +9,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
-use sweepsim_dexel::{Dexels, Grid, Mesh, surface};
+use sweepsim_dexel::{Dexels, Grid, Mesh};
 use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
@@ -221,7 +221,7 @@ fn mesh(
 ) -> Result<Mesh, Failure> {
     if !options.tri {
         session.progress.phase("mesh");
-        return Ok(phase(report, "mesh", || surface(&outcome.dexels)));
+        return Ok(phase(report, "mesh", || outcome.dexels.surface())?);
     }
     let surface = tri_surface::surface(task, session, options, &outcome.dexels, report)?;
     outcome.uncertified = surface.uncertified;

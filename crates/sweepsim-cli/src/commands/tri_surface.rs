@@ -91,10 +91,10 @@ pub(crate) fn surface(
     let sets = [pass(along_x, "along x")?, pass(along_y, "along y")?, along_z.clone()];
     progress.phase("mesh");
     let mesh = phase(report, "mesh", || {
-        TriDexels::from_sets(sets).map(|solid| solid.surface().crisp(CRISP))
+        TriDexels::from_sets(sets).map(|solid| solid.surface().and_then(|mesh| mesh.crisp(CRISP)))
     });
     Ok(Surface {
-        mesh: mesh.map_err(|error| wrong(&error))?,
+        mesh: mesh.map_err(|error| wrong(&error))??,
         uncertified,
     })
 }

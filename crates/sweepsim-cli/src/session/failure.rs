@@ -36,6 +36,12 @@ impl From<FormatError> for Failure {
     }
 }
 
+impl From<sweepsim_dexel::MeshError> for Failure {
+    fn from(error: sweepsim_dexel::MeshError) -> Self {
+        Self::message(error.to_string())
+    }
+}
+
 impl From<NcError> for Failure {
     fn from(error: NcError) -> Self {
         FormatError::from(error).into()

@@ -4,7 +4,7 @@ use super::Failure;
 use super::words::measure;
 use crate::arguments::{GridOptions, ViewOptions};
 use std::path::Path;
-use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriangleSoup, surface};
+use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriangleSoup};
 use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_picture::{Drawing, legend};
 
@@ -75,9 +75,9 @@ impl Solid {
     }
 
     /// The surface, with sharp edges drawn sharp.
-    pub fn surface(&self) -> Mesh {
+    pub fn surface(&self) -> Result<Mesh, MeshError> {
         match self {
-            Self::Dexels(dexels) => surface(dexels),
+            Self::Dexels(dexels) => dexels.surface(),
             Self::Mesh(mesh) => mesh.crisp(CRISP),
         }
     }

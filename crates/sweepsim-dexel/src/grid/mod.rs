@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).
 ///
 /// All numbers of dexels are in the frame of their grid: places, heights and normals. What is made of them with other things
-/// ([stock](crate::Stock), [surfaces](crate::surface), meshes to compare with) is in the world.
+/// ([stock](crate::Stock), [surfaces](crate::Dexels::surface), meshes to compare with) is in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     min: [f64; 2],
@@ -62,7 +62,7 @@ impl Grid {
     /// The same lines in a frame: along its `z`, and `x` and `y` are the frame's.
     ///
     /// ```
-    /// use sweepsim_dexel::{Frame, Grid, Stock, surface};
+    /// use sweepsim_dexel::{Frame, Grid, Stock};
     /// // From the side: the lines run along the world's x.
     /// let side = Frame::new([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0])?;
     /// let grid = Grid::new([0.0, 0.0], [4.0, 2.0], [8, 4])?.in_frame(side);
@@ -70,7 +70,7 @@ impl Grid {
     /// let line = block.intervals(0, 0).to_vec();
     /// assert_eq!((line[0].lower.z, line[0].upper.z), (1.0, 9.0));
     /// // Its surface is where the block is.
-    /// assert!(surface(&block).vertices.iter().all(|v| (1.0..=9.0).contains(&v[0]) && (0.0..=4.0).contains(&v[1])));
+    /// assert!(block.surface()?.vertices.iter().all(|v| (1.0..=9.0).contains(&v[0]) && (0.0..=4.0).contains(&v[1])));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]

@@ -5,7 +5,7 @@
 //! it the sign is right for every closed surface that does not cross itself, also where the nearest place is on a sharp
 //! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
 
-use crate::mesh::TriangleSoup;
+use super::{MeshError, TriangleSoup};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -20,11 +20,11 @@ const SAMPLES: f64 = 2e6;
 /// use sweepsim_dexel::{DistanceTo, TriangleSoup};
 /// let p = [[0.0; 3], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
 /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|t| t.map(|v| p[v])).to_vec();
-/// let wedge = DistanceTo::new(&TriangleSoup { triangles });
-/// let near = wedge.nearest([1.0, 1.0, -0.5]).ok_or("no triangles")?;
+/// let wedge = DistanceTo::new(&TriangleSoup { triangles })?;
+/// let near = wedge.nearest([1.0, 1.0, -0.5]).unwrap();
 /// assert_eq!((near.distance, near.place), (0.5, [1.0, 1.0, 0.0]));
 /// assert_eq!(wedge.nearest([1.0, 1.0, 0.25]).map(|near| near.distance), Some(-0.25));
-/// # Ok::<(), &str>(())
+/// # Ok::<(), sweepsim_dexel::MeshError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct DistanceTo {
@@ -132,9 +132,11 @@ impl TreeNode {
 
 impl DistanceTo {
     /// Makes a surface ready. Triangles without area are left out: closed surfaces are closed without them, too.
-    #[must_use]
-    pub fn new(soup: &TriangleSoup) -> Self {
-        let mesh = soup.indexed();
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn new(soup: &TriangleSoup) -> Result<Self, MeshError> {
+        let mesh = soup.indexed()?;
         let normal_of = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
             let n = cross(sub(b, a), sub(c, a));
@@ -187,7 +189,7 @@ impl DistanceTo {
             tree.split(&mut faces, 0);
             tree.faces = faces;
         }
-        tree
+        Ok(tree)
     }
 
     /// Builds the tree over some faces, the first of which has the number `first` in all.
@@ -297,7 +299,7 @@ impl DistanceTo {
             .sum();
         let spacing = spacing.max((area / SAMPLES).sqrt());
         let of = |p: [f64; 3]| Some((p, self.nearest(p)?));
-        let mesh = other.indexed();
+        let mesh = other.indexed().ok()?;
         let corners: Vec<_> = mesh.vertices.par_iter().map(|p| of(*p)).collect();
         // Between the corners: in rows along the longest side, fewer and fewer towards the corner opposite.
         let of_triangle = |t: &[u32; 3]| {

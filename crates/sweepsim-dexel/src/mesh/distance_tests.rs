@@ -23,7 +23,7 @@ proptest! {
     #[test]
     fn distances_to_a_box(p in [-4.0..7.0_f64, -4.0..7.0, -4.0..7.0]) {
         let (min, max) = ([-1.0, 0.0, 0.5], [3.0, 2.0, 4.5]);
-        let near = DistanceTo::new(&block(min, max)).nearest(p).unwrap();
+        let near = DistanceTo::new(&block(min, max)).unwrap().nearest(p).unwrap();
         let out = [0, 1, 2].map(|k| (min[k] - p[k]).max(p[k] - max[k]));
         let beyond = out.iter().map(|c| c.max(0.0).powi(2)).sum::<f64>().sqrt();
         let within = out.iter().copied().fold(f64::NEG_INFINITY, f64::max).min(0.0);
@@ -39,9 +39,12 @@ fn the_tree_finds_what_all_triangles_have() {
         part([-4.1; 3], [4.2; 3]).into(),
         vec![part([-1.0; 3], [5.0; 3]), part([-9.0, 1.0, -2.0], [9.0, 3.0, -1.0])],
     );
-    let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [20; 3], &solid).unwrap().surface();
+    let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [20; 3], &solid)
+        .unwrap()
+        .surface()
+        .unwrap();
     let soup = mesh.soup().unwrap();
-    let tree = DistanceTo::new(&soup);
+    let tree = DistanceTo::new(&soup).unwrap();
     let (mut state, mut sides) = (9_u64, [0; 2]);
     for _ in 0..2000 {
         let p = [0; 3].map(|_| {
@@ -73,31 +76,33 @@ fn the_tree_finds_what_all_triangles_have() {
 #[test]
 fn furthest_points_are_those_of_the_shapes() {
     let (small, large) = (block([0.0; 3], [4.0; 3]), block([0.0, 0.0, -0.5], [4.0, 4.0, 6.0]));
-    let (place, near) = DistanceTo::new(&small).furthest(&large, 0.1).unwrap();
+    let (place, near) = DistanceTo::new(&small).unwrap().furthest(&large, 0.1).unwrap();
     // Samples between the corners are rounded.
     assert!(
         (place[2] - 6.0).abs() < 1e-14 && (near.distance - 2.0).abs() < 1e-14,
         "{place:?} {near:?}"
     );
-    let (_, back) = DistanceTo::new(&large).furthest(&small, 0.1).unwrap();
+    let (_, back) = DistanceTo::new(&large).unwrap().furthest(&small, 0.1).unwrap();
     // The middle of the small one's top is 2 away from the sides and from the top.
     assert!((back.distance + 2.0).abs() < 0.06, "{back:?}");
     assert!(
         DistanceTo::new(&TriangleSoup::default())
+            .unwrap()
             .furthest(&small, 0.1)
             .is_none()
     );
     assert!(
         DistanceTo::new(&small)
+            .unwrap()
             .furthest(&TriangleSoup::default(), 0.1)
             .is_none()
     );
-    assert!(DistanceTo::new(&small).nearest([f64::NAN; 3]).is_none());
+    assert!(DistanceTo::new(&small).unwrap().nearest([f64::NAN; 3]).is_none());
 }
 
 #[test]
 fn sides_of_a_thin_wall_are_told_apart() {
-    let tree = DistanceTo::new(&block([0.0; 3], [9.0, 9.0, 0.1]));
+    let tree = DistanceTo::new(&block([0.0; 3], [9.0, 9.0, 0.1])).unwrap();
     let p = [4.0, 4.0, 0.3];
     assert!((tree.nearest(p).unwrap().distance - 0.2).abs() < 1e-12);
     let lower = tree.nearest_facing(p, [0.0, 0.0, -1.0], 1.0).unwrap();

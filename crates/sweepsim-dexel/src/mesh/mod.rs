@@ -28,7 +28,7 @@ pub struct TriangleSoup {
     pub triangles: Vec<[[f64; 3]; 3]>,
 }
 
-/// Why triangles enclose no solid.
+/// Why triangles enclose no solid, or a solid has no mesh.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -52,6 +52,24 @@ pub enum MeshError {
         /// Its end.
         to: [f64; 3],
     },
+    /// Vertices are numbered with 32 bits.
+    #[error("the mesh needs {vertices} vertices or more, but can have {MOST_VERTICES} at most")]
+    TooManyVertices {
+        /// As many were needed when it was given up.
+        vertices: usize,
+    },
+}
+
+/// The most vertices that a mesh can have.
+pub(crate) const MOST_VERTICES: usize = u32::MAX as usize;
+
+/// Whether vertices can be numbered.
+pub(crate) fn check_vertices(vertices: usize, most: usize) -> Result<(), MeshError> {
+    if vertices <= most {
+        Ok(())
+    } else {
+        Err(MeshError::TooManyVertices { vertices })
+    }
 }
 
 impl Mesh {
@@ -85,8 +103,10 @@ impl Mesh {
     /// other's get vertices and normals of their own, so that edges look sharp. Places stay as they are; a triangle
     /// with a vertex that the mesh does not have is left out. A triangle is cut when all its corners are; a vertex, when most of the area around it
     /// is: on an edge between cut and uncut faces each side has its own.
-    #[must_use]
-    pub fn crisp(&self, cosine: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn crisp(&self, cosine: f64) -> Result<Self, MeshError> {
         let mut mesh = Self::default();
         // The vertices made of each, with the sums of their triangles' normals, and of lengths of those that are cut less the others.
         let mut made: Vec<Vec<(u32, [f64; 3], f64)>> = vec![Vec::new(); self.vertices.len()];
@@ -119,6 +139,7 @@ impl Mesh {
                 new
             });
             mesh.triangles.push(corners);
+            check_vertices(mesh.vertices.len(), MOST_VERTICES)?;
         }
         for (new, sum, cut) in made.into_iter().flatten() {
             mesh.cut[new as usize] = cut > 0.0;
@@ -127,7 +148,7 @@ impl Mesh {
                 mesh.normals[new as usize] = sum.map(|c| (c / length) as f32);
             }
         }
-        mesh
+        Ok(mesh)
     }
 }
 
@@ -159,8 +180,10 @@ impl TriangleSoup {
 
     /// A mesh whose vertices are the corners, those that are equal to the bit as one, with the normals of the triangles around, each
     /// weighted by its area; see [`Mesh::crisp`] for sharp edges. Triangles with two corners in one place are left out.
-    #[must_use]
-    pub fn indexed(&self) -> Mesh {
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn indexed(&self) -> Result<Mesh, MeshError> {
         let mut mesh = Mesh::default();
         // Only looked up, so its order does not matter. Adding 0 makes −0 and 0 one.
         let mut numbers: HashMap<[u64; 3], u32> = HashMap::with_capacity(self.triangles.len() / 2);
@@ -185,6 +208,7 @@ impl TriangleSoup {
                 *sum = [0, 1, 2].map(|k| sum[k] + normal[k]);
             }
             mesh.triangles.push(triangle);
+            check_vertices(mesh.vertices.len(), MOST_VERTICES)?;
         }
         mesh.cut = vec![false; mesh.vertices.len()];
         mesh.normals = sums
@@ -198,7 +222,7 @@ impl TriangleSoup {
                 }
             })
             .collect();
-        mesh
+        Ok(mesh)
     }
 
     /// Whether every edge is used as often in one direction as in the other (corners compared exactly).

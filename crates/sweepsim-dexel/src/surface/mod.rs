@@ -23,8 +23,8 @@ mod square;
 mod wall;
 
 use crate::dexels::Dexels;
-use crate::intervals::{End, Interval};
-use crate::mesh::Mesh;
+use crate::intervals::{End, Interval, Source};
+use crate::mesh::{MOST_VERTICES, Mesh, MeshError, check_vertices};
 use batch::TriangleBatch;
 use edge::{Class, Edge};
 use outline::Outline;
@@ -35,30 +35,69 @@ use std::collections::HashMap;
 /// Cosine of 40°: a vertex whose normal is further from a triangle's is not shared with it.
 const CRISP: f64 = 0.766;
 
-/// The surface of dexels, closed, as triangles with normals.
-///
-/// It is in the world, wherever the frame of the dexels' grid is. Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
-/// side has a vertex of its own. At the ends the normals are those of the dexels. A vertex counts as cut when a tool made
-/// the end. A wall counts as cut when a tool made the end that the space in front of it goes to; beside a dexel without
-/// material, when it is inside of a hole or both ends of the interval behind were cut.
-///
-/// The mesh is the same for any number of threads. It can have 2³² vertices at most: dexels with more ends than that
-/// (34 GB of them) give wrong triangles.
-///
-/// ```
-/// use sweepsim_dexel::{Dexels, Grid, Interval, surface};
-/// let grid = Grid::new([0.0, 0.0], [2.0, 2.0], [2, 2])?;
-/// let mut dexels = Dexels::empty(grid);
-/// for index in 0..grid.len() {
-///     dexels.set(index, &[Interval::between(0.0, 5.0)]);
-/// }
-/// let mesh = surface(&dexels);
-/// let highest = mesh.vertices.iter().map(|v| v[2]).fold(f64::MIN, f64::max);
-/// assert_eq!(highest, 5.0);
-/// # Ok::<(), sweepsim_dexel::GridError>(())
-/// ```
-#[must_use]
-pub fn surface(dexels: &Dexels) -> Mesh {
+impl Dexels {
+    /// The surface of the material, closed, as triangles with normals, in the world.
+    ///
+    /// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
+    /// side has a vertex of its own. At the ends the normals are those of the dexels. A vertex is marked as cut if a tool made
+    /// the end. A wall is marked as cut if a tool made the end that bounds the space in front of it; beside a dexel without
+    /// material, if it is inside a hole or both ends of the interval behind it were cut. [`Dexels::sources`] tells which cuts.
+    ///
+    /// The mesh is the same for any number of threads.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Dexels, Grid, Interval};
+    /// let grid = Grid::new([0.0, 0.0], [2.0, 2.0], [2, 2])?;
+    /// let dexels = Dexels::from_fn(grid, |_, line| line.push(Interval::between(0.0, 5.0)))?;
+    /// let mesh = dexels.surface()?;
+    /// let highest = mesh.vertices.iter().map(|v| v[2]).fold(f64::MIN, f64::max);
+    /// assert_eq!(highest, 5.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn surface(&self) -> Result<Mesh, MeshError> {
+        surface_within(self, MOST_VERTICES)
+    }
+
+    /// For each vertex of a mesh of this material, what made the surface there: of vertices that are marked as cut, the source of the
+    /// nearest interval end that a tool made; of others, the stock.
+    ///
+    /// On steep walls the nearest end may be far away: [`TriDexels::sources`](crate::TriDexels::sources) is better there.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Grid, Interval, Source, Stock};
+    /// let grid = Grid::new([0.0, 0.0], [4.0, 4.0], [4, 4])?;
+    /// let mut part = Stock::Block { min: [0.0; 3], max: [4.0, 4.0, 3.0] }.dexels(&grid)?;
+    /// let mut cut = Interval::between(2.0, 9.0);
+    /// cut.lower.source = Source::Cut { path: 0, segment: 7, t: 0.5 };
+    /// part.subtract(5, &[cut])?;
+    /// let sources = part.sources(&part.surface()?);
+    /// assert!(sources.contains(&cut.lower.source) && sources.contains(&Source::Stock));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn sources(&self, mesh: &Mesh) -> Vec<Source> {
+        sources_in(&[self], mesh)
+    }
+}
+
+/// Of each vertex, the source of the nearest end that a tool made, in any of the sets.
+pub(crate) fn sources_in(sets: &[&Dexels], mesh: &Mesh) -> Vec<Source> {
+    let source = |(number, place): (usize, &[f64; 3])| {
+        let cut = mesh.cut.get(number).copied().unwrap_or(false);
+        let ends = sets.iter().filter(|_| cut);
+        ends.filter_map(|set| set.nearest_of(*place, |end| end.source.is_cut()))
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))
+            .map_or(Source::Stock, |nearest| nearest.end.source)
+    };
+    mesh.vertices.par_iter().enumerate().map(source).collect()
+}
+
+/// The surface, if that many vertices are enough.
+fn surface_within(dexels: &Dexels, most: usize) -> Result<Mesh, MeshError> {
+    check_vertices(2 * dexels.count(), most)?;
     let field = Field::new(dexels);
     let outline = Outline::new(&field);
     let parts: Vec<TriangleBatch> = (0..=field.cells[0])
@@ -71,7 +110,7 @@ pub fn surface(dexels: &Dexels) -> Mesh {
             part
         })
         .collect();
-    assemble(&field, parts)
+    assemble(&field, parts, most)
 }
 
 /// Dexels with a rim of empty ones around them, and how their neighbours go together.
@@ -257,9 +296,10 @@ fn outside(dexels: &Dexels) -> Vec<bool> {
 }
 
 /// Puts the columns' parts together behind the vertices of the ends.
-fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>) -> Mesh {
+fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>, most: usize) -> Result<Mesh, MeshError> {
     let ends = field.ends() as usize;
     let vertices = ends + parts.iter().map(|p| p.vertices.len()).sum::<usize>();
+    check_vertices(vertices, most)?;
     let mut mesh = Mesh {
         vertices: Vec::with_capacity(vertices),
         normals: Vec::with_capacity(vertices),
@@ -299,8 +339,9 @@ fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>) -> Mesh {
         mesh.cut.extend(part.cut);
     }
     split(&mut mesh, &creased);
+    check_vertices(mesh.vertices.len(), most)?;
     mesh.move_to_world(grid.frame());
-    mesh
+    Ok(mesh)
 }
 
 /// Gives corners of triangles that the normal of their end does not suit a vertex with one that does: the mean of all such

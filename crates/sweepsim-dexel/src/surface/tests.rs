@@ -66,7 +66,7 @@ fn filled(n: usize, mut line: impl FnMut(usize, usize) -> Vec<(f64, f64)>) -> De
 
 #[test]
 fn nothing_has_no_surface() {
-    assert_eq!(surface(&Dexels::empty(grid(3))), Mesh::default());
+    assert_eq!(Dexels::empty(grid(3)).surface(), Ok(Mesh::default()));
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn blocks_steps_holes_and_cavities_have_their_volume() {
         )]
     });
     for (k, dexels) in [block, island, step, hole, cavity, pocket, stairs].iter().enumerate() {
-        let mesh = surface(dexels);
+        let mesh = dexels.surface().unwrap();
         let (found, expected) = (volume(&mesh), dexels.volume());
         // Where three levels meet, an outline bends inside of its cells.
         let tolerance = if k == 6 { 1e-3 * expected } else { 1e-9 };
@@ -123,7 +123,7 @@ fn a_hole_is_cut_and_a_rim_is_not() {
             vec![]
         }
     });
-    let mesh = surface(&ring);
+    let mesh = ring.surface().unwrap();
     for (v, cut) in mesh.vertices.iter().zip(&mesh.cut) {
         let r = (v[0] - 8.0).hypot(v[1] - 7.0);
         assert!(!*cut || r < 4.0, "{v:?}");
@@ -140,7 +140,7 @@ fn round_bodies_look_round() {
         radius: 8.0,
         height: 6.0,
     };
-    let mesh = surface(&upright.dexels(&grid).unwrap());
+    let mesh = upright.dexels(&grid).unwrap().surface().unwrap();
     let exact = std::f64::consts::PI * 64.0 * 6.0;
     assert!(
         (volume(&mesh) - exact).abs() < 0.015 * exact,
@@ -162,7 +162,7 @@ fn round_bodies_look_round() {
         radius: 5.0,
         height: 14.0,
     };
-    let mesh = surface(&lying.dexels(&grid).unwrap());
+    let mesh = lying.dexels(&grid).unwrap().surface().unwrap();
     let exact = std::f64::consts::PI * 25.0 * 14.0;
     assert!(
         (volume(&mesh) - exact).abs() < 0.02 * exact,
@@ -188,7 +188,7 @@ fn tangents_meet_in_a_crease() {
         interval.upper.normal = unit(n).map(|c| c as f32);
         dexels.set(index, &[interval]).unwrap();
     }
-    let mesh = surface(&dexels);
+    let mesh = dexels.surface().unwrap();
     assert!(volume(&mesh) > 0.0);
     // Normals are kept to 6.5e-5 radians, so slopes s to 6.5e-5 (1 + s²). Ends are 0.7 and 0.3 before and behind the ridge, where
     // slopes 1 and −1.7 meet: at x to (0.7 · 2 + 0.3 · 3.89) · 6.5e-5 / 2.7, at z to (0.7 · 2 · 1.7 + 0.3 · 3.89 · 1) · 6.5e-5 / 2.7.
@@ -211,7 +211,7 @@ fn the_same_at_any_thread_count() {
     });
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| surface(&dexels))
+        pool.install(|| dexels.surface().unwrap())
     };
     assert_eq!(run(1), run(3));
 }
@@ -240,11 +240,68 @@ proptest! {
             }).collect();
             dexels.set(index, &intervals).unwrap();
         }
-        let mesh = surface(&dexels);
+        let mesh = dexels.surface().unwrap();
         prop_assert!(mesh.vertices.iter().flatten().all(|c| c.is_finite()));
         match soup(&mesh).check_closed() {
             Ok(()) => prop_assert!(dexels.covered() > 0),
             Err(error) => prop_assert!(error == MeshError::Empty && dexels.covered() == 0, "{}", error),
         }
+    }
+}
+
+#[test]
+fn more_vertices_than_numbers_are_an_error() {
+    let ball = Stock::Ball {
+        centre: [0.0; 3],
+        radius: 4.0,
+    };
+    let dexels = ball.dexels(&Grid::new([-5.0; 2], [5.0; 2], [9, 9]).unwrap()).unwrap();
+    let whole = dexels.surface().unwrap();
+    let count = whole.vertices.len();
+    assert_eq!(surface_within(&dexels, count), Ok(whole));
+    for most in [0, 1, 50, 2 * dexels.count(), count - 1] {
+        let found = surface_within(&dexels, most);
+        assert!(
+            matches!(found, Err(MeshError::TooManyVertices { vertices }) if vertices > most),
+            "{most}"
+        );
+    }
+}
+
+#[test]
+fn each_vertex_knows_its_cut() {
+    let grid = Grid::new([0.0; 2], [8.0; 2], [8, 8]).unwrap();
+    let block = Stock::Block {
+        min: [0.0; 3],
+        max: [8.0, 8.0, 5.0],
+    };
+    let mut dexels = block.dexels(&grid).unwrap();
+    let source = |segment| Source::Cut {
+        path: 70_000,
+        segment,
+        t: 0.5,
+    };
+    for index in 0..grid.len() {
+        let (i, _) = grid.place(index);
+        if i < 3 {
+            let mut cut = Interval::between(if i == 0 { 2.0 } else { 3.0 }, 9.0);
+            cut.lower.source = source(u32::from(i == 0));
+            dexels.subtract(index, &[cut]).unwrap();
+        }
+    }
+    let mesh = dexels.surface().unwrap();
+    let sources = dexels.sources(&mesh);
+    assert_eq!(sources.len(), mesh.vertices.len());
+    for ((v, cut), found) in mesh.vertices.iter().zip(&mesh.cut).zip(&sources) {
+        assert_eq!(found.is_cut(), *cut, "{v:?}");
+        if v[2] == 2.0 && v[0] < 0.9 && *cut {
+            assert_eq!(*found, source(1), "{v:?}");
+        }
+        if v[2] == 3.0 && v[0] > 1.1 && *cut {
+            assert_eq!(*found, source(0), "{v:?}");
+        }
+    }
+    for segment in [0, 1] {
+        assert!(sources.contains(&source(segment)));
     }
 }

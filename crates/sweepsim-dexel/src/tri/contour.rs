@@ -19,7 +19,7 @@ use super::TriDexels;
 use super::cell::{CELLS, EDGES};
 use super::lattice::{Hit, Lattice};
 use super::plane::Planes;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, MeshError, check_vertices};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub(crate) fn disagreements(solid: &TriDexels) -> usize {
     Lattice::new(solid).disagreements
 }
 
-pub(crate) fn contour(solid: &TriDexels) -> Mesh {
+pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError> {
     let lattice = Lattice::new(solid);
     let hits = [0, 1, 2].map(|axis| lattice.hits(axis));
     let find = |axis: usize, at: [usize; 3]| hits[axis].find(&lattice, at);
@@ -36,6 +36,7 @@ pub(crate) fn contour(solid: &TriDexels) -> Mesh {
         .into_par_iter()
         .map(|i| Slab::new(&lattice, i, &find))
         .collect();
+    check_vertices(slabs.iter().map(|slab| slab.vertices.len()).sum(), most)?;
     let mut mesh = Mesh::default();
     let mut first = Vec::with_capacity(slabs.len());
     for slab in &slabs {
@@ -79,8 +80,9 @@ pub(crate) fn contour(solid: &TriDexels) -> Mesh {
         }
     }
     mesh.triangles.extend(fans);
+    check_vertices(mesh.vertices.len() + extra.planes.len(), most)?;
     extra.finish(&mut mesh);
-    mesh
+    Ok(mesh)
 }
 
 /// The vertices of the cells with a given first number.

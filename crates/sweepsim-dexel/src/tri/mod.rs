@@ -8,8 +8,10 @@ mod plane;
 use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Frame;
 use crate::grid::{Grid, GridError};
-use crate::mesh::Mesh;
+use crate::intervals::Source;
+use crate::mesh::{MOST_VERTICES, Mesh, MeshError};
 use crate::stock::{Stock, StockError};
+use crate::surface::sources_in;
 use thiserror::Error;
 
 /// Three sets of dexels, along `x`, `y` and `z`, whose lines meet in the centres of `cells[0] × cells[1] × cells[2]` boxes.
@@ -173,8 +175,28 @@ impl TriDexels {
     /// Every edge has two triangles, every vertex one fan of them. Vertices are shared and their normals means, so for
     /// pictures see [`Mesh::crisp`]. Features thinner than the distance of two lines may be missing. Material that reaches
     /// beyond the box is cut off at it. The mesh is the same for any number of threads.
+    ///
+    /// # Errors
+    /// [`MeshError::TooManyVertices`]
+    pub fn surface(&self) -> Result<Mesh, MeshError> {
+        contour::contour(self, MOST_VERTICES)
+    }
+
+    /// For each vertex of a mesh of this material, what made the surface there: of vertices that are marked as cut, the source of the
+    /// nearest interval end that a tool made, of all three sets; of others, the stock.
     #[must_use]
-    pub fn surface(&self) -> Mesh {
-        contour::contour(self)
+    pub fn sources(&self, mesh: &Mesh) -> Vec<Source> {
+        let [x, y, z] = &self.sets;
+        sources_in(&[x, y, z], mesh)
+    }
+
+    /// What made the surface at a point of the world, or next to it: the source of the nearest interval end of all three sets, if one is
+    /// within `reach`.
+    #[must_use]
+    pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {
+        let point = point.into();
+        let ends = self.sets.iter().filter_map(|set| set.nearest_end(point));
+        let nearest = ends.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        (nearest.distance <= reach).then_some(nearest.end.source)
     }
 }

@@ -49,7 +49,7 @@ fn boxes_are_sharp() {
     let (min, max) = ([-6.13, -4.4, -5.77], [3.3, 5.21, 7.19]);
     let solid = solid(24, &Stock::Block { min, max });
     assert_eq!(solid.disagreements(), 0);
-    let mesh = solid.surface();
+    let mesh = solid.surface().unwrap();
     check_manifold(&mesh);
     let exact: f64 = (0..3).map(|k| max[k] - min[k]).product();
     assert!((volume(&mesh) - exact).abs() < 1e-9 * exact, "{}", volume(&mesh));
@@ -59,7 +59,7 @@ fn boxes_are_sharp() {
         on[(0..3).filter(|k| near(*k)).count()] += 1;
     }
     // For pictures: normals of faces only.
-    let crisp = mesh.crisp(0.8);
+    let crisp = mesh.crisp(0.8).unwrap();
     assert_eq!(crisp.triangles.len(), mesh.triangles.len());
     assert_eq!(crisp.vertices.len(), mesh.vertices.len() + on[2] + 2 * on[3]);
     let level = |n: &[f32; 3]| n.iter().filter(|c| c.abs() > 1e-6).count() == 1;
@@ -108,7 +108,7 @@ fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
     let half = [5.1, 3.3, 4.2];
     for (axis, angle) in [([1.0, 2.0, 3.0], 0.7), ([-2.0, 1.0, 0.3], 1.9), ([0.0, 0.0, 1.0], 0.5)] {
         let (soup, directions) = turned_box(half, axis, angle);
-        let mesh = solid(40, &Stock::Mesh(soup.clone())).surface();
+        let mesh = solid(40, &Stock::Mesh(soup.clone())).surface().unwrap();
         check_manifold(&mesh);
         let step = 0.5;
         let (mut on_edges, mut on_corners, mut off_faces) = (0, 0, 0);
@@ -163,7 +163,7 @@ fn volumes_converge_with_the_square_of_the_distance_of_lines() {
         (lens, tau / 24.0 * (24.0 + 7.0) * 25.0),
     ];
     for (stock, exact) in cases {
-        let error = |cells: usize| (volume(&solid(cells, &stock).surface()) - exact).abs() / exact;
+        let error = |cells: usize| (volume(&solid(cells, &stock).surface().unwrap()) - exact).abs() / exact;
         // Means over grids of nearly the same size: how the lines fall makes a difference.
         let mean = |cells: usize| (cells..cells + 6).map(error).sum::<f64>() / 6.0;
         let (coarse, fine) = (mean(24), mean(96));
@@ -182,7 +182,7 @@ fn edges_of_any_direction_are_sharp() {
         radius: 4.0,
         height: 11.0,
     };
-    let mesh = solid(60, &cylinder).surface();
+    let mesh = solid(60, &cylinder).surface().unwrap();
     check_manifold(&mesh);
     let length = f64::sqrt(9.0 + 4.0 + 6.25);
     let (mut rim, mut far) = (0, 0);
@@ -213,7 +213,8 @@ fn the_box_cuts_off_what_reaches_beyond() {
             radius: 5.0,
         },
     )
-    .surface();
+    .surface()
+    .unwrap();
     check_manifold(&mesh);
     assert!(mesh.vertices.iter().all(|v| v[0] <= 10.0 + 0.1));
     let cap = std::f64::consts::PI * 16.0 * (15.0 - 4.0) / 3.0;
@@ -223,7 +224,13 @@ fn the_box_cuts_off_what_reaches_beyond() {
         "{} {exact}",
         volume(&mesh)
     );
-    assert!(solid(5, &Stock::Union(Vec::new())).surface().triangles.is_empty());
+    assert!(
+        solid(5, &Stock::Union(Vec::new()))
+            .surface()
+            .unwrap()
+            .triangles
+            .is_empty()
+    );
 }
 
 #[test]
@@ -237,7 +244,7 @@ fn the_same_at_any_thread_count() {
     );
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| solid.surface())
+        pool.install(|| solid.surface().unwrap())
     };
     assert_eq!(run(1), run(3));
 }
@@ -279,7 +286,7 @@ proptest! {
     #[test]
     #[ignore = "takes minutes"]
     fn thousands_of_surfaces_are_manifold(stock in csg(), cells in 4..16usize) {
-        check_manifold(&solid(cells, &stock).surface());
+        check_manifold(&solid(cells, &stock).surface().unwrap());
     }
 }
 
@@ -288,7 +295,7 @@ proptest! {
     #[test]
     fn surfaces_of_csg_are_manifold(stock in csg(), cells in 6..20usize) {
         let solid = solid(cells, &stock);
-        let mesh = solid.surface();
+        let mesh = solid.surface().unwrap();
         check_manifold(&mesh);
         prop_assert!(mesh.vertices.iter().flatten().all(|c| c.is_finite()));
         prop_assert_eq!(mesh.normals.len(), mesh.vertices.len());
@@ -304,7 +311,7 @@ proptest! {
         let grid = crate::Grid::new([-10.0; 2], [10.0; 2], [1501, 1501]).unwrap();
         let whole = Stock::Block { min: [-10.0; 3], max: [10.0; 3] };
         let exact = Stock::Intersection(vec![whole, stock.clone()]).dexels(&grid).unwrap().volume();
-        let mesh = solid(72, &stock).surface();
+        let mesh = solid(72, &stock).surface().unwrap();
         let found = volume(&mesh);
         prop_assert!((found - exact).abs() < 0.01 * exact + 0.5, "{} {} {:?}", found, exact, stock);
     }
@@ -336,6 +343,21 @@ proptest! {
         };
         let solid = TriDexels::from_sets([set(0), set(1), set(2)]).unwrap();
         prop_assert_eq!(solid.disagreements(), 0);
-        check_manifold(&solid.surface());
+        check_manifold(&solid.surface().unwrap());
+    }
+}
+
+#[test]
+fn more_vertices_than_numbers_are_an_error() {
+    let ball = Stock::Ball {
+        centre: [0.0; 3],
+        radius: 4.0,
+    };
+    let solid = TriDexels::new([-5.0; 3], [5.0; 3], [9; 3], &ball).unwrap();
+    let whole = solid.surface().unwrap();
+    let count = whole.vertices.len();
+    assert_eq!(super::contour(&solid, count), Ok(whole));
+    for most in [0, 1, count / 2, count - 1] {
+        assert!(super::contour(&solid, most).is_err(), "{most}");
     }
 }

@@ -1,7 +1,7 @@
 //! Dexels in frames of their own see the same world.
 
 use proptest::prelude::*;
-use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup, compare_with_mesh, surface};
+use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup, compare_with_mesh};
 
 type Inside = fn([f64; 3]) -> f64;
 
@@ -108,7 +108,7 @@ proptest! {
         prop_assert_eq!(found.unmatched(), 0);
         // Lines for meshes are 1e-9 of their distance aside; normals are kept to 6.5e-5, and near edges another face is nearest.
         prop_assert!(found.range().unwrap().iter().all(|d| d.abs() < 1e-8), "{:?}", found.range());
-        let mesh = surface(&dexels);
+        let mesh = dexels.surface().unwrap();
         let volume = mesh.soup().unwrap().volume();
         prop_assert!((volume - exact).abs() < 0.02 * exact, "{volume}");
         // The same as of what is turned the other way, turned back.

@@ -204,7 +204,7 @@ proptest! {
         let _ = mesh.crisp(cosine);
         let Some(soup) = mesh.soup() else { return Ok(()) };
         let _ = (soup.volume(), soup.check_closed(), soup.indexed());
-        let distance = DistanceTo::new(&soup);
+        let distance = DistanceTo::new(&soup).unwrap();
         let _ = (distance.nearest(point), distance.nearest_facing(point, point, reach));
         if soup.triangles.iter().flatten().flatten().all(|c| c.abs() < 10.0) {
             let _ = distance.furthest(&soup, spacing);

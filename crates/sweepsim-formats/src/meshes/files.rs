@@ -70,7 +70,8 @@ pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
         return Err(unknown(file, "mesh", MESHES));
     };
     if format == MeshFormat::Stl {
-        return Ok(read_stl(file)?.indexed());
+        let mesh = read_stl(file)?.indexed();
+        return mesh.map_err(|error| FormatError::new(Problem::syntax(error.to_string()), None).in_file(file));
     }
     let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
     match format {

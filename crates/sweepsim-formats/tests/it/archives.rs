@@ -21,7 +21,10 @@ fn mesh() -> Mesh {
         centre: [0.0; 3],
         radius: 5.0,
     };
-    TriDexels::new([-6.0; 3], [6.0; 3], [12; 3], &ball).unwrap().surface()
+    TriDexels::new([-6.0; 3], [6.0; 3], [12; 3], &ball)
+        .unwrap()
+        .surface()
+        .unwrap()
 }
 
 fn archive<'a>(entries: impl IntoIterator<Item = (&'a str, Vec<u8>)>) -> Vec<u8> {

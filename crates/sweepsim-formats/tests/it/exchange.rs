@@ -14,7 +14,10 @@ fn mesh() -> Mesh {
         centre: [0.3, -0.2, 0.1],
         radius: 3.0,
     };
-    TriDexels::new([-4.0; 3], [4.0; 3], [7; 3], &ball).unwrap().surface()
+    TriDexels::new([-4.0; 3], [4.0; 3], [7; 3], &ball)
+        .unwrap()
+        .surface()
+        .unwrap()
 }
 
 fn dexels() -> Dexels {

@@ -1,6 +1,6 @@
 //! Pictures are deterministic, plausible, and complete.
 
-use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock, surface};
+use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock};
 use sweepsim_picture::{Axis, Drawing, Image, Section, View, legend, render};
 
 const SIZE: [usize; 2] = [160, 120];
@@ -26,7 +26,7 @@ fn block(cut: bool) -> Mesh {
             dexels.subtract(index, &[groove]).unwrap();
         }
     }
-    surface(&dexels)
+    dexels.surface().unwrap()
 }
 
 fn pixel(image: &Image, x: usize, y: usize) -> [u8; 3] {
@@ -128,7 +128,7 @@ fn hollow() -> Mesh {
         block([0.0; 3], [40.0, 30.0, 12.0]).into(),
         vec![block([10.0, 10.0, 4.0], [30.0, 20.0, 8.0])],
     );
-    surface(&solid.dexels(&grid).unwrap())
+    solid.dexels(&grid).unwrap().surface().unwrap()
 }
 
 #[test]

@@ -51,7 +51,7 @@ impl Monitor for Pass<'_> {
 /// let path = Path::new(vec![Pose::new([-5.0, 5.0, 3.0], up)?, Pose::new([25.0, 5.0, 3.0], up)?])?;
 /// let part = simulate_tri(stock, &[Cut::new(&tool, &path)], &Options::default(), &())?.remaining;
 /// // A groove 4 wide and 2 deep, whose walls and edges are where they are, not where the nearest line is.
-/// let mesh = part.surface();
+/// let mesh = part.surface()?;
 /// let volume = mesh.soup().ok_or("no mesh")?.volume();
 /// assert!((volume - 18.0 * (8.0 * 5.0 - 4.0 * 2.0)).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -150,10 +150,10 @@ fn three_sets_cut_one_part() {
     assert_eq!(part.remaining.disagreements(), 0);
     // Sets along one axis err by the rule of the midpoint; a closed surface with exact normals by the square of the distance of lines.
     let volumes = part.remaining.sets().each_ref().map(Dexels::volume);
-    let mesh = part.remaining.surface().soup().unwrap().volume();
+    let mesh = part.remaining.surface().unwrap().soup().unwrap().volume();
     let fine = TriDexels::new(min, max, cells.map(|n| 3 * n), &block).unwrap();
     let exact = simulate_tri(fine, &[cut], &Options::new(TOLERANCE), &()).unwrap();
-    let exact = exact.remaining.surface().soup().unwrap().volume();
+    let exact = exact.remaining.surface().unwrap().soup().unwrap().volume();
     assert!((mesh - exact).abs() < 2e-3 * exact, "{mesh} {exact}");
     assert!(
         volumes.iter().all(|v| (v - exact).abs() < 0.02 * exact),
