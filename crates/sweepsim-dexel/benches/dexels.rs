@@ -95,7 +95,7 @@ fn meshes(c: &mut Criterion) {
     let mut group = c.benchmark_group("meshes");
     let triangles = dexels.surface().unwrap().triangles.len();
     group.sample_size(10).throughput(Throughput::Elements(triangles as u64));
-    group.bench_function("surface", |b| b.iter(|| surface(black_box(&dexels))));
+    group.bench_function("surface", |b| b.iter(|| black_box(&dexels).surface()));
     let solid = TriDexels::new([-10.0; 3], [10.0; 3], [150; 3], &cylinder).expect("a cylinder");
     let triangles = solid.surface().unwrap().triangles.len();
     group.throughput(Throughput::Elements(triangles as u64));
