@@ -114,7 +114,7 @@ proptest! {
         // The same as of what is turned the other way, turned back.
         let turned = soup.triangles.iter().map(|corners| corners.map(|p| frame.from_world(p)));
         let turned = Stock::Mesh(TriangleSoup { triangles: turned.collect() });
-        let flat = surface(&turned.dexels(&grid.in_frame(Frame::WORLD)).unwrap());
+        let flat = turned.dexels(&grid.in_frame(Frame::WORLD)).unwrap().surface().unwrap();
         prop_assert_eq!(&mesh.triangles, &flat.triangles);
         for (place, own) in mesh.vertices.iter().zip(&flat.vertices) {
             prop_assert_eq!(*place, frame.to_world(*own));
