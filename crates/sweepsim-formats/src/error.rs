@@ -13,8 +13,8 @@ use thiserror::Error;
 
 /// A file that cannot be read, understood or written.
 ///
-/// Its `Display` is one line, `file:line:column: what, and what was expected`, as far as each of them is known;
-/// [`FormatError::render`] adds the line of the file with the place marked.
+/// Its `Display` is one line, `file:line:column: what is wrong, and what was expected`, as far as each is known;
+/// [`FormatError::render`] adds the line of the file with the position marked.
 #[derive(Debug)]
 pub struct FormatError(Box<Inner>);
 
@@ -25,7 +25,7 @@ struct Inner {
     problem: Problem,
 }
 
-/// What is wrong, without the place.
+/// What is wrong, without the position.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Problem {
@@ -35,14 +35,14 @@ pub enum Problem {
     /// The file could not be written.
     #[error("cannot write this file: {0}")]
     Write(#[source] io::Error),
-    /// Another file that is named here could not be read.
+    /// A file that this one names could not be read.
     #[error("cannot read the {what} file {}: {source}", .file.display())]
     Named {
         /// What the file is for.
         what: &'static str,
-        /// Which file.
+        /// The file.
         file: PathBuf,
-        /// Why not.
+        /// The reason.
         source: io::Error,
     },
     /// The text does not follow the grammar of its format.
@@ -54,17 +54,17 @@ pub enum Problem {
     /// A value is not allowed.
     #[error("{what} is {found}, but must be {expected}")]
     Value {
-        /// Which value.
+        /// The name of the value.
         what: String,
-        /// What it is.
+        /// The value.
         found: String,
         /// What it must be.
         expected: String,
     },
-    /// Something that is understood, but cannot be done.
+    /// Something that is understood but not supported.
     #[error("{what} not supported yet: {instead}")]
     Unsupported {
-        /// What (with its verb: "surface tools are").
+        /// What, with its verb: "canned cycles are".
         what: String,
         /// What to do instead.
         instead: String,
@@ -74,30 +74,30 @@ pub enum Problem {
     NoSuchTool {
         /// The number.
         number: u32,
-        /// The numbers that there are.
+        /// The numbers of the job's tools.
         known: Vec<u32>,
     },
-    /// A tool's outline is none.
+    /// A tool's outline is invalid.
     #[error("tool {number}: {source}")]
     Tool {
-        /// Which tool.
+        /// The tool's number.
         number: u32,
-        /// Why.
+        /// The reason.
         source: ProfileError,
     },
-    /// A pose is none.
+    /// A pose is invalid.
     #[error("{0}")]
     Pose(#[source] PoseError),
-    /// A path is none.
+    /// A path is invalid.
     #[error("{0}")]
     Path(#[source] PathError),
-    /// A motion is none.
+    /// A motion is invalid.
     #[error("{0}")]
     Motion(#[source] MotionError),
-    /// A grid is none.
+    /// A grid is invalid.
     #[error("{0}")]
     Grid(#[source] GridError),
-    /// Vectors that make no frame.
+    /// A frame is invalid.
     #[error("{0}")]
     Frame(#[source] FrameError),
 }
@@ -142,19 +142,19 @@ impl FormatError {
         }))
     }
 
-    /// The same in `file`, unless a file is already named.
+    /// Names the file, unless one is already named.
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
         self.0.file.get_or_insert_with(|| file.to_owned());
         self
     }
 
-    /// The file, where there is one.
+    /// The file, if there is one.
     #[must_use]
     pub fn file(&self) -> Option<&Path> {
         self.0.file.as_deref()
     }
 
-    /// The place in the file, where there is one.
+    /// The position in the file, if there is one.
     #[must_use]
     pub fn position(&self) -> Option<&TextPosition> {
         self.0.position.as_ref()
@@ -166,7 +166,7 @@ impl FormatError {
         &self.0.problem
     }
 
-    /// The message over the line of the file with the place marked, in colour for a terminal that has it.
+    /// The message, and the line of the file with the position marked, optionally in colour for terminals.
     #[must_use]
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
@@ -237,7 +237,7 @@ impl std::error::Error for FormatError {
 }
 
 impl FormatError {
-    /// The system's error, when this file could not be read at all.
+    /// The system's error, if the file could not be read at all.
     pub(crate) fn into_read_error(self) -> Result<io::Error, Self> {
         match *self.0 {
             Inner {

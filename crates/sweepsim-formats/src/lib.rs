@@ -1,4 +1,4 @@
-//! Readers and writers for milling simulation: jobs, NC programs, meshes, dexels, reports.
+//! Readers and writers for milling simulation: jobs, meshes, dexels, reports.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -22,19 +22,19 @@
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
 //! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |
 //! | meshes for viewers (GLB) | [`read_glb`] | [`write_glb`] |
-//! | meshes for printers (3MF) | [`read_3mf`] | [`write_3mf`] |
+//! | meshes for 3D printers (3MF) | [`read_3mf`] | [`write_3mf`] |
 //! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
-//! | dexels to the bit, compact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
+//! | dexels, compact and exact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
 //! | dexels as NumPy arrays (`.npz`) | [`read_dexels_npz`] | [`write_dexels_npz`] |
 //! | meshes for ParaView (`.vtp`) | [`read_vtp`] | [`write_vtp`] |
 //! | dexels for ParaView (`.vtu`) | | [`write_dexels_vtu`] |
 //! | any of these meshes, by extension | [`read_mesh_file`] | [`write_mesh_file`] |
 //! | any of these dexels, by extension | [`read_dexels_file`] | [`write_dexels_file`] |
-//! | dexels, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
+//! | dexels for regression tests, small and to a tolerance | [`Fixture::parse`] | [`Fixture::text`] |
 //! | reports (`report.json`) | serde | [`Report::to_json`] |
 //!
-//! What is wrong with a file is a [`FormatError`]: one message with file, line, column, and what was expected. Files are
-//! written whole or not at all ([`AtomicFile`]). No input makes a reader panic.
+//! Errors are [`FormatError`]s: one message with file, line, column, and what was expected. Files are written completely or not at all
+//! ([`AtomicFile`]). No input makes a reader panic.
 
 mod archive;
 mod atomic;

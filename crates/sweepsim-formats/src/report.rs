@@ -1,126 +1,126 @@
-//! `report.json`: what a run did, or how two parts differ, for scripts.
+//! `report.json`: the results of a run, or of a comparison, for scripts.
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-/// A run in numbers. Lengths in mm, volumes in mm³. What is `None` is not in the file.
+/// The results of a run. Lengths are in mm, volumes in mm³. Fields that are `None` are not written.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// The name of the job.
     pub job: String,
-    /// `charts`, `lines`, …
+    /// The method: `charts`, `lines`, …
     pub method: String,
-    /// Dexels in x and y.
+    /// The number of dexels in x and y.
     pub cells: [usize; 2],
-    /// Moves of all paths.
+    /// The number of moves of all paths.
     pub moves: usize,
-    /// By phase, in order.
+    /// The duration of each phase, in order.
     pub seconds: IndexMap<String, f64>,
-    /// Crossings of lines and envelopes that were found.
+    /// The number of crossings of dexels and envelopes.
     pub crossings: u64,
-    /// What became of the dexels.
+    /// Counts of dexels.
     pub dexels: DexelCounts,
-    /// What the tools took out of the stock (`simulate`, `verify`).
+    /// The volume removed from the stock (`simulate`, `verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub volume_removed: Option<f64>,
-    /// What is in the result: the swept volume or the remaining part.
+    /// The volume of the result: the swept volume, or the remaining part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub volume: Option<f64>,
-    /// Where too much was taken (`verify`).
+    /// Where too much was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gouge: Option<Deviation>,
-    /// Where too little was taken (`verify`).
+    /// Where too little was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub excess: Option<Deviation>,
-    /// Where the tool met what it must not (`verify`).
+    /// Collisions of the tool (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collisions: Option<Vec<Collision>>,
-    /// What was ignored or decided for the user on reading.
+    /// What was ignored or decided while reading the job and its files.
     pub notes: Vec<String>,
 }
 
 /// The dexels of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DexelCounts {
-    /// With material in the result.
+    /// Dexels with material in the result.
     pub covered: usize,
-    /// Whose audit failed at first and was mended.
+    /// Dexels whose audit failed at first, and which were repaired.
     pub repaired: usize,
-    /// Whose intervals are not certain.
+    /// Dexels whose intervals are not certified.
     pub unresolved: Vec<UnresolvedDexel>,
 }
 
-/// A dexel whose intervals are not certain.
+/// A dexel whose intervals are not certified.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UnresolvedDexel {
-    /// Which one, in x,
+    /// Its cell in x.
     pub i: usize,
-    /// and in y.
+    /// Its cell in y.
     pub j: usize,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
 /// A deviation from the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
-    /// The largest.
+    /// The largest deviation.
     pub max: f64,
-    /// The mean over the places that deviate.
+    /// The mean over the samples that deviate.
     pub mean: f64,
-    /// Its root mean square.
+    /// The root mean square over these samples.
     pub rms: f64,
-    /// At how many places.
+    /// The number of samples that deviate.
     pub count: usize,
-    /// The area of them, mm².
+    /// Their area, in mm².
     pub area: f64,
 }
 
-/// The tool in what it must not touch.
+/// A collision of the tool with something that it must not touch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Collision {
-    /// Which path of the job, from 0.
+    /// The path of the job, from 0.
     pub path: usize,
-    /// Which move of it, from 0.
+    /// The move of the path, from 0.
     pub r#move: usize,
-    /// Where.
+    /// The position.
     pub place: [f64; 3],
-    /// How deep.
+    /// The depth.
     pub depth: f64,
 }
 
-/// How a part differs from its target, in numbers. Lengths in mm, areas in mm², volumes in mm³.
+/// How a part differs from its target. Lengths are in mm, areas in mm², volumes in mm³.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonReport {
     /// The file of the part.
     pub part: String,
     /// The file of its target.
     pub target: String,
-    /// Dexels in x and y that they are compared on.
+    /// The number of dexels in x and y used for the comparison.
     pub cells: [usize; 2],
-    /// Distances up to this count as none.
+    /// Distances up to this count as 0.
     pub tolerance: f64,
-    /// By phase, in order.
+    /// The duration of each phase, in order.
     pub seconds: IndexMap<String, f64>,
-    /// Of the part.
+    /// The volume of the part.
     pub volume: f64,
-    /// Of the target.
+    /// The volume of the target.
     pub target_volume: f64,
-    /// Of the part, outside of the target.
+    /// The volume of the part outside the target.
     pub excess_volume: f64,
-    /// Of the target, missing in the part.
+    /// The volume of the target missing from the part.
     pub missing_volume: f64,
-    /// Of the part's surface that has a counterpart.
+    /// The area of the part's surface that has a counterpart.
     pub area: f64,
-    /// Ends of intervals without a counterpart.
+    /// The number of interval ends without a counterpart.
     pub unmatched: usize,
-    /// Mean distance over the area; positive is outside of the target.
+    /// The mean distance over the area, positive outside the target.
     pub mean: f64,
-    /// Root of the mean square of the distance over the area.
+    /// The root mean square of the distance over the area.
     pub rms: f64,
-    /// Where the part is inside of the target: depths, as positive numbers.
+    /// Where the part's surface is inside the target; depths are positive.
     pub gouge: Deviation,
-    /// Where it is outside.
+    /// Where the part's surface is outside the target.
     pub excess: Deviation,
     /// The furthest point of the part's surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -128,32 +128,32 @@ pub struct ComparisonReport {
     /// The furthest point of the target's surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub furthest_of_target: Option<Furthest>,
-    /// Areas by distance.
+    /// Area by distance.
     pub histogram: Vec<HistogramBar>,
 }
 
-/// A point of one surface that is furthest from the other.
+/// The point of one surface that is furthest from the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Furthest {
-    /// Where.
+    /// The position.
     pub place: [f64; 3],
-    /// How far outside of the other surface: negative inside.
+    /// The distance from the other surface, negative inside.
     pub distance: f64,
 }
 
-/// The area at distances in a range. The first and the last bar have all beyond them.
+/// The area at distances in a range. The first and the last bar include everything beyond them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistogramBar {
-    /// From here,
+    /// The lower end of the range.
     pub from: f64,
-    /// to here.
+    /// The upper end of the range.
     pub to: f64,
-    /// How much.
+    /// The area.
     pub area: f64,
 }
 
 impl ComparisonReport {
-    /// The text of its `report.json`. Numbers that JSON cannot say (not finite) become `null`.
+    /// The report as JSON. Numbers that are not finite become `null`.
     ///
     /// # Errors
     /// As [`Report::to_json`].
@@ -165,10 +165,10 @@ impl ComparisonReport {
 }
 
 impl Report {
-    /// The text of `report.json`. Numbers that JSON cannot say (not finite) become `null`.
+    /// The report as JSON. Numbers that are not finite become `null`.
     ///
     /// # Errors
-    /// What the serialiser says; with strings for keys and plain data it has no reason to.
+    /// Those of the serialiser; none are known for this data.
     pub fn to_json(&self) -> serde_json::Result<String> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');

@@ -1,11 +1,11 @@
 //! VTK's XML files, for ParaView: meshes as `.vtp`, dexels as lines in `.vtu`.
 //!
-//! Data stand behind the description, as they are (`appended`, `raw`), each array after its length in bytes; little-endian.
+//! The data follow the description uncompressed (`appended`, `raw`), each array after its length in bytes; little-endian.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-/// The description and the data of a file, side by side.
+/// The description and the data of a file.
 pub(crate) struct Document {
     xml: String,
     data: Vec<u8>,

@@ -260,7 +260,7 @@ fn bad_files_are_errors() {
     let missing = workdir.run(&["simulate", "none.ron"]);
     assert_bad(&workdir, &missing, &["none.ron"]);
     let workdir = Workdir::new(&JOB.replace(STOCK, "Mesh(\"bad.stl\")"));
-    fs::write(workdir.path("bad.stl"), "this is no STL").unwrap();
+    fs::write(workdir.path("bad.stl"), "this is not an STL file").unwrap();
     assert_bad(&workdir, &workdir.run_job("simulate", &[]), &["bad.stl", "STL"]);
     // One triangle encloses nothing.
     let one = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\nvertex 0 9 0\nendloop\nendfacet\nendsolid a\n";

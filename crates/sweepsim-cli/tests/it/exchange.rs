@@ -118,8 +118,8 @@ fn what_cannot_be_converted_is_said() {
     .unwrap();
     for (arguments, message) in [
         (["convert", "job.ron", "x.ply"], "jobs cannot be converted"),
-        (["convert", "text.stl", "x.ply"], "this is no STL"),
-        (["convert", "cut.dexels", "x.ply"], "stops in the middle"),
+        (["convert", "text.stl", "x.ply"], "this is not an STL file"),
+        (["convert", "cut.dexels", "x.ply"], "truncated"),
         (["convert", "none.npz", "x.ply"], "cannot read this file"),
         (["convert", "out/part.dexels", "x.step"], "unknown extension"),
         (["convert", "out/part.dexels", "x"], "unknown extension"),

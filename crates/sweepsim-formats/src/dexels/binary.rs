@@ -1,6 +1,6 @@
-//! Dexels in a compact binary form (`.dexels`), to the bit, with all that their ends know.
+//! Dexels in a compact binary form (`.dexels`), bit for bit, with normals and sources.
 //!
-//! Numbers are little-endian; a *varint* has 7 bits a byte, the lowest first, with the top bit set on all but its last.
+//! Numbers are little-endian. A *varint* has 7 bits per byte, the lowest first, and the top bit set in all bytes but the last.
 //!
 //! | part | content |
 //! | --- | --- |
@@ -8,21 +8,21 @@
 //! | blocks | number of the first line `u64`; lines `u32`; bytes `u32`; the bytes; checksum `u32` |
 //! | end | `u64::MAX`; 0 as `u32`; 8 as `u32`; number of all intervals `u64`; checksum `u32` |
 //!
-//! Each checksum is the CRC-32 of its part. A block has at most 4,096 lines, and only the last of them may go beyond a mebibyte. A line is the
-//! number of its intervals as a varint; 0 is followed by the number of further lines without material. Then follow the
-//! ends, going up, each as what differs from the end of the same number on the last line before it in the block that had one; from the
-//! end below it, if there was none; from an end made by nothing at height 0, if it is the first of all:
+//! Each checksum is the CRC-32 of its part. A block has at most 4,096 lines, and only the last of them may extend beyond a mebibyte. A line
+//! begins with the number of its intervals as a varint; 0 is followed by the number of further empty lines. Then follow the ends, going up.
+//! Each is stored as its difference from another end: the one with the same number on the last line of the block that has one; else the end
+//! below it; else an end of the stock at height 0:
 //!
 //! | bit of the first byte | what follows |
 //! | --- | --- |
-//! | 1 | the bits of the height less those it is compared with, as a varint (0, −1, 1, −2, … as 0, 1, 2, 3, …) |
+//! | 1 | the difference of the bits of the heights, as a varint (0, −1, 1, −2, … as 0, 1, 2, 3, …) |
 //! | 2 | the normal, two `i16`: see [`pack_normal`](sweepsim_dexel::pack_normal) |
 //! | 4 | path and segment, varints |
 //! | 8 | the time, `f32` |
-//! | 16 | nothing: no tool made the end |
+//! | 16 | nothing: the end is the stock's |
 //!
-//! So flat faces take 2 bytes an interval and 1 a line. No end takes less than a byte: a reader needs memory for what a file holds
-//! and not for what it promises.
+//! Flat faces therefore take 2 bytes per interval and 1 per line. No end takes less than a byte, so that a reader needs memory in
+//! proportion to the length of the file, not to what its header claims.
 
 use sweepsim_dexel::{Dexels, End, Frame, Grid, Source};
 
@@ -34,14 +34,14 @@ pub(crate) const VERSION: u32 = 1;
 /// As version 1, with numbers of paths from 65,535 on: readers of version 1 know none of these.
 pub(crate) const WIDE: u32 = 2;
 pub(crate) const HEADER: usize = 64;
-/// What follows the header where there is a frame.
+/// Bytes of the frame after the header, if there is one.
 pub(crate) const FRAME: usize = 96;
 pub(crate) const BLOCK_HEADER: usize = 16;
-/// Lines of a block.
+/// The most lines of a block.
 pub(crate) const LINES: usize = 4096;
-/// Bytes at which a block ends.
+/// The size at which a block ends.
 pub(crate) const BYTES: usize = 1 << 20;
-/// Number of the first line of what is no block, but the end.
+/// The number of the first line that marks the end of the file.
 pub(crate) const END: u64 = u64::MAX;
 
 pub(crate) const HEIGHT: u8 = 1;
@@ -63,7 +63,7 @@ pub(crate) fn source_numbers(source: Source) -> (u32, u32, f32) {
     }
 }
 
-/// What ends of a block are compared with.
+/// The ends that those of a block are compared with.
 #[derive(Default)]
 pub(crate) struct Before {
     ends: Vec<(End, [i16; 2])>,
@@ -87,13 +87,13 @@ impl Before {
     }
 }
 
-/// Origin and axes of a frame.
+/// The origin and the axes of a frame.
 pub(crate) fn framed_numbers(frame: &Frame) -> impl Iterator<Item = f64> {
     let [x, y, z] = frame.axes();
     [frame.origin(), x, y, z].into_iter().flatten()
 }
 
-/// A grid in the frame that twelve numbers say, `<f8`.
+/// A grid in the frame that twelve numbers of type `<f8` describe.
 pub(crate) fn in_frame(grid: Grid, numbers: &[[u8; 8]]) -> Result<Grid, FormatError> {
     let vector = |n: usize| [0, 1, 2].map(|k| numbers.get(3 * n + k).map_or(f64::NAN, |b| f64::from_le_bytes(*b)));
     Frame::from_axes(vector(0), [vector(1), vector(2), vector(3)])

@@ -14,7 +14,7 @@ fn problem<T>(message: impl Into<String>) -> Result<T, FormatError> {
     Err(FormatError::new(Problem::syntax(message), None))
 }
 
-/// Reads `N` bytes, or what there is.
+/// Reads `N` bytes, or returns how many there are.
 fn head<const N: usize>(reader: &mut impl Read) -> Result<Result<[u8; N], usize>, FormatError> {
     let mut bytes = Vec::with_capacity(N);
     let read = reader.take(N as u64).read_to_end(&mut bytes);
@@ -26,11 +26,11 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     bytes.get(at..at + N).and_then(|b| b.try_into().ok()).unwrap_or([0; N])
 }
 
-/// Reads dexels, block by block; what follows them is left in the reader.
+/// Reads dexels block by block; anything after them is left in the reader.
 ///
 /// # Errors
-/// [`FormatError`]: no such file, another version, cut off (after which dexel), or damaged (in the lines from which dexel on). Whatever
-/// is in the file, memory is in proportion to its length.
+/// [`FormatError`]: not such a file, another version, truncated or damaged (with the dexel). Memory is in proportion to the length of the
+/// file, whatever it contains.
 ///
 /// ```
 /// use sweepsim_dexel::{Grid, Stock};
@@ -42,7 +42,7 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
 /// assert!(file.len() < 3 * grid.len());
 /// assert_eq!(read_dexels_binary(&mut &file[..])?, block);
 /// let error = read_dexels_binary(&mut &file[..file.len() / 2]).unwrap_err();
-/// assert!(error.to_string().contains("stops in the middle"), "{error}");
+/// assert!(error.to_string().contains("truncated"), "{error}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError> {
@@ -51,12 +51,7 @@ pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError>
     let (mut payload, mut count) = (Vec::new(), 0_u64);
     loop {
         let done = builder.lines();
-        let cut_off = || {
-            problem(format!(
-                "this file stops in the middle: after {done} of {} dexels",
-                grid.len()
-            ))
-        };
+        let cut_off = || problem(format!("this file is truncated after {done} of {} dexels", grid.len()));
         let Ok(header) = head::<BLOCK_HEADER>(reader)? else {
             return cut_off();
         };
@@ -64,7 +59,7 @@ pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError>
         let lines = u32::from_le_bytes(number(&header, 8)) as usize;
         let length = u32::from_le_bytes(number(&header, 12));
         payload.clear();
-        // Grows with what comes.
+        // Grows with the data that are really there.
         let read = reader.take(length.into()).read_to_end(&mut payload);
         if read.map_err(|error| FormatError::new(Problem::Read(error), None))? < length as usize {
             return cut_off();
@@ -94,7 +89,7 @@ pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError>
         }
         match decode(&payload, lines, &mut builder) {
             Some(intervals) => count += intervals,
-            None => return damaged("its lines make no sense"),
+            None => return damaged("its lines are invalid"),
         }
     }
 }
@@ -102,8 +97,8 @@ pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError>
 fn header(reader: &mut impl Read) -> Result<Grid, FormatError> {
     let header = match head::<HEADER>(reader)? {
         Ok(header) if header.starts_with(MAGIC) => header,
-        Ok(_) => return problem("this is no file of dexels: expected `sweepdxl` at its beginning"),
-        Err(length) => return problem(format!("this is no file of dexels: expected more than {length} bytes")),
+        Ok(_) => return problem("this is not a dexel file: expected `sweepdxl` at its beginning"),
+        Err(length) => return problem(format!("this is not a dexel file: expected more than {length} bytes")),
     };
     let version = u32::from_le_bytes(number(&header, 8));
     let framed = u32::from_le_bytes(number(&header, 12));
@@ -163,7 +158,7 @@ impl Rest<'_> {
     }
 }
 
-/// Reads the lines of a block, and says how many intervals they have; `None` when they are none.
+/// Reads the lines of a block, and returns the number of their intervals; `None` if they are invalid.
 fn decode(payload: &[u8], lines: usize, builder: &mut DexelsBuilder) -> Option<u64> {
     let mut rest = Rest(payload);
     let (mut before, mut line) = (Before::default(), Vec::new());

@@ -21,7 +21,7 @@ fn varint(mut value: u64, out: &mut Vec<u8>) {
 /// Writes dexels.
 ///
 /// # Errors
-/// What the writer says.
+/// Those of the writer.
 pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
     let grid = dexels.grid();
     let mut header = Vec::with_capacity(HEADER);
@@ -65,7 +65,7 @@ fn block(first: u64, lines: u32, payload: &[u8], writer: &mut impl Write) -> std
     writer.write_all(&crc32(&[&header, payload]).to_le_bytes())
 }
 
-/// Appends the lines of one block, and says how many.
+/// Appends the lines of one block, and returns their number.
 fn fill(dexels: &Dexels, first: usize, out: &mut Vec<u8>) -> usize {
     let all = dexels.grid().len();
     let (mut before, mut line) = (Before::default(), Vec::new());

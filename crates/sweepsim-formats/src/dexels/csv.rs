@@ -1,5 +1,7 @@
-//! `dexels.csv`: header `i,j,z0,z1`, a row an interval, sorted by `i`, `j`, `z0`; numbers in the shortest form that reads back.
+//! `dexels.csv`: a header `i,j,z0,z1`, and one row per interval, sorted by `i`, `j`, `z0`; numbers in the shortest form that reads back
+//! exactly.
 
+use std::cmp::Ordering;
 use std::io::{BufRead, Write};
 
 use sweepsim_dexel::{Dexels, Grid, Interval};
@@ -12,20 +14,20 @@ pub(crate) const HEADER: &str = "i,j,z0,z1";
 /// An interval of a dexel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DexelRow {
-    /// Which dexel, in x,
+    /// The cell in x.
     pub i: usize,
-    /// and in y.
+    /// Its cell in y.
     pub j: usize,
-    /// Where the interval begins,
+    /// The lower end.
     pub z0: f64,
-    /// and ends.
+    /// The upper end.
     pub z1: f64,
 }
 
 /// Writes the intervals of all dexels.
 ///
 /// # Errors
-/// What the writer says.
+/// Those of the writer.
 pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
     writeln!(writer, "{HEADER}")?;
     for index in 0..dexels.grid().len() {
@@ -38,7 +40,7 @@ pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
     Ok(())
 }
 
-/// Reads the rows, and checks that they are in order, of positive length, and apart.
+/// Reads the rows, and checks that intervals are in order, disjoint, and not empty.
 ///
 /// # Errors
 /// [`FormatError`] with line and column.
@@ -58,7 +60,9 @@ pub fn read_dexels_csv(reader: impl BufRead) -> Result<Vec<DexelRow>, FormatErro
         let line = line.trim_end_matches('\r');
         if !header {
             if line != HEADER {
-                let problem = Problem::syntax(format!("this is no dexel file: expected `{HEADER}` in the first line"));
+                let problem = Problem::syntax(format!(
+                    "this is not a dexel file: expected `{HEADER}` in the first line"
+                ));
                 return Err(error(problem, index, line, None));
             }
             header = true;
@@ -74,7 +78,7 @@ pub fn read_dexels_csv(reader: impl BufRead) -> Result<Vec<DexelRow>, FormatErro
     }
 }
 
-/// An error in line `index` (from 0), in a field or the whole.
+/// An error in line `index` (from 0), or in a field of it.
 fn error(problem: Problem, index: usize, line: &str, field: Option<usize>) -> FormatError {
     let fields = || line.split(',').map(|field| field.chars().count());
     let (column, width) = match field {
@@ -131,16 +135,26 @@ fn row(line: &str, index: usize, before: Option<&DexelRow>) -> Result<DexelRow, 
     }
 }
 
-/// The dexels of `rows` on `grid`. Normals and sources are not known: those of horizontal faces stand for them.
+/// The dexels of `rows` on `grid`. Normals and sources are unknown; they are those of horizontal faces of the stock.
 ///
 /// # Errors
-/// [`Problem::Value`] when a row is not on the grid, or an interval has no positive length.
+/// [`FormatError`]: a row is not on the grid; intervals are empty, not finite, overlapping or out of order.
 pub fn dexels_from_rows(grid: Grid, rows: &[DexelRow]) -> Result<Dexels, FormatError> {
     let [nx, ny] = grid.cells();
     let refused = |row: &DexelRow, found: String, expected: String| {
         let problem = Problem::value("a dexel", format!("({}, {}){found}", row.i, row.j), expected);
         FormatError::new(problem, None)
     };
+    let sorted = |pair: &[DexelRow]| match (pair[0].i, pair[0].j).cmp(&(pair[1].i, pair[1].j)) {
+        Ordering::Less => true,
+        Ordering::Equal => pair[0].z1 < pair[1].z0,
+        Ordering::Greater => false,
+    };
+    if !rows.windows(2).all(sorted) {
+        let problem =
+            Problem::syntax("the rows are out of order: expected them by i, j, z0, with gaps between intervals");
+        return Err(FormatError::new(problem, None));
+    }
     let mut dexels = Dexels::empty(grid);
     for chunk in rows.chunk_by(|a, b| (a.i, a.j) == (b.i, b.j)) {
         let intervals: Vec<Interval> = chunk.iter().map(|row| Interval::between(row.z0, row.z1)).collect();

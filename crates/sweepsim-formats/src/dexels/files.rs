@@ -23,9 +23,9 @@ const DEXELS: &str = ".csv, .dexels, .npz";
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum DexelFormat {
-    /// `.csv`: a row an interval, without the grid, normals and sources.
+    /// `.csv`: one row per interval, without grid, normals and sources.
     Csv,
-    /// `.dexels`: to the bit, with everything.
+    /// `.dexels`: everything, bit for bit.
     Binary,
     /// `.npz`: NumPy arrays.
     Npz,
@@ -34,7 +34,7 @@ pub enum DexelFormat {
 }
 
 impl DexelFormat {
-    /// That of a file, by its extension; tables of paths have that of [`DexelFormat::Csv`], too.
+    /// The format of a file, by its extension. Tables of poses share theirs with [`DexelFormat::Csv`].
     #[must_use]
     pub fn of(file: &Path) -> Option<Self> {
         Some(match extension(file).as_str() {
@@ -47,14 +47,14 @@ impl DexelFormat {
     }
 }
 
-/// Whether a table is one of dexels, as its header says.
+/// Whether a table contains dexels, by its header.
 ///
 /// # Errors
 /// [`Problem::Read`] with the name of the file.
 pub fn is_dexels_csv(file: &Path) -> Result<bool, FormatError> {
     let read = || -> io::Result<bool> {
         let mut header = Vec::new();
-        // No header is longer; a file without lines is not read whole.
+        // No header is longer; a file without line breaks is not read completely.
         let limit = HEADER.len() as u64 + 3;
         BufReader::new(File::open(file)?)
             .take(limit)
@@ -64,11 +64,11 @@ pub fn is_dexels_csv(file: &Path) -> Result<bool, FormatError> {
     read().map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))
 }
 
-/// Reads dexels: `.csv .dexels .npz`. A table does not know its grid: it stands on `grid`; the others have their own.
+/// Reads dexels: `.csv`, `.dexels` or `.npz`. Tables do not contain their grid, and need `grid`; the others have their own.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: no such file, an extension that is not known, a table without a grid, or what the reader
-/// of the format says.
+/// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, its content is invalid, or a table comes
+/// without a grid.
 pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, FormatError> {
     let failed = |error: io::Error| FormatError::new(Problem::Read(error), None);
     let read = |format| -> Result<Dexels, FormatError> {
@@ -77,7 +77,7 @@ pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, Form
             DexelFormat::Csv => {
                 let grid = grid.ok_or_else(|| {
                     FormatError::new(
-                        Problem::syntax("a table of dexels does not say where they stand: a grid is needed beside it"),
+                        Problem::syntax("a table of dexels does not contain its grid: a grid is needed to read it"),
                         None,
                     )
                 })?;
@@ -108,10 +108,10 @@ fn starts_with(reader: &mut BufReader<File>, magic: &[u8]) -> io::Result<bool> {
     Ok(bytes == magic)
 }
 
-/// Writes dexels, whole or not at all: `.csv .dexels .npz .vtu`.
+/// Writes dexels, completely or not at all: `.csv`, `.dexels`, `.npz` or `.vtu`.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: an extension that is not known, or what the system or the writer of the format says.
+/// [`FormatError`] with the file's name: the extension is unknown, or the data cannot be written.
 pub fn write_dexels_file(dexels: &Dexels, file: &Path) -> Result<(), FormatError> {
     let Some(format) = DexelFormat::of(file) else {
         return Err(unknown(file, "dexel", format!("{DEXELS}, .vtu")));

@@ -1,4 +1,4 @@
-//! Stored dexels to compare with: a small text, exact to a tenth of the tolerance.
+//! Stored dexels for regression tests: a small text, exact to a tenth of the tolerance.
 //!
 //! ```text
 //! sweepsim dexels 1
@@ -9,22 +9,22 @@
 //! 1 0 150000000 1 0 0 *98
 //! ```
 //!
-//! After four lines of header, a line for each `i`, with the dexels by `j`: the number of intervals and then `z0 z1 …` in
-//! units of a tenth of the tolerance, each as the difference from what the dexels before it foretell: the straight line
-//! through the last two, the last one, or 0, as far back as the number of intervals is the same. `*k` stands for `k` more
-//! dexels without intervals, or with differences that are all 0. So flat faces, empty regions and slopes cost next to nothing.
+//! A header of four lines is followed by a line for each `i`, with the dexels by `j`: the number of intervals, and then `z0 z1 …` in
+//! units of a tenth of the tolerance. Each end is stored as the difference from its prediction by the dexels before it that have the same
+//! number of intervals: by the straight line through the last two, by the last one, or 0. `*k` stands for `k` more dexels without
+//! intervals, or whose differences are all 0. Flat faces, empty regions and slopes therefore cost next to nothing.
 
 use sweepsim_dexel::{Dexels, Grid, Interval};
 
 use crate::error::{FormatError, Problem};
 
-/// Dexels of a fixture, at most: it is to be small, and a text of a few bytes must not ask for all memory.
+/// The most dexels of a fixture: it should be small, and a text of a few bytes must not demand all memory.
 const MOST_DEXELS: usize = 4_000_000;
 
-/// Units of a tolerance.
+/// Units per tolerance.
 const UNITS: f64 = 10.0;
 
-/// Ends are stored as whole numbers up to this: those that `f64` has all of.
+/// Ends are stored as integers below this: those that `f64` represents exactly.
 pub(crate) const LARGEST: i64 = 1 << 53;
 
 /// Stored dexels.
@@ -33,20 +33,20 @@ pub struct Fixture {
     pub(crate) job: String,
     pub(crate) grid: Grid,
     pub(crate) tolerance: f64,
-    /// For each dexel its ends in units.
+    /// The ends of each dexel, in units.
     pub(crate) ends: Vec<Box<[i64]>>,
 }
 
-/// A dexel that is not as stored.
+/// A dexel that differs from the stored one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    /// Which dexel, in x,
+    /// The cell in x.
     pub i: usize,
-    /// and in y.
+    /// Its cell in y.
     pub j: usize,
-    /// Its ends as stored: `z0, z1` of each interval,
+    /// The ends as stored: `z0, z1` of each interval.
     pub stored: Vec<f64>,
-    /// and as found.
+    /// The ends as found.
     pub found: Vec<f64>,
 }
 
@@ -75,7 +75,7 @@ fn problem(message: impl Into<String>) -> FormatError {
 }
 
 impl Fixture {
-    /// The dexels of `job`, to be stored with `tolerance`.
+    /// The dexels of `job`, stored with `tolerance`.
     ///
     /// # Errors
     /// More than 4 million dexels, a tolerance that is not positive, or ends too large for it.
@@ -123,7 +123,7 @@ impl Fixture {
         }
     }
 
-    /// The stored dexels. Normals and sources are not stored: those of horizontal faces of stock stand for them.
+    /// The stored dexels. Normals and sources are not stored; they are those of horizontal faces of the stock.
     #[must_use]
     pub fn dexels(&self) -> Dexels {
         Dexels::from_fn(self.grid, |index, line| {
@@ -140,13 +140,13 @@ impl Fixture {
         &self.job
     }
 
-    /// Where the dexels are.
+    /// The grid of the dexels.
     #[must_use]
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// How exact they are.
+    /// The tolerance of the stored ends.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -167,10 +167,10 @@ impl Fixture {
             .collect()
     }
 
-    /// Where `dexels` have other numbers of intervals, or an end that is more than 2 tolerances away.
+    /// The dexels with another number of intervals, or with an end more than 2 tolerances away.
     ///
     /// # Errors
-    /// They are on another grid.
+    /// `dexels` are on another grid.
     pub fn differences(&self, dexels: &Dexels) -> Result<Vec<Difference>, FormatError> {
         if *dexels.grid() != self.grid {
             return Err(problem(format!(

@@ -30,7 +30,7 @@ impl Fixture {
                 let differences: Vec<i64> = ends
                     .iter()
                     .enumerate()
-                    .map(|(k, &z)| z - foretold(&row[..j], ends.len(), k))
+                    .map(|(k, &z)| z - predicted(&row[..j], ends.len(), k))
                     .collect();
                 let repeats = ends.len() == j.checked_sub(1).map_or(0, |before| row[before].len());
                 if repeats && differences.iter().all(|&d| d == 0) {
@@ -60,7 +60,7 @@ impl Fixture {
         lines.next()?;
         if lines.last.1 != TITLE {
             return Err(lines.error(
-                format!("these are no stored dexels: expected `{TITLE}` in the first line"),
+                format!("these are not stored dexels: expected `{TITLE}` in the first line"),
                 0..1,
             ));
         }
@@ -80,7 +80,7 @@ impl Fixture {
         };
         let grid = grid.ok_or_else(|| {
             lines.error(
-                "this is no grid: expected min, max and cells, in x and y",
+                "this is not a grid: expected min, max and cells, in x and y",
                 0..values.len() + 5,
             )
         })?;
@@ -95,7 +95,7 @@ impl Fixture {
             read_row(&lines, ny, &mut ends, &mut room)?;
         }
         if lines.next().is_ok() {
-            return Err(lines.error(format!("a line too many: expected {nx} lines of dexels"), 0..1));
+            return Err(lines.error(format!("one line too many: expected {nx} lines of dexels"), 0..1));
         }
         Ok(Self {
             job,
@@ -113,8 +113,8 @@ fn flush(words: &mut Vec<String>, same: &mut usize) {
     }
 }
 
-/// End `k` of a dexel with `count` ends, by those before it in its row.
-fn foretold(before: &[Box<[i64]>], count: usize, k: usize) -> i64 {
+/// The prediction of end `k` of a dexel with `count` ends, from the dexels before it in its row.
+fn predicted(before: &[Box<[i64]>], count: usize, k: usize) -> i64 {
     let mut back = before
         .iter()
         .rev()
@@ -139,7 +139,7 @@ impl<'a> Lines<'a> {
                 self.last = line;
                 Ok(())
             }
-            None => Err(self.error("this file stops in the middle: expected more lines", 0..1)),
+            None => Err(self.error("this file is truncated: expected more lines", 0..1)),
         }
     }
 
@@ -165,7 +165,7 @@ fn read_row(lines: &Lines, cells: usize, all: &mut Vec<Box<[i64]>>, room: &mut u
     let line = lines.last.1;
     let mut words = line.split(' ').filter(|word| !word.is_empty());
     let place = |word: &str| {
-        // A word of the line, so its place in it is that of its bytes.
+        // A word is a slice of the line.
         let start = word.as_ptr().addr().saturating_sub(line.as_ptr().addr());
         start..start + word.len()
     };
@@ -181,14 +181,14 @@ fn read_row(lines: &Lines, cells: usize, all: &mut Vec<Box<[i64]>>, room: &mut u
                 .ok_or_else(|| lines.error("too many ends in this file", place(word)))?;
             for _ in 0..count {
                 let row = &all[first..];
-                let dexel: Box<[i64]> = (0..ends).map(|k| foretold(row, ends, k)).collect();
+                let dexel: Box<[i64]> = (0..ends).map(|k| predicted(row, ends, k)).collect();
                 check(&dexel).map_err(|message| lines.error(message, place(word)))?;
                 all.push(dexel);
             }
             continue;
         }
         if row.len() == cells {
-            return Err(lines.error(format!("a dexel too many: expected {cells} in a line"), place(word)));
+            return Err(lines.error(format!("one dexel too many: expected {cells} per line"), place(word)));
         }
         let count: Option<usize> = word.parse().ok().filter(|&count| count <= line.len());
         let count = 2 * count.ok_or_else(|| lines.error("expected a number of intervals", place(word)))?;
@@ -200,7 +200,7 @@ fn read_row(lines: &Lines, cells: usize, all: &mut Vec<Box<[i64]>>, room: &mut u
             let difference = words.next().and_then(|word| word.parse::<i64>().ok());
             let difference = difference
                 .ok_or_else(|| lines.error(format!("expected {count} whole numbers after this"), place(word)))?;
-            ends.push(foretold(row, count, k).saturating_add(difference));
+            ends.push(predicted(row, count, k).saturating_add(difference));
         }
         check(&ends).map_err(|message| lines.error(message, place(word)))?;
         all.push(ends.into());

@@ -4,9 +4,9 @@
 //! | --- | --- | --- |
 //! | `area` | (2, 2) `<f8` | min x, y; max x, y |
 //! | `cells` | (2,) `<u8` | cells in x and y |
-//! | `frame` | (4, 3) `<f8` | only where the grid has a frame: its origin and its axes x, y, z in the world |
+//! | `frame` | (4, 3) `<f8` | only if the grid has a frame: its origin and its axes x, y, z in world coordinates |
 //! | `line` | (n,) `<u4` | the line of each interval, `i · cells[1] + j`, never less than the one before |
-//! | `z` | (n, 2) `<f8` | its ends |
+//! | `z` | (n, 2) `<f8` | the ends of each interval |
 //! | `normal` | (n, 2, 3) `<f4` | their normals |
 //! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | what made them: path 65535 for no tool; with more paths `path` is `<u4`, and 4294967295 for no tool |
 
@@ -18,13 +18,13 @@ use super::binary::{framed_numbers, has_wide_paths, in_frame, source_numbers};
 use crate::archive::{self, Archive};
 use crate::error::{FormatError, Problem};
 
-/// Most dexels that are read: they take an eighth of a byte each, even if the file has no interval.
+/// The most dexels that are read: each takes an eighth of a byte, even if the file has no intervals.
 const MOST: usize = 1 << 30;
 
 fn npy(kind: &str, shape: &[usize], data: impl IntoIterator<Item = u8>) -> Vec<u8> {
     let list: String = shape.iter().map(|n| format!("{n},")).collect();
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({list}), }}");
-    // The data begin at a multiple of 64.
+    // The data must begin at a multiple of 64.
     while (header.len() + 11) % 64 != 0 {
         header.push(' ');
     }
@@ -39,7 +39,7 @@ fn npy(kind: &str, shape: &[usize], data: impl IntoIterator<Item = u8>) -> Vec<u
 /// Writes dexels as NumPy arrays: `numpy.load(file)["z"]` are the ends of all intervals.
 ///
 /// # Errors
-/// What the writer says; an array of more than 4 GiB; a path numbered `u32::MAX`.
+/// Those of the writer; a path numbered `u32::MAX`.
 pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
     let grid = dexels.grid();
     let intervals = || {
@@ -123,7 +123,7 @@ fn array<const N: usize>(
     let wrong = || {
         let row: String = row.iter().map(|n| format!(", {n}")).collect();
         problem(format!(
-            "the array `{name}` is not as expected: of type {kind} and shape (n{row})"
+            "the array `{name}` must have the type {kind} and the shape (n{row})"
         ))
     };
     let rest = bytes.strip_prefix(b"\x93NUMPY\x01\x00").ok_or_else(wrong)?;

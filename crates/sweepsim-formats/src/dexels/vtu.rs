@@ -14,7 +14,7 @@ const LINE: u8 = 3;
 /// no tool, 4294967295 where there are more paths), `segment` and `t`.
 ///
 /// # Errors
-/// What the writer says.
+/// Those of the writer.
 pub fn write_dexels_vtu(dexels: &Dexels, writer: &mut impl Write) -> io::Result<()> {
     let grid = dexels.grid();
     let count = dexels.count();

@@ -11,7 +11,7 @@ use super::tools::Step;
 use super::{schema, spline_motion};
 use crate::error::{FormatError, Problem};
 
-/// Chords of arcs may be so many times the job's tolerance away from them, where a path does not say otherwise.
+/// The default arc tolerance, in tolerances of the job.
 const ARC_TOLERANCE: f64 = 10.0;
 
 impl JobReader<'_> {

@@ -8,24 +8,25 @@ use sweepsim_nc::{Note, Program, ProgramPose};
 use super::schema;
 use crate::error::{FormatError, Problem, TextPosition};
 
-/// A path of a job, with its tool. A path file gives several of them when its path breaks or its tool changes.
+/// A path of a job, with its tool. A file has several of them if its path breaks or its tool changes.
 #[derive(Clone, Debug)]
 pub struct JobPath {
-    /// The number of the tool that goes along it: a key of [`Job::tools`](crate::Job::tools).
+    /// The number of its tool: a key of [`Job::tools`](crate::Job::tools).
     pub tool: u32,
     /// The poses, in millimetres.
     pub path: Path,
-    /// Where it comes from, for people: a file's name, or its place in the job.
+    /// Where it comes from, for people: the name of a file, or its position in the job.
     pub source: String,
-    /// For each move whether it is a rapid one.
+    /// Whether each move is a rapid.
     pub rapid: Vec<bool>,
-    /// For each pose its line in the file; empty when it is in the job itself.
+    /// The line of each pose in its file; empty for poses in the job itself.
     pub lines: Vec<usize>,
-    /// What was ignored or decided in reading the file: with the first path of it.
+    /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
 }
 
-/// The paths of a program, the tool turning by `law` where the program does not say how. `tool` is that of the job for all of it; without it the program's numbers hold.
+/// The paths of a program. The tool axis turns by `law` where the program does not say how. `tool` is the job's tool for the whole
+/// program; without it the program's numbers are used.
 pub(crate) fn of_program(
     mut program: Program,
     file: &FilePath,
@@ -63,7 +64,7 @@ pub(crate) fn of_program(
         has_tool(number).map_err(|problem| at(problem, first.line))?;
         let poses = section.iter().map(|pose| pose.pose).collect();
         let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
-        // Tables say nothing of how the tool turns.
+        // Tables do not say how the tool turns.
         let path = if moves.iter().all(|way| *way == Move::default()) {
             Path::with_law(poses, law)
         } else {
@@ -98,7 +99,7 @@ fn second_tool(program: &Program) -> Option<&ProgramPose> {
         .find(|pose| pose.tool.is_some_and(|tool| tool != first))
 }
 
-/// What is wrong with inline poses: the problem, and which pose and part of it (0: tip, 1: axis, 2: side).
+/// A problem of poses in the job, with the pose and the part of it (0: tip, 1: axis, 2: side).
 pub(crate) type PoseFault = (Problem, Option<(usize, usize)>);
 
 fn pose(raw: &schema::Pose, unit: f64) -> Result<Pose, (Problem, usize)> {
@@ -118,7 +119,7 @@ fn pose(raw: &schema::Pose, unit: f64) -> Result<Pose, (Problem, usize)> {
     })
 }
 
-/// The path through poses of the job itself.
+/// The path through poses in the job itself.
 pub(crate) fn of_poses(raw: &[schema::Pose], law: Law, unit: f64) -> Result<Path, PoseFault> {
     let mut poses = Vec::with_capacity(raw.len());
     for (index, raw) in raw.iter().enumerate() {
@@ -135,7 +136,7 @@ fn path_fault(error: PathError) -> PoseFault {
     (Problem::Path(error), place)
 }
 
-/// The path along moves of the job itself.
+/// The path along moves in the job itself.
 pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path, PoseFault> {
     let mut poses: Vec<Pose> = Vec::with_capacity(raw.len());
     let mut arcs = Vec::new();
@@ -184,7 +185,7 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
     Path::with_moves(poses, moves).map_err(path_fault)
 }
 
-/// `file` as named in `job`: relative to the folder of the job.
+/// A file named in a job, relative to the folder of the job.
 pub(crate) fn beside(job: &FilePath, file: &str) -> PathBuf {
     job.parent().unwrap_or(FilePath::new("")).join(file)
 }

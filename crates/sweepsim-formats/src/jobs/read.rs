@@ -1,4 +1,4 @@
-//! From the values of a job's text to a [`Job`]: every one checked, with its place when it is wrong.
+//! From the text of a job to a [`Job`]: every value is checked, and errors have its position.
 
 use std::collections::BTreeMap;
 use std::path::Path as FilePath;
@@ -13,10 +13,10 @@ use super::{paths, schema, surface_tool};
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::text::{self, SpanTree};
 
-/// Where a job does not say how exact interval ends are, in its units.
+/// The default tolerance, in units of the job.
 const TOLERANCE: f64 = 1e-6;
 
-/// Reads a job whose file is, or would be, `file`.
+/// Reads the text of a job. `file` is, or would be, its file.
 pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
     let raw: schema::Job = text::ron(text)?;
     let units = match raw.units {
@@ -41,7 +41,7 @@ pub(crate) struct JobReader<'a> {
 }
 
 impl JobReader<'_> {
-    /// A problem with the value that the steps lead to.
+    /// A problem of the value that the steps lead to.
     pub(crate) fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
         let span = self.node(steps).span.clone();
         FormatError::new(problem, Some(TextPosition::of_bytes(self.text, span)))
@@ -156,7 +156,7 @@ impl JobReader<'_> {
         })
     }
 
-    /// The solid of tool `number`, or of a body that moves with it, and what is odd about it.
+    /// The solid of tool `number`, or of one of its bodies, and notes about it.
     fn tool(&self, number: u32, raw: &schema::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
         if let schema::Tool::Surface(name) = raw {
             let file = paths::beside(self.file, name);
@@ -202,7 +202,7 @@ impl JobReader<'_> {
         Ok(grid.in_frame(frame))
     }
 
-    /// A file that cannot be opened is an error of the job, at the place that names it.
+    /// A file that cannot be opened is an error of the job, at the position that names it.
     pub(crate) fn named<T>(
         &self,
         read: Result<T, FormatError>,

@@ -1,4 +1,4 @@
-//! A job as the RON text has it, before anything is checked. Names and fields are those of the file format.
+//! The file format of jobs: its names and fields, before any value is checked.
 
 use std::collections::BTreeMap;
 
@@ -210,7 +210,7 @@ pub(crate) struct Path {
     pub tip_control: Option<bool>,
 }
 
-/// Tip, axis, and where the tool's x points: two or three triples in parentheses.
+/// The tip, the axis, and optionally the direction of the tool's x axis: two or three triples in parentheses.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pose(pub [f64; 3], pub [f64; 3], pub Option<[f64; 3]>);
 

@@ -1,4 +1,4 @@
-//! Motions of one's own in a job: the tip and the orientation as B-splines.
+//! User-defined motions: the tip and the orientation as B-splines.
 //!
 //! ```ron
 //! Motion(
@@ -8,8 +8,8 @@
 //! )
 //! ```
 //!
-//! A curve without knots has evenly spaced ones over the domain of the other, or over `[0, 1]`; a motion without an orientation has the tool's axis
-//! along z.
+//! A curve without knots has evenly spaced ones over the domain of the other curve, or over `[0, 1]`. Without an orientation the tool axis
+//! stays along z.
 
 use std::path::Path as FilePath;
 use sweepsim_motion::{MotionError, Path, SplineMotion};
@@ -21,10 +21,10 @@ use crate::error::{FormatError, Problem, TextPosition};
 use crate::text;
 use crate::text::SpanTree;
 
-/// How far a matrix may be from a rotation where the job does not say.
+/// The default deviation of a matrix from a rotation.
 const TOLERANCE: f64 = 1e-9;
 
-/// Reads a motion from a file of its own; lengths are multiplied by `unit`.
+/// Reads a motion from its own file. Lengths are multiplied by `unit`.
 pub(crate) fn read(file: &FilePath, unit: f64) -> Result<Path, FormatError> {
     let text = text::read(file)?;
     let parse = || {
@@ -38,7 +38,7 @@ pub(crate) fn read(file: &FilePath, unit: f64) -> Result<Path, FormatError> {
     parse().map_err(|error| error.in_file(file))
 }
 
-/// The path along a motion; lengths are multiplied by `unit`.
+/// The path along a motion. Lengths are multiplied by `unit`.
 pub(crate) fn path(raw: &schema::Motion, unit: f64) -> Result<Path, Fault> {
     let tip = &raw.tip;
     let (degree, count, own) = match &raw.orientation {
@@ -105,7 +105,7 @@ fn fault(problem: Problem, field: &[&'static str]) -> Fault {
     }
 }
 
-/// The knots that are given for a curve of so many points.
+/// The knots given for a curve with a number of points.
 fn given(what: &'static str, degree: usize, points: usize, list: Option<&[f64]>) -> Result<Option<KnotVector>, Fault> {
     if points <= degree {
         let problem = Problem::value(
@@ -128,7 +128,7 @@ fn given(what: &'static str, degree: usize, points: usize, list: Option<&[f64]>)
     Ok(Some(knots))
 }
 
-/// Evenly spaced knots, such that the curve begins and ends at its points.
+/// Evenly spaced, clamped knots.
 fn even(what: &'static str, degree: usize, points: usize, domain: (f64, f64)) -> Result<KnotVector, Fault> {
     KnotVector::uniform(degree, points - degree, domain.0, domain.1).map_err(|error| no_knots(what, &error))
 }

@@ -12,7 +12,7 @@ use crate::error::{FormatError, Problem};
 use crate::meshes::{MeshFormat, read_mesh_file, read_stl};
 
 impl JobReader<'_> {
-    /// A piece of stock, whose value the steps lead to.
+    /// The stock, or a part of it, that the steps lead to.
     pub(crate) fn stock(&self, raw: &schema::Stock, at: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
         let scale = |point: [f64; 3]| point.map(|c| c * self.unit);
         let steps = |name: &str, k: Option<usize>| -> Vec<Step> {
@@ -22,7 +22,7 @@ impl JobReader<'_> {
         let finite = |name: &str, point: [f64; 3]| {
             (0..3).try_for_each(|k| self.check(name, point[k], true, "finite", &steps(name, Some(k))))
         };
-        // Those in the list that is the item number `place` of a wrapper.
+        // The solids of a list that is item `place` of its parent.
         let list = |parts: &[schema::Stock], place: usize| -> Result<Vec<Stock>, FormatError> {
             let each = parts.iter().enumerate().map(|(k, part)| {
                 let steps: Vec<Step> = at.iter().cloned().chain([Step::Item(place), Step::Item(k)]).collect();
@@ -85,7 +85,7 @@ impl JobReader<'_> {
         }
     }
 
-    /// What an earlier run left, in millimetres as all its outputs.
+    /// The result of an earlier run, in millimetres like all its outputs.
     fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
         let file = paths::beside(self.file, name);
         let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
@@ -104,7 +104,7 @@ impl JobReader<'_> {
         ))
     }
 
-    /// The triangles of a file that is named at the steps, in millimetres.
+    /// The triangles of a file that the job names, in millimetres.
     pub(crate) fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
         let file = paths::beside(self.file, name);
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);

@@ -1,14 +1,14 @@
-//! Tools of B-spline surfaces: the file that `Surface("…")` of a job names. Sides of surfaces may join several others.
+//! Tools made of B-spline surfaces: the file that `Surface("…")` names. A side of a surface may join several others.
 //!
 //! ```ron
 //! Surfaces(
-//!     tolerance: 1e-6,                       // how far sides that join may be apart, in the job's units
+//!     tolerance: 1e-6,                       // the largest gap between sides that join, in the job's units
 //!     surfaces: [
 //!         Surface(
 //!             degrees: (3, 3),               // in u and in v
 //!             knots: ([0, 0, 0, 0, 1, 1, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]),
 //!             points: [[(0, 0, 0), …], …],   // a row along u for each v; F_u × F_v points out of the tool
-//!             weights: [[1, …], …],          // of the same shape; all 1 without it
+//!             weights: [[1, …], …],          // of the same shape; 1 by default
 //!         ),
 //!     ],
 //! )
@@ -45,7 +45,7 @@ struct Surface {
     weights: Option<Vec<Vec<f64>>>,
 }
 
-/// Reads a tool; lengths are multiplied by `unit`.
+/// Reads a tool. Lengths are multiplied by `unit`.
 pub(crate) fn read(file: &FilePath, unit: f64) -> Result<Tool, FormatError> {
     let text = text::read(file)?;
     parse(&text, unit).map_err(|error| error.in_file(file))
@@ -78,7 +78,7 @@ fn parse(text: &str, unit: f64) -> Result<Tool, FormatError> {
     })
 }
 
-/// The surface, or what is wrong with which field.
+/// The surface, or a problem and the field that has it.
 fn spline(raw: &Surface, unit: f64) -> Result<RationalSpline, (Problem, &'static str)> {
     let mut knots = Vec::with_capacity(2);
     for (axis, list) in raw.knots.iter().enumerate() {

@@ -9,13 +9,13 @@ use super::schema;
 use crate::error::Problem;
 use crate::text::SpanTree;
 
-/// What is wrong with a tool or a motion, and in which of its fields (the keys or positions from there on).
+/// A problem of a tool or a motion, and the steps from there to the field that has it.
 pub(crate) struct Fault {
     pub problem: Problem,
     pub field: Vec<Step>,
 }
 
-/// A step into a value of the job's text.
+/// A step from a value of the job's text to one inside it.
 #[derive(Clone, Debug)]
 pub(crate) enum Step {
     Key(String),
@@ -23,7 +23,7 @@ pub(crate) enum Step {
 }
 
 impl Step {
-    /// Where it leads to from a value.
+    /// The span that the step leads to.
     pub fn of<'n>(&self, node: &'n SpanTree) -> &'n SpanTree {
         match self {
             Self::Key(key) => node.key(key),
@@ -38,7 +38,7 @@ impl From<&str> for Step {
     }
 }
 
-/// A tool, and what is odd about it.
+/// A tool, and warnings about it.
 pub(crate) struct Made {
     pub tool: Tool,
     pub warnings: Vec<AptWarning>,
@@ -53,7 +53,7 @@ impl From<Tool> for Made {
     }
 }
 
-/// Makes tool `number`; lengths are multiplied by `unit`.
+/// Makes tool `number`. Lengths are multiplied by `unit`.
 pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, Fault> {
     let made = match *raw {
         schema::Tool::Ball { radius, length } => Tool::ball(radius * unit, length * unit),
@@ -188,7 +188,7 @@ pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, F
     })
 }
 
-/// The field of a spline that a fault is about.
+/// The field of a spline that has a fault.
 fn in_spline(fault: &SplineFault) -> Vec<Step> {
     match *fault {
         SplineFault::Degree { .. } => vec!["degree".into()],
@@ -213,7 +213,7 @@ fn last(raw: &schema::Tool) -> Vec<Step> {
     }
 }
 
-/// A warning with its lengths as the job has them.
+/// A warning with its lengths in units of the job.
 fn in_units(warning: AptWarning, unit: f64) -> AptWarning {
     match warning {
         AptWarning::NotTangent { line, distance } => AptWarning::NotTangent {
@@ -224,7 +224,7 @@ fn in_units(warning: AptWarning, unit: f64) -> AptWarning {
     }
 }
 
-/// Measures as the job has them, for the message.
+/// An error with its lengths in units of the job.
 fn unscaled(error: ProfileError, unit: f64) -> ProfileError {
     match error {
         ProfileError::Measure { what, value, expected } => ProfileError::Measure {

@@ -28,14 +28,14 @@ pub enum MeshFormat {
     Ply,
     /// `.glb`: glTF 2.0, for viewers.
     Glb,
-    /// `.3mf`: for printers.
+    /// `.3mf`: for 3D printers.
     ThreeMf,
     /// `.vtp`: for ParaView.
     Vtp,
 }
 
 impl MeshFormat {
-    /// That of a file, by its extension.
+    /// The format of a file, by its extension.
     #[must_use]
     pub fn of(file: &Path) -> Option<Self> {
         Some(match extension(file).as_str() {
@@ -61,10 +61,10 @@ impl fmt::Display for MeshFormat {
     }
 }
 
-/// Reads a mesh: `.stl .ply .glb .3mf .vtp`. Corners of an STL that are equal to the bit become one vertex.
+/// Reads a mesh: `.stl`, `.ply`, `.glb`, `.3mf` or `.vtp`. Identical corners of an STL become one vertex.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: no such file, an extension that is not known, or what the reader of the format says.
+/// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, or its content is invalid.
 pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));
@@ -83,10 +83,10 @@ pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
     .map_err(|error| error.in_file(file))
 }
 
-/// Writes a mesh, whole or not at all: `.stl .ply .glb .3mf .vtp`.
+/// Writes a mesh, completely or not at all: `.stl`, `.ply`, `.glb`, `.3mf` or `.vtp`.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: an extension that is not known, or what the system or the writer of the format says.
+/// [`FormatError`] with the file's name: the extension is unknown, or the data cannot be written.
 pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));
@@ -96,7 +96,7 @@ pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
             Some(soup) => write_stl(&soup.triangles, out),
             None => Err(io::Error::new(
                 io::ErrorKind::InvalidInput,
-                "a triangle without its vertices",
+                "a triangle with missing vertices",
             )),
         },
         MeshFormat::Ply => write_ply(mesh, out),

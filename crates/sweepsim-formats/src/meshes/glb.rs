@@ -1,6 +1,6 @@
 //! GLB: glTF 2.0 in one file, for viewers.
 //!
-//! Places and normals are `f32`. The mesh keeps its own coordinates; its node turns z up and takes millimetres to metres, as glTF wants.
+//! Positions and normals are `f32`. The mesh keeps its coordinates; its node turns z up and scales millimetres to metres, as glTF requires.
 
 use std::io::{self, Write};
 
@@ -15,12 +15,13 @@ const U32: u64 = 5125;
 /// Writes a mesh.
 ///
 /// # Errors
-/// What the writer says; a mesh without triangles, one with a triangle of vertices that it does not have, or more than 4 GiB.
+/// Those of the writer; a mesh without triangles, triangles with missing vertices, more than 4 GiB.
 pub fn write_glb(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
     let invalid = |message| io::Error::new(io::ErrorKind::InvalidInput, message);
     let count = mesh.vertices.len();
-    if mesh.triangles.is_empty() || mesh.triangles.iter().flatten().any(|v| *v as usize >= count) {
-        return Err(invalid("no triangles, or one without its vertices"));
+    super::check_triangles(mesh)?;
+    if mesh.triangles.is_empty() {
+        return Err(invalid("a mesh without triangles, which glTF does not allow"));
     }
     let places = || mesh.vertices.iter().map(|v| v.map(|c| c as f32));
     let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
@@ -77,7 +78,7 @@ fn problem(message: impl Into<String>) -> FormatError {
     FormatError::new(Problem::syntax(message), None)
 }
 
-/// The next chunk, if it is of a kind.
+/// The next chunk, if it is of this kind.
 fn chunk<'a>(bytes: &mut &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let (content, after) = rest
@@ -87,16 +88,16 @@ fn chunk<'a>(bytes: &mut &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
     Some(content)
 }
 
-/// Reads the triangles of all meshes of a file, each in its own coordinates, as one.
+/// Reads the triangles of all meshes of a file as one mesh, each in its own coordinates.
 ///
 /// # Errors
-/// [`FormatError`]: no GLB, or one cut off; a mesh that is not of triangles with whole accessors in the file itself.
+/// [`FormatError`]: not a GLB file, or a truncated one; a mesh that is not made of triangles, or whose data are not in the file.
 pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let mut rest = bytes
         .strip_prefix(b"glTF\x02\0\0\0")
         .and_then(|rest| rest.get(4..))
-        .ok_or_else(|| problem("this is no GLB: expected `glTF` and version 2 at its beginning"))?;
-    let cut_off = || problem("this GLB is damaged, or stops in the middle");
+        .ok_or_else(|| problem("this is not a GLB file: expected `glTF` and version 2 at its beginning"))?;
+    let cut_off = || problem("this GLB is damaged or truncated");
     let text = chunk(&mut rest, b"JSON").ok_or_else(cut_off)?;
     let data = chunk(&mut rest, b"BIN\0").ok_or_else(cut_off)?;
     let document: Value =
@@ -107,7 +108,9 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
         .iter()
         .flat_map(|mesh| list(&mesh["primitives"]))
     {
-        let wrong = || problem("a mesh of this GLB is not of triangles with places and indices in this file");
+        let wrong = || {
+            problem("a mesh of this GLB is not made of triangles, or its positions and indices are not in this file")
+        };
         if primitive["mode"].as_u64().unwrap_or(4) != 4 {
             return Err(wrong());
         }
@@ -115,6 +118,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
         let places = read(&primitive["attributes"]["POSITION"], 3).ok_or_else(wrong)?;
         let first = mesh.vertices.len();
         mesh.vertices.extend(places.as_chunks::<3>().0);
+        super::check_count(mesh.vertices.len())?;
         match read(&primitive["attributes"]["NORMAL"], 3) {
             Some(normals) if normals.len() == places.len() => {
                 mesh.normals
@@ -127,6 +131,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
             if corners.iter().any(|v| *v as usize >= places.len() / 3) {
                 return Err(wrong());
             }
+            // Indices are `u32`: what they cannot number is an error above.
             mesh.triangles.push(corners.map(|v| (first + v as usize) as u32));
         }
     }
@@ -143,7 +148,7 @@ fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
-/// All numbers of an accessor, `width` for each of its elements.
+/// The numbers of an accessor, `width` per element.
 fn numbers(document: &Value, data: &[u8], which: &Value, width: usize) -> Option<Vec<f64>> {
     let accessor = list(&document["accessors"]).get(which.as_u64()? as usize)?;
     let view = list(&document["bufferViews"]).get(accessor["bufferView"].as_u64()? as usize)?;

@@ -1,7 +1,7 @@
-//! PLY: binary little-endian, vertices with normals and whether a tool cut there, triangles.
+//! PLY: vertices with normals and a flag for those that a tool cut, and triangles.
 //!
-//! Positions are `double`, so that a mesh reads back to the same bits; normals are `float`. The reader takes what the writer
-//! writes and the usual other forms: ASCII or binary of either byte order, further elements and properties, polygons.
+//! Written as binary little-endian; positions are `double`, so that a mesh is read back exactly, and normals are `float`. The reader also
+//! accepts the other usual forms: ASCII or binary of either byte order, further elements and properties, polygons.
 
 use std::io::Write;
 
@@ -12,8 +12,9 @@ use crate::error::{FormatError, Problem};
 /// Writes a mesh.
 ///
 /// # Errors
-/// What the writer says.
+/// Those of the writer; a triangle with missing vertices.
 pub fn write_ply(mesh: &Mesh, writer: &mut impl Write) -> std::io::Result<()> {
+    super::check_triangles(mesh)?;
     let with_normals = mesh.normals.len() == mesh.vertices.len();
     let with_cut = mesh.cut.len() == mesh.vertices.len();
     write!(
@@ -92,7 +93,7 @@ impl Scalar {
         }
     }
 
-    /// The value of bytes in little-endian order (as many as `size`, then zeros).
+    /// The value of little-endian bytes: as many as `size`, then zeros.
     fn value(self, b: [u8; 8]) -> f64 {
         match self {
             Self::I8 => f64::from(b[0] as i8),
@@ -110,7 +111,7 @@ impl Scalar {
 struct Property {
     name: String,
     scalar: Scalar,
-    /// The type of the count, for a list.
+    /// The type of a list's count.
     count: Option<Scalar>,
 }
 
@@ -124,7 +125,7 @@ fn fail<T>(message: impl Into<String>) -> Result<T, FormatError> {
     Err(FormatError::new(Problem::syntax(message), None))
 }
 
-/// The body of a file, read from the front.
+/// The rest of the body of a file.
 struct Body<'a> {
     bytes: &'a [u8],
     ascii: bool,
@@ -148,7 +149,7 @@ impl Body<'_> {
             };
         }
         let Some((front, rest)) = self.bytes.split_at_checked(scalar.size()) else {
-            return fail("this PLY stops in the middle: expected more data, as its header says");
+            return fail("this PLY is truncated: its header says that there is more data");
         };
         self.bytes = rest;
         let mut bytes = [0; 8];
@@ -160,17 +161,20 @@ impl Body<'_> {
     }
 }
 
-/// Reads a mesh. Polygons become fans of triangles; normals and the marks of cut vertices are kept when the file has them.
+/// Reads a mesh. Polygons become fans of triangles; normals and flags of cut vertices are read if the file has them.
 ///
 /// # Errors
-/// [`FormatError`]: no PLY, shorter than it says, corners that are none, coordinates that are not finite.
+/// [`FormatError`]: not a PLY file, or a truncated one; faces with missing vertices; coordinates that are not finite.
 pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let (elements, mut body) = header(bytes)?;
     let mut mesh = Mesh::default();
     for element in &elements {
-        // An element without data would let a count of the header make work without end.
+        // A huge count of an element without data would take forever.
         if element.properties.is_empty() && element.count > 0 {
             return fail(format!("the element {} has no property", element.name));
+        }
+        if element.name == "vertex" {
+            super::check_count(mesh.vertices.len().saturating_add(element.count))?;
         }
         let place = |name: &str| {
             element
@@ -238,18 +242,18 @@ fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), FormatError> {
     let mut rest = bytes;
     for number in 1.. {
         let Some(length) = rest.iter().position(|&byte| byte == b'\n') else {
-            return fail("this is no PLY: expected a header from `ply` to `end_header`");
+            return fail("this is not a PLY file: expected a header from `ply` to `end_header`");
         };
         let line = String::from_utf8_lossy(&rest[..length]);
         rest = &rest[length + 1..];
         let words: Vec<&str> = line.split_whitespace().collect();
         let scalar = |name: &str| match Scalar::named(name) {
             Some(scalar) => Ok(scalar),
-            None => fail(format!("line {number} of the PLY's header: `{name}` is no type")),
+            None => fail(format!("line {number} of the PLY's header: unknown type `{name}`")),
         };
         match words[..] {
             ["ply"] if number == 1 => {}
-            _ if number == 1 => return fail("this is no PLY: expected `ply` in the first line"),
+            _ if number == 1 => return fail("this is not a PLY file: expected `ply` in the first line"),
             ["format", name, _] => format = Some(name.to_owned()),
             ["comment" | "obj_info", ..] | [] => {}
             ["element", name, count] => match count.parse() {
@@ -258,7 +262,7 @@ fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), FormatError> {
                     count,
                     properties: Vec::new(),
                 }),
-                Err(_) => return fail(format!("line {number} of the PLY's header: `{count}` is no count")),
+                Err(_) => return fail(format!("line {number} of the PLY's header: invalid count `{count}`")),
             },
             ["property", ref words @ ..] => {
                 let (count, kind, name) = match *words {

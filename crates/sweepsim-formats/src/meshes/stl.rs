@@ -1,6 +1,6 @@
-//! STL, binary and ASCII, without trust in what the file says about itself.
+//! STL, binary and ASCII, without trusting what the file says about itself.
 //!
-//! Read here and not by a library because coordinates of ASCII files are kept as `f64` and errors name the line.
+//! Not read by a library, so that ASCII coordinates are read as `f64` and errors name the line.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,9 +9,9 @@ use sweepsim_dexel::TriangleSoup;
 
 use crate::error::{FormatError, Problem, TextPosition};
 
-/// Bytes before the first triangle of a binary file: 80 of any kind, and their number.
+/// Bytes before the first triangle of a binary file: 80 arbitrary ones, and the number of triangles.
 const HEADER: usize = 84;
-/// Bytes of a triangle: normal, three corners, two more.
+/// Bytes per triangle: normal, three corners, two more.
 const TRIANGLE: usize = 50;
 
 type Triangle = [[f64; 3]; 3];
@@ -19,24 +19,24 @@ type Triangle = [[f64; 3]; 3];
 /// Reads the triangles of an STL file, in its own units.
 ///
 /// # Errors
-/// [`FormatError`]: no such file, no STL (with the line where an ASCII file goes wrong), coordinates that are not finite.
+/// [`FormatError`]: the file cannot be read, or is not STL (with the line of an ASCII file); coordinates that are not finite.
 pub fn read_stl(file: &Path) -> Result<TriangleSoup, FormatError> {
     let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
     parse_stl(&bytes).map_err(|error| error.in_file(file))
 }
 
-/// Reads the triangles of an STL file that is in memory.
+/// Reads the triangles of an STL file in memory.
 ///
 /// # Errors
 /// As [`read_stl`], without the file's name.
 pub fn parse_stl(bytes: &[u8]) -> Result<TriangleSoup, FormatError> {
     let triangles = match binary_count(bytes) {
-        // The size decides: binary files may begin with `solid`, too.
+        // The size decides, as binary files may begin with `solid` too.
         Some(count) if bytes.len() as u64 == HEADER as u64 + TRIANGLE as u64 * u64::from(count) => binary(bytes)?,
         _ if bytes.trim_ascii_start().starts_with(b"solid") => ascii(bytes)?,
         Some(count) => {
             let message = format!(
-                "this is no STL: it does not begin with `solid`, and as a binary file of {count} triangles it would have {} bytes, but it has {}",
+                "this is not an STL file: it does not begin with `solid`, and as a binary file of {count} triangles it would have {} bytes, but it has {}",
                 HEADER as u64 + TRIANGLE as u64 * u64::from(count),
                 bytes.len()
             );
@@ -44,14 +44,14 @@ pub fn parse_stl(bytes: &[u8]) -> Result<TriangleSoup, FormatError> {
         }
         None => {
             let message = format!(
-                "this is no STL: it does not begin with `solid`, and {} bytes are too few for a binary file (at least {HEADER})",
+                "this is not an STL file: it does not begin with `solid`, and {} bytes are too few for a binary file (at least {HEADER})",
                 bytes.len()
             );
             return Err(FormatError::new(Problem::syntax(message), None));
         }
     };
     if triangles.is_empty() {
-        let problem = Problem::syntax("this STL has no triangle: expected at least one");
+        let problem = Problem::syntax("this STL has no triangles: expected at least one");
         return Err(FormatError::new(problem, None));
     }
     Ok(TriangleSoup { triangles })
@@ -83,7 +83,7 @@ fn binary(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
         .collect()
 }
 
-/// ASCII: `facet`, `outer loop`, three times `vertex x y z`, and their ends, as words with any space between.
+/// ASCII: `facet`, `outer loop`, three times `vertex x y z`, and their ends.
 fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
     // Names after `solid` come in all encodings.
     let text = String::from_utf8_lossy(bytes);
@@ -118,7 +118,7 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
             Some("endsolid") => ended = true,
             Some(_) => {
                 return fail(format!(
-                    "this is no STL: found `{}`, but expected facet, outer loop, vertex, endloop, endfacet or endsolid",
+                    "this is not an STL file: found `{}`, but expected facet, outer loop, vertex, endloop, endfacet or endsolid",
                     line.trim().chars().take(40).collect::<String>()
                 ));
             }
@@ -128,15 +128,15 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
         Ok(triangles)
     } else {
         let place = TextPosition::in_line(text.lines().count().max(1), "", 1, 1);
-        let problem = Problem::syntax("this STL stops in the middle: expected `endsolid`");
+        let problem = Problem::syntax("this STL is truncated: expected `endsolid`");
         Err(FormatError::new(problem, Some(place)))
     }
 }
 
-/// Writes binary STL. Coordinates are rounded to `f32`, and a triangle without area gets a zero normal.
+/// Writes binary STL. Coordinates are rounded to `f32`; triangles without area have a zero normal.
 ///
 /// # Errors
-/// What the writer says; more than 2³² triangles.
+/// Those of the writer; more than 2³² triangles.
 pub fn write_stl(triangles: &[Triangle], writer: &mut impl Write) -> std::io::Result<()> {
     let count = u32::try_from(triangles.len())
         .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidInput, "too many triangles for STL"))?;

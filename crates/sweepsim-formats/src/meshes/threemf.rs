@@ -25,13 +25,7 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 /// # Errors
 /// Those of the writer; a triangle with missing vertices.
 pub fn write_3mf(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
-    let count = mesh.vertices.len();
-    if mesh.triangles.iter().flatten().any(|v| *v as usize >= count) {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "a triangle with missing vertices",
-        ));
-    }
+    super::check_triangles(mesh)?;
     let mut text = String::from(
         r#"<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources><object id="1" type="model"><mesh><vertices>

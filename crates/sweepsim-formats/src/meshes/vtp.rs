@@ -7,11 +7,12 @@ use sweepsim_dexel::Mesh;
 use crate::error::{FormatError, Problem};
 use crate::vtk::Document;
 
-/// Writes a mesh for ParaView (`.vtp`): places to the bit, normals, and whether a tool cut there.
+/// Writes a mesh for ParaView (`.vtp`): exact positions, normals, and flags of vertices that a tool cut.
 ///
 /// # Errors
-/// What the writer says.
+/// Those of the writer; a triangle with missing vertices.
 pub fn write_vtp(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
+    super::check_triangles(mesh)?;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     let piece = format!(
         "NumberOfPoints=\"{vertices}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{triangles}\""
@@ -54,7 +55,7 @@ fn attribute<'a>(tag: &'a str, key: &str) -> Option<&'a str> {
     tag[start..].split('"').next()
 }
 
-/// An array by its description, with the name of its type.
+/// The array that a tag describes, with the name of its type.
 fn array<'a>(tag: &'a str, data: &'a [u8]) -> Option<(&'a str, &'a [u8])> {
     if attribute(tag, "format") != Some("appended") {
         return None;
@@ -95,15 +96,15 @@ fn whole((kind, bytes): (&str, &[u8])) -> Option<Vec<i64>> {
     }
 }
 
-/// Reads the triangles of a `.vtp` whose data are appended as they are, as [`write_vtp`] and ParaView (with `raw` and no compression)
-/// write them: one piece, and nothing but triangles.
+/// Reads a `.vtp` with raw appended data, as [`write_vtp`] writes it, and ParaView with `raw` and without compression: one piece, with
+/// nothing but triangles.
 ///
 /// # Errors
-/// [`FormatError`]: no such file, data elsewhere or compressed, several pieces, polygons that are no triangles, corners that are
-/// none, coordinates that are not finite.
+/// [`FormatError`]: not a VTP file; data elsewhere or compressed; several pieces; polygons that are not triangles; triangles with missing
+/// vertices; coordinates that are not finite.
 pub fn read_vtp(bytes: &[u8]) -> Result<Mesh, FormatError> {
     const MARK: &[u8] = b"<AppendedData encoding=\"raw\">";
-    let wrong = |what: &str| problem(format!("this is no VTP that is read here: expected {what}"));
+    let wrong = |what: &str| problem(format!("this VTP cannot be read: expected {what}"));
     let end = bytes
         .windows(MARK.len())
         .position(|window| window == MARK)
@@ -129,7 +130,7 @@ pub fn read_vtp(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let (Some(points), Some(polygons)) = (count("NumberOfPoints"), count("NumberOfPolys")) else {
         return Err(wrong("the numbers of points and polygons"));
     };
-    // The arrays of a section, by name; places have whatever name.
+    // The arrays of a section by name; the array of points may have any name.
     let find = |section: &str, name: Option<&str>| {
         let mut inside = false;
         let tag = tags().find(|tag| {
@@ -151,7 +152,7 @@ pub fn read_vtp(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let triangles = ends.iter().enumerate().all(|(k, end)| *end == 3 * (k as i64 + 1));
     let lengths = [Some(places.len()), Some(corners.len()), Some(ends.len())];
     if !triangles || lengths != [points.checked_mul(3), polygons.checked_mul(3), Some(polygons)] {
-        return Err(wrong("triangles alone, as many as it says"));
+        return Err(wrong("only triangles, as many as it says"));
     }
     if !places.iter().all(|c| c.is_finite()) {
         return Err(problem("a point of this VTP is not finite"));

@@ -14,16 +14,16 @@ pub(crate) fn read(file: &Path) -> Result<String, FormatError> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());
-        let problem = Problem::syntax("this is no text: expected UTF-8");
+        let problem = Problem::syntax("this is not a text file: expected UTF-8");
         FormatError::new(problem, Some(TextPosition::of_bytes(&text, valid..valid + 1))).in_file(file)
     })
 }
 
-/// The values of a RON text, not checked yet.
+/// Parses RON, without checking the values.
 pub(crate) fn ron<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, FormatError> {
     let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
     options.from_str(text).map_err(|error| {
-        // Positions are lines and characters from 1; the text around them is found again by bytes.
+        // The parser counts lines and characters from 1; convert to bytes.
         let byte = |position: ron::error::Position| {
             let start: usize = text
                 .split_inclusive('\n')
@@ -34,7 +34,7 @@ pub(crate) fn ron<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, Forma
             start + column.map_or(text.len() - start, |(byte, _)| byte)
         };
         let span = byte(error.span.start)..byte(error.span.end);
-        // The span may have space around what is meant.
+        // The span may begin with white space.
         let skipped = text[span.start..].len() - text[span.start..].trim_start().len();
         let start = if error.code == ron::Error::Eof {
             span.start

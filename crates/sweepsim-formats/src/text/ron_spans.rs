@@ -1,17 +1,17 @@
-//! Where each value of a RON text stands.
+//! The spans of the values of a RON text.
 //!
-//! The parser gives values without places. So that a message about a value can point at it, this walks over a text that has
-//! been parsed already (so it is well-formed) and notes the spans of all values as a tree. It never fails: where the text is not as
-//! expected it stops, and a value that is not found has the place of the nearest one around it.
+//! The parser returns values without positions. So that an error about a value can point at it, this scans a text that has already
+//! been parsed, and records the spans of all values as a tree. It never fails: it stops at unexpected text, and a value that is not found
+//! has the span of the nearest one around it.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// A value, with the values in it.
+/// The span of a value, and of the values in it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SpanTree {
     pub span: Range<usize>,
-    /// Fields of a struct and entries of a map by their key's text; items of lists and tuples by position.
+    /// Fields of structs and entries of maps by the text of their key; items of lists and tuples by position.
     children: Vec<(Option<String>, SpanTree)>,
 }
 
@@ -20,7 +20,7 @@ impl SpanTree {
     pub fn of(text: &str) -> Self {
         let mut scanner = Scanner { text, at: 0, depth: 0 };
         scanner.space();
-        // `#![enable(...)]` in front.
+        // Extensions, `#![enable(...)]`.
         while scanner.text[scanner.at..].starts_with("#!") {
             let rest = &scanner.text[scanner.at..];
             scanner.at += rest.find(']').map_or(rest.len(), |end| end + 1);
@@ -29,7 +29,7 @@ impl SpanTree {
         scanner.value()
     }
 
-    /// The value of a field or of a map's key, through a wrapper such as `Some( )`; `self` when there is none.
+    /// The value of a field or of a map's key, also through a wrapper such as `Some( )`; `self` if there is none.
     pub fn key(&self, key: &str) -> &Self {
         let found = self.children.iter().find(|(name, _)| name.as_deref() == Some(key));
         match (found, &self.children[..]) {
@@ -39,7 +39,7 @@ impl SpanTree {
         }
     }
 
-    /// A key that is there before, with the place of its value: parsers of maps take the last one without a word.
+    /// A duplicate key, with the span of its value: parsers of maps silently use the last one.
     pub fn second_key(&self) -> Option<(&str, Range<usize>)> {
         let mut seen = BTreeSet::new();
         let keys = self
@@ -50,13 +50,13 @@ impl SpanTree {
         second.map(|(key, node)| (key, node.span.clone()))
     }
 
-    /// The item at `index` of a list or tuple; `self` when there is none.
+    /// The item at `index` of a list or tuple; `self` if there is none.
     pub fn item(&self, index: usize) -> &Self {
         self.children.get(index).map_or(self, |(_, node)| node)
     }
 }
 
-/// Deeper values are not looked into (the parser's own limit is the same).
+/// Deeper values are not scanned (the parser has the same limit).
 const DEEPEST: usize = 128;
 
 struct Scanner<'a> {
@@ -108,7 +108,7 @@ impl Scanner<'_> {
         }
     }
 
-    /// A quoted text, from its opening quote.
+    /// A string or character, from its opening quote.
     fn quoted(&mut self, quote: u8) {
         let bytes = self.text.as_bytes();
         self.at += 1;
@@ -123,7 +123,7 @@ impl Scanner<'_> {
         self.skip_to_boundary();
     }
 
-    /// A raw text, from the hashes after its `r`.
+    /// A raw string, from the hashes after its `r`.
     fn raw(&mut self) {
         let rest = &self.text[self.at..];
         let hashes = rest.len() - rest.trim_start_matches('#').len();
@@ -142,14 +142,14 @@ impl Scanner<'_> {
         }
     }
 
-    /// A word or number: up to what ends one.
+    /// A word or number.
     fn word(&mut self) {
         let rest = &self.text[self.at..];
         let ends = |c: char| c.is_whitespace() || "()[]{},:\"'/".contains(c);
         self.at += rest.find(ends).unwrap_or(rest.len());
     }
 
-    /// A value: a scalar, or an optional name and what its brackets hold.
+    /// A value: a scalar, or an optional name and the values in its brackets.
     fn value(&mut self) -> SpanTree {
         let start = self.at;
         let mut children = Vec::new();
@@ -208,7 +208,7 @@ impl Scanner<'_> {
                         children.push((None, first));
                     }
                     if self.at == start {
-                        // Not RON: leave it.
+                        // Not RON: stop.
                         self.at = self.text.len();
                     }
                 }

@@ -123,8 +123,12 @@ fn one_message_with_its_place() {
             "Mesh(\"none.stl\")".into(),
             "job.ron:5:12: cannot read the stock file none.stl: ",
         ),
-        (stock, "Mesh(\"text.stl\")".into(), "text.stl: this is no STL"),
-        (stock, "Mesh(\"short.stl\")".into(), "short.stl: this is no STL"),
+        (stock, "Mesh(\"text.stl\")".into(), "text.stl: this is not an STL file"),
+        (
+            stock,
+            "Mesh(\"short.stl\")".into(),
+            "short.stl: this is not an STL file",
+        ),
         (
             stock,
             "Mesh(\"broken.stl\")".into(),

@@ -17,7 +17,7 @@ fn files_that_are_no_jobs() {
     let file = folder.path().join("bytes.ron");
     std::fs::write(&file, b"Job(\n name: \"\xff\"").unwrap();
     let error = Job::read(&file).unwrap_err().to_string();
-    assert!(error.contains("bytes.ron:2:9: this is no text"), "{error}");
+    assert!(error.contains("bytes.ron:2:9: this is not a text file"), "{error}");
     // Deeper than any job: an error, not an overflow.
     assert!(message(&"(".repeat(100_000), folder.path()).starts_with("job.ron:1:"));
 }

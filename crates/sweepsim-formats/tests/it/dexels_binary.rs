@@ -69,7 +69,7 @@ proptest! {
         let file = written(&dexels);
         let length = (file.len() as f64 * part) as usize;
         let error = read_dexels_binary(&mut &file[..length]).unwrap_err().to_string();
-        prop_assert!(error.contains("stops in the middle") || length < 70 + 96, "{}", error);
+        prop_assert!(error.contains("truncated") || length < 70 + 96, "{}", error);
     }
 
     #[test]
@@ -130,8 +130,8 @@ fn other_files_and_versions_are_named() {
     let grid = Grid::new([0.0; 2], [1.0; 2], [2, 2]).unwrap();
     let mut file = written(&Dexels::empty(grid));
     let error = |file: &[u8]| read_dexels_binary(&mut &*file).unwrap_err().to_string();
-    assert!(error(b"i,j,z0,z1\n").contains("no file of dexels"));
-    assert!(error(&[b'x'; 100]).contains("no file of dexels"));
+    assert!(error(b"i,j,z0,z1\n").contains("not a dexel file"));
+    assert!(error(&[b'x'; 100]).contains("not a dexel file"));
     file[8] = 7;
     assert_eq!(error(&file), "the version of this file is 7, but must be 1 or 2");
 }

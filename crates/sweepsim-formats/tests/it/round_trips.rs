@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Grid, Interval, Mesh};
 use sweepsim_formats::{
-    DexelRow, Fixture, Job, Report, UnresolvedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply,
-    write_dexels_csv, write_ply, write_stl,
+    DexelRow, Fixture, Job, Report, UnresolvedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply, write_3mf,
+    write_dexels_csv, write_glb, write_ply, write_stl, write_vtp,
 };
 
 fn length() -> impl Strategy<Value = f64> {
@@ -233,4 +233,58 @@ fn a_file_is_whole_or_not_there() {
     let nowhere = sweepsim_formats::AtomicFile::create(&folder.path().join("none/part.ply")).unwrap_err();
     assert!(nowhere.to_string().contains("none/part.ply: cannot write this file"));
     assert!(sweepsim_formats::AtomicFile::create(folder.path()).is_err());
+}
+
+/// Numbers, among them those that nobody should use.
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        3 => -10.0..10.0_f64,
+        1 => prop::sample::select(&[0.0, -0.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e-300][..]),
+    ]
+}
+
+proptest! {
+    /// Rows in any order, reversed, overlapping or not finite: dexels with exactly these intervals, or an error.
+    #[test]
+    fn rows_become_dexels_or_an_error(
+        rows in prop::collection::vec((0_usize..4, 0_usize..3, any_number(), any_number()), 0..6),
+    ) {
+        let rows: Vec<DexelRow> = rows.into_iter().map(|(i, j, z0, z1)| DexelRow { i, j, z0, z1 }).collect();
+        let grid = Grid::new([0.0; 2], [1.0; 2], [3, 3]).unwrap();
+        if let Ok(dexels) = dexels_from_rows(grid, &rows) {
+            let found: Vec<[f64; 2]> = dexels.iter().flat_map(|(_, line)| line.heights()).collect();
+            let expected: Vec<[f64; 2]> = rows.iter().map(|row| [row.z0, row.z1]).collect();
+            prop_assert_eq!(found, expected);
+        }
+    }
+
+    /// Meshes with missing vertices, lists of wrong lengths, and numbers that are not finite: a file or an error.
+    #[test]
+    fn meshes_are_written_or_refused(
+        vertices in prop::collection::vec([any_number(), any_number(), any_number()], 0..6),
+        normals in 0_usize..6,
+        triangles in prop::collection::vec([0_u32..7, 0_u32..7, 0_u32..7], 0..5),
+    ) {
+        let whole = triangles.iter().flatten().all(|v| (*v as usize) < vertices.len());
+        let mesh = Mesh { normals: vec![[f32::NAN; 3]; normals], cut: vec![true; normals], vertices, triangles };
+        let mut bytes = Vec::new();
+        let writers: [fn(&Mesh, &mut Vec<u8>) -> std::io::Result<()>; 4] = [write_ply, write_glb, write_3mf, write_vtp];
+        for write in writers {
+            bytes.clear();
+            prop_assert!(write(&mesh, &mut bytes).is_err() || whole);
+        }
+        bytes.clear();
+        if write_ply(&mesh, &mut bytes).is_ok() {
+            let read = read_ply(&bytes);
+            prop_assert_eq!(read.is_ok(), mesh.vertices.iter().flatten().all(|c| c.is_finite()));
+        }
+    }
+}
+
+/// A mesh whose indices would not fit into 32 bits.
+#[test]
+fn too_many_vertices_are_an_error() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 4294967297\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    let error = read_ply(ply.as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("the number of vertices is 4294967297"), "{error}");
 }
