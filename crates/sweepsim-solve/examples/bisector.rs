@@ -3,8 +3,7 @@
 //!
 //! `cargo run -p sweepsim-solve --example bisector`
 
-use sweepsim_solve::{CurveSolver, Enclosure, System};
-use sweepsim_spline::Bernstein;
+use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Two cubic arcs, in variables s and t.

@@ -2,8 +2,7 @@
 //!
 //! `cargo run -p sweepsim-solve --example ray_patch`
 
-use sweepsim_solve::{Pieces, PointSolver};
-use sweepsim_spline::{BSpline, KnotVector};
+use sweepsim_solve::{BSpline, KnotVector, Pieces, PointSolver};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A wavy patch over the unit square: 7 × 7 control points, 4 × 4 polynomial pieces.

@@ -2,8 +2,7 @@
 //!
 //! `cargo run -p sweepsim-solve --example silhouette > silhouette.svg`
 
-use sweepsim_solve::{CurveSolver, Enclosure, Picture, System};
-use sweepsim_spline::Bernstein;
+use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, Picture, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // An egg box of degree (5, 5).

@@ -2,8 +2,7 @@
 //!
 //! `cargo run -p sweepsim-solve --example surface_intersection`
 
-use sweepsim_solve::{CurveSolver, Enclosure, Equation, System};
-use sweepsim_spline::Bernstein;
+use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, Equation, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A wavy patch over the unit square, and one that stands across it.

@@ -2,8 +2,7 @@
 //!
 //! `cargo run -p sweepsim-solve --example three_by_three`
 
-use sweepsim_solve::{Enclosure, PointSolver, System};
-use sweepsim_spline::Bernstein;
+use sweepsim_solve::{Bernstein, Enclosure, PointSolver, System};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let bounds = [Enclosure::new(-2.0, 2.0).unwrap(); 3];

@@ -35,6 +35,12 @@ pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOpt
 pub use surfaces::{Surface, SurfaceSolver};
 pub use systems::{Equation, Expression, MAX_FORMS, MAX_SYSTEM, Pieces, PiecesError, System, SystemError};
 
+/// The forms and splines that systems are made of, from `sweepsim-spline`.
+pub use sweepsim_spline::{
+    BSpline, Bernstein, BernsteinError, KnotError, KnotVector, RationalBernstein, RationalError, RationalSpline,
+    SplineError,
+};
+
 /// The README's example is tested.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

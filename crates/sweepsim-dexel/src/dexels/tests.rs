@@ -138,14 +138,16 @@ fn beyond_the_grid_there_is_nothing() {
     let mut dexels = Dexels::empty(grid([3, 3]));
     let piece = Interval::between(0.0, 1.0);
     for index in [9, 63, 64, usize::MAX] {
-        dexels.set(index, &[piece]).unwrap();
-        dexels.unite(index, &[piece]).unwrap();
-        dexels.subtract(index, &[piece]).unwrap();
+        let wrong = Err(IntervalError::Line { line: index, lines: 9 });
+        assert_eq!(dexels.set(index, &[piece]), wrong);
+        assert_eq!(dexels.unite(index, &[piece]), wrong);
+        assert_eq!(dexels.subtract(index, &[piece]), wrong);
         assert!(dexels.at(index).is_empty());
     }
-    dexels
-        .update(Operation::Union, &[(9, piece), (u32::MAX, piece)])
-        .unwrap();
+    for line in [9, u32::MAX] {
+        let wrong = dexels.update(Operation::Union, &[(0, piece), (line, piece)]);
+        assert!(matches!(wrong, Err(IntervalError::Line { lines: 9, .. })));
+    }
     assert_eq!(dexels, Dexels::empty(grid([3, 3])));
     assert_eq!(
         dexels.combine(Operation::Union, &Dexels::empty(grid([3, 2]))),

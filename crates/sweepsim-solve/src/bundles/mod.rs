@@ -39,8 +39,7 @@ use thiserror::Error;
 /// What is wrong with the forms of a bundle.
 ///
 /// ```
-/// use sweepsim_solve::{Bundle, BundleError};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Bundle, BundleError};
 ///
 /// let (x, y, one) = (Bernstein::variable(2, 0), Bernstein::variable(2, 1), Bernstein::constant(2, 1.0));
 /// let bundle = |numerators: Vec<Bernstein>, weight: &Bernstein| Bundle::<2>::new(numerators, weight, vec![]);

@@ -107,8 +107,7 @@ impl Curves {
 /// The 1-D solver.
 ///
 /// ```
-/// use sweepsim_solve::{CurveSolver, Enclosure, System};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, System};
 ///
 /// // x² + y² = 1/4 on [−1, 1]². In u = (x + 1)/2: x² = 4 u² − 4 u + 1 has coefficients 1, −1, 1.
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
@@ -234,8 +233,7 @@ impl CurveSolver {
     /// [`skin`](Curves::skin) is not 0, pieces may leave the region by so much.
     ///
     /// ```
-    /// use sweepsim_solve::{CurveSolver, Enclosure, System};
-    /// use sweepsim_spline::Bernstein;
+    /// use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, System};
     ///
     /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
     /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));

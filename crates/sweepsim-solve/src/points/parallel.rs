@@ -19,8 +19,7 @@ impl PointSolver {
     /// [advances](Monitor::advance) by parts, and [visits](Monitor::visit) no boxes.
     ///
     /// ```
-    /// use sweepsim_solve::{Enclosure, PointSolver, System};
-    /// use sweepsim_spline::Bernstein;
+    /// use sweepsim_solve::{Bernstein, Enclosure, PointSolver, System};
     ///
     /// let x = Bernstein::from_fn(&[3], |i| [1.0, -2.0, 2.0, -1.0][i[0]])?;
     /// let system = System::new(&[Enclosure::UNIT], [&x])?;

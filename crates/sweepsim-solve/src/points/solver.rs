@@ -10,8 +10,7 @@ use crate::{Monitor, System};
 /// The 0-D solver, with memory that it keeps from one system to the next.
 ///
 /// ```
-/// use sweepsim_solve::{Enclosure, PointSolver, System};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Enclosure, PointSolver, System};
 ///
 /// // x² + y² = 1 and y = x, on [−2, 2]². In u = (x + 2)/4: x² = 16 u² − 16 u + 4 has coefficients 4, −4, 4.
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [4.0, -4.0, 4.0][i[axis]]).unwrap();

@@ -11,8 +11,7 @@ type Drawn = ([Enclosure; 2], u32, Fate);
 /// Watches a search and draws two of its variables.
 ///
 /// ```
-/// use sweepsim_solve::{Enclosure, Picture, PointSolver, System};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Enclosure, Picture, PointSolver, System};
 ///
 /// let circle = Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[0]] + [1.0, -1.0, 1.0][i[1]] - 0.25)?;
 /// let diagonal = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));

@@ -90,8 +90,7 @@ impl Surface {
 /// The 2-D solver.
 ///
 /// ```
-/// use sweepsim_solve::{Enclosure, SurfaceSolver, System};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Enclosure, SurfaceSolver, System};
 ///
 /// // A sphere of radius 1/2 about the middle of the unit cube.
 /// let square = |axis| Bernstein::from_fn(&[2, 2, 2], |i| [0.25, -0.25, 0.25][i[axis]]).unwrap();

@@ -18,8 +18,7 @@ pub const MAX_FORMS: usize = MAX_UNKNOWNS;
 /// Points where a divisor vanishes are no solutions; boxes in which one may vanish cannot be settled and are split.
 ///
 /// ```
-/// use sweepsim_solve::{Expression, Enclosure, PointSolver, System};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Enclosure, Expression, PointSolver, System};
 ///
 /// // 1/(1 + x) + 1/(1 + 2 y) = 1.3 and x = y: no common denominator.
 /// let x = Expression::from(Bernstein::variable(2, 0));

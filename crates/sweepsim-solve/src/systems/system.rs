@@ -68,8 +68,7 @@ impl From<&Bernstein> for Equation {
 /// What is wrong with the parts of a system.
 ///
 /// ```
-/// use sweepsim_solve::{Enclosure, System, SystemError};
-/// use sweepsim_spline::Bernstein;
+/// use sweepsim_solve::{Bernstein, Enclosure, System, SystemError};
 ///
 /// let x = Bernstein::variable(1, 0);
 /// let infinite = [Enclosure::new(0.0, f64::INFINITY).unwrap()];

@@ -8,6 +8,7 @@ mod extremes;
 mod invariance;
 mod limits;
 mod many;
+mod many_surfaces;
 mod misuse;
 mod monitors;
 mod parallel;
