@@ -1,7 +1,7 @@
 //! A band of rows: which triangle each sample sees, and the colours of its pixels.
 
 use crate::camera::Camera;
-use crate::frame::{BAND, Point, RIM, SAMPLES, STEP, area};
+use crate::frame::{BAND, ImagePoint, RIM, SAMPLES, STEP, area};
 use crate::light::{Around, Lights};
 use crate::scene::Scene;
 use crate::shade::{self, Matter, Spot};
@@ -35,7 +35,7 @@ impl Band {
         scene: &Scene,
         camera: &Camera,
         lights: &Lights,
-        points: &[Point],
+        points: &[ImagePoint],
         size: [usize; 2],
         top: usize,
         list: &[u32],
@@ -82,7 +82,7 @@ impl Band {
         [-rim, (self.top * SAMPLES) as i64 - rim].map(|n| n * STEP as i64)
     }
 
-    fn draw(&mut self, number: u32, mut points: [Point; 3]) {
+    fn draw(&mut self, number: u32, mut points: [ImagePoint; 3]) {
         let (step, origin) = (STEP as i64, self.origin());
         let [a, b, c] = points.map(|p| [p.x, p.y]);
         let back = area(a, b, c) < 0;
@@ -133,7 +133,7 @@ impl Band {
     }
 
     /// Interpolates between the corners of the triangle at a sample, with perspective correction.
-    fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[Point], index: usize) {
+    fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[ImagePoint], index: usize) {
         let corners = scene.triangles[self.triangles[index] as usize].map(|v| v as usize);
         let p = corners.map(|v| points[v]);
         let origin = self.origin();

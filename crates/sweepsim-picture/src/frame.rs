@@ -17,7 +17,7 @@ pub(crate) const RIM: usize = 1;
 pub(crate) const STEP: f32 = 256.0;
 /// A vertex in the image, in steps from the top left sample, with its depth and its interpolation weight.
 #[derive(Clone, Copy)]
-pub(crate) struct Point {
+pub(crate) struct ImagePoint {
     pub x: i64,
     pub y: i64,
     pub near: f32,
@@ -32,13 +32,13 @@ pub(crate) fn area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
 /// Renders a scene.
 pub(crate) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usize; 2]) -> Image {
     let samples = size.map(|n| (n * SAMPLES) as f32);
-    let points: Vec<Point> = scene
+    let points: Vec<ImagePoint> = scene
         .positions
         .par_iter()
         .map(|p| {
             let [x, y, near, weight] = camera.project(*p);
             let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
-            Point {
+            ImagePoint {
                 x: place(x, samples[0]),
                 y: place(-y, samples[1]),
                 near,
@@ -62,7 +62,7 @@ pub(crate) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usi
 }
 
 /// The triangles that each band sees, in their order: those that face the viewer, or all if there are sections.
-fn sort_into_bands(scene: &Scene, points: &[Point], bands: usize) -> Vec<Vec<u32>> {
+fn sort_into_bands(scene: &Scene, points: &[ImagePoint], bands: usize) -> Vec<Vec<u32>> {
     let step = STEP as i64;
     let mut lists = vec![Vec::new(); bands];
     for (number, t) in scene.triangles.iter().enumerate() {

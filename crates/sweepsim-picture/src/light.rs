@@ -26,14 +26,14 @@ pub(crate) const NET_REACH: f32 = 2.4;
 const GOLDEN: f32 = 2.399_963_2;
 
 /// Distances from a distant light to the nearest surface.
-struct Map {
+struct DepthMap {
     direction: Vector,
     across: [Vector; 2],
     texels: usize,
     depth: Vec<f32>,
 }
 
-impl Map {
+impl DepthMap {
     /// `direction` points towards the light.
     fn new(scene: &Scene, direction: Vector, texels: usize) -> Self {
         let other = if direction[2].abs() < 0.9 {
@@ -139,7 +139,7 @@ pub(crate) struct Around {
 pub(crate) struct Lights {
     /// The direction of the lamp.
     pub lamp: Vector,
-    maps: Vec<Map>,
+    maps: Vec<DepthMap>,
     /// Sky and ground at each vertex.
     pub around: Vec<Around>,
     /// Sky and lamp at the points of the net on the ground.
@@ -170,17 +170,17 @@ impl Lights {
                 let r = LAMP_SIZE * ((k as f32 + 0.5) / LAMP as f32).sqrt();
                 let (sin, cos) = (k as f32 * GOLDEN).sin_cos();
                 let direction = unit(along(along(lamp, r * cos, side), r * sin, other));
-                Map::new(scene, direction, LAMP_MAP)
+                DepthMap::new(scene, direction, LAMP_MAP)
             })
             .collect();
         let count = (WORK / scene.triangles.len()).clamp(FEWEST, SKY);
-        let sky: Vec<Map> = (0..count)
+        let sky: Vec<DepthMap> = (0..count)
             .into_par_iter()
             .map(|k| {
                 let z = 1.0 - (2 * k + 1) as f32 / count as f32;
                 let r = (1.0 - z * z).sqrt();
                 let (sin, cos) = (k as f32 * GOLDEN).sin_cos();
-                Map::new(scene, [r * cos, r * sin, z], SKY_MAP)
+                DepthMap::new(scene, [r * cos, r * sin, z], SKY_MAP)
             })
             .collect();
         let texel = 2.0 / SKY_MAP as f32;
@@ -264,7 +264,7 @@ fn blurred(net: &[[f32; 2]]) -> Vec<[f32; 2]> {
         .collect()
 }
 
-fn around(maps: &[Map], p: Vector, n: Vector, texel: f32) -> Around {
+fn around(maps: &[DepthMap], p: Vector, n: Vector, texel: f32) -> Around {
     let start = along(p, 2.0 * texel, n);
     let mut around = Around::default();
     for map in maps {

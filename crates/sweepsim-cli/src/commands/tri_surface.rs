@@ -8,7 +8,7 @@ use sweepsim_dexel::{Dexels, Mesh, Stock, TriDexels};
 use sweepsim_formats::{Job, Report};
 
 /// A surface, and the number of uncertified dexels along x and y.
-pub(crate) struct Surface {
+pub(crate) struct TriSurface {
     pub mesh: Mesh,
     pub uncertified: usize,
 }
@@ -58,10 +58,10 @@ pub(crate) fn surface(
     options: &RunOptions,
     along_z: &Dexels,
     report: &mut Report,
-) -> Result<Surface, Failure> {
+) -> Result<TriSurface, Failure> {
     let (job, progress) = (&session.job, &session.progress);
     let Some([low, high]) = heights(along_z) else {
-        return Ok(Surface {
+        return Ok(TriSurface {
             mesh: Mesh::default(),
             uncertified: 0,
         });
@@ -93,7 +93,7 @@ pub(crate) fn surface(
     let mesh = phase(report, "mesh", || {
         TriDexels::from_sets(sets).map(|solid| solid.surface().and_then(|mesh| mesh.crisp(CRISP)))
     });
-    Ok(Surface {
+    Ok(TriSurface {
         mesh: mesh.map_err(|error| wrong(&error))??,
         uncertified,
     })

@@ -235,6 +235,8 @@ fn a_file_is_whole_or_not_there() {
     assert!(sweepsim_formats::AtomicFile::create(folder.path()).is_err());
 }
 
+type Writer = fn(&Mesh, &mut Vec<u8>) -> std::io::Result<()>;
+
 /// Numbers, among them those that nobody should use.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -268,7 +270,7 @@ proptest! {
         let whole = triangles.iter().flatten().all(|v| (*v as usize) < vertices.len());
         let mesh = Mesh { normals: vec![[f32::NAN; 3]; normals], cut: vec![true; normals], vertices, triangles };
         let mut bytes = Vec::new();
-        let writers: [fn(&Mesh, &mut Vec<u8>) -> std::io::Result<()>; 4] = [write_ply, write_glb, write_3mf, write_vtp];
+        let writers: [Writer; 4] = [write_ply, write_glb, write_3mf, write_vtp];
         for write in writers {
             bytes.clear();
             prop_assert!(write(&mesh, &mut bytes).is_err() || whole);

@@ -8,14 +8,14 @@ use std::f64::consts::TAU;
 use sweepsim_motion::{ArcError, TipArc};
 
 /// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
-pub(crate) type Plane = [usize; 3];
+pub(crate) type ArcPlane = [usize; 3];
 
 /// A circular arc or helix.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Arc {
+pub(crate) struct CircularArc {
     pub start: [f64; 3],
     pub end: [f64; 3],
-    pub plane: Plane,
+    pub plane: ArcPlane,
     /// `(u, v)`.
     pub centre: [f64; 2],
     /// Signed, in radians: positive counter-clockwise.
@@ -32,11 +32,11 @@ const RADIUS_SLACK_LARGEST: f64 = 0.5;
 /// The most chords per arc.
 const MOST_CHORDS: f64 = 1e6;
 
-impl Arc {
+impl CircularArc {
     /// The arc about `centre`. `turns` is 1 for less than a full turn, and one more for each further full turn.
     pub(crate) fn about(
         (start, end): ([f64; 3], [f64; 3]),
-        plane: Plane,
+        plane: ArcPlane,
         centre: [f64; 2],
         counter_clockwise: bool,
         turns: f64,
@@ -83,7 +83,7 @@ impl Arc {
     /// The arc with a radius from `start` to `end`: the shorter one for a positive radius, the longer one for a negative radius.
     pub(crate) fn with_radius(
         (start, end): ([f64; 3], [f64; 3]),
-        plane: Plane,
+        plane: ArcPlane,
         radius: f64,
         counter_clockwise: bool,
         turns: f64,
@@ -162,15 +162,15 @@ impl Arc {
 mod tests {
     use super::*;
 
-    const XY: Plane = [0, 1, 2];
+    const XY: ArcPlane = [0, 1, 2];
 
     #[test]
     fn quarter_and_full_circle() {
-        let quarter = Arc::about(([1.0, 0.0, 0.0], [0.0, 1.0, 2.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        let quarter = CircularArc::about(([1.0, 0.0, 0.0], [0.0, 1.0, 2.0]), XY, [0.0; 2], true, 1.0).unwrap();
         assert!((quarter.sweep - TAU / 4.0).abs() < 1e-15);
         let middle = quarter.at(0.5);
         assert!((middle[0] - 0.5_f64.sqrt()).abs() < 1e-15 && (middle[2] - 1.0).abs() < 1e-15);
-        let full = Arc::about(([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), XY, [0.0; 2], false, 2.0).unwrap();
+        let full = CircularArc::about(([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), XY, [0.0; 2], false, 2.0).unwrap();
         assert!((full.sweep + 2.0 * TAU).abs() < 1e-15);
     }
 
@@ -183,14 +183,14 @@ mod tests {
             (1.0, false, -0.25),
             (-1.0, false, -0.75),
         ] {
-            let arc = Arc::with_radius(ends, XY, radius, counter_clockwise, 1.0).unwrap();
+            let arc = CircularArc::with_radius(ends, XY, radius, counter_clockwise, 1.0).unwrap();
             assert!((arc.sweep / TAU - sweep).abs() < 1e-12, "{radius} {counter_clockwise}");
         }
     }
 
     #[test]
     fn chords_keep_the_tolerance() {
-        let arc = Arc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        let arc = CircularArc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0).unwrap();
         for tolerance in [1.0, 0.1, 1e-3, 1e-5] {
             let n = arc.chords(tolerance).unwrap();
             let sagitta = |n: usize| 5.0 * (1.0 - (0.5 * arc.sweep / n as f64).cos());
@@ -206,20 +206,20 @@ mod tests {
     fn bad_arcs_say_why() {
         let ends = ([1.0, 0.0, 0.0], [0.0, 3.0, 0.0]);
         assert!(
-            Arc::about(ends, XY, [0.0; 2], true, 1.0)
+            CircularArc::about(ends, XY, [0.0; 2], true, 1.0)
                 .unwrap_err()
                 .contains("two radii")
         );
         assert!(
-            Arc::about((ends.0, ends.0), XY, [1.0, 0.0], true, 1.0)
+            CircularArc::about((ends.0, ends.0), XY, [1.0, 0.0], true, 1.0)
                 .unwrap_err()
                 .contains("no radius")
         );
         assert!(
-            Arc::with_radius(ends, XY, 1.0, true, 1.0)
+            CircularArc::with_radius(ends, XY, 1.0, true, 1.0)
                 .unwrap_err()
                 .contains("too small")
         );
-        assert!(Arc::with_radius((ends.0, ends.0), XY, 1.0, true, 1.0).is_err());
+        assert!(CircularArc::with_radius((ends.0, ends.0), XY, 1.0, true, 1.0).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! The meaning of G and M codes.
 
-use super::arc::Plane;
+use super::arc::ArcPlane;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +15,7 @@ pub(crate) enum MotionMode {
 pub(crate) enum Code {
     Motion(MotionMode),
     CancelMotion,
-    Plane(Plane),
+    Plane(ArcPlane),
     Inch(bool),
     Absolute(bool),
     AbsoluteCentres(bool),

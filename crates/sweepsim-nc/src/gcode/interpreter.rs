@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::arc::Plane;
+use super::arc::ArcPlane;
 use super::codes::{self, Code, Misc, MotionMode};
 use super::lexer::{self, Located, Word};
 use super::offsets::Offsets;
@@ -56,7 +56,7 @@ pub(super) fn read(text: &str, options: &Options) -> Result<Program, NcError> {
 /// Modal state: in effect until another word changes it.
 pub(super) struct Modes {
     pub(super) motion: Option<MotionMode>,
-    pub(super) plane: Plane,
+    pub(super) plane: ArcPlane,
     pub(super) absolute: bool,
     pub(super) absolute_centres: bool,
     pub(super) inch: bool,

@@ -1,9 +1,9 @@
 //! The moves of a block.
 
-use super::arc::Arc;
+use super::arc::CircularArc;
 use super::codes::{Code, MotionMode};
 use super::interpreter::{Reader, Values};
-use super::state::Target;
+use super::state::MoveEnd;
 use crate::error::NcProblem;
 
 /// Millimetres per inch.
@@ -114,7 +114,7 @@ impl Reader {
             self.state.abc = abc;
             return Ok(());
         };
-        let target = Target { xyz: [x, y, z], abc };
+        let target = MoveEnd { xyz: [x, y, z], abc };
         if cuts {
             if self.state.known().is_none() {
                 self.state.notes.add(
@@ -139,7 +139,7 @@ impl Reader {
         &mut self,
         counter_clockwise: bool,
         start: [f64; 3],
-        target: Target,
+        target: MoveEnd,
         values: &Values,
         line: usize,
     ) -> Result<(), NcProblem> {
@@ -161,7 +161,7 @@ impl Reader {
                     "an arc with both R and a centre: expected R, or I, J, K",
                 ));
             }
-            Some(radius) => Arc::with_radius(ends, plane, radius * self.unit(), counter_clockwise, turns),
+            Some(radius) => CircularArc::with_radius(ends, plane, radius * self.unit(), counter_clockwise, turns),
             None => {
                 if offsets[w].is_some_and(|offset| offset != 0.0) {
                     return Err(NcProblem::syntax(format!(
@@ -183,7 +183,7 @@ impl Reader {
                     }
                     (false, cu, cv) => [start[u] + cu.unwrap_or(0.0), start[v] + cv.unwrap_or(0.0)],
                 };
-                Arc::about(ends, plane, centre, counter_clockwise, turns)
+                CircularArc::about(ends, plane, centre, counter_clockwise, turns)
             }
         }
         .map_err(NcProblem::syntax)?;
@@ -206,7 +206,7 @@ impl Reader {
                     from[k] + s * (target.abc[k] - from[k])
                 }
             });
-            self.state.line_to(Target { xyz: arc.at(s), abc }, false, line)?;
+            self.state.line_to(MoveEnd { xyz: arc.at(s), abc }, false, line)?;
         }
         Ok(())
     }

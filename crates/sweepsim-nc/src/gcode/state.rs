@@ -15,7 +15,7 @@ const MOST_POSES: usize = 20_000_000;
 
 /// The end of a move: coordinates, and rotary angles A, B, C.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Target {
+pub(crate) struct MoveEnd {
     pub xyz: [f64; 3],
     pub abc: [f64; 3],
 }
@@ -108,13 +108,13 @@ impl State {
     /// Adds the pose where a feed move starts, unless the path already leads there.
     pub fn start_here(&mut self, line: usize) -> Result<(), NcProblem> {
         if let (false, Some(xyz)) = (self.joined, self.known()) {
-            self.push(Target { xyz, abc: self.abc }, Move::default(), true, line)?;
+            self.push(MoveEnd { xyz, abc: self.abc }, Move::default(), true, line)?;
         }
         Ok(())
     }
 
     /// A straight move, divided where the tool axis turns far.
-    pub fn line_to(&mut self, target: Target, rapid: bool, line: usize) -> Result<(), NcProblem> {
+    pub fn line_to(&mut self, target: MoveEnd, rapid: bool, line: usize) -> Result<(), NcProblem> {
         let from = self.abc;
         if self.joined && target.abc != from && self.law != AxisLaw::Rotary {
             let table = self.table(target.abc)?;
@@ -138,7 +138,7 @@ impl State {
                 for part in 1..parts as usize {
                     let s = part as f64 / parts;
                     let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + s * (b[k] - a[k]));
-                    let between = Target {
+                    let between = MoveEnd {
                         xyz: mix(start, target.xyz),
                         abc: mix(from, target.abc),
                     };
@@ -155,7 +155,7 @@ impl State {
     }
 
     /// A feed move along an arc.
-    pub fn arc_to(&mut self, target: Target, arc: TipArc, line: usize) -> Result<(), NcProblem> {
+    pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc, line: usize) -> Result<(), NcProblem> {
         let turning = match self.turning(self.abc, target.abc)? {
             Turning::Slerp => Turning::Even,
             other => other,
@@ -214,7 +214,7 @@ impl State {
         }
     }
 
-    fn push(&mut self, target: Target, way: Move, rapid: bool, line: usize) -> Result<(), NcProblem> {
+    fn push(&mut self, target: MoveEnd, way: Move, rapid: bool, line: usize) -> Result<(), NcProblem> {
         if !self.tip_control && target.abc != [0.0; 3] {
             return Err(NcProblem::value(
                 "a move with the rotary axes turned",
