@@ -4,6 +4,7 @@ use crate::tool::Tool;
 
 /// What a body of an assembly is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BodyKind {
     /// The part of the tool above its cutting edges.
     Shank,
@@ -13,6 +14,7 @@ pub enum BodyKind {
 
 /// A body that moves with a cutter and removes nothing.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Body {
     /// What it is.
     pub kind: BodyKind,

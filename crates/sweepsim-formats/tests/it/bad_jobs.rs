@@ -202,7 +202,7 @@ fn one_message_with_its_place() {
         (
             tool,
             "Barrel(radius: 4, flank: 40, height: 10, corner: 5, length: 30)".into(),
-            "job.ron:7:61: tool 1: corner is 5, but must be positive and less than half the height",
+            "job.ron:7:61: tool 1: corner is 5, but must be 0 for a sharp rim, or positive and less than half the height",
         ),
         (
             tool,

@@ -13,6 +13,7 @@ pub struct Move {
 
 /// The way of the tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Course {
     /// A straight line.
     #[default]
@@ -23,6 +24,7 @@ pub enum Course {
 
 /// How the tool turns from one pose to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub enum Turning {
     /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
     /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).
@@ -43,6 +45,7 @@ pub enum Turning {
 
 /// How the tool turns on the moves of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Law {
     /// [`Turning::Slerp`].
     #[default]

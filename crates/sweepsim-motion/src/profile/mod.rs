@@ -25,6 +25,7 @@ pub enum Turn {
 
 /// One piece of a [`Profile`], from where the one before ended. Lengths in `(ρ, ζ)`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ProfileSegment {
     /// A straight line.
     Line {

@@ -33,6 +33,9 @@ pub(crate) struct OutlineArc {
     pub sweep: f64,
 }
 
+/// Segments and radii that are shorter than this have no direction in `f64`: squares of lengths underflow.
+const LEAST: f64 = 1e-100;
+
 /// The distances of an arc's two ends from its centre may differ by this part of the radius.
 const ARC_SLACK: f64 = 1e-6;
 
@@ -59,7 +62,7 @@ impl OutlinePiece {
                 if !finite(from) || !finite(to) {
                     return Err(not_finite);
                 }
-                if from == to {
+                if !((to - from).norm() > LEAST) {
                     return Err(ProfileError::NoLength { segment: index });
                 }
                 pieces.push(simple(to, Shape::Line));
@@ -71,7 +74,7 @@ impl OutlinePiece {
                 }
                 let (a, b) = (from - centre, to - centre);
                 let (ra, rb) = (a.norm(), b.norm());
-                if from == to || ra == 0.0 {
+                if !((to - from).norm() > LEAST && ra > LEAST) {
                     return Err(ProfileError::NoLength { segment: index });
                 }
                 if (ra - rb).abs() > ARC_SLACK * ra.max(rb) {
@@ -116,7 +119,7 @@ impl OutlinePiece {
                 for span in spline_spans::spans(index, from, degree, knots.as_deref(), points, weights.as_deref())? {
                     let curve = span.curve;
                     let (from, to) = (curve.points[0], curve.points[curve.points.len() - 1]);
-                    if degree == 1 && from == to {
+                    if degree == 1 && !((to - from).norm() > LEAST) {
                         return Err(ProfileError::NoLength { segment: index });
                     }
                     pieces.push(Self {

@@ -2,5 +2,6 @@
 
 mod boundary;
 mod checked_boundary;
+mod misuse;
 mod motions;
 mod spline_profiles;
