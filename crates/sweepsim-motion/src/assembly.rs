@@ -14,7 +14,6 @@ pub enum BodyKind {
 
 /// A body that moves with a cutter and removes nothing.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Body {
     /// What it is.
     pub kind: BodyKind,
