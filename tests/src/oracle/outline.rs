@@ -66,6 +66,7 @@ impl Outline {
                         from = to;
                     }
                 }
+                other => unreachable!("the oracle knows no {other:?}"),
             }
         }
         let mut outline = Self {

@@ -35,6 +35,8 @@ pub(crate) fn tool_in_words(tool: &Tool) -> String {
                 splines += 1;
                 points.extend(own.last());
             }
+            // Curves of any other kind are sampled as splines are.
+            _ => splines += 1,
         }
     }
     // A spline may reach further out than its ends, but not as far as its control points: sample the patches.
