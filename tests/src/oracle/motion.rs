@@ -263,7 +263,6 @@ fn add_even(segment: usize, from: &Pose, to: &Pose, way: &Move, arcs: &mut Vec<A
             tip_speed = round * (p0 - centre).cross(&normal).norm() + missing.norm();
             tip = Shared::new(move |t| turned(t) + missing * t);
         }
-        other => unreachable!("the oracle knows no {other:?}"),
     }
     let axis: Shared<dyn Fn(f64) -> Vector3<f64> + Send + Sync>;
     let turn_speed;

@@ -13,7 +13,6 @@ pub struct Move {
 
 /// The way of the tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub enum Course {
     /// A straight line.
     #[default]
@@ -24,7 +23,6 @@ pub enum Course {
 
 /// How the tool turns from one pose to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub enum Turning {
     /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
     /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).

@@ -33,7 +33,6 @@ fn law(from: &Pose, to: &Pose, way: &Move, time: f64) -> (Vector3<f64>, Vector3<
             };
             turned(time) + (Vector3::from(to.tip()) - turned(1.0)) * time
         }
-        other => unreachable!("{other:?}"),
     };
     let axis = if let Turning::Rotary { table, from, to } = way.turning {
         Vector3::from(table.axis([0, 1].map(|k| from[k] + (to[k] - from[k]) * time)))
