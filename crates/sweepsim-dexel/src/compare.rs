@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 /// What became of one end.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Deviation {
     /// Number of the line.
     pub line: u32,
@@ -29,6 +30,7 @@ pub struct Deviation {
 
 /// How dexels differ from their target.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// Volume of the dexels.
     pub volume: f64,

@@ -156,12 +156,10 @@ impl ChordTolerance {
 
 /// Limits of the curves of a section: boxes smaller than `1e-10` of the parameters' ranges are singular points to them.
 pub(crate) fn curve_options(boxes: u64, unresolved: usize) -> SolveOptions {
-    SolveOptions {
-        smallest: 1e-10,
-        boxes,
-        unresolved,
-        ..SolveOptions::default()
-    }
+    SolveOptions::default()
+        .smallest(1e-10)
+        .boxes(boxes)
+        .unresolved(unresolved)
 }
 
 #[cfg(test)]

@@ -102,6 +102,7 @@ fn job(text: &mut Lines, job: &Job) {
         Stock::Union(parts) => format!("union of {}", counted(parts.len() as u64, "piece")),
         Stock::Intersection(parts) => format!("intersection of {}", counted(parts.len() as u64, "piece")),
         Stock::Difference(_, parts) => format!("difference from {}", counted(parts.len() as u64, "piece")),
+        _ => "of another kind".to_owned(),
     };
     text.line("stock", &stock);
     for (number, cutter) in &job.tools {

@@ -35,6 +35,7 @@ pub struct DistanceTo {
 
 /// The place of a surface that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearest {
     /// How far the point is outside: negative inside.
     pub distance: f64,

@@ -12,6 +12,7 @@ use thiserror::Error;
 
 /// A piece of stock.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Stock {
     /// A box along the axes.
     Block {

@@ -84,7 +84,7 @@ impl TriDexels {
     /// let solid = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?;
     /// assert!((solid.volume() - 268.08).abs() < 1.0);
     /// assert_eq!(solid.disagreements(), 0);
-    /// let mesh = solid.surface();
+    /// let mesh = solid.surface()?;
     /// assert!(mesh.vertices.iter().all(|v| (v[0].hypot(v[1]).hypot(v[2]) - 4.0).abs() < 0.01));
     /// # Ok::<(), sweepsim_dexel::TriDexelsError>(())
     /// ```

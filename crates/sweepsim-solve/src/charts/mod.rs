@@ -148,6 +148,7 @@ pub trait Sink<const N: usize, S = ()> {
 
 /// Limits of the search.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ChartOptions {
     /// The most boxes that one call may look at.
     pub boxes: u64,
@@ -167,8 +168,32 @@ impl Default for ChartOptions {
     }
 }
 
+impl ChartOptions {
+    /// Sets [`boxes`](Self::boxes).
+    #[must_use]
+    pub const fn boxes(mut self, boxes: u64) -> Self {
+        self.boxes = boxes;
+        self
+    }
+
+    /// Sets [`smallest`](Self::smallest).
+    #[must_use]
+    pub const fn smallest(mut self, smallest: f64) -> Self {
+        self.smallest = smallest;
+        self
+    }
+
+    /// Sets [`accept`](Self::accept).
+    #[must_use]
+    pub const fn accept(mut self, accept: f64) -> Self {
+        self.accept = accept;
+        self
+    }
+}
+
 /// What a search did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ChartStatistics {
     /// Boxes looked at.
     pub boxes: u64,

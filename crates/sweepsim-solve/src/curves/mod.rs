@@ -30,6 +30,7 @@ use trace::Tracer;
 
 /// A point of a polyline.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurvePoint {
     /// The point.
     pub point: Vec<f64>,
@@ -52,6 +53,7 @@ pub enum CurveEnd {
 /// Its direction is that of the wedge product of the equations' gradients (`∇f × ∇g` for two equations in three unknowns, `(f_y, −f_x)` for
 /// one in two).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Curve {
     /// The vertices, each on the curve up to rounding. A loop's first is not repeated at its end.
     pub points: Vec<CurvePoint>,
@@ -61,6 +63,7 @@ pub struct Curve {
 
 /// A piece of the curve in one box of the subdivision.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CurvePiece {
     /// Numbers of the points where it begins and ends: each is shared with at most one other piece.
     pub ends: [usize; 2],
@@ -70,6 +73,7 @@ pub struct CurvePiece {
 
 /// A box where the curve may be singular, or could not be settled.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Singular {
     /// The box; touching ones are united.
     pub bounds: Vec<Enclosure>,
@@ -81,6 +85,7 @@ pub struct Singular {
 
 /// All curves of a system in its region.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Curves {
     /// The components.
     pub curves: Vec<Curve>,

@@ -37,6 +37,7 @@ pub enum RootLocation {
 
 /// A root with its certificate.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Root {
     /// The root, as near as numbers allow.
     pub point: Vec<f64>,
@@ -52,6 +53,7 @@ pub struct Root {
 
 /// All roots of a system in a region: each lies in the enclosure of one of `roots`, or in one of `unresolved`.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Points {
     /// Simple roots, each certified, in lexical order.
     pub roots: Vec<Root>,

@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 ///
 /// ```
 /// use sweepsim_solve::SolveOptions;
-/// let options = SolveOptions { boxes: 10_000, ..SolveOptions::default() };
-/// assert!(options.smallest < 1e-9);
+/// let options = SolveOptions::default().boxes(10_000).smallest(1e-10);
+/// assert_eq!(options.boxes, 10_000);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SolveOptions {
     /// A box whose sides are all at most this part of the domain's is not split further. At least 1e-14.
     pub smallest: f64,
@@ -33,6 +34,43 @@ impl Default for SolveOptions {
             unresolved: 512,
             time: None,
         }
+    }
+}
+
+impl SolveOptions {
+    /// Sets [`smallest`](Self::smallest).
+    #[must_use]
+    pub const fn smallest(mut self, smallest: f64) -> Self {
+        self.smallest = smallest;
+        self
+    }
+
+    /// Sets [`boxes`](Self::boxes).
+    #[must_use]
+    pub const fn boxes(mut self, boxes: u64) -> Self {
+        self.boxes = boxes;
+        self
+    }
+
+    /// Sets [`depth`](Self::depth).
+    #[must_use]
+    pub const fn depth(mut self, depth: u32) -> Self {
+        self.depth = depth;
+        self
+    }
+
+    /// Sets [`unresolved`](Self::unresolved).
+    #[must_use]
+    pub const fn unresolved(mut self, unresolved: usize) -> Self {
+        self.unresolved = unresolved;
+        self
+    }
+
+    /// Sets [`time`](Self::time).
+    #[must_use]
+    pub const fn time(mut self, time: Option<Duration>) -> Self {
+        self.time = time;
+        self
     }
 }
 
@@ -92,6 +130,7 @@ impl std::fmt::Display for Cause {
 
 /// A box that may hold solutions besides those returned: neither settled nor excluded.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct UnresolvedBox {
     /// The box; touching ones of the same cause are united.
     pub bounds: Vec<Enclosure>,
@@ -103,6 +142,7 @@ pub struct UnresolvedBox {
 
 /// How many boxes met which fate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SolveStatistics {
     /// Boxes looked at: those of the subdivision itself, which a [`Monitor`](crate::Monitor) sees.
     pub boxes: u64,

@@ -28,6 +28,7 @@ use octree::{FINEST, OctreeNode, Search, State};
 
 /// A surface as triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Surface {
     /// Points; those on edges of the subdivision lie on the surface up to rounding, those inside its boxes as well where Newton's method
     /// got there.

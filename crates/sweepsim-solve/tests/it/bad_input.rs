@@ -64,10 +64,7 @@ fn counts_are_checked() {
     );
     let system = System::new(&unit(1), [Bernstein::variable(1, 0)]).unwrap();
     for smallest in [0.0, -1.0, f64::NAN, 2.0] {
-        let mut solver = PointSolver::new(SolveOptions {
-            smallest,
-            ..SolveOptions::default()
-        });
+        let mut solver = PointSolver::new(SolveOptions::default().smallest(smallest));
         assert_eq!(solver.solve(&system, &()).unwrap_err(), SolveError::Smallest);
     }
     let nine = vec![Enclosure::UNIT; 9];
@@ -155,15 +152,8 @@ fn budgets_hold_and_name_what_is_left() {
         }
     };
     let options = SolveOptions::default;
-    limited(SolveOptions { boxes: 20, ..options() }, Cause::Boxes, &());
-    limited(SolveOptions { depth: 3, ..options() }, Cause::Depth, &());
-    limited(
-        SolveOptions {
-            time: Some(Duration::ZERO),
-            ..options()
-        },
-        Cause::Time,
-        &(),
-    );
+    limited(options().boxes(20), Cause::Boxes, &());
+    limited(options().depth(3), Cause::Depth, &());
+    limited(options().time(Some(Duration::ZERO)), Cause::Time, &());
     limited(options(), Cause::Cancelled, &Stop);
 }

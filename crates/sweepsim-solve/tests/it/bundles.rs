@@ -82,10 +82,7 @@ fn solve<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64) -> Ans
         found: Vec::new(),
         open: Vec::new(),
     };
-    let options = ChartOptions {
-        boxes,
-        ..ChartOptions::default()
-    };
+    let options = ChartOptions::default().boxes(boxes);
     BundleSolver::new(options).solve(&forms.bundle(), forms, targets, &mut answer, &());
     answer
 }

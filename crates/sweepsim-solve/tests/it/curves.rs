@@ -240,13 +240,7 @@ fn bad_input_is_an_error_or_open() {
     let start = Instant::now();
     for form in [Bernstein::constant(2, 0.0), circle.mul(&circle).assumed_exact()] {
         let system = System::new(&unit(2), [&form]).unwrap();
-        let mut solver = CurveSolver::with_options(
-            1e-3,
-            SolveOptions {
-                smallest: 1e-6,
-                ..SolveOptions::default()
-            },
-        );
+        let mut solver = CurveSolver::with_options(1e-3, SolveOptions::default().smallest(1e-6));
         let curves = solver.solve(&system, &()).unwrap();
         assert!(!curves.singular.is_empty());
     }

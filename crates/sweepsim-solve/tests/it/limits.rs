@@ -28,15 +28,9 @@ impl Monitor for Stop {
 fn early(base: &SolveOptions) -> Vec<(SolveOptions, Cause)> {
     let options = || base.clone();
     vec![
-        (SolveOptions { boxes: 5, ..options() }, Cause::Boxes),
-        (SolveOptions { boxes: 0, ..options() }, Cause::Boxes),
-        (
-            SolveOptions {
-                time: Some(Duration::ZERO),
-                ..options()
-            },
-            Cause::Time,
-        ),
+        (options().boxes(5), Cause::Boxes),
+        (options().boxes(0), Cause::Boxes),
+        (options().time(Some(Duration::ZERO)), Cause::Time),
     ]
 }
 

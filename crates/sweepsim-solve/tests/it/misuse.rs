@@ -48,10 +48,7 @@ fn enclosure() -> impl Strategy<Value = Enclosure> {
 
 /// Few boxes: what matters is that nothing panics.
 fn options() -> SolveOptions {
-    SolveOptions {
-        boxes: 50,
-        ..SolveOptions::default()
-    }
+    SolveOptions::default().boxes(50)
 }
 
 proptest! {
@@ -80,7 +77,7 @@ proptest! {
         tolerance in number(),
     ) {
         let equations = forms.iter().map(|f| Equation::from(f).with_remainder(remainders.0, remainders.1));
-        let bad = SolveOptions { smallest, ..options() };
+        let bad = options().smallest(smallest);
         for system in [System::new(&domain, equations), System::new(&domain, &forms)] {
             let Ok(system) = system else { continue };
             for system in [Ok(system.clone()), system.within(&region)].into_iter().flatten() {

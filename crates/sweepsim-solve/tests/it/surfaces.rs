@@ -4,7 +4,7 @@ use crate::support;
 
 use support::audit::{audit_surface, solve_surface};
 use support::expression::{Polynomial, parse};
-use sweepsim_solve::{Enclosure, SolveOptions, SurfaceSolver, System};
+use sweepsim_solve::{Enclosure, SurfaceSolver, System};
 
 fn system(expression: &str, half: f64) -> System {
     let names = ["x", "y", "z"].map(String::from);
@@ -118,10 +118,7 @@ fn singular_surfaces_are_named() {
     // Two disks with a hole around the apex each: annuli.
     assert_eq!((cone.euler_characteristic(), cone.components()), (0, 2));
     let planes = system("x*y", 1.1);
-    let options = SolveOptions {
-        smallest: 1.0 / 64.0,
-        ..SurfaceSolver::new(0.1).options
-    };
+    let options = SurfaceSolver::new(0.1).options.smallest(1.0 / 64.0);
     let crossing = SurfaceSolver::with_options(0.1, options).solve(&planes, &()).unwrap();
     assert!(!crossing.unresolved.is_empty());
     audit_surface(&crossing, "planes");

@@ -7,7 +7,7 @@ use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::{CancelOnly, ChartMap, Sink, SolveOptions, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, ChartMap, Sink, SurfaceSolver};
 
 /// How flat the surface is in its boxes, in parts of the parameters' ranges.
 const FLATNESS: f64 = 0.02;
@@ -31,11 +31,7 @@ impl<'a> CrossingMethod<'a> for Surfaces<'a> {
             return;
         }
         let motion = PatchMotion::new(&self.tool.patches()[query.number], &self.chunk[query.part].segment);
-        let options = SolveOptions {
-            boxes: BOXES,
-            unresolved: 0,
-            ..SurfaceSolver::new(FLATNESS).options
-        };
+        let options = SurfaceSolver::new(FLATNESS).options.boxes(BOXES).unresolved(0);
         let mut solver = SurfaceSolver::with_options(FLATNESS, options);
         let surface = motion
             .envelope()

@@ -25,10 +25,7 @@ pub(crate) struct Solvers {
 impl Workspace {
     /// `accept`: see [`ChartOptions`].
     pub fn new(cutter: &Cutter, accept: f64) -> Self {
-        let options = ChartOptions {
-            accept,
-            ..ChartOptions::default()
-        };
+        let options = ChartOptions::default().accept(accept);
         Self {
             patches: cutter.patches.iter().map(Cells::new).collect(),
             edges: cutter.edges.iter().map(Cells::new).collect(),

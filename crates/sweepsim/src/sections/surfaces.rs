@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::Tool;
-use sweepsim_solve::{CancelOnly, Monitor, SolveOptions, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, Monitor, SurfaceSolver};
 
 /// One piece of an envelope as triangles.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,11 +125,7 @@ fn of_part(
             BoundaryPiece::Patch(k) => {
                 let patch = &tool.patches()[k];
                 let fastest = stretch(patch.position(), patch.weight()).max(speed);
-                let options = SolveOptions {
-                    boxes: BOXES,
-                    unresolved: 64,
-                    ..SurfaceSolver::new(0.1).options
-                };
+                let options = SurfaceSolver::new(0.1).options.boxes(BOXES).unresolved(64);
                 let flatness = chord.of_surface(fastest);
                 let surface = PatchMotion::new(patch, segment).envelope().ok().and_then(|system| {
                     SurfaceSolver::with_options(flatness, options)

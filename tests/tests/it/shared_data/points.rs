@@ -6,11 +6,7 @@ use std::time::{Duration, Instant};
 use sweepsim_solve::{Enclosure, PointSolver, Points, Root, SolveOptions, System};
 
 fn solver() -> PointSolver {
-    PointSolver::new(SolveOptions {
-        time: Some(Duration::from_secs(60)),
-        boxes: u64::MAX,
-        ..SolveOptions::default()
-    })
+    PointSolver::new(SolveOptions::default().boxes(u64::MAX))
 }
 
 /// Solves a system with sines and cosines cell by cell.
