@@ -1,17 +1,50 @@
-//! An STL to dexels to a mesh.
+//! From an STL to dexels to a mesh: of a file, or of the small one below.
 //!
-//! `cargo run --release --example stl_to_dexels_to_mesh -- IN.stl OUT.ply [DISTANCE]`
+//! `cargo run --release -p sweepsim-formats --example stl_to_dexels_to_mesh [-- IN.stl OUT.ply [DISTANCE]]`
 
 use std::path::Path;
 use sweepsim_dexel::{Grid, Stock, compare};
-use sweepsim_formats::{read_stl, write_atomically, write_ply};
+use sweepsim_formats::{parse_stl, read_stl, write_atomically, write_ply};
+
+/// A tetrahedron.
+const STL: &str = "solid
+facet normal 0 0 -1
+outer loop
+vertex 0 0 0
+vertex 0 30 0
+vertex 30 0 0
+endloop
+endfacet
+facet normal 0 -1 0
+outer loop
+vertex 0 0 0
+vertex 30 0 0
+vertex 0 0 30
+endloop
+endfacet
+facet normal -1 0 0
+outer loop
+vertex 0 0 0
+vertex 0 0 30
+vertex 0 30 0
+endloop
+endfacet
+facet normal 1 1 1
+outer loop
+vertex 30 0 0
+vertex 0 30 0
+vertex 0 0 30
+endloop
+endfacet
+endsolid";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [input, output, rest @ ..] = arguments.as_slice() else {
-        return Err("expected IN.stl OUT.ply [DISTANCE]".into());
+    let (soup, output, rest) = match arguments.as_slice() {
+        [] => (parse_stl(STL.as_bytes())?, "tetrahedron.ply", &[][..]),
+        [input, output, rest @ ..] => (read_stl(Path::new(input))?, output.as_str(), rest),
+        _ => return Err("expected IN.stl OUT.ply [DISTANCE]".into()),
     };
-    let soup = read_stl(Path::new(input))?;
     let [mut min, mut max] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     for corner in soup.triangles.iter().flatten() {
         for k in 0..3 {
@@ -24,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         Some(text) => text.parse::<f64>()?,
         None => size / 200.0,
     };
-    // Whole cells, with one more around.
+    // Whole cells, with a margin of one.
     let cells = [0, 1].map(|k| ((max[k] - min[k]) / distance).ceil() as usize + 2);
     let corner = [0, 1].map(|k| min[k] - distance);
     let grid = Grid::new(corner, [0, 1].map(|k| corner[k] + cells[k] as f64 * distance), cells)?;
@@ -40,7 +73,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("volume {:.6}", dexels.volume());
     let mesh = dexels.surface()?;
     println!("{} triangles", mesh.triangles.len());
-    // How good is it? Its dexels tell.
+    // How far is it from the original? Compare their dexels.
     let triangles = mesh
         .triangles
         .iter()

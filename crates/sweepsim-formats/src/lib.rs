@@ -50,9 +50,9 @@ mod vtk;
 
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels::{
-    DexelFormat, DexelRow, Difference, Fixture, dexels_from_rows, is_dexels_csv, read_dexels_binary, read_dexels_csv,
-    read_dexels_file, read_dexels_npz, write_dexels_binary, write_dexels_csv, write_dexels_file, write_dexels_npz,
-    write_dexels_vtu,
+    DexelFormat, DexelRow, Fixture, FixtureDifference, dexels_from_rows, is_dexels_csv, read_dexels_binary,
+    read_dexels_csv, read_dexels_file, read_dexels_npz, write_dexels_binary, write_dexels_csv, write_dexels_file,
+    write_dexels_npz, write_dexels_vtu,
 };
 pub use error::{FormatError, Problem, TextPosition};
 pub use jobs::{Job, JobPath, Limits, Target, Units};
@@ -61,6 +61,6 @@ pub use meshes::{
     write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    Collision, ComparisonReport, Deviation, DexelCounts, Furthest, HistogramBar, Report, UnresolvedDexel,
+    Collision, ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, Report, ReportedDexel,
 };
 pub use sweepsim_nc::shortest;

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// The results of a run. Lengths are in mm, volumes in mm³. Fields that are `None` are not written.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Report {
     /// The name of the job.
     pub job: String,
@@ -28,10 +29,10 @@ pub struct Report {
     pub volume: Option<f64>,
     /// Where too much was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub gouge: Option<Deviation>,
+    pub gouge: Option<DeviationSummary>,
     /// Where too little was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub excess: Option<Deviation>,
+    pub excess: Option<DeviationSummary>,
     /// Collisions of the tool (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collisions: Option<Vec<Collision>>,
@@ -41,18 +42,20 @@ pub struct Report {
 
 /// The dexels of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct DexelCounts {
     /// Dexels with material in the result.
     pub covered: usize,
     /// Dexels whose audit failed at first, and which were repaired.
     pub repaired: usize,
     /// Dexels whose intervals are not certified.
-    pub unresolved: Vec<UnresolvedDexel>,
+    pub unresolved: Vec<ReportedDexel>,
 }
 
 /// A dexel whose intervals are not certified.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct UnresolvedDexel {
+#[non_exhaustive]
+pub struct ReportedDexel {
     /// Its cell in x.
     pub i: usize,
     /// Its cell in y.
@@ -61,9 +64,19 @@ pub struct UnresolvedDexel {
     pub reason: String,
 }
 
+impl ReportedDexel {
+    /// A dexel by its cell, and the reason.
+    #[must_use]
+    pub fn new(i: usize, j: usize, reason: impl Into<String>) -> Self {
+        let reason = reason.into();
+        Self { i, j, reason }
+    }
+}
+
 /// A deviation from the target.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Deviation {
+#[non_exhaustive]
+pub struct DeviationSummary {
     /// The largest deviation.
     pub max: f64,
     /// The mean over the samples that deviate.
@@ -91,6 +104,7 @@ pub struct Collision {
 
 /// How a part differs from its target. Lengths are in mm, areas in mm², volumes in mm³.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct ComparisonReport {
     /// The file of the part.
     pub part: String,
@@ -119,9 +133,9 @@ pub struct ComparisonReport {
     /// The root mean square of the distance over the area.
     pub rms: f64,
     /// Where the part's surface is inside the target; depths are positive.
-    pub gouge: Deviation,
+    pub gouge: DeviationSummary,
     /// Where the part's surface is outside the target.
-    pub excess: Deviation,
+    pub excess: DeviationSummary,
     /// The furthest point of the part's surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub furthest_of_part: Option<Furthest>,

@@ -49,11 +49,21 @@ impl ProgramPose {
 
 /// Something in a file that was ignored or decided for the reader.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Note {
     /// The first line that it applies to, from 1.
     pub line: usize,
     /// What, and how often.
     pub message: String,
+}
+
+impl Note {
+    /// A note on a line.
+    #[must_use]
+    pub fn new(line: usize, message: impl Into<String>) -> Self {
+        let message = message.into();
+        Self { line, message }
+    }
 }
 
 impl std::fmt::Display for Note {

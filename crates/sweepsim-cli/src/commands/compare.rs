@@ -5,19 +5,17 @@ use crate::session::{Failure, Lines, Outputs, Solid, bounds, output_folder, pict
 use std::io::Write as _;
 use std::time::Instant;
 use sweepsim_dexel::{Comparison, DistanceTo, Grid, Mesh, Nearest};
-use sweepsim_formats::{ComparisonReport, Deviation, Furthest, HistogramBar};
+use sweepsim_formats::{ComparisonReport, DeviationSummary, Furthest, HistogramBar};
 
 /// Bars of the histogram.
 const BARS: usize = 20;
 
 /// Compares two parts, and writes a report and a picture.
 pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
-    let mut report = ComparisonReport {
-        part: options.part.display().to_string(),
-        target: options.target.display().to_string(),
-        tolerance: options.tolerance,
-        ..ComparisonReport::default()
-    };
+    let mut report = ComparisonReport::default();
+    report.part = options.part.display().to_string();
+    report.target = options.target.display().to_string();
+    report.tolerance = options.tolerance;
     let start = Instant::now();
     let [part, target] = read(options)?;
     let name = options.part.file_stem().unwrap_or_default().to_string_lossy();
@@ -164,7 +162,7 @@ fn describe(report: &mut ComparisonReport, options: &CompareOptions, found: &Com
     report.mean = found.mean();
     report.rms = found.rms();
     let side = |sign: f64| {
-        let mut all = Deviation::default();
+        let mut all = DeviationSummary::default();
         for (distance, area) in found
             .deviations
             .iter()
@@ -244,7 +242,7 @@ fn length(value: f64) -> String {
     words::measure(if value.abs() < 1e-10 { 0.0 } else { value })
 }
 
-fn words_of(deviation: &Deviation) -> String {
+fn words_of(deviation: &DeviationSummary) -> String {
     if deviation.count == 0 {
         return "nothing beyond the tolerance".to_owned();
     }

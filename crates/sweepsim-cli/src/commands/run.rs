@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh};
-use sweepsim_formats::{DexelCounts, Job, Report, UnresolvedDexel, write_dexels_binary, write_dexels_csv, write_ply};
+use sweepsim_formats::{Job, Report, ReportedDexel, write_dexels_binary, write_dexels_csv, write_ply};
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
 const CHORD: f64 = 0.02;
@@ -175,16 +175,12 @@ fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, out
     report.cells = job.grid.cells();
     report.moves = job.moves();
     report.crossings = outcome.statistics.crossings;
-    let unresolved = outcome.statistics.unresolved.iter().map(|dexel| UnresolvedDexel {
-        i: dexel.i,
-        j: dexel.j,
-        reason: dexel.reason.to_string(),
-    });
-    report.dexels = DexelCounts {
-        covered: outcome.dexels.covered(),
-        repaired: outcome.statistics.repaired,
-        unresolved: unresolved.collect(),
-    };
+    let unresolved = outcome.statistics.unresolved.iter();
+    report.dexels.covered = outcome.dexels.covered();
+    report.dexels.repaired = outcome.statistics.repaired;
+    report.dexels.unresolved = unresolved
+        .map(|dexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string()))
+        .collect();
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
     report.notes = session.notes();

@@ -39,7 +39,7 @@ pub struct Fixture {
 
 /// A dexel that differs from the stored one.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Difference {
+pub struct FixtureDifference {
     /// The cell in x.
     pub i: usize,
     /// Its cell in y.
@@ -50,7 +50,7 @@ pub struct Difference {
     pub found: Vec<f64>,
 }
 
-impl std::fmt::Display for Difference {
+impl std::fmt::Display for FixtureDifference {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let ends = |ends: &[f64]| {
             let words: Vec<String> = ends.chunks(2).map(|z| format!("{:?}", z)).collect();
@@ -171,7 +171,7 @@ impl Fixture {
     ///
     /// # Errors
     /// `dexels` are on another grid.
-    pub fn differences(&self, dexels: &Dexels) -> Result<Vec<Difference>, FormatError> {
+    pub fn differences(&self, dexels: &Dexels) -> Result<Vec<FixtureDifference>, FormatError> {
         if *dexels.grid() != self.grid {
             return Err(problem(format!(
                 "the stored dexels are on another grid: {:?}",
@@ -185,7 +185,7 @@ impl Fixture {
             let close = |(a, b): (&f64, &f64)| (a - b).abs() <= 2.0 * self.tolerance;
             if stored.len() != found.len() || !stored.iter().zip(&found).all(close) {
                 let (i, j) = self.grid.place(index);
-                differences.push(Difference { i, j, stored, found });
+                differences.push(FixtureDifference { i, j, stored, found });
             }
         }
         Ok(differences)

@@ -14,6 +14,6 @@ pub use binary_read::read_dexels_binary;
 pub use binary_write::write_dexels_binary;
 pub use csv::{DexelRow, dexels_from_rows, read_dexels_csv, write_dexels_csv};
 pub use files::{DexelFormat, is_dexels_csv, read_dexels_file, write_dexels_file};
-pub use fixture::{Difference, Fixture};
+pub use fixture::{Fixture, FixtureDifference};
 pub use npz::{read_dexels_npz, write_dexels_npz};
 pub use vtu::write_dexels_vtu;

@@ -84,6 +84,7 @@ pub struct Job {
 
 /// The design part of a job.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Target {
     /// The file.
     pub file: PathBuf,
@@ -93,6 +94,7 @@ pub struct Target {
 
 /// How far a part may deviate from its target, in millimetres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Limits {
     /// The depth by which too much may be removed.
     pub gouge: f64,

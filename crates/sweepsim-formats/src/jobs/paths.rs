@@ -10,6 +10,7 @@ use crate::error::{FormatError, Problem, TextPosition};
 
 /// A path of a job, with its tool. A file has several of them if its path breaks or its tool changes.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct JobPath {
     /// The number of its tool: a key of [`Job::tools`](crate::Job::tools).
     pub tool: u32,
@@ -43,10 +44,10 @@ pub(crate) fn of_program(
         FormatError::new(problem, Some(place)).in_file(file)
     };
     if let (Some(tool), Some(other)) = (tool, second_tool(&program)) {
-        program.notes.push(Note {
-            line: other.line,
-            message: format!("the program changes tools; the job's tool {tool} is used throughout"),
-        });
+        program.notes.push(Note::new(
+            other.line,
+            format!("the program changes tools; the job's tool {tool} is used throughout"),
+        ));
     }
     let mut notes = std::mem::take(&mut program.notes);
     let mut paths = Vec::new();

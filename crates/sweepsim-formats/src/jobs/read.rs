@@ -168,10 +168,7 @@ impl JobReader<'_> {
             self.error(fault.problem, &steps)
         })?;
         let line = TextPosition::of_bytes(self.text, self.node(steps).span.clone()).line;
-        let note = |warning: AptWarning| Note {
-            line,
-            message: format!("tool {number}: {warning}"),
-        };
+        let note = |warning: AptWarning| Note::new(line, format!("tool {number}: {warning}"));
         Ok((made.tool, made.warnings.into_iter().map(note).collect()))
     }
 

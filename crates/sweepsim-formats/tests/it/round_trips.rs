@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use sweepsim_dexel::{Dexels, Grid, Interval, Mesh};
 use sweepsim_formats::{
-    DexelRow, Fixture, Job, Report, UnresolvedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply, write_3mf,
+    DexelRow, Fixture, Job, Report, ReportedDexel, dexels_from_rows, parse_stl, read_dexels_csv, read_ply, write_3mf,
     write_dexels_csv, write_glb, write_ply, write_stl, write_vtp,
 };
 
@@ -151,19 +151,13 @@ proptest! {
 
 #[test]
 fn reports() {
-    let mut report = Report {
-        job: "quickstart".into(),
-        method: "charts".into(),
-        volume_removed: Some(12.5),
-        ..Report::default()
-    };
+    let mut report = Report::default();
+    report.job = "quickstart".into();
+    report.method = "charts".into();
+    report.volume_removed = Some(12.5);
     report.seconds.insert("sweep".into(), 1.5);
     report.seconds.insert("audit".into(), 0.25);
-    report.dexels.unresolved.push(UnresolvedDexel {
-        i: 3,
-        j: 4,
-        reason: "singular".into(),
-    });
+    report.dexels.unresolved.push(ReportedDexel::new(3, 4, "singular"));
     let text = report.to_json().unwrap();
     assert!(text.find("sweep") < text.find("audit"), "phases in their order");
     for field in [
