@@ -1,8 +1,8 @@
 //! The section of a sweep by a plane, as an SVG drawing: `cargo run --example section_by_a_plane > section.svg`.
 
+use sweepsim::prelude::*;
+use sweepsim::section;
 use sweepsim::systems::Plane;
-use sweepsim::{Cut, Options, section};
-use sweepsim_motion::{Path, Pose, Tool};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let tool = Tool::bull(5.0, 1.5, 30.0)?;
@@ -13,16 +13,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     ])?;
     let cut = Cut::new(&tool, &path);
     // Any direction will do: this plane leans.
-    let plane = Plane {
-        normal: [0.2, 1.0, 0.0],
-        offset: 1.0,
-    };
+    let plane = Plane::new([0.2, 1.0, 0.0], 1.0)?;
     let section = section(&[cut], &plane, 0.01, &Options::new(1e-6), &())?;
     print!("{}", section.svg());
-    eprintln!(
-        "{} curves, of which {} parts bound the volume",
-        section.curves.len(),
-        section.outline().len()
-    );
+    let loops = section.loops();
+    eprintln!("{} curves, {} closed loops", section.curves.len(), loops.closed.len());
     Ok(())
 }

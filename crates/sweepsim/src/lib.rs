@@ -1,19 +1,16 @@
 //! Exact swept volumes of milling tools along 5-axis motions, as dexels.
 //!
-//! [`sweep`] finds where the boundary of what a tool sweeps crosses the lines of a grid, by solving the envelope condition
-//! `⟨N, V⟩ = 0` as the algebraic system it is, and counts the crossings to intervals; [`simulate`] takes what several tools
-//! sweep out of a stock. Nothing is sampled in time. Every line is audited: what could not be established is
-//! [named](UnresolvedDexel).
+//! [`sweep()`] computes what a tool sweeps along a path: for every line of a grid, the intervals in the swept volume. It solves the envelope
+//! condition `⟨N, V⟩ = 0` as the algebraic system that it is; nothing is sampled in time. [`simulate()`] removes what one or more tools sweep
+//! from a stock. Every dexel is audited, and those that fail are [reported](UnresolvedDexel).
 //!
 //! ```
-//! use sweepsim::{Options, sweep};
-//! use sweepsim_dexel::Grid;
-//! use sweepsim_motion::{Path, Pose, Tool};
+//! use sweepsim::prelude::*;
 //!
-//! let tool = Tool::ball(2.0, 30.0)?;
+//! let tool = Tool::ball(2.0, 30.0)?; // radius, length
 //! let path = Path::new(vec![
-//!     Pose::new([-5.0, 0.0, 0.0], [0.0, 0.0, 1.0])?,
-//!     Pose::new([5.0, 0.0, 1.0], [0.3, 0.0, 1.0])?, // tip, axis: straight, and turning evenly on the way
+//!     Pose::new([-5.0, 0.0, 0.0], [0.0, 0.0, 1.0])?, // tip, tool axis
+//!     Pose::new([5.0, 0.0, 1.0], [0.3, 0.0, 1.0])?,  // a straight move during which the axis turns
 //! ])?;
 //! let grid = Grid::new([-8.0, -3.0], [8.0, 3.0], [160, 60])?;
 //! let swept = sweep(&tool, &path, &grid, &Options::new(1e-6), &())?;
@@ -23,16 +20,34 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # What to read next
+//!
+//! | to | see |
+//! | --- | --- |
+//! | remove material from a stock | [`simulate()`], [`simulate_tri()`] |
+//! | ask which move made a point of the surface | [`Simulation::source_at`] |
+//! | intersect a sweep with single lines of any direction | [`probe()`] |
+//! | section a sweep, as curves, closed loops or SVG | [`section()`], [`Section::loops`], [`Section::svg`] |
+//! | get the envelope as triangles | [`envelope_surfaces()`] |
+//! | show progress, or cancel | [`Monitor`]: the last argument of every function, `&()` if not needed |
+//! | solve the paper's equations yourself | [`systems`], [`solve`] |
+//!
+//! The crates below are re-exported: tools and paths are in [`motion`], dexels, stocks and meshes in [`dexel`], the solvers in [`solve`],
+//! splines in [`spline`]. This crate suffices as a dependency.
+//!
 //! # Accuracy
 //!
-//! Moves and lines are displaced by at most a hundredth of the [tolerance](Options::tolerance), so that nothing is degenerate;
-//! the crossings are exact, but for rounding, for the displaced ones. Intervals shorter than the tolerance may be missing or extra.
+//! The dexels are exact, up to rounding, for an input that differs from the given one by less than a third of the
+//! [tolerance](Options::tolerance), so that nothing is degenerate: tips are displaced by at most a hundredth of it, dexel lines by a thousandth,
+//! and motions without an exact rational form are approximated to within a twentieth. A line whose audit fails is solved again, displaced farther
+//! each time, by at most a fifth. Intervals and gaps shorter than the tolerance may be missing or extra.
 
 mod algebra;
 mod cutter;
 mod envelope;
 mod error;
 mod methods;
+pub mod prelude;
 mod sections;
 mod sweep;
 mod time;
@@ -41,14 +56,21 @@ mod tolerances;
 pub use envelope::systems;
 pub use error::SweepError;
 pub use sections::{
-    BoundaryPiece, BoundaryPoint, EnvelopeSurface, EnvelopeSurfaces, Section, SectionCurve, envelope_surfaces, section,
+    BoundaryPiece, BoundaryPoint, EnvelopeSurface, EnvelopeSurfaces, Section, SectionCurve, SectionLoops,
+    envelope_surfaces, section,
 };
 pub use sweep::{
-    BoundaryOperator, Cut, Method, Options, Simulation, Statistics, Sweep, TriSimulation, UnknownBoundaryOperator,
-    UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate, simulate_tri, sweep, sweep_all,
+    BoundaryOperator, Cut, Method, Options, Probe, Ray, RayError, Simulation, Statistics, SurfaceSource, Sweep,
+    TriSimulation, UnknownBoundaryOperator, UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate,
+    simulate_tri, sweep, sweep_all,
 };
 
+pub use nalgebra;
+pub use sweepsim_dexel as dexel;
+pub use sweepsim_motion as motion;
+pub use sweepsim_solve as solve;
 pub use sweepsim_solve::Monitor;
+pub use sweepsim_spline as spline;
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -107,7 +107,7 @@ pub(super) fn plane(text: &str) -> Result<Plane, String> {
     let wrong = || "expected a plane, like x=3.5, or a,b,c=d for a x + b y + c z = d".to_owned();
     let (normal, offset) = text.split_once('=').ok_or_else(wrong)?;
     let offset: f64 = offset.trim().parse().map_err(|_| wrong())?;
-    let normal = match normal.trim() {
+    let normal: [f64; 3] = match normal.trim() {
         "x" => [1.0, 0.0, 0.0],
         "y" => [0.0, 1.0, 0.0],
         "z" => [0.0, 0.0, 1.0],
@@ -116,11 +116,7 @@ pub(super) fn plane(text: &str) -> Result<Plane, String> {
             numbers.ok().and_then(|n| n.try_into().ok()).ok_or_else(wrong)?
         }
     };
-    let length = normal.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
-    if !(length > 0.0 && length.is_finite() && offset.is_finite()) {
-        return Err(wrong());
-    }
-    Ok(Plane { normal, offset })
+    Plane::new(normal, offset).map_err(|_| wrong())
 }
 
 #[cfg(test)]
@@ -172,12 +168,9 @@ mod tests {
 
     #[test]
     fn planes_are_read() {
-        assert_eq!(plane("x=3.5"), Ok(Plane::x(3.5)));
-        assert_eq!(plane(" z = -1 "), Ok(Plane::z(-1.0)));
-        let slanted = Plane {
-            normal: [1.0, 0.0, 2.0],
-            offset: 4.0,
-        };
+        assert_eq!(plane("x=3.5"), Ok(Plane::x(3.5).unwrap()));
+        assert_eq!(plane(" z = -1 "), Ok(Plane::z(-1.0).unwrap()));
+        let slanted = Plane::new([1.0, 0.0, 2.0], 4.0).unwrap();
         assert_eq!(plane("1,0,2=4"), Ok(slanted));
         for bad in [
             "",

@@ -10,7 +10,7 @@
 //! condition is taken in its lowest degree: `w g = ⟨M, κ A₀ᵀk⟩ + ⟨N, Âᵀ b′⟩`, of degree 2 in `t` (mathematics of charts in the
 //! project's `docs/algorithms/charts.md`).
 
-pub use crate::envelope::plane::Plane;
+pub use crate::envelope::plane::{Plane, PlaneError};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Edge, NormalField, Patch, Segment};
 use sweepsim_solve::{Enclosure, Equation, System, SystemError};
@@ -26,12 +26,12 @@ struct MovingPoint {
 impl MovingPoint {
     /// `⟨p, n⟩ = d`, the weight cleared.
     fn plane(&self, plane: &Plane) -> Bernstein {
-        let [a, b, c] = plane.normal;
+        let [a, b, c] = plane.normal();
         let along = |k: usize, factor: f64| (factor != 0.0).then(|| self.numerators[k].scale(factor));
         [along(0, a), along(1, b), along(2, c)]
             .into_iter()
             .flatten()
-            .fold(self.weight.scale(-plane.offset), |sum, form| sum.add(&form))
+            .fold(self.weight.scale(-plane.offset()), |sum, form| sum.add(&form))
     }
 }
 

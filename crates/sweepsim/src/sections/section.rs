@@ -4,7 +4,8 @@ use crate::cutter::Cutter;
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
 use crate::error::SweepError;
 use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
-use crate::sweep::{Cut, Options, Plan, probe};
+use crate::sections::loops::{Passage, passages};
+use crate::sweep::{Cut, Options, Plan, probe_lines};
 use crate::time::path_parts::PathPart;
 use crate::tolerances::{ChordTolerance, Tolerances, curve_options};
 use nalgebra::Vector3;
@@ -39,6 +40,10 @@ pub struct Section {
     pub curves: Vec<SectionCurve>,
     /// Pieces whose curves could not all be established, with the numbers of their cut and move.
     pub open: Vec<(usize, BoundaryPiece, u32)>,
+    /// How far the curves may be from their polylines.
+    pub(super) chord: f64,
+    /// Per curve, where others cross it.
+    pub(super) passages: Vec<Vec<Passage>>,
 }
 
 impl Section {
@@ -79,7 +84,7 @@ const BOXES: u64 = 20_000;
 /// let path = Path::new(vec![Pose::new([-9.0, 0.0, 0.0], up)?, Pose::new([9.0, 0.0, 0.0], up)?])?;
 /// let tool = Tool::ball(2.0, 30.0)?;
 /// let cut = Cut::new(&tool, &path);
-/// let groove = section(&[cut], &Plane::x(0.5), 1e-3, &Options::default(), &())?;
+/// let groove = section(&[cut], &Plane::x(0.5)?, 1e-3, &Options::default(), &())?;
 /// for [_, y, z] in groove.outline().into_iter().flatten().filter(|p| p[2] < 1.99) {
 ///     assert!((y.hypot(z - 2.0) - 2.0).abs() < 1e-6);
 /// }
@@ -92,21 +97,23 @@ pub fn section(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Section, SweepError> {
-    let chord = ChordTolerance::new(chord)?;
+    let limits = ChordTolerance::new(chord)?;
     let mut section = Section {
         plane: *plane,
         curves: Vec::new(),
         open: Vec::new(),
+        chord,
+        passages: Vec::new(),
     };
     for (number, Cut { tool, path }) in cuts.iter().enumerate() {
-        let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::once(plane.offset), options)?;
+        let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::once(plane.offset()), options)?;
         let found: Vec<Found> = (0..plan.parts.len())
             .into_par_iter()
             .map(|at| {
                 if monitor.cancelled() || !reaches(&plan.parts[at], plane, plan.cutter.reach) {
                     return (Vec::new(), Vec::new());
                 }
-                of_part((tool, number), &plan.cutter, (&plan.parts, at), plane, chord, monitor)
+                of_part((tool, number), &plan.cutter, (&plan.parts, at), plane, limits, monitor)
             })
             .collect();
         if monitor.cancelled() {
@@ -117,35 +124,46 @@ pub fn section(
             section.open.extend(open);
         }
     }
-    let points: Vec<&BoundaryPoint> = section.curves.iter().flat_map(|curve| &curve.points).collect();
+    section.passages = passages(&section.curves, plane.frame(), chord);
+    // Passages are on chords: they are tested farther off.
+    let off = Tolerances::new(options.tolerance, 0.0)?.outside();
+    let vertices = section.curves.iter().flat_map(|curve| &curve.points);
+    let between = section
+        .passages
+        .iter()
+        .flatten()
+        .map(|passage| (&passage.point, off + 2.0 * chord));
+    let points: Vec<(&BoundaryPoint, f64)> = vertices.map(|point| (point, off)).chain(between).collect();
     let mut outer = outer(cuts, &points, options, monitor)?.into_iter();
     for curve in &mut section.curves {
         curve.outer = outer.by_ref().take(curve.points.len()).collect();
     }
+    for (passage, outer) in section.passages.iter_mut().flatten().zip(outer) {
+        passage.outer = outer;
+    }
     Ok(section)
 }
 
-/// Whether points of the envelope bound the volume: what is just outside of them is not swept. Where that could not be established, they count
+/// Whether points of the envelope bound the volume: what is so far outside of them is not swept. Where that could not be established, they count
 /// as outer.
 pub(crate) fn outer(
     cuts: &[Cut],
-    points: &[&BoundaryPoint],
+    points: &[(&BoundaryPoint, f64)],
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Vec<bool>, SweepError> {
-    let off = Tolerances::new(options.tolerance, 0.0)?.outside();
     let outside: Vec<[f64; 3]> = points
         .iter()
-        .map(|point| [0, 1, 2].map(|k| point.position[k] + off * point.normal[k]))
+        .map(|(point, off)| [0, 1, 2].map(|k| point.position[k] + off * point.normal[k]))
         .collect();
     let lines: Vec<[f64; 2]> = outside.iter().map(|p| [p[0], p[1]]).collect();
     let mut outer = vec![true; points.len()];
     for Cut { tool, path } in cuts {
-        let swept = probe(tool, path, &lines, options, monitor)?;
+        let swept = probe_lines(tool, path, &Frame::WORLD, &lines, options, monitor)?;
         for (n, intervals) in swept.iter().enumerate() {
             let z = outside[n][2];
             let covers = |all: &Vec<sweepsim_dexel::Interval>| all.iter().any(|i| i.lower.z < z && z < i.upper.z);
-            outer[n] &= !intervals.as_ref().is_some_and(covers);
+            outer[n] &= !intervals.as_ref().is_ok_and(covers);
         }
     }
     Ok(outer)
@@ -153,13 +171,13 @@ pub(crate) fn outer(
 
 /// Whether the tool comes near the plane.
 fn reaches(part: &PathPart, plane: &Plane, reach: f64) -> bool {
-    let normal = Vector3::from(plane.normal);
+    let normal = Vector3::from(plane.normal());
     let margin = reach * normal.norm();
     let (points, weights) = part.segment.points();
     let heights = points
         .iter()
         .zip(&weights)
-        .map(|(p, w)| p.dot(&normal) / w - plane.offset);
+        .map(|(p, w)| p.dot(&normal) / w - plane.offset());
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
     low <= margin && high >= -margin
 }

@@ -7,7 +7,7 @@ use crate::sections::boundary_piece::{BoundaryPiece, BoundaryPoint, Moving};
 use crate::sections::section::{outer, stretch};
 use crate::sweep::{Cut, Options, Plan};
 use crate::time::path_parts::PathPart;
-use crate::tolerances::ChordTolerance;
+use crate::tolerances::{ChordTolerance, Tolerances};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -98,7 +98,9 @@ pub fn envelope_surfaces(
             all.open.extend(part.open);
         }
     }
-    let points: Vec<&BoundaryPoint> = all.surfaces.iter().flat_map(|surface| &surface.vertices).collect();
+    let off = Tolerances::new(options.tolerance, 0.0)?.outside();
+    let vertices = all.surfaces.iter().flat_map(|surface| &surface.vertices);
+    let points: Vec<(&BoundaryPoint, f64)> = vertices.map(|point| (point, off)).collect();
     let mut outer = outer(cuts, &points, options, monitor)?.into_iter();
     for surface in &mut all.surfaces {
         surface.outer = outer.by_ref().take(surface.vertices.len()).collect();

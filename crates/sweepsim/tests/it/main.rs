@@ -1,11 +1,14 @@
 //! Integration tests of `sweepsim`, in one binary: it links once.
 
+mod cancelling;
 mod frames;
 mod freeform;
 mod joints;
+mod loops;
 mod methods;
 mod misuse;
 mod near_degenerate;
+mod rays;
 mod sections;
 mod spline_profiles;
 mod surfaces;

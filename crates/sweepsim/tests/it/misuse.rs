@@ -1,9 +1,11 @@
 //! Input at the limits of what numbers can hold: an error, or a result that says what is uncertain; never a panic, never a silent loss.
 
-use sweepsim::{Options, sweep};
-use sweepsim_dexel::Grid;
-use sweepsim_motion::{Patch, Path, Pose, Tool};
-use sweepsim_spline::Bernstein;
+use proptest::prelude::*;
+use sweepsim::motion::Patch;
+use sweepsim::prelude::*;
+use sweepsim::spline::Bernstein;
+use sweepsim::systems::Plane;
+use sweepsim::{Ray, probe, section};
 
 /// A block with its tip at the origin, all weights the same.
 fn block(weight: f64) -> Option<Tool> {
@@ -81,13 +83,84 @@ fn weights_that_underflow_lose_nothing_in_silence() {
                 .unresolved
                 .iter()
                 .any(|dexel| (dexel.i, dexel.j) == (i, j));
-            let ends = |volume: &sweepsim_dexel::Dexels| -> Vec<f64> {
-                volume.at(line).iter().flat_map(|i| [i.lower.z, i.upper.z]).collect()
-            };
+            let ends =
+                |volume: &Dexels| -> Vec<f64> { volume.at(line).iter().flat_map(|i| [i.lower.z, i.upper.z]).collect() };
             let (found, expected) = (ends(&swept.volume), ends(&plain.volume));
             let same = found.len() == expected.len() && found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-6);
             assert!(open || same, "{weight:e}, dexel {i} {j}: {found:?} for {expected:?}");
         }
     }
     assert!(tested > 3, "{tested}");
+}
+
+proptest! {
+    /// Whatever the numbers: an error, or a plane with a frame.
+    #[test]
+    fn planes_are_valid_or_refused(normal in proptest::array::uniform3(any::<f64>()), offset in any::<f64>()) {
+        match Plane::new(normal, offset) {
+            Ok(plane) => {
+                let [a, b] = plane.frame();
+                let lengths = [a, b].map(|v| v.iter().map(|x| x * x).sum::<f64>());
+                prop_assert!(lengths.iter().all(|l| (l - 1.0).abs() < 1e-12), "{normal:?}");
+                prop_assert!(plane.offset().is_finite());
+            }
+            Err(_) => {
+                let sound = normal.iter().all(|x| x.is_finite()) && normal != [0.0; 3] && offset.is_finite();
+                let largest = normal.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                prop_assert!(!sound || !(offset / largest).is_finite());
+            }
+        }
+    }
+
+    /// Tolerances and chord errors of any kind: an error or a result, never a panic.
+    #[test]
+    fn tolerances_are_valid_or_refused(tolerance in any::<f64>(), chord in any::<f64>()) {
+        let up = [0.0, 0.0, 1.0];
+        let path = Path::new(vec![Pose::new([-1.0, 0.0, 0.0], up).unwrap(), Pose::new([1.0, 0.0, 0.0], up).unwrap()]).unwrap();
+        let tool = Tool::flat(1.0, 5.0).unwrap();
+        let grid = Grid::new([-3.0, -2.0], [3.0, 2.0], [3, 2]).unwrap();
+        let options = Options::new(tolerance);
+        let sound = tolerance > 0.0 && tolerance.is_finite();
+        let swept = sweep(&tool, &path, &grid, &options, &());
+        prop_assert!(swept.is_err() || sound);
+        let ray = Ray::new([0.1, 0.2, 0.3], up).unwrap();
+        prop_assert!(probe(&tool, &path, &[ray], &options, &()).is_err() || sound);
+        if !(chord > 1e-3) {
+            let plane = Plane::x(0.1).unwrap();
+            let found = section(&[Cut::new(&tool, &path)], &plane, chord.min(0.0), &options, &());
+            prop_assert!(found.is_err());
+        }
+    }
+}
+
+#[test]
+fn empty_input_has_empty_results() {
+    let plane = Plane::z(1.0).unwrap();
+    let found = section(&[], &plane, 1e-3, &Options::default(), &()).unwrap();
+    assert!(found.curves.is_empty() && found.loops().closed.is_empty());
+    let tool = Tool::flat(1.0, 5.0).unwrap();
+    let path = Path::new(vec![Pose::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap()]).unwrap();
+    assert!(probe(&tool, &path, &[], &Options::default(), &()).unwrap().is_empty());
+}
+
+#[test]
+fn points_beside_a_simulation_have_no_source() {
+    let grid = Grid::new([0.0; 2], [4.0; 2], [4, 4]).unwrap();
+    let stock = Stock::Block {
+        min: [0.0; 3],
+        max: [4.0; 3],
+    }
+    .dexels(&grid)
+    .unwrap();
+    let done = simulate(stock, &[], &Options::default(), &()).unwrap();
+    for point in [
+        [f64::NAN, 1.0, 1.0],
+        [f64::INFINITY, 0.0, 0.0],
+        [1e300; 3],
+        [-20.0, 2.0, 4.0],
+    ] {
+        assert_eq!(done.source_at(point), None, "{point:?}");
+    }
+    let top = done.source_at([2.1, 2.1, 4.0]).unwrap();
+    assert!(!top.source.is_cut() && top.distance < 1.0 && top.position[2] == 4.0);
 }

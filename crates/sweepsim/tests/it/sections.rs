@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sweepsim::systems::Plane;
-use sweepsim::{Cut, Options, probe, section};
+use sweepsim::{Cut, Options, Ray, probe, section};
 use sweepsim_motion::{Path, Pose, Tool};
 
 fn tools() -> [Tool; 3] {
@@ -34,10 +34,10 @@ proptest! {
         let tool = &tools()[tool];
         let chord = 1e-3;
         let options = Options::new(1e-6);
-        let section = section(&[Cut::new(tool, &path)], &Plane::x(x), chord, &options, &()).unwrap();
+        let section = section(&[Cut::new(tool, &path)], &Plane::x(x).unwrap(), chord, &options, &()).unwrap();
         prop_assert!(section.open.is_empty(), "{:?}", section.open);
         let ys: Vec<f64> = (0..9).map(|k| -12.0 + 3.0 * (f64::from(k) + shift)).collect();
-        let lines: Vec<[f64; 2]> = ys.iter().map(|y| [x, *y]).collect();
+        let lines: Vec<Ray> = ys.iter().map(|y| Ray::new([x, *y, 0.0], [0.0, 0.0, 1.0]).unwrap()).collect();
         let swept = probe(tool, &path, &lines, &options, &()).unwrap();
         for (y, intervals) in ys.iter().zip(&swept) {
             let intervals = intervals.as_ref().expect("established");
@@ -73,10 +73,7 @@ fn a_plane_of_any_direction() {
     ])
     .unwrap();
     let tool = Tool::ball(5.0, 5.0 + 1e-3).unwrap();
-    let plane = Plane {
-        normal: [1.0, 1.0, 1.0],
-        offset: 30.0,
-    };
+    let plane = Plane::new([1.0, 1.0, 1.0], 30.0).unwrap();
     let found = section(&[Cut::new(&tool, &path)], &plane, 1e-3, &Options::new(1e-6), &()).unwrap();
     let mut count = 0;
     for curve in &found.curves {

@@ -1,6 +1,6 @@
 //! Envelope surfaces bound the swept volume.
 
-use sweepsim::{BoundaryPiece, Cut, EnvelopeSurfaces, Options, envelope_surfaces, probe, sweep};
+use sweepsim::{BoundaryPiece, BoundaryPoint, Cut, EnvelopeSurfaces, Options, Ray, envelope_surfaces, probe, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Pose, Tool};
 
@@ -88,7 +88,8 @@ fn corners_that_bound_the_volume_lie_where_dexels_end() {
         }
         let chosen = surface.vertices.iter().zip(&surface.outer).step_by(17);
         let chosen: Vec<_> = chosen.filter(|(point, _)| point.normal[2].abs() > 0.2).collect();
-        let lines: Vec<[f64; 2]> = chosen.iter().map(|(p, _)| [p.position[0], p.position[1]]).collect();
+        let ray = |p: &BoundaryPoint| Ray::new([p.position[0], p.position[1], 0.0], [0.0, 0.0, 1.0]).unwrap();
+        let lines: Vec<Ray> = chosen.iter().map(|(p, _)| ray(p)).collect();
         let found = probe(&tool, &path, &lines, &options, &()).unwrap();
         for ((point, is_outer), intervals) in chosen.iter().zip(found) {
             let intervals = intervals.expect("established");

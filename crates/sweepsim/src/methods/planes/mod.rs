@@ -50,7 +50,7 @@ impl Forms {
 
 /// The plane of lines with one `x`.
 fn plane(lines: &Lattice) -> Plane {
-    Plane::x(lines.coordinate(0, lines.i[0]))
+    Plane::of_lines(lines.coordinate(0, lines.i[0]))
 }
 
 /// Solves a map by the curves in the lines' plane; by charts, where that does not decide it.
