@@ -1,27 +1,27 @@
-//! A cutter with what holds it.
+//! A cutter with its shank and holder.
 
 use crate::tool::Tool;
 
-/// What a body of an assembly is.
+/// The kind of a body in an assembly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BodyKind {
     /// The part of the tool above its cutting edges.
     Shank,
-    /// What the tool is clamped in.
+    /// The part that clamps the tool.
     Holder,
 }
 
-/// A body that moves with a cutter and removes nothing.
+/// A body that moves with a cutter and removes no material.
 #[derive(Clone, Debug)]
 pub struct Body {
-    /// What it is.
+    /// Its kind.
     pub kind: BodyKind,
-    /// Its solid, in the frame of the cutter: the origin is the cutter's tip.
+    /// Its shape, in the frame of the cutter: the origin is the cutter's tip.
     pub solid: Tool,
 }
 
-/// A cutter, and the shank and holder that move with it. Only the cutter removes material; the others must not touch any.
+/// A cutter with the shank and holder that move with it. Only the cutter removes material; the others must not touch any.
 ///
 /// ```
 /// use sweepsim_motion::{Assembly, BodyKind, Profile, ProfileSegment, Tool};
@@ -51,20 +51,20 @@ impl Assembly {
         }
     }
 
-    /// The same with a further body, in the frame of the cutter.
+    /// Adds a body, in the frame of the cutter.
     #[must_use]
     pub fn with(mut self, kind: BodyKind, solid: Tool) -> Self {
         self.bodies.push(Body { kind, solid });
         self
     }
 
-    /// What cuts.
+    /// The cutter.
     #[must_use]
     pub fn cutter(&self) -> &Tool {
         &self.cutter
     }
 
-    /// What moves with it.
+    /// The bodies that move with it.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies

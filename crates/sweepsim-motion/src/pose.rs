@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, Unit, Vector3};
 use thiserror::Error;
 
-/// A placement of a tool: the tip (CL point), the unit vector from the tip towards the holder, and, for tools that are not
-/// symmetric about their axis, where their `x` direction points.
+/// A placement of a tool: the tip (CL point), the unit vector from the tip towards the holder and, for tools that are not
+/// symmetric about their axis, the direction of their `x`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     tip: Vector3<f64>,
@@ -12,7 +12,7 @@ pub struct Pose {
     side: Option<Unit<Vector3<f64>>>,
 }
 
-/// Why two numbers triples are no pose.
+/// Why numbers do not make a pose.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PoseError {
@@ -23,7 +23,7 @@ pub enum PoseError {
     #[error("the axis ({}, {}, {}) has no direction", .0[0], .0[1], .0[2])]
     AxisWithoutDirection([f64; 3]),
     /// The direction of the tool's `x` is not finite, zero, or along the axis.
-    #[error("({}, {}, {}) does not say where the side of the tool points: it needs a part across the axis", .0[0], .0[1], .0[2])]
+    #[error("({}, {}, {}) does not determine where the side of the tool points: it must have a component across the axis", .0[0], .0[1], .0[2])]
     SideWithoutDirection([f64; 3]),
 }
 
@@ -54,7 +54,7 @@ impl Pose {
         })
     }
 
-    /// A pose that also says how the tool is turned about its axis: its `x` points along `side`, as far as that is across the axis.
+    /// A pose that also fixes the spin of the tool about its axis: its `x` points along the component of `side` across the axis.
     ///
     /// # Errors
     /// [`PoseError`] when a number is not finite, the axis has no direction, or `side` has none across it.
@@ -76,7 +76,7 @@ impl Pose {
         }
     }
 
-    /// A pose whose parts are known to be good.
+    /// A pose whose parts are known to be valid.
     pub(crate) fn at(tip: Vector3<f64>, axis: Unit<Vector3<f64>>) -> Self {
         Self { tip, axis, side: None }
     }
@@ -93,7 +93,7 @@ impl Pose {
         self.axis.into_inner().into()
     }
 
-    /// Where the tool's `x` points, if the pose says so: a unit vector.
+    /// Where the tool's `x` points, if the pose fixes it: a unit vector.
     #[must_use]
     pub fn side(&self) -> Option<[f64; 3]> {
         self.side.map(|side| side.into_inner().into())
@@ -107,7 +107,7 @@ impl Pose {
         self.axis
     }
 
-    /// The rotation from the tool's directions to those of space, if the pose says how the tool is turned about its axis.
+    /// The rotation from tool coordinates to space, if the pose fixes the spin of the tool about its axis.
     #[must_use]
     pub fn orientation(&self) -> Option<Matrix3<f64>> {
         self.side.map(|side| {

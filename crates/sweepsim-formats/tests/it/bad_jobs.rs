@@ -172,7 +172,7 @@ fn one_message_with_its_place() {
         (
             tool,
             profile("Arc(to: (2, 3), centre: (0, 2), turn: Ccw), Line((0, 9))"),
-            "job.ron:7:46: tool 1: profile segment 0 is no arc",
+            "job.ron:7:46: tool 1: profile segment 0 is not an arc",
         ),
         (
             tool,

@@ -65,7 +65,7 @@ fn one_message_with_its_place() {
                 "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
                 "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0.1, 1))])",
             ),
-            "job.ron:10:145: the orientation is no rotation",
+            "job.ron:10:145: the orientation is not a rotation",
         ),
         (
             poses,

@@ -7,14 +7,14 @@ use sweepsim_spline::Bernstein;
 
 /// Stretches whose normals enclose no larger angle (its sine) join smoothly.
 pub(super) const SMOOTH: f64 = 1e-9;
-/// How a boundary is folded at a place of an edge.
+/// How a boundary is folded at a point of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fold {
-    /// Not at all: the normals of both faces are the same there.
+    /// Not at all: the normals of both faces agree.
     Smooth,
-    /// Material within less than half a turn.
+    /// The material fills less than half a turn.
     Convex,
-    /// Material within more than half a turn.
+    /// The material fills more than half a turn.
     Concave,
 }
 
@@ -81,7 +81,7 @@ impl Edge {
         &self.after
     }
 
-    /// How the boundary is folded at `r` in `[0, 1]`: an edge may change from the one to the other on its way.
+    /// How the boundary is folded at `r` in `[0, 1]`. One edge may be convex in part and concave in part.
     #[must_use]
     pub fn fold(&self, r: f64) -> Fold {
         let vector = |forms: &[Bernstein; 3]| Vector3::from([0, 1, 2].map(|k| forms[k].evaluate(&[r])));

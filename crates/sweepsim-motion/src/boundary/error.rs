@@ -18,11 +18,11 @@ pub enum PatchError {
         found: usize,
     },
     /// A degree is too high.
-    #[error("degree {degree} is too high: at most {most} can be used")]
+    #[error("degree {degree} is too high: at most {most} is supported")]
     Degree {
         /// The degree.
         degree: usize,
-        /// What is possible.
+        /// The highest supported.
         most: usize,
     },
     /// A coefficient is not finite.
@@ -39,7 +39,7 @@ pub enum PatchError {
         /// Its value.
         value: f64,
     },
-    /// The normal vanishes inside, or everywhere.
+    /// The normal vanishes inside or everywhere.
     #[error("the surface has no normal near (u, v) = ({u}, {v}): it is folded or degenerate there")]
     NoNormal {
         /// Where.
@@ -87,10 +87,10 @@ pub enum PatchError {
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {
-    /// There is none.
+    /// There are no patches.
     #[error("a tool needs at least one patch")]
     Empty,
-    /// A side, or a part of one, lies at no other one.
+    /// A side, or part of one, joins no other side.
     #[error("side {side} of patch {patch} joins no other side near ({}, {}, {}): the boundary is open there", .place[0], .place[1], .place[2])]
     Open {
         /// The patch, from 0.
@@ -112,7 +112,7 @@ pub enum ToolError {
         /// The other patch.
         other: usize,
     },
-    /// More than two sides lie at one place.
+    /// More than two sides meet along a curve.
     #[error("three or more sides join at side {side} of patch {patch}")]
     Branching {
         /// A patch, from 0.
@@ -123,7 +123,7 @@ pub enum ToolError {
     /// All patches face inwards.
     #[error("the patches face into the tool: swap u and v of each")]
     InsideOut,
-    /// A surface is not one of two variables in space.
+    /// A surface does not have two variables and three coordinates.
     #[error("surface {surface} maps {variables} variables to {dimension} coordinates: expected 2 and 3")]
     Surface {
         /// The surface, from 0.
@@ -133,7 +133,7 @@ pub enum ToolError {
         /// Its coordinates.
         dimension: usize,
     },
-    /// A surface cannot be taken apart.
+    /// A surface cannot be split into its pieces.
     #[error("surface {surface}: {source}")]
     Spline {
         /// The surface, from 0.
@@ -141,7 +141,7 @@ pub enum ToolError {
         /// Why.
         source: SplineError,
     },
-    /// A piece of a surface is no patch.
+    /// A piece of a surface is not a valid patch.
     #[error("surface {surface}, where u is in [{}, {}] and v in [{}, {}]: {source}", .ranges[0].0, .ranges[0].1, .ranges[1].0, .ranges[1].1)]
     Patch {
         /// The surface, from 0.

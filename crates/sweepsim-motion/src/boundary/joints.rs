@@ -1,10 +1,10 @@
 //! How the sides of patches join to a closed boundary, and which joints are sharp.
 //!
-//! Sides are cut where corners of other patches lie on them. What is left, *stretches*, must join one to one and run opposite ways; a side
-//! that joins several is a T-joint. Two stretches may run along the same curve at different paces: then the normals of the one are carried over
+//! Sides are cut where corners of other patches lie on them. The resulting *stretches* must join in pairs and run in opposite directions; a side
+//! that joins several others is a T-joint. Two stretches may have different parametrisations of the same curve: then the normals of one are converted
 //! to the parameter of the other, as polynomials.
 //!
-//! All is within the tolerance of the tool: corners lie on sides, and sides along each other, to within it.
+//! Corners lie on sides, and sides along each other, to within the tolerance of the tool.
 
 use super::side_curve::{PLACES, SideCurve};
 use super::stretch::JointStretch;
@@ -46,7 +46,7 @@ fn stretches(curves: &[SideCurve], tolerance: f64) -> Vec<JointStretch<'_>> {
 /// The sharp edges of a closed boundary.
 ///
 /// # Errors
-/// [`ToolError`]: it is none.
+/// [`ToolError`]: it is not closed, or not consistently oriented.
 pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, ToolError> {
     if patches.is_empty() {
         return Err(ToolError::Empty);

@@ -109,7 +109,7 @@ impl Patch {
         self.revolved.as_ref()
     }
 
-    /// The point at `(u, v)`. Outside `[0, 1]²` the surface goes on.
+    /// The point at `(u, v)`. Outside `[0, 1]²` the surface is extrapolated.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> [f64; 3] {
         let weight = self.weight.evaluate(&[u, v]);

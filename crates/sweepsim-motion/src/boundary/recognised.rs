@@ -1,4 +1,4 @@
-//! Patches that are pieces of surfaces of revolution about the tool's axis, though nobody said so: their normals have low degrees.
+//! Recognises patches that are pieces of surfaces of revolution about the tool's axis: their normals have low degrees.
 //!
 //! With a circle `c² + s² = a²` in `u` and a meridian `ρ, ζ` over `ω` in `v`, `F = (c ρ, s ρ, a ζ) / (a ω)`, the normals are parallel to
 //! `N = (c n_ρ, s n_ρ, a n_ζ)` with `n_ρ = ζ′ω − ζω′` and `n_ζ = ρω′ − ρ′ω`, and `ω F × N = (−s m, c m, 0)` with `m = ζ n_ρ − ρ n_ζ`. `F_u × F_v` has many times
@@ -7,7 +7,7 @@
 use super::NormalField;
 use sweepsim_spline::Bernstein;
 
-/// Coefficients are what they should be within so many roundings of the largest: what is found differs from the patch no more than that, which
+/// Coefficients must match to within this many roundings of the largest, which
 /// is less than the roundings that the sweep allows for.
 const ROUNDINGS: f64 = 8.0;
 
@@ -235,7 +235,7 @@ mod tests {
             prop_assert!(degree(&closed) < degree(&general));
         }
 
-        /// What is no surface of revolution about the axis, by ever so little more than rounding, is not taken for one.
+        /// A surface that differs from one of revolution by slightly more than rounding is not recognised as one.
         #[test]
         fn others_are_left_alone(which in 0..3_usize, coefficient in 0..9_usize, error in prop_oneof![Just(1e-3), Just(1e-9), Just(1e-12)]) {
             let meridian = [[2.0, 0.0, 1.0], [3.0, 1.0, 1.0], [2.5, 4.0, 1.0]];

@@ -6,8 +6,8 @@
 //! function is `g = ⟨N, V⟩ = ⟨N, b′⟩ + ⟨M, ω⟩`: linear in them. `N` and `M` are stored with a common positive factor, in the
 //! lowest degree there is: for a surface of revolution `M = (ζ n_ρ − ρ n_ζ)(z × e)` has the degree of `F`, not that of `F × N`.
 //!
-//! Poles cost nothing where they can be avoided: a half ball at a tip has its own poles on its rim, and a disk is one
-//! patch that is singular only at four points of its rim. Both lie at an azimuth no machine axis favours.
+//! Poles are avoided where possible: a half ball at a tip has its poles on its rim, and a disk is one
+//! patch that is singular only at four points of its rim. Both lie at an azimuth that no machine axis favours.
 
 use super::meridian::{Meridian, QUARTER_WEIGHT, Quarter, form};
 use super::{Edge, NormalField, Patch, Revolved};
@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use sweepsim_spline::Bernstein;
 
-/// The azimuth at which quarters of revolution begin, in radians: any number that no drawing uses.
+/// The azimuth at which quarters of revolution begin, in radians: a number that no drawing uses.
 const AZIMUTH: f64 = 0.392_217_5;
 
 /// Normals nearer than this (the sine of their angle) belong to a smooth joint.

@@ -1,4 +1,4 @@
-//! Moves at constant speed: everything that turns, turns evenly and in step with the tip, to within a stated deviation.
+//! Moves at constant speed: all rotations are uniform and in step with the tip, to within a stated deviation.
 //!
 //! A move is divided into `m` equal parts of its time; in each, every turn by an angle `θ` is one rational arc in a common parameter
 //! `s`. With `τ = tan(θ/4)` and `x = 2s − 1` the part of the angle that has passed is `½ + ½ f(x)`, `f(x) = atan(τx)/atan τ`.
@@ -9,9 +9,9 @@
 //! - straight ways, which are cubic in `s`: the odd cubic that has the value and the slope of `f` at both ends. Hermite's error is
 //!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a way of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
 //!
-//! A tool that is symmetric about its axis may turn about it as it likes. Along an arc of the tip about (nearly) the direction of its axis it turns with the
-//! arc, so that it goes round as one rigid body: its velocity field, as it sees it, then stands (nearly) still, and what stays at the arc's centre stays
-//! at one point of the tool. Without that turn the centre line would run round the tool, with `g = 0` all along.
+//! The spin of a symmetric tool about its axis is arbitrary. Along an arc of the tip about (nearly) the direction of its axis, the tool turns with the
+//! arc as one rigid body: its velocity field in its own frame is then (nearly) constant, and the centre of the arc stays
+//! at one point of the tool. Without that spin the centre line would travel round the tool, with `g = 0` all along it.
 //!
 //! Both fall with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
 //! `docs/algorithms/motions.md` has the derivations.
@@ -23,16 +23,16 @@ use crate::segment::{Segment, SegmentCurve, frame, product, raised, rational_tur
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// Turns by less are none.
+/// Smaller angles count as 0.
 const NO_TURN: f64 = 1e-15;
 
-/// No move is divided into many more parts than this, however small the deviation that is asked for.
+/// The largest number of parts of a move, however small the requested deviation (up to a factor of 2).
 const MOST: usize = 1 << 20;
 
-/// The way of the tip over the whole move.
+/// The course of the tip over the whole move.
 enum Tip {
     Straight([Vector3<f64>; 2]),
-    /// An arc from a start, and what is missing at its end.
+    /// An arc from a start, and the difference at its end.
     Arc(TipArc, Vector3<f64>, Vector3<f64>),
 }
 
@@ -144,7 +144,7 @@ impl Turns {
 /// A part of the turns of a tool: `Â`, `ŵ`, and the coefficients of `ŵ Ω`.
 type Turned = (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>);
 
-/// A tool's axis is near that of an arc where the cosine of their angle is at least this: 1.8°. Farther away the turn costs more than it saves.
+/// A tool's axis counts as near that of an arc if the cosine of their angle is at least this: 1.8°. Beyond that the spin costs more than it saves.
 const NEAR: f64 = 0.9995;
 
 /// The angle by which a symmetric tool turns about its own axis along an arc, and with it.
@@ -207,7 +207,7 @@ impl Tip {
         }
     }
 
-    /// The way that is cubic in the parameter.
+    /// The displacement that is cubic in the parameter.
     fn straight(&self) -> Vector3<f64> {
         match self {
             Self::Straight([from, to]) => to - from,

@@ -2,32 +2,32 @@
 
 use thiserror::Error;
 
-/// Why poses are no path.
+/// Why poses do not make a path.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PathError {
-    /// There is no pose.
+    /// There are no poses.
     #[error("a path needs at least one pose")]
     Empty,
-    /// The axis would have to turn by half a turn, in a plane that nothing says.
+    /// The axis would make half a turn in a plane that nothing determines.
     #[error(
-        "the axes of poses {index} and {} (counted from 0) are opposite: put a pose between them that says which way to turn",
+        "the axes of poses {index} and {} (counted from 0) are opposite: insert a pose between them to say which way to turn",
         .index + 1
     )]
     OppositeAxes {
         /// The first of the two poses, counted from 0.
         index: usize,
     },
-    /// Some poses say how the tool is turned about its axis, and some do not.
+    /// Some poses fix the spin of the tool about its axis, and some do not.
     #[error(
-        "pose {index} (counted from 0) and the one before it differ in whether they say how the tool is turned about its axis"
+        "pose {index} (counted from 0) and the one before it differ: one fixes the spin of the tool about its axis, the other does not"
     )]
     Mixed {
         /// The second of the two poses, counted from 0.
         index: usize,
     },
-    /// There are as many moves as poses, or fewer or more.
-    #[error("{moves} moves do not join {poses} poses: expected one less than poses")]
+    /// The number of moves is not one less than that of poses.
+    #[error("{moves} moves do not join {poses} poses: expected one move fewer than poses")]
     Count {
         /// The number of moves.
         moves: usize,
@@ -44,9 +44,9 @@ pub enum PathError {
         /// The move, counted from 0.
         index: usize,
     },
-    /// The tool would have to turn by half a turn: which way is not said.
+    /// The tool would make half a turn in a direction that nothing determines.
     #[error(
-        "between poses {index} and {} (counted from 0) the tool makes half a turn: put a pose between them that says which way",
+        "between poses {index} and {} (counted from 0) the tool makes half a turn: insert a pose between them to say which way",
         .index + 1
     )]
     HalfTurn {

@@ -1,4 +1,4 @@
-//! A tool path: the poses that a tool goes through, one after another.
+//! A tool path: the poses that a tool passes through, in order.
 
 mod constant_speed;
 mod error;
@@ -17,14 +17,14 @@ use crate::spline_motion::SplineMotion;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
-/// Axes of two consecutive poses may come this near to opposite, in radians, and no nearer: between opposite axes
+/// Axes of consecutive poses must differ from opposite by more than this, in radians: between opposite axes
 /// the plane in which the axis turns is not determined.
 const OPPOSITE: f64 = 1e-9;
 
-/// A sequence of at least one [`Pose`], and for each consecutive pair how the tool goes from the one to the other: with
-/// [`Path::new`] straight, with SLERP of the axis (or of the whole orientation where the poses say it).
+/// A sequence of at least one [`Pose`], with a move for each consecutive pair: with
+/// [`Path::new`], a straight line with SLERP of the axis (or of the full orientation, where poses give it).
 ///
-/// Invariant: every move is determined: the axes of consecutive poses are not opposite where the axis goes the shortest way.
+/// Invariant: every move is determined. The axes of consecutive poses are not opposite where the axis turns the shortest way.
 ///
 /// ```
 /// use sweepsim_motion::{Path, PathError, Pose};
@@ -59,7 +59,7 @@ impl Path {
         Self::checked(poses, Ways::Slerp)
     }
 
-    /// The path through `poses`, straight, the tool turning by `law`. Rotary axes start at the angles nearest to 0.
+    /// The straight path through `poses` along which the tool turns by `law`. Rotary axes start at the angles nearest to 0.
     ///
     /// # Errors
     /// As [`Path::new`]; rotary axes may turn any way, but poses must be tip and axis alone.
@@ -116,7 +116,7 @@ impl Path {
         Self::checked(poses, if plain { Ways::Slerp } else { Ways::Each(moves) })
     }
 
-    /// The path along a motion of one's own: a move for each piece between its knots.
+    /// The path along a user-defined motion: one move for each piece between its knots.
     #[must_use]
     pub fn along(motion: SplineMotion) -> Self {
         Self {
@@ -172,7 +172,7 @@ impl Path {
         self.poses.len() - 1
     }
 
-    /// How the tool goes from pose `index` to the next; along a [motion](Path::along) the move that would join the poses by SLERP.
+    /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses.
     #[must_use]
     pub fn way(&self, index: usize) -> Move {
         match &self.ways {
@@ -181,7 +181,7 @@ impl Path {
         }
     }
 
-    /// Whether move `index` does not move the tool at all.
+    /// Whether the moves from pose `from` to pose `to` leave the tool where it is.
     #[must_use]
     pub fn rests(&self, from: usize, to: usize) -> bool {
         match &self.ways {
@@ -198,23 +198,23 @@ impl Path {
         }
     }
 
-    /// The motions that make move `index`, of equal shares of its time.
+    /// The segments of move `index`, of equal duration.
     ///
-    /// Moves by SLERP and motions of one's own are exact; others are, for a tool that reaches no farther than `reach` from its tip, within
-    /// `deviation` (a length) of what their law says, at every time: as far as a million parts suffice.
+    /// SLERP moves and user-defined motions are exact. Others stay, for a tool that reaches no farther than `reach` from its tip, within
+    /// `deviation` (a length) of their law at every time, as far as a million parts suffice.
     ///
     /// # Panics
-    /// When there is no such move.
+    /// If there is no such move.
     #[must_use]
     pub fn segments(&self, index: usize, reach: f64, deviation: f64) -> Vec<Segment> {
         self.parts(index, (reach, false), deviation)
     }
 
-    /// The same for a tool that is symmetric about its axis: how it turns about it is free, and chosen such that the motion is easiest to solve.
-    /// Along an arc of the tip that turns about (nearly) the direction of the tool's axis, the tool turns with it, as one rigid body.
+    /// The same for a tool that is symmetric about its axis: its spin about the axis is arbitrary, and chosen so that the motion is easiest to solve.
+    /// Along an arc of the tip about (nearly) the direction of the tool's axis, the tool turns with the arc as one rigid body.
     ///
     /// # Panics
-    /// When there is no such move.
+    /// If there is no such move.
     ///
     /// ```
     /// use sweepsim_motion::{Move, Path, Pose, TipArc};
@@ -247,7 +247,7 @@ impl Path {
         constant_speed::segments(from, to, way, tool, deviation)
     }
 
-    /// A bound of the size of all coordinates of tips.
+    /// A bound on the absolute value of all coordinates of the tip.
     #[must_use]
     pub fn size(&self) -> f64 {
         let poses = self.poses.iter().flat_map(|pose| pose.tip());

@@ -1,17 +1,17 @@
-//! How a tool goes from one pose to the next.
+//! How a tool moves from one pose to the next.
 
 use super::{RotaryTable, TipArc};
 
-/// How a tool goes from one pose to the next: the way of its tip, and how it turns meanwhile.
+/// How a tool moves from one pose to the next: the course of its tip, and how it turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Move {
-    /// The way of the tip.
+    /// The course of the tip.
     pub course: Course,
     /// How the tool turns.
     pub turning: Turning,
 }
 
-/// The way of the tip.
+/// The course of the tip.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Course {
     /// A straight line.
@@ -21,14 +21,14 @@ pub enum Course {
     Arc(TipArc),
 }
 
-/// How the tool turns from one pose to the next.
+/// How the tool turns during a move.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Turning {
-    /// The axis (or the whole orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
-    /// not quite constant. Along an arc of the tip the same as [`Even`](Self::Even).
+    /// The axis (or the full orientation) along a great circle, as one rational arc in `t`: the paper's SLERP. Its angular speed is
+    /// not quite constant. Along an arc of the tip it is the same as [`Even`](Self::Even).
     #[default]
     Slerp,
-    /// The same at constant angular speed: the tip and the angle stay in step.
+    /// The same at constant angular speed, in step with the tip.
     Even,
     /// Both rotary axes of a machine at constant speed, in step with the tip.
     Rotary {
@@ -36,7 +36,7 @@ pub enum Turning {
         table: RotaryTable,
         /// The angles `[tilt, C]` at the start, in degrees.
         from: [f64; 2],
-        /// The angles at the end: not reduced, 720° from the start is two turns.
+        /// The angles at the end, not reduced: 720° from the start is two turns.
         to: [f64; 2],
     },
 }
@@ -50,12 +50,12 @@ pub enum Law {
     Slerp,
     /// [`Turning::Even`].
     ConstantSpeed,
-    /// [`Turning::Rotary`], with the angles that are next to those before.
+    /// [`Turning::Rotary`], with the angles nearest to the previous ones.
     Rotary(RotaryTable),
 }
 
 impl Move {
-    /// Straight, turning like this.
+    /// A straight move with this turning.
     #[must_use]
     pub fn straight(turning: Turning) -> Self {
         Self {
@@ -64,7 +64,7 @@ impl Move {
         }
     }
 
-    /// Along an arc or a helix, the axis turning evenly meanwhile.
+    /// Along an arc or a helix, while the axis turns at constant speed.
     #[must_use]
     pub fn arc(arc: TipArc) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Move {
         }
     }
 
-    /// The move back from its end to its start.
+    /// The reverse move.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Which rotary axes a machine's table has, and so what angles mean. With tip control a program's `xyz` is the tip
+/// The rotary axes of a machine's table, which determine what its angles mean. With tip control a program's `xyz` is the tip
 /// in the part's frame, and the axis from the tip to the holder is, at the angles of the tilting axis (A or B) and of C,
 ///
 /// | table | axis |
@@ -27,9 +27,9 @@ pub enum RotaryTable {
     Bc,
 }
 
-/// A name that is no rotary table.
+/// A name that is not a rotary table.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{0:?} is no rotary table: expected AC or BC")]
+#[error("{0:?} is not a rotary table: expected AC or BC")]
 pub struct UnknownTable(pub String);
 
 impl FromStr for RotaryTable {

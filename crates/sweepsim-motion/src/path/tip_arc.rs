@@ -3,8 +3,8 @@
 use nalgebra::{Rotation3, Unit, Vector3};
 use thiserror::Error;
 
-/// An arc of the tip: about an axis through `centre`. What is missing at its end to the end of the move is added evenly on the way
-/// (the rise of a helix, the small difference of two radii in a program).
+/// An arc of the tip about an axis through `centre`. Any difference between its end and the end of the move is added at constant speed
+/// (the rise of a helix, or the small difference of two radii in a program).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TipArc {
     centre: Vector3<f64>,
@@ -12,7 +12,7 @@ pub struct TipArc {
     angle: f64,
 }
 
-/// Why there is no such arc.
+/// Why an arc is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ArcError {
@@ -20,10 +20,10 @@ pub enum ArcError {
     #[error("the arc has a number that is not finite")]
     NotFinite,
     /// The normal of its plane has no direction.
-    #[error("({}, {}, {}) is no direction for the normal of the arc's plane", .0[0], .0[1], .0[2])]
+    #[error("({}, {}, {}) is not a direction: the normal of the arc's plane must not be zero", .0[0], .0[1], .0[2])]
     Normal([f64; 3]),
-    /// The angle is zero, or absurd.
-    #[error("the arc turns by {0} radians: expected other than 0, and at most 100000 either way")]
+    /// The angle is zero or absurdly large.
+    #[error("the arc turns by {0} radians: expected a nonzero angle of at most 100000 in size")]
     Angle(f64),
     /// An end lies on the axis.
     #[error("the arc has no radius: its ends are {from} and {to} away from its axis")]
@@ -43,7 +43,7 @@ pub enum ArcError {
     },
 }
 
-/// Two radii of one arc may differ by so much of them.
+/// The largest relative difference between the two radii of an arc.
 const RADII: f64 = 1e-3;
 
 impl TipArc {
@@ -111,7 +111,7 @@ impl TipArc {
         Self::new(centre, normal, sign * (angle + full * (f64::from(turns.abs()) - 1.0)))
     }
 
-    /// A point of its axis.
+    /// A point on its axis.
     #[must_use]
     pub fn centre(&self) -> [f64; 3] {
         self.centre.into()
@@ -133,7 +133,7 @@ impl TipArc {
         self.angle
     }
 
-    /// The same arc the other way.
+    /// The same arc in the other direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
@@ -149,7 +149,7 @@ impl TipArc {
         from - n * n.dot(&from)
     }
 
-    /// Where it takes `from` after the part `part` of its angle, without what is missing to the end.
+    /// Where it takes `from` after the fraction `part` of its angle, without the difference at its end.
     pub(crate) fn turned(&self, from: Vector3<f64>, part: f64) -> Vector3<f64> {
         let turn = Rotation3::from_axis_angle(&self.normal, self.angle * part);
         self.centre + turn * (from - self.centre)

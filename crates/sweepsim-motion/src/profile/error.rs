@@ -3,11 +3,11 @@
 use sweepsim_spline::{KnotError, SplineError};
 use thiserror::Error;
 
-/// Why a list of segments is no profile. `segment` counts from 0.
+/// Why a list of segments is not a profile. `segment` counts from 0.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ProfileError {
-    /// There is no segment.
+    /// There are no segments.
     #[error("a profile needs at least one segment")]
     Empty,
     /// A number is not finite.
@@ -49,7 +49,7 @@ pub enum ProfileError {
         segment: usize,
     },
     /// The two ends of an arc lie at different distances from its centre.
-    #[error("profile segment {segment} is no arc: its ends are {from} and {to} away from its centre")]
+    #[error("profile segment {segment} is not an arc: its ends are {from} and {to} away from its centre")]
     NoArc {
         /// Which segment.
         segment: usize,
@@ -58,7 +58,7 @@ pub enum ProfileError {
         /// Distance of the end from the centre.
         to: f64,
     },
-    /// A spline that is none, or not one of an outline.
+    /// A spline is invalid, or does not fit the outline.
     #[error("profile segment {segment}: {fault}")]
     Spline {
         /// Which segment.
@@ -74,7 +74,7 @@ pub enum ProfileError {
         /// The other.
         second: usize,
     },
-    /// A measure of a built-in tool is not positive, or does not fit another.
+    /// A measure of a built-in cutter is out of range, or does not fit another.
     #[error("{what} is {value}, but must be {expected}")]
     Measure {
         /// Which measure.
@@ -86,7 +86,7 @@ pub enum ProfileError {
     },
 }
 
-/// Why a spline is no segment of a profile. Points, weights and knots count from 0.
+/// Why a spline is not a segment of a profile. Points, weights and knots count from 0.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SplineFault {
@@ -95,7 +95,7 @@ pub enum SplineFault {
     Degree {
         /// The degree.
         degree: usize,
-        /// What is possible.
+        /// The highest supported.
         most: usize,
     },
     /// Fewer points than the degree needs.
@@ -123,14 +123,14 @@ pub enum SplineFault {
         value: f64,
     },
     /// Not as many knots as points and degree need.
-    #[error("the spline has {found} knots, but needs {expected}: its points, its degree and one more")]
+    #[error("the spline has {found} knots, but needs {expected}: points + degree + 1")]
     KnotCount {
         /// How many there must be.
         expected: usize,
         /// How many there are.
         found: usize,
     },
-    /// The knots are none.
+    /// The knots are invalid.
     #[error("the spline's knots: {0}")]
     Knots(KnotError),
     /// The first or last knot does not occur often enough.
@@ -144,7 +144,7 @@ pub enum SplineFault {
         /// Where.
         knot: f64,
     },
-    /// It begins elsewhere than the segment before ended.
+    /// It does not begin where the previous segment ends.
     #[error("the spline begins at ({}, {}), but the profile is at ({}, {}) there", .found[0], .found[1], .expected[0], .expected[1])]
     Start {
         /// Its first point.
@@ -158,7 +158,7 @@ pub enum SplineFault {
         /// The middle of the piece between knots.
         near: [f64; 2],
     },
-    /// The spline cannot be taken apart.
+    /// The spline cannot be split into its pieces.
     #[error("the spline: {0}")]
     Other(SplineError),
 }

@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 use piece::crosses;
 use self_contact::Outline;
 
-/// Which way round an arc runs, seen with `ρ` to the right and `ζ` up.
+/// The direction of an arc, seen with `ρ` to the right and `ζ` up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// Clockwise.
@@ -23,7 +23,7 @@ pub enum Turn {
     Ccw,
 }
 
-/// One piece of a [`Profile`], from where the one before ended. Lengths in `(ρ, ζ)`.
+/// One segment of a [`Profile`]; it starts where the previous one ends. Lengths in `(ρ, ζ)`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ProfileSegment {
@@ -38,24 +38,23 @@ pub enum ProfileSegment {
         to: [f64; 2],
         /// Centre of its circle.
         centre: [f64; 2],
-        /// Which way round.
+        /// Its direction.
         turn: Turn,
     },
     /// A B-spline curve, rational when it has weights.
     Spline {
         /// Its degree, from 1 to 7.
         degree: usize,
-        /// `degree + 1` more than points, clamped: the first and the last occur `degree + 1` times. `None` spaces them evenly.
+        /// As many as points plus `degree + 1`, clamped: the first and the last occur `degree + 1` times. `None` spaces them evenly.
         knots: Option<Vec<f64>>,
-        /// Control points: the first is where the segment before ended, the last where this one ends.
+        /// Control points: the first is the end of the previous segment, the last the end of this one.
         points: Vec<[f64; 2]>,
-        /// One for each point, positive. `None` are all 1.
+        /// One for each point, positive. `None` means all 1.
         weights: Option<Vec<f64>>,
     },
 }
 
-/// The outline of a solid of revolution, from the tip on the axis to the top on the axis, with the material on its left:
-/// what makes a tool of lines, arcs and splines.
+/// The outline of a solid of revolution, made of lines, arcs and splines: from the tip on the axis to the top on the axis, with the material on its left.
 ///
 /// Invariants: finite; `ρ ≥ 0`, and `ρ = 0` at the two ends and nowhere else; starts below where it ends; no segment
 /// degenerate; does not cross or touch itself.
@@ -69,7 +68,7 @@ impl Profile {
     /// A profile from `start` on the axis, through `segments`, to the top on the axis.
     ///
     /// # Errors
-    /// [`ProfileError`]: open, upside down, across the axis, crossing itself, or a segment that is none.
+    /// [`ProfileError`]: open, upside down, across the axis, self-crossing, or with an invalid segment.
     pub fn new(start: [f64; 2], segments: Vec<ProfileSegment>) -> Result<Self, ProfileError> {
         let profile = Self { start, segments };
         let pieces = profile.try_pieces()?;
@@ -133,7 +132,7 @@ impl Profile {
         Ok(profile)
     }
 
-    /// Where the outline begins: the tip, `(0, ζ)`.
+    /// The start of the outline: the tip, `(0, ζ)`.
     #[must_use]
     pub fn start(&self) -> [f64; 2] {
         self.start

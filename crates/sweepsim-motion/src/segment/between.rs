@@ -53,7 +53,7 @@ pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>
 }
 
 impl Segment {
-    /// The motions from one pose to the next: one, or 2, 4, … equal parts where the axis (or the orientation) turns by more than 90°.
+    /// The segments from one pose to the next: one, or 2, 4, … equal parts if the axis (or the orientation) turns by more than 90°.
     ///
     /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
     #[must_use]

@@ -1,6 +1,6 @@
-//! A rigid motion for `t` in `[0, 1]` in Bernstein form: what a move between two poses is made of.
+//! A rigid motion for `t` in `[0, 1]` in Bernstein form: moves between poses consist of these.
 //!
-//! Legend: `A(t) = Â/ŵ` turns tool coordinates into space, `b(t)` is the tip, `Ω` the angular velocity as the tool sees it
+//! Legend: `A(t) = Â/ŵ` turns tool coordinates into space, `b(t)` is the tip, `Ω` the angular velocity in the tool's frame
 //! (`Aᵀ A′ = [Ω]×`), `k` the axis and `θ` the angle of a turn, `w, c, s` the quadratic Bernstein forms with `cos α = c/w`,
 //! `sin α = s/w`. Because `c s′ − s c′ = κ w` with the constant `κ = 2 sin(θ/2)`, a turn about one axis has the angular
 //! velocity `(κ/w) k`.
@@ -18,7 +18,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// A rigid motion for `t` in `[0, 1]`: the tip on a polynomial or rational curve, the orientation a rational matrix.
 ///
-/// The most common one, and the cheapest, [is an arc](Segment::is_arc): the tip on a straight line, the axis on a great circle as one
+/// The most common and cheapest kind [is an arc](Segment::is_arc): the tip on a straight line, the axis on a great circle as one
 /// rational arc of at most 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
@@ -100,9 +100,9 @@ impl Segment {
         Self { clock, ..self }
     }
 
-    /// The same motion of a tool that is first turned about its own axis, such that it begins as `before` ends.
+    /// The same motion of a tool that is first turned about its own axis, so that it begins as `before` ends.
     ///
-    /// So a tool that is not symmetric goes through poses that only say where its axis points: it does not turn about the axis.
+    /// So a tool without symmetry can follow poses that give only its axis: it does not spin about the axis.
     #[must_use]
     pub fn after(mut self, before: &Self) -> Self {
         let between = self.start().transpose() * before.end();
@@ -119,7 +119,7 @@ impl Segment {
         self
     }
 
-    /// Whether it is the simplest kind: the tip on a straight line at constant speed, and a turn about one axis or none.
+    /// Whether it is of the simplest kind: the tip on a straight line at constant speed, and a rotation about one axis or none.
     #[must_use]
     pub fn is_arc(&self) -> bool {
         matches!(self.kind, Kind::Arc(_))
@@ -131,7 +131,7 @@ impl Segment {
         &self.tips
     }
 
-    /// The same motion with the tip's ends moved: in between it is moved by something in between.
+    /// The same motion with the ends of the tip moved; in between it is displaced as by [`displaced`](Self::displaced).
     #[must_use]
     pub fn with_tips(self, tips: [Vector3<f64>; 2]) -> Self {
         match self.kind {
@@ -160,7 +160,7 @@ impl Segment {
         self
     }
 
-    /// The same motion in another place: turned by the rotation `turn` about the origin, then shifted.
+    /// The same motion in another place: rotated by `turn` about the origin, then shifted.
     #[must_use]
     pub fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Self {
         let place = |point: &Vector3<f64>, weight: f64| turn * point + shift * weight;
@@ -201,7 +201,7 @@ impl Segment {
         }
     }
 
-    /// How far the tip gets; of an [arc](Self::is_arc), `b′`: its velocity.
+    /// The displacement of the tip; of an [arc](Self::is_arc), `b′`: its velocity.
     #[must_use]
     pub fn travel(&self) -> Vector3<f64> {
         self.tips[1] - self.tips[0]
@@ -230,7 +230,7 @@ impl Segment {
         )
     }
 
-    /// The part of the segment's time that has passed at `t`: for evenly turning motions, the part of the angle.
+    /// The fraction of the segment's time that has passed at `t`: for motions at constant angular speed, the fraction of the angle.
     #[must_use]
     pub fn time(&self, t: f64) -> f64 {
         if self.clock == 0.0 {
@@ -240,7 +240,7 @@ impl Segment {
         }
     }
 
-    /// Bernstein coefficients of the tip, and as many positive weights that they are yet to be divided by.
+    /// Bernstein coefficients of the tip times its weight, and as many coefficients of the weight, all positive.
     #[must_use]
     pub fn points(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
         match &self.kind {

@@ -1,4 +1,4 @@
-//! Velocities: of the tip, of the orientation, and of the tool as it sees them itself.
+//! Velocities: of the tip, of the orientation, and in the tool's frame.
 
 use super::forms::{product, raised, wronskian};
 use super::{Kind, Segment, SegmentCurve, SegmentEnd};
@@ -31,8 +31,8 @@ impl Segment {
         (raised(&rate, 2 * degree), product(weights, weights, |a, b| a * b))
     }
 
-    /// How the tool moves as it sees it itself: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times one positive factor.
-    /// The first is a single one where it does not change; else both have one degree.
+    /// The velocity in the tool's frame: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times a common positive factor.
+    /// The first has a single coefficient where it is constant; otherwise both have the same degree.
     ///
     /// With a surface normal `N` and its moment `M`, `⟨Ω, M⟩ + ⟨Aᵀ b′, N⟩` is the envelope function times that factor.
     #[must_use]
@@ -59,7 +59,7 @@ impl Segment {
         (raised(&spin, degree), raised(&travel, degree))
     }
 
-    /// At one end, in space: the angular velocity, and the velocity of the tip, both times one positive factor.
+    /// At one end, in space: the angular velocity and the velocity of the tip, both times a common positive factor.
     #[must_use]
     pub fn velocity(&self, end: SegmentEnd) -> [Vector3<f64>; 2] {
         if let Kind::Arc(spin) = &self.kind {

@@ -4,7 +4,7 @@ use crate::pose::PoseError;
 use sweepsim_spline::SplineError;
 use thiserror::Error;
 
-/// Why splines are no rigid motion.
+/// Why splines do not describe a rigid motion.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -21,13 +21,13 @@ pub enum MotionError {
         expected: usize,
     },
     /// A degree is too high.
-    #[error("the {what} has degree {degree}: at most {most} can be used")]
+    #[error("the {what} has degree {degree}: at most {most} is supported")]
     Degree {
         /// `"orientation"` or `"tip"`.
         what: &'static str,
         /// Its degree.
         degree: usize,
-        /// What is possible.
+        /// The highest supported.
         most: usize,
     },
     /// The two splines have different domains.
@@ -38,7 +38,7 @@ pub enum MotionError {
         /// That of the tip.
         tip: (f64, f64),
     },
-    /// A spline cannot be taken apart.
+    /// A spline cannot be split into its pieces.
     #[error("the {what}: {source}")]
     Spline {
         /// `"orientation"` or `"tip"`.
@@ -46,8 +46,8 @@ pub enum MotionError {
         /// Why.
         source: SplineError,
     },
-    /// The tolerance is none.
-    #[error("the tolerance {0} is none: expected a positive number, at most 1e-6")]
+    /// The tolerance is out of range.
+    #[error("the tolerance must be positive and at most 1e-6, but is {0}")]
     Tolerance(f64),
     /// A coefficient is not finite, or too large.
     #[error("a coefficient of the {what} is not finite, or too large, near {at}")]
@@ -64,13 +64,15 @@ pub enum MotionError {
         at: f64,
     },
     /// The quaternion vanishes.
-    #[error("the quaternion vanishes, or nearly, near {at}: it has no orientation there")]
+    #[error("the quaternion vanishes, or nearly so, near {at}: there is no orientation")]
     NoOrientation {
         /// The parameter.
         at: f64,
     },
     /// The matrix is not orthogonal.
-    #[error("the orientation is no rotation near {at}: AᵀA differs from 1 by {deviation:e}, more than {tolerance:e}")]
+    #[error(
+        "the orientation is not a rotation near {at}: AᵀA differs from 1 by {deviation:e}, more than {tolerance:e}"
+    )]
     NoRotation {
         /// The parameter.
         at: f64,
@@ -83,14 +85,14 @@ pub enum MotionError {
     #[error("the orientation is a reflection, not a rotation: its determinant is negative")]
     Mirrored,
     /// The motion jumps at a knot.
-    #[error("the motion jumps at {at}, by {gap:e} (tip, or of the orientation's directions)")]
+    #[error("the motion jumps by {gap:e} at {at} (tip or orientation)")]
     Jump {
         /// The knot.
         at: f64,
         /// How far.
         gap: f64,
     },
-    /// The orientation at a knot is no pose.
+    /// The orientation at a knot does not make a pose.
     #[error("at {at}: {source}")]
     Pose {
         /// The knot.

@@ -1,4 +1,4 @@
-//! Motions of one's own: orientation and tip as B-spline curves.
+//! User-defined motions: orientation and tip as B-spline curves.
 
 mod error;
 mod stretch;
@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector3};
 use stretch::{MotionStretch, StretchTurning, of_matrices, of_quaternions, stretches};
 use sweepsim_spline::{BSpline, RationalSpline};
 
-/// A rigid motion `A(t) F + b(t)` given by B-splines, taken apart at their knots.
+/// A rigid motion `A(t) F + b(t)` given by B-splines, split at their knots.
 ///
 /// Invariants: no piece's orientation deviates from a rotation by more than the tolerance it was made with, all weights are
 /// positive, and pieces join.
@@ -41,13 +41,13 @@ const HALVINGS: usize = 12;
 const JOINED: f64 = 1e-12;
 
 impl SplineMotion {
-    /// The motion whose orientation is the quaternion `orientation(t) = (w, x, y, z)`, of any length but 0, and whose tip is `tip(t)`.
+    /// The motion with the orientation of the quaternion `orientation(t) = (w, x, y, z)`, of any nonzero length, and the tip `tip(t)`.
     ///
-    /// The rational motion of a quaternion curve is a rotation whatever the numbers are. A linear curve between two unit quaternions is the
+    /// A nonzero quaternion always gives a rotation. A linear curve between two unit quaternions is the
     /// SLERP of [`Segment`].
     ///
     /// # Errors
-    /// [`MotionError`]: no curves, different domains, a quaternion that vanishes, a jump.
+    /// [`MotionError`]: splines that are not curves, different domains, a quaternion that vanishes, a jump.
     pub fn from_quaternions(orientation: &BSpline, tip: &RationalSpline) -> Result<Self, MotionError> {
         let stretches = stretches(orientation, 4, tip)?;
         Self::of(
@@ -59,11 +59,11 @@ impl SplineMotion {
     }
 
     /// The motion whose orientation is the matrix `orientation(t)` (rows one after another, tool coordinates to space) and whose tip is
-    /// `tip(t)`. The matrix must be a rotation: `‖AᵀA − 1‖ ≤ tolerance` everywhere, proved by Bernstein coefficients. Its distance from
-    /// a rotation is then no more than that.
+    /// `tip(t)`. The matrix must be a rotation: `‖AᵀA − 1‖ ≤ tolerance` everywhere, which is proved by Bernstein coefficients. Its distance from
+    /// a rotation is then at most the tolerance.
     ///
     /// # Errors
-    /// [`MotionError`]: no curves, different domains, no rotation, a reflection, a jump; a tolerance above 1e-6.
+    /// [`MotionError`]: splines that are not curves, different domains, a matrix that is not a rotation, a reflection, a jump; a tolerance above 1e-6.
     pub fn from_matrices(
         orientation: &RationalSpline,
         tip: &RationalSpline,
@@ -175,7 +175,7 @@ impl SplineMotion {
     /// The same motion moved rigidly: turned by `turn` about the origin, then shifted.
     ///
     /// # Errors
-    /// [`MotionError::NoRotation`] or [`MotionError::Mirrored`] when `turn` is no rotation to within 1e-12.
+    /// [`MotionError::NoRotation`] or [`MotionError::Mirrored`] if `turn` is not a rotation to within 1e-12.
     pub fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Result<Self, MotionError> {
         let (deviation, tolerance) = ((turn.tr_mul(turn) - Matrix3::identity()).norm(), 1e-12);
         if !(deviation <= tolerance) {

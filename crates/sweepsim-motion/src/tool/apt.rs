@@ -57,12 +57,12 @@ pub enum AptError {
         /// `"bottom"` or `"side"`.
         line: &'static str,
     },
-    /// The outline is none.
+    /// The outline is invalid.
     #[error("the APT cutter: {0}")]
     Profile(ProfileError),
 }
 
-/// What is odd about a cutter.
+/// Something unusual about a cutter.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum AptWarning {
@@ -82,7 +82,7 @@ pub enum AptWarning {
 const TOUCHES: f64 = 1e-6;
 
 impl Apt {
-    /// The outline, and what is odd about it.
+    /// The outline, with warnings about unusual parameters.
     ///
     /// # Errors
     /// [`AptError`]: a parameter out of range, a corner that misses a line, an outline that crosses itself.

@@ -1,4 +1,4 @@
-//! Circle-segment cutters as they are sold: a flank or a bottom that is an arc of large radius, tangent to the arcs and lines beside it.
+//! Circle-segment cutters: a flank or bottom that is an arc of large radius, tangent to the neighbouring arcs and lines.
 //!
 //! | form | outline, from the tip |
 //! | --- | --- |
@@ -7,7 +7,7 @@
 //! | barrel | bottom, corner, flank that is widest in the middle, shank |
 //! | lens | bottom that is an arc about a point of the axis, corner, shank |
 //!
-//! Two circles touch from inside where the distance of their centres is the difference of their radii; the point is on the line through both centres.
+//! Two circles touch from inside if the distance of their centres is the difference of their radii; the point of contact is on the line through both centres.
 
 use super::cutters::check;
 use super::{Barrel, Lens, Oval, Taper, Tool};

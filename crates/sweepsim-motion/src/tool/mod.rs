@@ -14,7 +14,7 @@ use crate::profile::Profile;
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
 
-/// A milling tool: a solid with an exact B-spline boundary. Its origin is the tip, its `+z` runs along the axis to the holder.
+/// A milling tool: a solid with an exact B-spline boundary. The origin is its tip; `+z` points along its axis to the holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
     profile: Option<Profile>,
@@ -23,7 +23,7 @@ pub struct Tool {
 }
 
 impl Tool {
-    /// The seven-parameter cutter of APT, and what is odd about it.
+    /// The seven-parameter APT cutter, with warnings about unusual parameters.
     ///
     /// # Errors
     /// [`AptError`]: as [`Apt::profile`].
@@ -44,12 +44,12 @@ impl Tool {
 
     /// A tool of any shape: the solid that `patches` enclose, in any order.
     ///
-    /// Every part of a side of a patch must join a part of one other side (of another patch, or of the same one at a seam), within
-    /// `tolerance`: one side may join several, and at another pace. Sides that are points are poles. Where the normals differ along a joint
+    /// Every part of a side of a patch must join part of exactly one other side (of another patch, or of the same one at a seam), within
+    /// `tolerance`. One side may join several, with a different parametrisation. Sides that are points are poles. Where the normals differ along a joint
     /// there is a sharp edge.
     ///
     /// # Errors
-    /// [`ToolError`]: open, patches that face different ways, more than two sides at one place, inside out.
+    /// [`ToolError`]: an open boundary, patches that face different ways, more than two sides along one curve, a boundary that is inside out.
     ///
     /// ```
     /// use sweepsim_motion::{Patch, Tool};
@@ -75,21 +75,21 @@ impl Tool {
         })
     }
 
-    /// A tool that is enclosed by B-spline surfaces, each with `F_u × F_v` pointing out of it. They are taken apart at their knots.
+    /// The tool enclosed by B-spline surfaces, each with `F_u × F_v` pointing out of it. They are split at their knots.
     ///
     /// # Errors
-    /// As [`Tool::from_patches`], and when a surface is none or has a fold.
+    /// As [`Tool::from_patches`], and if a surface is invalid or has a fold.
     pub fn from_surfaces(surfaces: &[RationalSpline], tolerance: f64) -> Result<Self, ToolError> {
         Self::from_patches(surfaces::patches(surfaces)?, tolerance)
     }
 
-    /// The outline of a solid of revolution; none for tools of other shapes.
+    /// The outline of a solid of revolution; `None` for tools of other shapes.
     #[must_use]
     pub fn profile(&self) -> Option<&Profile> {
         self.profile.as_ref()
     }
 
-    /// No point of the tool is farther from its tip.
+    /// A bound on the distance of all points of the tool from its tip.
     #[must_use]
     pub fn reach(&self) -> f64 {
         let control = |patch: &Patch| {

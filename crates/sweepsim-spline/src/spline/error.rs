@@ -96,7 +96,7 @@ pub enum SplineError {
         value: f64,
     },
     /// A function does not have the continuity or the degree that the result would have.
-    #[error("not so smooth, or not of so low a degree: off by {deviation:e}")]
+    #[error("the function is not smooth enough, or its degree is too high: off by {deviation:e}")]
     NotExact {
         /// How far the result would be off, at most.
         deviation: f64,
