@@ -3,7 +3,7 @@
 //! `cargo run -p sweepsim-nc --example list_moves [FILE.nc]`
 
 use std::path::Path;
-use sweepsim_nc::{NcError, Options, Program, gcode, read_file};
+use sweepsim_nc::{NcError, Program, ReadOptions, gcode, read_file};
 
 const PROGRAM: &str = "\
 %
@@ -22,7 +22,7 @@ M30
 ";
 
 fn read() -> Result<Program, NcError> {
-    let mut options = Options::default();
+    let mut options = ReadOptions::default();
     options.exact_arcs = true;
     match std::env::args().nth(1) {
         Some(file) => read_file(Path::new(&file), &options),

@@ -2,10 +2,10 @@
 //! say so. The crate knows no stock and no sweep; use it alone to convert, check or plot programs.
 //!
 //! ```
-//! use sweepsim_nc::{Options, gcode};
+//! use sweepsim_nc::{ReadOptions, gcode};
 //!
 //! let text = "G21 G90\nT1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F200\nX10\n";
-//! let program = gcode::read(text, &Options::default())?;
+//! let program = gcode::read(text, &ReadOptions::default())?;
 //! let lines: Vec<usize> = program.poses.iter().map(|pose| pose.line).collect();
 //! assert_eq!(lines, [3, 4, 5]);
 //! assert!(program.poses[0].rapid);
@@ -26,15 +26,15 @@ mod error;
 pub mod gcode;
 mod machine;
 mod numbers;
-mod options;
 mod program;
 mod read;
+mod read_options;
 pub mod table;
 
 pub use error::{NcError, NcProblem, TextPosition};
 pub use machine::Machine;
 pub use numbers::shortest;
-pub use options::{AxisLaw, Options};
 pub use program::{Note, Program, ProgramPose};
 pub use read::read_file;
+pub use read_options::{AxisLaw, ReadOptions};
 pub use sweepsim_motion::RotaryTable;

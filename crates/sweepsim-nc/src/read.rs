@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::error::{NcError, NcProblem, TextPosition};
-use crate::options::Options;
 use crate::program::Program;
+use crate::read_options::ReadOptions;
 use crate::{gcode, table};
 
 /// Millimetres per inch.
@@ -16,7 +16,7 @@ const EXTENSIONS: &str = ".csv, .nc, .ngc, .gcode, .tap or .mpf";
 ///
 /// # Errors
 /// [`NcError`]: the file cannot be read, its extension is unknown, or its content is invalid.
-pub fn read_file(file: &Path, options: &Options) -> Result<Program, NcError> {
+pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError> {
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let bytes = || std::fs::read(file).map_err(|error| NcError::new(NcProblem::Read(error), None));
     let read = match extension.as_deref() {

@@ -1,20 +1,22 @@
 //! Still pictures of triangle meshes, computed without a GPU.
 //!
-//! A [`Mesh`](sweepsim_dexel::Mesh) stands on a plane under a soft sky, with a large lamp to the viewer's left. Faces that tools cut
+//! A [`Mesh`] stands on a plane under a soft sky, with a large lamp to the viewer's left. Faces that tools cut
 //! are bronze, faces of the stock steel; or each vertex has a value, and a colour map and a [`legend`] show it. [Sections](Section)
 //! cut the part open. The same mesh gives the same bytes at any number of threads.
 //!
 //! ```
-//! use sweepsim_dexel::{Grid, Stock};
-//! use sweepsim_picture::{Axis, Drawing, Section, View};
+//! use sweepsim_picture::{Axis, Drawing, Mesh, Section, View};
 //!
-//! let grid = Grid::new([-12.0, -12.0], [12.0, 12.0], [48, 48])?;
-//! let ball = Stock::Ball { centre: [0.0; 3], radius: 10.0 }.dexels(&grid)?;
-//! let mesh = ball.surface()?;
-//!
+//! // A tetrahedron, its triangles counter-clockwise seen from outside.
+//! let mesh = Mesh {
+//!     vertices: vec![[0.0; 3], [30.0, 0.0, 0.0], [0.0, 30.0, 0.0], [0.0, 0.0, 30.0]],
+//!     triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+//!     ..Mesh::default()
+//! };
 //! let mut view = View::default();
 //! view.size = [200, 150];
-//! let sections = [Section { axis: Axis::Y, at: 0.0 }];
+//! view.azimuth = 30.0;
+//! let sections = [Section { axis: Axis::Z, at: 10.0 }];
 //! let image = view.draw(&Drawing::new(&mesh).sections(&sections));
 //! let png: Vec<u8> = image.png()?;
 //! assert!(png.starts_with(b"\x89PNG"));
@@ -44,4 +46,5 @@ mod vector;
 mod view;
 
 pub use image::{Image, ImageError};
+pub use sweepsim_dexel::Mesh;
 pub use view::{Axis, Drawing, Section, View, render};

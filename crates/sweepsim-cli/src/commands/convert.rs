@@ -5,7 +5,7 @@ use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
 use std::io::Write as _;
 use std::path::Path;
 use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
-use sweepsim_nc::{Options, Program, read_file, table};
+use sweepsim_nc::{Program, ReadOptions, read_file, table};
 
 /// Reads one file, writes the other, and prints a summary.
 pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
@@ -20,7 +20,7 @@ pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
             )));
         }
         Kind::Path => {
-            let program = read_file(input, &Options::default())?;
+            let program = read_file(input, &ReadOptions::default())?;
             path(&program, input, output)?;
             line("path", &words::counted(program.poses.len() as u64, "pose"));
             program.notes.iter().for_each(|note| line("note", &note.to_string()));

@@ -8,7 +8,7 @@ use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_motion::Pose;
-use sweepsim_nc::{Note, Options, Program, read_file};
+use sweepsim_nc::{Note, Program, ReadOptions, read_file};
 
 /// Prints what is in a file.
 pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
@@ -25,7 +25,7 @@ pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
             table(&mut text, &rows);
         }
         Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
-        Kind::Path => program(&mut text, &read_file(file, &Options::default())?),
+        Kind::Path => program(&mut text, &read_file(file, &ReadOptions::default())?),
     }
     text.print()
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use sweepsim_motion::{Law, Path, RotaryTable, Tool};
-use sweepsim_nc::{AxisLaw, Machine, Options, read_file};
+use sweepsim_nc::{AxisLaw, Machine, ReadOptions, read_file};
 
 use super::paths::{self, JobPath};
 use super::read::JobReader;
@@ -106,7 +106,7 @@ impl JobReader<'_> {
                         value * self.unit
                     }
                 };
-                let mut options = Options::default();
+                let mut options = ReadOptions::default();
                 options.arc_tolerance = arc_tolerance;
                 options.inch = self.unit != 1.0;
                 options.machine = Machine::default().tip_control(raw.tip_control.unwrap_or(false));

@@ -8,10 +8,10 @@ use super::lexer::{self, Located, Word};
 use super::offsets::Offsets;
 use super::state::State;
 use crate::error::{NcError, NcProblem, TextPosition};
-use crate::options::Options;
 use crate::program::Program;
+use crate::read_options::ReadOptions;
 
-pub(super) fn read(text: &str, options: &Options) -> Result<Program, NcError> {
+pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
     if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
         let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
         return Err(NcError::new(problem, None));

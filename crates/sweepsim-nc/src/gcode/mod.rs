@@ -7,8 +7,8 @@
 //!
 //! Each of these decisions is reported as a [`Note`](crate::Note):
 //!
-//! - Arcs are divided into chords within [`Options::arc_tolerance`], unless [`Options::exact_arcs`] keeps them.
-//! - Between two blocks the tip moves straight, and the axis turns as [`Options::law`] says: by default by SLERP, whatever the
+//! - Arcs are divided into chords within [`ReadOptions::arc_tolerance`], unless [`ReadOptions::exact_arcs`] keeps them.
+//! - Between two blocks the tip moves straight, and the axis turns as [`ReadOptions::law`] says: by default by SLERP, whatever the
 //!   machine's rotary axes do in between. Only where the axis turns by more than 90° in one block are intermediate poses of the
 //!   rotary axes inserted.
 //! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there, and begins again once all
@@ -29,8 +29,8 @@ mod state;
 mod turns;
 
 use crate::error::NcError;
-use crate::options::Options;
 use crate::program::Program;
+use crate::read_options::ReadOptions;
 
 /// Reads a program.
 ///
@@ -38,17 +38,17 @@ use crate::program::Program;
 /// [`NcError`] with line and column at the first block that is invalid or ambiguous.
 ///
 /// ```
-/// use sweepsim_nc::{Options, gcode};
+/// use sweepsim_nc::{ReadOptions, gcode};
 /// let text = "G21 G90 M428\nG0 X0 Y0 Z5 A0 C90\nG1 Z-1 F200\nX10 A90\n";
-/// let program = gcode::read(text, &Options::default())?;
+/// let program = gcode::read(text, &ReadOptions::default())?;
 /// assert_eq!(program.poses.len(), 3);
 /// assert!(program.poses[0].rapid && !program.poses[2].rapid);
 /// assert_eq!(program.poses[2].pose.axis(), [1.0, 0.0, 0.0]);
 ///
-/// let error = gcode::read("G0 X0 Y0 Z5\nG5 X1", &Options::default()).unwrap_err();
+/// let error = gcode::read("G0 X0 Y0 Z5\nG5 X1", &ReadOptions::default()).unwrap_err();
 /// assert!(error.to_string().starts_with("2:1: G5"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read(text: &str, options: &Options) -> Result<Program, NcError> {
+pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
     interpreter::read(text, options)
 }

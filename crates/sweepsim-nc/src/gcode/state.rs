@@ -7,8 +7,8 @@ use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
 use super::turns;
 use crate::error::NcProblem;
 use crate::machine::Machine;
-use crate::options::{AxisLaw, Options};
 use crate::program::{NoteList, Program, ProgramPose};
+use crate::read_options::{AxisLaw, ReadOptions};
 
 /// The most poses of one program: bounds the memory that a file of a few bytes can demand.
 const MOST_POSES: usize = 20_000_000;
@@ -47,7 +47,7 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub fn new(options: &Options) -> Self {
+    pub fn new(options: &ReadOptions) -> Self {
         Self {
             xyz: [None; 3],
             abc: [0.0; 3],

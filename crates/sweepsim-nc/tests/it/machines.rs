@@ -3,14 +3,14 @@
 use std::f64::consts::{PI, TAU};
 
 use sweepsim_motion::{Course, Turning};
-use sweepsim_nc::{AxisLaw, Options, gcode};
+use sweepsim_nc::{AxisLaw, ReadOptions, gcode};
 
 const PROGRAM: &str =
     "G21 G90 M428\nG0 X0 Y0 Z5 A0 C0\nG1 X10 A30 C350 F200\nG17 G3 X10 Y20 I0 J10 C700\nG2 X10 Y20 I1 J0\n";
 
 #[test]
 fn programs_as_machines_run_them() {
-    let mut options = Options::default();
+    let mut options = ReadOptions::default();
     options.law = AxisLaw::Rotary;
     options.exact_arcs = true;
     let program = gcode::read(PROGRAM, &options).unwrap();
@@ -30,7 +30,7 @@ fn programs_as_machines_run_them() {
         other => panic!("{other:?}"),
     }
     // By default: chords, and intermediate poses where the axis turns far.
-    let plain = gcode::read(PROGRAM, &Options::default()).unwrap();
+    let plain = gcode::read(PROGRAM, &ReadOptions::default()).unwrap();
     assert!(
         plain.poses.len() > 20
             && plain

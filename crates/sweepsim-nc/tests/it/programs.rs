@@ -1,14 +1,14 @@
 //! The meaning of programs, word by word.
 
 use sweepsim_nc::gcode::read;
-use sweepsim_nc::{Machine, Options, Program, RotaryTable};
+use sweepsim_nc::{Machine, Program, ReadOptions, RotaryTable};
 
 fn program(text: &str) -> Program {
-    read(text, &Options::default()).unwrap_or_else(|error| panic!("{text}\n{error}"))
+    read(text, &ReadOptions::default()).unwrap_or_else(|error| panic!("{text}\n{error}"))
 }
 
 fn error(text: &str) -> String {
-    read(text, &Options::default()).expect_err(text).to_string()
+    read(text, &ReadOptions::default()).expect_err(text).to_string()
 }
 
 fn tips(text: &str) -> Vec<[f64; 3]> {
@@ -149,7 +149,7 @@ fn rotary_axes() {
     assert!(error("M428\nG0 X0 Y0 Z0\nM429\nG1 A5").contains("4:1: "));
     assert!(error("M428\nG0 X0 Y0 Z0 A5\nG1 C1e9").contains("E words"));
     assert!(error("M428\nG0 X0 Y0 Z0 A5\nG1 C100000000000").contains("turn"));
-    let mut options = Options::default();
+    let mut options = ReadOptions::default();
     options.machine = Machine::with_table(RotaryTable::Bc).tip_control(true);
     assert!(read("G0 X0 Y0 Z0 B5 C7", &options).is_ok());
     assert!(

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sweepsim_motion::Pose;
-use sweepsim_nc::{Machine, Options, ProgramPose, gcode, read_file, table};
+use sweepsim_nc::{Machine, ProgramPose, ReadOptions, gcode, read_file, table};
 
 fn length() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -51,7 +51,7 @@ proptest! {
     #[test]
     fn programs_are_read_back(points in prop::collection::vec([length(), length(), length()], 1..20)) {
         let text: String = points.iter().map(|[x, y, z]| format!("G1 X{x} Y{y} Z{z}\n")).collect();
-        let read = gcode::read(&text, &Options::default()).unwrap();
+        let read = gcode::read(&text, &ReadOptions::default()).unwrap();
         let mut expected = points.clone();
         expected.dedup();
         let found: Vec<[f64; 3]> = read.poses.iter().map(|pose| pose.pose.tip()).collect();
@@ -71,7 +71,7 @@ proptest! {
         exact_arcs: bool,
         arc_tolerance in prop_oneof![Just(1e-3), Just(0.0), Just(f64::NAN), Just(f64::INFINITY), Just(1e-300)],
     ) {
-        let mut options = Options::default();
+        let mut options = ReadOptions::default();
         options.machine = Machine::default().tip_control(tip_control);
         options.exact_arcs = exact_arcs;
         options.arc_tolerance = arc_tolerance;
@@ -84,7 +84,7 @@ proptest! {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(format!("file.{extension}"));
         std::fs::write(&file, bytes).unwrap();
-        if let Err(error) = read_file(&file, &Options::default()) {
+        if let Err(error) = read_file(&file, &ReadOptions::default()) {
             prop_assert_eq!(error.file(), Some(file.as_path()));
         }
     }
@@ -104,7 +104,7 @@ fn moves_know_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("part.nc");
     std::fs::write(&file, "G0 X0 Y0 Z5\nG1 Z0 F100\n").unwrap();
-    let program = read_file(&file, &Options::default()).unwrap();
+    let program = read_file(&file, &ReadOptions::default()).unwrap();
     let last = program.poses.last().unwrap();
     assert_eq!((program.file_of(last), last.line), (Some(file.as_path()), 2));
 }

@@ -2,14 +2,14 @@
 
 use super::folder;
 use std::path::{Path, PathBuf};
-use sweepsim_nc::{Options, Program, read_file};
+use sweepsim_nc::{Program, ReadOptions, read_file};
 
 fn tilt(pose: &sweepsim_motion::Pose) -> f64 {
     pose.axis()[2].clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 fn read(file: &Path) -> Program {
-    read_file(file, &Options::default()).unwrap_or_else(|error| panic!("{error}"))
+    read_file(file, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn boats() {
 #[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
 fn three_axes() {
     let data = folder();
-    let mut options = Options::default();
+    let mut options = ReadOptions::default();
     options.arc_tolerance = 1e-2;
     let mut poses = 0;
     let mut refused = Vec::new();

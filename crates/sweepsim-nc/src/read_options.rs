@@ -6,15 +6,15 @@ use crate::machine::Machine;
 ///
 /// ```
 /// use sweepsim_motion::RotaryTable;
-/// use sweepsim_nc::{Machine, Options};
+/// use sweepsim_nc::{Machine, ReadOptions};
 ///
-/// let mut options = Options::default();
+/// let mut options = ReadOptions::default();
 /// options.machine = Machine::with_table(RotaryTable::Ac).tip_control(true);
 /// options.exact_arcs = true;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Options {
+pub struct ReadOptions {
     /// How far chords may be from an arc, in millimetres.
     pub arc_tolerance: f64,
     /// Whether lengths are in inches: those of tables, and those of programs until they say `G20` or `G21`.
@@ -27,7 +27,7 @@ pub struct Options {
     pub exact_arcs: bool,
 }
 
-impl Default for Options {
+impl Default for ReadOptions {
     /// Millimetres, chords within 1 µm, SLERP, rotary axes and tip control as the program implies.
     fn default() -> Self {
         Self {
