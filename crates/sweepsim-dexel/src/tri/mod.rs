@@ -86,7 +86,7 @@ impl TriDexels {
     /// assert_eq!(solid.disagreements(), 0);
     /// let mesh = solid.surface()?;
     /// assert!(mesh.vertices.iter().all(|v| (v[0].hypot(v[1]).hypot(v[2]) - 4.0).abs() < 0.01));
-    /// # Ok::<(), sweepsim_dexel::TriDexelsError>(())
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(min: [f64; 3], max: [f64; 3], cells: [usize; 3], stock: &Stock) -> Result<Self, TriDexelsError> {
         let [x, y, z] = Self::grids(min, max, cells)?;
