@@ -1,8 +1,8 @@
-//! How two sets of dexels differ: end by end, and in all.
+//! Compares two sets of dexels, end by end and in total.
 //!
-//! Distances are measured along normals: an end is compared with the tangent plane of the other surface at the nearest of its
-//! ends around. So a wall that is a little off is a little off, though the ends on its line are far apart; on flat faces
-//! the distance is exact, on faces of curvature radius `r` it errs by about `d²/2r` when the nearest end is `d` away.
+//! Distances are measured along normals: each end is compared with the tangent plane of the other surface at the nearest end there.
+//! So a wall that is slightly displaced has a small deviation, even if ends on the same line are far apart. On flat faces the
+//! distance is exact; on faces with radius of curvature `r` the error is about `d²/2r` if the nearest end is `d` away.
 
 use crate::dexels::Line;
 use crate::dexels::{Dexels, GridMismatch};
@@ -72,19 +72,19 @@ impl Comparison {
         self.deviations.iter().filter_map(|d| Some((d.distance?, d.area)))
     }
 
-    /// Area of the surface, as far as it is compared.
+    /// The area of the surface that was compared.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.matched().map(|(_, area)| area).sum()
     }
 
-    /// How many ends have nothing to be compared with.
+    /// The number of ends without a counterpart.
     #[must_use]
     pub fn unmatched(&self) -> usize {
         self.deviations.iter().filter(|d| d.distance.is_none()).count()
     }
 
-    /// Least and largest distance, if there is any.
+    /// The smallest and the largest distance, if there are any.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         self.matched()
@@ -152,8 +152,8 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
     Ok(Comparison::sum(parts))
 }
 
-/// Compares dexels with a closed mesh, without a way round by its dexels: each end with the nearest place of a triangle that faces
-/// about the same way, if it is no further away than `reach`. Where that is on a face, the distance is along its normal.
+/// Compares dexels with a closed mesh directly: each end with the nearest point within `reach` on triangles that face roughly the same way. If
+/// that point is inside a triangle, the distance is along its normal.
 ///
 /// # Errors
 /// [`StockError`](crate::StockError): the mesh is not closed, or crosses itself.

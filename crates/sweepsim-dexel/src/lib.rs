@@ -1,13 +1,13 @@
 //! Dexel grids: exact intervals on parallel lines.
 //!
-//! A *dexel* is a line parallel to `z` with the intervals of it that lie in material. A [`Grid`] places the lines,
-//! [`Dexels`] hold the intervals, whose [ends](End) know the surface's normal and which cut made them. [`cover`] turns
-//! signed [`Crossing`]s into intervals and audits them: see there for why a lost crossing cannot pass unnoticed.
+//! A *dexel* is a line parallel to `z` with the intervals in which it lies inside material. A [`Grid`] places the lines and
+//! [`Dexels`] hold the intervals. Their [ends](End) carry the surface's normal and the cut that made them. [`cover`] turns
+//! signed [`Crossing`]s into intervals and audits them, so that a lost crossing does not go unnoticed.
 //!
-//! [`IntervalSet`] is for a single line; [`TriDexels`] stand along all three axes, and have a [surface](TriDexels::surface) with
-//! sharp edges. [`compare`] tells how dexels differ from their target.
+//! [`IntervalSet`] is a set of intervals on a single line. [`TriDexels`] are dexels along all three axes; their
+//! [surface](TriDexels::surface) has sharp edges. [`compare`] measures how dexels differ from a target.
 //!
-//! This crate knows no spline, no solver and no tool: whatever finds crossings can use it.
+//! This crate does not depend on splines, solvers or tools: it works with any source of crossings.
 //!
 //! ```
 //! use sweepsim_dexel::{Dexels, End, Grid, Interval, Source, Stock};

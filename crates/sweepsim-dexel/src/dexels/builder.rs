@@ -1,12 +1,12 @@
-//! Dexels line after line, without knowing how many will come.
+//! Builds dexels line by line, as they are read.
 
 use super::Dexels;
 use super::chunk::{Chunk, LINES, PackedInterval, is_normal};
 use crate::grid::Grid;
 use crate::intervals::{Interval, IntervalError, check_lengths, normalise};
 
-/// Builds [`Dexels`] from their first line to the last. Memory grows with the lines that came, not with the grid, so that a
-/// file that promises much and holds little costs little.
+/// Builds [`Dexels`] from the first line to the last. Memory grows with the lines added, not with the grid, so a file that claims a huge
+/// grid but contains little needs little memory.
 ///
 /// ```
 /// use sweepsim_dexel::{DexelsBuilder, Grid, Interval};
@@ -27,7 +27,7 @@ pub struct DexelsBuilder {
 }
 
 impl DexelsBuilder {
-    /// No lines yet.
+    /// A builder without lines.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
         Self {
@@ -39,7 +39,7 @@ impl DexelsBuilder {
         }
     }
 
-    /// How many lines came, with those beyond the grid.
+    /// The number of lines added so far.
     #[must_use]
     pub fn lines(&self) -> usize {
         self.lines
@@ -58,12 +58,12 @@ impl DexelsBuilder {
         }
     }
 
-    /// Lines without material. Those beyond the grid are nothing.
+    /// Adds lines without material, at most to the end of the grid.
     pub fn skip(&mut self, lines: usize) {
         self.step(lines.min(self.grid.len().saturating_sub(self.lines)));
     }
 
-    /// The next line, with intervals in any order.
+    /// Adds the next line, with its intervals in any order.
     ///
     /// # Errors
     /// [`IntervalError`]: an interval has no positive length, or the grid has no further line. Nothing is changed then.
@@ -91,7 +91,7 @@ impl DexelsBuilder {
         Ok(())
     }
 
-    /// The dexels; lines that did not come have no material.
+    /// The dexels. Lines that were not added have no material.
     #[must_use]
     pub fn finish(mut self) -> Dexels {
         if self.current.is_some() {

@@ -1,4 +1,4 @@
-//! The intervals of one line, as they are handed out.
+//! A view of the intervals of one line.
 
 use super::chunk::PackedInterval;
 use super::segments::Table;
@@ -7,7 +7,7 @@ use std::fmt;
 
 /// The intervals of one line of [`Dexels`](crate::Dexels): sorted, disjoint, of positive length.
 ///
-/// They are stored in half the space of an [`Interval`], so they are handed out by value. A line is a view: it is `Copy`.
+/// A line is a view, and is `Copy`. Intervals are stored in a packed form and returned by value.
 #[derive(Clone, Copy)]
 pub struct Line<'a> {
     pieces: &'a [PackedInterval],
@@ -36,7 +36,7 @@ impl<'a> Line<'a> {
         self.pieces.is_empty()
     }
 
-    /// Interval number `k`, going up, if there are so many.
+    /// The `k`-th interval from below, if there is one.
     #[must_use]
     pub fn get(&self, k: usize) -> Option<Interval> {
         self.pieces.get(k).map(|piece| self.table.interval(piece))
@@ -54,7 +54,7 @@ impl<'a> Line<'a> {
         self.get(self.len().checked_sub(1)?)
     }
 
-    /// All intervals, going up.
+    /// All intervals, from the lowest up.
     #[must_use]
     pub fn iter(&self) -> LineIter<'a> {
         LineIter {
@@ -63,7 +63,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Their heights only, `[lower, upper]`: faster than whole intervals.
+    /// The heights `[lower, upper]` of all intervals: faster than unpacking them.
     pub fn heights(&self) -> impl DoubleEndedIterator<Item = [f64; 2]> + ExactSizeIterator + use<'a> {
         self.pieces.iter().map(|piece| [piece.lower.z, piece.upper.z])
     }
@@ -102,7 +102,7 @@ impl<'a> IntoIterator for Line<'a> {
     }
 }
 
-/// The intervals of a [`Line`], going up.
+/// An iterator over the intervals of a [`Line`], from the lowest up.
 #[derive(Clone, Debug)]
 pub struct LineIter<'a> {
     pieces: std::slice::Iter<'a, PackedInterval>,

@@ -21,19 +21,19 @@ pub use packed::{pack_normal, unpack_normal};
 use rayon::prelude::*;
 use thiserror::Error;
 
-/// Two sets of dexels stand on different grids.
+/// Two sets of dexels have different grids.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("the two sets of dexels stand on different grids")]
+#[error("the two sets of dexels have different grids")]
 pub struct GridMismatch;
 
-/// What to do with more intervals.
+/// A set operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// They are added to the material.
+    /// Adds material.
     Union,
-    /// They are taken away from it. New ends get their normals flipped: out of the remaining material.
+    /// Removes material. The normals of new ends are flipped, so that they point out of the remaining material.
     Difference,
-    /// What they do not cover is taken away.
+    /// Keeps only what both have in common.
     Intersection,
 }
 
@@ -47,12 +47,12 @@ impl Operation {
     }
 }
 
-/// Intervals of material on every line of a grid: per line sorted, disjoint, of positive length.
+/// The intervals of material on every line of a grid. On each line they are sorted and disjoint, and have positive length.
 ///
-/// An interval takes 32 bytes and a line about 5 beside them; sixty-four neighbouring lines without material take 8 bytes together.
-/// Heights are kept to the bit, [normals](crate::End::normal) to 6.5e-5, with the directions of the axes exact, paths and segments
-/// of [sources](crate::Source) as they are, their times to 2⁻²⁴ where at most 256 moves made the intervals of sixty-four
-/// neighbouring lines, to 2⁻¹⁶ where 65,536 did. A move that made any of them takes another 8 bytes there.
+/// An interval takes 32 bytes, plus about 5 bytes per line; 64 neighbouring lines without material take 8 bytes in total. Heights are stored
+/// exactly, and [normals](crate::End::normal) to within 6.5e-5, with axis directions exact. The paths and segments of
+/// [sources](crate::Source) are exact. Their times are accurate to 2⁻²⁴ if at most 256 segments made the intervals of 64 neighbouring lines, and
+/// to 2⁻¹⁶ if 65,536 did; each of these segments takes another 8 bytes there.
 #[derive(Clone, Debug)]
 pub struct Dexels {
     pub(super) grid: Grid,
@@ -88,12 +88,12 @@ impl Dexels {
         }
     }
 
-    /// Material on each line as `write` says: it gets the number of the line and a list, and appends intervals in any order.
+    /// Builds dexels line by line: `write` gets the number of a line and a list, to which it appends the line's intervals in any order.
     ///
-    /// Lines are asked for in parallel, in the current rayon pool.
+    /// Lines are built in parallel, in the current rayon pool.
     ///
     /// # Errors
-    /// [`IntervalError::Length`]: an interval has no positive length; of several, one on the first line that has any.
+    /// [`IntervalError::Length`]: an interval does not have a positive length.
     ///
     /// ```
     /// use sweepsim_dexel::{Dexels, Grid, Interval};
@@ -163,7 +163,7 @@ impl Dexels {
         self.grid.index(i, j).map_or(Line::EMPTY, |index| self.at(index))
     }
 
-    /// Replaces the intervals of a line. They are put in order; those that overlap or touch become one.
+    /// Replaces the intervals of a line. They may come in any order; those that overlap or touch are merged.
     ///
     /// # Errors
     /// [`IntervalError`]: an interval has no positive length, or the grid has no such line. Nothing is changed then.
@@ -250,7 +250,7 @@ impl Dexels {
         }
     }
 
-    /// Unites with, subtracts or intersects with `other`, in parallel.
+    /// Combines the material with that of `other`, in parallel.
     ///
     /// # Errors
     /// [`GridMismatch`] when the grids differ.
@@ -292,7 +292,7 @@ impl Dexels {
         Ok(())
     }
 
-    /// Takes the material of `other` away.
+    /// Subtracts the material of `other`.
     ///
     /// # Errors
     /// [`GridMismatch`] when the grids differ.
@@ -308,7 +308,7 @@ impl Dexels {
         self.combine(Operation::Union, other)
     }
 
-    /// Leaves what is in `other`, too.
+    /// Keeps only material that is also in `other`.
     ///
     /// # Errors
     /// [`GridMismatch`] when the grids differ.
@@ -330,13 +330,13 @@ impl Dexels {
             .filter(|(_, line)| !line.is_empty())
     }
 
-    /// How many lines have material.
+    /// The number of lines with material.
     #[must_use]
     pub fn covered(&self) -> usize {
         self.iter().count()
     }
 
-    /// How many intervals there are.
+    /// The number of intervals.
     #[must_use]
     pub fn count(&self) -> usize {
         self.chunks.iter().flatten().map(|chunk| chunk.len()).sum()
@@ -349,7 +349,7 @@ impl Dexels {
         chunks.filter_map(|chunk| chunk.highest_path()).max()
     }
 
-    /// Bytes of memory, with what is kept for growth; without what the allocator takes for itself.
+    /// Memory in bytes, including spare capacity but not the overhead of the allocator.
     #[must_use]
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
@@ -362,13 +362,13 @@ impl Dexels {
                 .sum::<usize>()
     }
 
-    /// Gives back memory that is kept for growth.
+    /// Releases spare capacity.
     pub fn shrink(&mut self) {
         self.chunks.par_iter_mut().flatten().for_each(|chunk| chunk.shrink());
         self.scratch = Default::default();
     }
 
-    /// Length of all intervals times the area of a cell.
+    /// The volume: the total length of all intervals times the area of a cell.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let [dx, dy] = self.grid.spacing();

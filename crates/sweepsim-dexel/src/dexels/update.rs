@@ -1,4 +1,4 @@
-//! Changes of many lines at once, in parallel.
+//! Updates of many lines at once, in parallel.
 
 use super::chunk::{LINES, PackedInterval};
 use super::{Dexels, Operation};
@@ -33,8 +33,7 @@ fn numbered_by_line<T>(crossings: &[(u32, T)], chunks: usize) -> Vec<(u32, u32)>
 }
 
 impl Dexels {
-    /// Unites with, subtracts or intersects with intervals on numbered lines, in parallel. They may come in any order and
-    /// overlap.
+    /// Combines the material with intervals on numbered lines, in parallel. They may come in any order, and overlap.
     ///
     /// # Errors
     /// [`IntervalError`]: an interval has no positive length, or the grid has no such line. Nothing is changed then.
@@ -55,9 +54,9 @@ impl Dexels {
         Ok(())
     }
 
-    /// [Counts](cover) the crossings of numbered lines to intervals and does with them as [`Dexels::update`], in parallel.
+    /// Turns the crossings of numbered lines into intervals by [`cover`], and combines the material with them, in parallel.
     ///
-    /// Returns the lines whose crossings fail the audit, sorted. Their crossings count as none.
+    /// Returns the lines whose crossings fail the audit, sorted; their crossings are ignored, as are those beyond the grid.
     pub fn update_by_crossings(
         &mut self,
         operation: Operation,

@@ -27,10 +27,10 @@ pub enum FrameError {
     /// The direction of z is no direction.
     #[error("the frame's z is zero")]
     Zero,
-    /// The direction of x says nothing beside z.
+    /// The direction of x is parallel to z, or zero.
     #[error("the frame's x is zero or parallel to its z")]
     Parallel,
-    /// Axes that are not perpendicular unit vectors, or left-handed.
+    /// The axes are not perpendicular unit vectors, or are left-handed.
     #[error("the frame's axes are not perpendicular unit vectors of a right-handed frame")]
     Skewed,
 }
@@ -66,13 +66,13 @@ impl Default for Frame {
 }
 
 impl Frame {
-    /// That of all coordinates where nothing else is said.
+    /// The frame of the world.
     pub const WORLD: Self = Self {
         origin: [0.0; 3],
         axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
-    /// A frame at a point, whose z points along `z`, and whose x along what of `x` is perpendicular to that. Of any lengths.
+    /// A frame at a point. Its z axis points along `z`, its x axis along the part of `x` perpendicular to `z`. The vectors may have any length.
     ///
     /// # Errors
     /// [`FrameError`]: a number is not finite, `z` is zero, or `x` is parallel to it.
@@ -95,7 +95,7 @@ impl Frame {
         })
     }
 
-    /// A frame from its axes, which are kept to the bit.
+    /// A frame from its axes, which are stored exactly.
     ///
     /// # Errors
     /// [`FrameError`]: not finite, or not perpendicular unit vectors (by more than 1e-12), or left-handed.
@@ -142,27 +142,27 @@ impl Frame {
         *self == Self::WORLD
     }
 
-    /// A point of the frame, in the world.
+    /// Transforms a point from the frame to the world.
     #[must_use]
     pub fn to_world(&self, p: [f64; 3]) -> [f64; 3] {
         let turned = self.turn_to_world(p);
         [0, 1, 2].map(|k| self.origin[k] + turned[k])
     }
 
-    /// A point of the world, in the frame.
+    /// Transforms a point from the world to the frame.
     #[must_use]
     pub fn from_world(&self, p: [f64; 3]) -> [f64; 3] {
         self.turn_from_world([0, 1, 2].map(|k| p[k] - self.origin[k]))
     }
 
-    /// A direction in the frame, in the world.
+    /// Rotates a direction from the frame to the world.
     #[must_use]
     pub fn turn_to_world(&self, v: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = self.axes;
         [0, 1, 2].map(|k| v[0] * x[k] + v[1] * y[k] + v[2] * z[k])
     }
 
-    /// A direction of the world, in the frame.
+    /// Rotates a direction from the world to the frame.
     #[must_use]
     pub fn turn_from_world(&self, v: [f64; 3]) -> [f64; 3] {
         self.axes.map(|axis| dot(axis, v))

@@ -1,4 +1,4 @@
-//! Where the dexels stand.
+//! The grid on which dexels stand.
 
 mod frame;
 
@@ -7,8 +7,8 @@ use thiserror::Error;
 
 /// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).
 ///
-/// All numbers of dexels are in the frame of their grid: places, heights and normals. What is made of them with other things
-/// ([stock](crate::Stock), [surfaces](crate::Dexels::surface), meshes to compare with) is in the world.
+/// Positions, heights and normals of dexels are in the frame of their grid. [Stock](crate::Stock), [surfaces](crate::Dexels::surface) and
+/// meshes to compare with are in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     min: [f64; 2],
@@ -17,7 +17,7 @@ pub struct Grid {
     frame: Frame,
 }
 
-/// Why numbers make no grid.
+/// Why a grid is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum GridError {
@@ -35,7 +35,7 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// The most cells of a grid: their numbers fit 32 bits.
+    /// The maximum number of cells: their numbers fit in 32 bits.
     pub const MOST: usize = 4_000_000_000;
 
     /// A grid over the rectangle from `min` to `max`.
@@ -59,7 +59,7 @@ impl Grid {
         }
     }
 
-    /// The same lines in a frame: along its `z`, and `x` and `y` are the frame's.
+    /// The same grid in a frame: its lines run along the `z` axis of the frame.
     ///
     /// ```
     /// use sweepsim_dexel::{Frame, Grid, Stock};
@@ -78,7 +78,7 @@ impl Grid {
         Self { frame, ..self }
     }
 
-    /// Where the grid's own coordinates are in the world.
+    /// The frame of the grid.
     #[must_use]
     pub fn frame(&self) -> &Frame {
         &self.frame
@@ -119,13 +119,13 @@ impl Grid {
         self.min[k] + (n as f64 + 0.5) * (self.max[k] - self.min[k]) / self.cells[k] as f64
     }
 
-    /// Where column `i` stands: `min + (i + 1/2)·(max − min)/cells`.
+    /// The position of column `i`: `min + (i + 1/2)·(max − min)/cells`.
     #[must_use]
     pub fn x(&self, i: usize) -> f64 {
         self.centre(0, i)
     }
 
-    /// Where row `j` stands.
+    /// The position of row `j`.
     #[must_use]
     pub fn y(&self, j: usize) -> f64 {
         self.centre(1, j)

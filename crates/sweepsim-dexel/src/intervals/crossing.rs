@@ -1,9 +1,9 @@
 //! From signed crossings to intervals: the coverage count and its audit.
 //!
-//! Fix a line. In the strip of time `t` and height `z` let `S` be where the moving tool is, and `c(z)` the number of
-//! connected components of `S` at height `z`. The swept volume meets the line exactly where `c ≥ 1`; `c` is 0 far below
-//! and far above, and each crossing says by how much it jumps, going up. So the jumps add up to 0, and no partial sum is
-//! negative: a crossing lost or found twice breaks the audit (unless a second error of opposite sign hides it).
+//! Fix a line. Let `S` be the part of the strip of times `t` and heights `z` that the moving tool covers, and `c(z)` the number of
+//! connected components of `S` at height `z`. The swept volume meets the line exactly where `c ≥ 1`. Far below and far above, `c` is 0;
+//! each crossing tells by how much `c` jumps, going up. So the jumps add up to 0 and no partial sum is negative. A crossing that is
+//! lost or found twice breaks this audit, unless a second error of opposite sign hides it.
 
 use super::interval::{End, Interval, Source};
 use super::operations::merge;
@@ -18,28 +18,28 @@ pub struct Crossing {
     pub jump: i8,
     /// Unit normal of the envelope, out of the tool.
     pub normal: [f32; 3],
-    /// Which motion made it.
+    /// What made it.
     pub source: Source,
 }
 
-/// Crossings of a line do not add up.
+/// The crossings of a line do not add up.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[error("the coverage count does not close: it ends at {sum} and falls to {lowest} at z = {z}")]
 pub struct AuditFailure {
-    /// Sum of all jumps: 0 when right.
+    /// Sum of all jumps; must be 0.
     pub sum: i32,
-    /// Lowest partial sum: 0 when right.
+    /// Lowest partial sum; must be 0.
     pub lowest: i32,
-    /// Height at which the lowest is reached.
+    /// Height at which the lowest partial sum is reached.
     pub z: f64,
 }
 
 /// Sorts the crossings of one line and writes the intervals where at least one component covers it.
 ///
-/// Heights are known to within some error, so crossings that follow one another by no more than `same` count as one: the
-/// order of a start and an end that coincide is not known, and neither a gap nor a count below 0 between them means anything.
-/// Intervals begin at the lowest and end at the highest of such a group. A group may be a chain that is longer than `same`: in
-/// there the count goes on from crossing to crossing, so no wall and no gap thicker than `same` is lost.
+/// Heights have some error, so consecutive crossings at most `same` apart form a group: the order of a coincident start and end is unknown,
+/// and a gap or a negative count between them means nothing. Intervals begin at the lowest and end at the highest crossing of a group.
+/// A chain of crossings can make a group longer than `same`; inside it the count continues from crossing to crossing, so no wall or gap
+/// thicker than `same` is lost.
 ///
 /// # Errors
 /// [`AuditFailure`]: the jumps do not add up to 0, a sum between groups is negative, or a height is not finite. `intervals` is then empty.

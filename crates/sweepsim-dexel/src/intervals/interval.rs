@@ -1,4 +1,4 @@
-//! Intervals of material on a line, and what their ends remember.
+//! Intervals of material on a line, and the data of their ends.
 
 use thiserror::Error;
 
@@ -106,12 +106,12 @@ pub(crate) fn check_normal<E: Endpoint>(intervals: &[Interval<E>]) -> Result<(),
     Ok(())
 }
 
-/// What an interval can end with: a height, and perhaps more that is known there.
+/// A type for the ends of intervals: a height, possibly with more data.
 pub trait Endpoint: Copy {
     /// The height.
     fn height(&self) -> f64;
 
-    /// The same place seen from the other side: where material begins and ends change places.
+    /// The same end seen from the other side, for when material and air swap.
     #[must_use]
     fn flipped(self) -> Self;
 }

@@ -3,11 +3,10 @@
 use super::interval::{Endpoint, Interval, IntervalError, check_lengths};
 use super::operations::{Run, difference, intersection, merge, normalise, union};
 
-/// A set of points of a line: intervals in normal form, that is sorted, each of positive length, with gaps between them.
+/// A set of points on a line, as intervals in normal form: sorted, of positive length, with gaps between them.
 ///
-/// Sets of points that differ by single points are one: whether ends belong to intervals has no meaning here. Ends may be plain
-/// heights (`f64`), or [carry](crate::End) a normal and what made them, or anything that is an [`Endpoint`]; an end costs what
-/// its type costs. Heights may be infinite.
+/// Sets that differ only in single points are equal: it does not matter whether an end belongs to its interval. Ends may be plain
+/// heights (`f64`), [ends with a normal and a source](crate::End), or any other [`Endpoint`]. Heights may be infinite.
 ///
 /// ```
 /// use sweepsim_dexel::IntervalSet;
@@ -36,7 +35,7 @@ impl<E: Endpoint> IntervalSet<E> {
         Self::default()
     }
 
-    /// The set of these intervals, which may come in any order, and overlap.
+    /// The set of these intervals, in any order. They may overlap.
     ///
     /// # Errors
     /// [`IntervalError::Length`]: an interval is empty or reversed, or one of its ends is NaN.
@@ -71,7 +70,7 @@ impl<E: Endpoint> IntervalSet<E> {
         self.pieces.iter().map(Interval::length).sum()
     }
 
-    /// Whether a height lies inside of an interval or on its end.
+    /// Whether a height lies inside an interval or on its end.
     #[must_use]
     pub fn contains(&self, height: f64) -> bool {
         let after = self.pieces.partition_point(|piece| piece.lower.height() <= height);
@@ -84,31 +83,31 @@ impl<E: Endpoint> IntervalSet<E> {
         Self { pieces }
     }
 
-    /// What is in either. Intervals that touch become one; of ends at one height those of `self` are kept.
+    /// Points in either set. Intervals that touch are merged; of two ends at the same height that of `self` is kept.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         self.with(other, union)
     }
 
-    /// What is in both. Of ends at one height those of `self` are kept.
+    /// Points in both sets. Of two ends at the same height that of `self` is kept.
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {
         self.with(other, intersection)
     }
 
-    /// What is in `self` only. Ends that `other` makes are flipped.
+    /// Points in `self` but not in `other`. Ends that come from `other` are flipped.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Self {
         self.with(other, difference)
     }
 
-    /// What is in one only.
+    /// Points in exactly one of the sets.
     #[must_use]
     pub fn symmetric_difference(&self, other: &Self) -> Self {
         self.difference(other).union(&other.difference(self))
     }
 
-    /// What of `range` is not in the set. Ends of the set are flipped.
+    /// Points of `range` that are not in the set. Ends that come from the set are flipped.
     ///
     /// # Errors
     /// [`IntervalError::Length`]: the range is empty or reversed, or one of its ends is NaN.
@@ -116,12 +115,11 @@ impl<E: Endpoint> IntervalSet<E> {
         Ok(Self::from_intervals([range])?.difference(self))
     }
 
-    /// Without what is too thin to mean anything: gaps of at most `tolerance` are filled, then intervals of at most
-    /// `tolerance` left out.
+    /// Removes features that are too thin to be significant: fills gaps of at most `tolerance`, then drops intervals of at most `tolerance`.
     ///
-    /// Every interval longer than the tolerance is in the result, whole. Every gap longer than the tolerance is a gap of
-    /// it or part of one, however many thin intervals are beside it. Doing it twice changes nothing. A tolerance that is
-    /// negative or NaN changes nothing either.
+    /// Every interval longer than the tolerance is contained in the result, and every gap longer than the tolerance remains a gap or becomes part
+    /// of one, however many thin intervals are next to it. Repeating the operation changes nothing. A negative or NaN tolerance
+    /// changes nothing either.
     #[must_use]
     pub fn merged(mut self, tolerance: f64) -> Self {
         if tolerance >= 0.0 {

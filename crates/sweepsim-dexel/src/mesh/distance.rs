@@ -14,7 +14,7 @@ const LEAF: usize = 4;
 /// Most samples of [`DistanceTo::furthest`].
 const SAMPLES: f64 = 2e6;
 
-/// A surface of triangles, made ready to be asked for distances.
+/// A triangle surface, prepared for distance queries.
 ///
 /// ```
 /// use sweepsim_dexel::{DistanceTo, TriangleSoup};
@@ -33,11 +33,11 @@ pub struct DistanceTo {
     nodes: Vec<TreeNode>,
 }
 
-/// The place of a surface that is nearest to a point.
+/// The point of a surface nearest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Nearest {
-    /// How far the point is outside: negative inside.
+    /// Signed distance of the point: negative inside.
     pub distance: f64,
     /// Where.
     pub place: [f64; 3],
@@ -132,7 +132,7 @@ impl TreeNode {
 }
 
 impl DistanceTo {
-    /// Makes a surface ready. Triangles without area are left out: closed surfaces are closed without them, too.
+    /// Prepares a surface. Triangles without area are ignored; a closed surface is closed without them.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -223,14 +223,14 @@ impl DistanceTo {
         (self.nodes[number].first, self.nodes[number].count) = (second, 0);
     }
 
-    /// The place of the surface nearest to a point; `None` without triangles, or for a point that is not finite.
+    /// The point of the surface nearest to `p`. `None` if there are no triangles, or `p` is not finite.
     #[must_use]
     pub fn nearest(&self, p: [f64; 3]) -> Option<Nearest> {
         self.search(p, f64::INFINITY, |_| true)
     }
 
-    /// The nearest among the triangles that face about the same way as `normal` (less than 90° apart), no further away than `reach`.
-    /// So a side of a thin wall is not compared with the other side.
+    /// The nearest point within `reach` on triangles that face roughly the same way as `normal` (less than 90° apart). This keeps the two sides
+    /// of a thin wall apart.
     #[must_use]
     pub fn nearest_facing(&self, p: [f64; 3], normal: [f64; 3], reach: f64) -> Option<Nearest> {
         self.search(p, reach, |face| dot(face.normal, normal) > 0.0)
@@ -285,9 +285,9 @@ impl DistanceTo {
         })
     }
 
-    /// The point of another surface that is furthest from this one, and its nearest place here: the one-sided Hausdorff distance, as
-    /// samples see it. They are on all its vertices and no further than `spacing` apart on its triangles, or, where these would
-    /// be more than some millions, as dense as that allows. `None` without triangles here or there.
+    /// The point of another surface that is furthest from this one, with the nearest point here: the one-sided Hausdorff distance, estimated
+    /// from samples. Samples are taken at all vertices, and at most `spacing` apart on triangles; a larger spacing is used where this would
+    /// take more than two million. `None` if either surface has no triangles.
     #[must_use]
     pub fn furthest(&self, other: &TriangleSoup, spacing: f64) -> Option<([f64; 3], Nearest)> {
         let area: f64 = other

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use thiserror::Error;
 
-/// Triangles with shared vertices and a normal at each: for pictures and files.
+/// An indexed triangle mesh with vertex normals, for pictures and files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Places.
@@ -21,27 +21,27 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Loose triangles that enclose a solid, as in an STL file: corners counter-clockwise seen from outside.
+/// Unindexed triangles that enclose a solid, as in an STL file. Corners run counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TriangleSoup {
     /// The corners of each triangle.
     pub triangles: Vec<[[f64; 3]; 3]>,
 }
 
-/// Why triangles enclose no solid, or a solid has no mesh.
+/// Why triangles do not enclose a solid, or a mesh cannot be built.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// There are none.
+    /// There are no triangles.
     #[error("the mesh has no triangles")]
     Empty,
     /// A coordinate is not finite.
     #[error("triangle {triangle} of the mesh has a coordinate that is not finite")]
     NotFinite {
-        /// Which, from 0.
+        /// Its number, from 0.
         triangle: usize,
     },
-    /// An edge has more triangles on one side than on the other: the surface has holes or flipped triangles.
+    /// Some edges are not shared by two triangles of opposite direction: the surface has holes or flipped triangles.
     #[error("the mesh is not closed: {edges} edges lack a partner of opposite direction, the first from ({}, {}, {}) to ({}, {}, {})",
         .from[0], .from[1], .from[2], .to[0], .to[1], .to[2])]
     Open {
@@ -53,9 +53,9 @@ pub enum MeshError {
         to: [f64; 3],
     },
     /// Vertices are numbered with 32 bits.
-    #[error("the mesh needs {vertices} vertices or more, but can have {MOST_VERTICES} at most")]
+    #[error("the mesh needs at least {vertices} vertices, but can have at most {MOST_VERTICES}")]
     TooManyVertices {
-        /// As many were needed when it was given up.
+        /// The number needed when the limit was exceeded.
         vertices: usize,
     },
 }
@@ -73,7 +73,7 @@ pub(crate) fn check_vertices(vertices: usize, most: usize) -> Result<(), MeshErr
 }
 
 impl Mesh {
-    /// Moves what is given in a frame to its place in the world.
+    /// Transforms the mesh from a frame to the world.
     pub(crate) fn move_to_world(&mut self, frame: &Frame) {
         if frame.is_world() {
             return;
@@ -86,7 +86,7 @@ impl Mesh {
         }
     }
 
-    /// The triangles alone; `None` if one has a vertex that the mesh does not have.
+    /// The triangles without indices; `None` if a vertex number is out of range.
     #[must_use]
     pub fn soup(&self) -> Option<TriangleSoup> {
         let corner = |v: u32| self.vertices.get(v as usize).copied();
@@ -99,10 +99,10 @@ impl Mesh {
         })
     }
 
-    /// The same for pictures: around each vertex, triangles whose normals are further than an angle (given by its cosine) from each
-    /// other's get vertices and normals of their own, so that edges look sharp. Places stay as they are; a triangle
-    /// with a vertex that the mesh does not have is left out. A triangle is cut when all its corners are; a vertex, when most of the area around it
-    /// is: on an edge between cut and uncut faces each side has its own.
+    /// A copy for pictures, with sharp edges: triangles around a vertex get separate vertices and normals where their normals differ by more
+    /// than an angle, given by its cosine. Positions do not change. Triangles with a vertex number out of range are left out. A triangle
+    /// counts as cut if all its corners do; a vertex, if most of the area around it does. On an edge between cut and uncut faces each side has its
+    /// own vertex.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -178,8 +178,8 @@ impl TriangleSoup {
         six.sum::<f64>() / 6.0
     }
 
-    /// A mesh whose vertices are the corners, those that are equal to the bit as one, with the normals of the triangles around, each
-    /// weighted by its area; see [`Mesh::crisp`] for sharp edges. Triangles with two corners in one place are left out.
+    /// An indexed mesh. Corners that are equal to the bit share a vertex; its normal is the mean of those of the triangles around it, weighted by
+    /// area. See [`Mesh::crisp`] for sharp edges. Triangles with two coincident corners are left out.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
@@ -225,7 +225,7 @@ impl TriangleSoup {
         Ok(mesh)
     }
 
-    /// Whether every edge is used as often in one direction as in the other (corners compared exactly).
+    /// Checks that every edge is used equally often in both directions. Corners are compared exactly.
     ///
     /// # Errors
     /// [`MeshError`]: empty, not finite, or open.

@@ -39,23 +39,23 @@ pub enum Stock {
         /// Its radius.
         radius: f64,
     },
-    /// The inside of a closed surface of triangles.
+    /// The inside of a closed triangle surface.
     Mesh(TriangleSoup),
-    /// What an earlier run left, on the same grid.
+    /// The result of an earlier run, on the same grid.
     Dexels(Arc<Dexels>),
-    /// All of these together.
+    /// The union of these.
     Union(Vec<Stock>),
-    /// What is in all of these; nothing, if there are none.
+    /// The intersection of these; empty if there are none.
     Intersection(Vec<Stock>),
     /// The first without the others.
     Difference(Box<Stock>, Vec<Stock>),
 }
 
-/// Why a stock is none.
+/// Why a stock is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum StockError {
-    /// A block with no volume.
+    /// The block has no volume.
     #[error("the block from ({}, {}, {}) to ({}, {}, {}) is empty or not finite", .min[0], .min[1], .min[2], .max[0], .max[1], .max[2])]
     Block {
         /// Lower corner.
@@ -63,7 +63,7 @@ pub enum StockError {
         /// Upper corner.
         max: [f64; 3],
     },
-    /// A cylinder with no volume or no axis.
+    /// The cylinder has no volume or no axis.
     #[error("the cylinder of radius {radius} and height {height} is empty, or has no axis, or is not finite")]
     Cylinder {
         /// Its radius.
@@ -71,20 +71,20 @@ pub enum StockError {
         /// Its height.
         height: f64,
     },
-    /// A ball with no volume.
+    /// The ball has no volume.
     #[error("the ball of radius {radius} is empty or not finite")]
     Ball {
         /// Its radius.
         radius: f64,
     },
-    /// Triangles that enclose nothing.
+    /// The triangles do not enclose a solid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Dexels on another grid than the one asked for.
+    /// The dexels are on a different grid.
     #[error(transparent)]
     Grid(#[from] GridMismatch),
-    /// Triangles that cross each other or are turned inside out: some lines do not pass through them in good order.
-    #[error("the mesh is inside out or crosses itself: at ({x}, {y}) a line leaves it before it enters")]
+    /// The triangles intersect each other, or are inside out: some lines leave the solid before they enter it.
+    #[error("the mesh is inside out or intersects itself: at ({x}, {y}) a line leaves it before it enters")]
     Tangled {
         /// Where, in the frame of the grid.
         x: f64,
@@ -102,7 +102,7 @@ pub(super) fn end(z: f64, normal: [f64; 3]) -> End {
 }
 
 impl Stock {
-    /// The dexels of the stock. It is in the world; the grid may have a frame of its own.
+    /// The dexels of the stock, which is in the world; the grid may be in a frame.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Stock};
@@ -114,7 +114,7 @@ impl Stock {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// Lines are taken a generic 1e-9 of their distance beside their place for meshes, so that none meets an edge.
+    /// For meshes, lines are displaced by a generic 1e-9 of their spacing, so that none meets an edge.
     ///
     /// # Errors
     /// [`StockError`]: no volume, not finite, or a mesh that is not closed.

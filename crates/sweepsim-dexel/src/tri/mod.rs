@@ -31,10 +31,10 @@ pub struct TriDexels {
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum TriDexelsError {
-    /// The box is none, or has too many cells.
+    /// The box is invalid, or has too many cells.
     #[error(transparent)]
     Grid(#[from] GridError),
-    /// The three sets have lines that do not meet.
+    /// The lines of the three sets do not meet.
     #[error("the three sets of dexels do not share their lines' crossings")]
     Mismatch,
     /// The stock is none.
@@ -73,10 +73,10 @@ impl TriDexels {
         }
     }
 
-    /// The dexels of a stock, as far as it is in the box.
+    /// The part of a stock inside a box.
     ///
     /// # Errors
-    /// [`TriDexelsError`]: no box, or no stock; dexels of an earlier run cannot be part of it, for they have one direction only.
+    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run cannot be part of the stock, since they have only one direction.
     ///
     /// ```
     /// use sweepsim_dexel::{Stock, TriDexels};
@@ -100,7 +100,7 @@ impl TriDexels {
         Ok(Self { min, max, cells, sets })
     }
 
-    /// Puts sets along `x`, `y` and `z` together: their grids are in the frames of [`Frame::cyclic`].
+    /// Combines sets along `x`, `y` and `z`, whose grids are in the frames of [`Frame::cyclic`].
     ///
     /// # Errors
     /// [`TriDexelsError::Mismatch`]: their grids are not those of one box.
@@ -139,13 +139,13 @@ impl TriDexels {
         &self.sets
     }
 
-    /// The sets alone, as [`from_sets`](Self::from_sets) takes them.
+    /// The three sets, as [`from_sets`](Self::from_sets) takes them.
     #[must_use]
     pub fn into_sets(self) -> [Dexels; 3] {
         self.sets
     }
 
-    /// Unites with, subtracts or intersects with `other`.
+    /// Combines the material with that of `other`.
     ///
     /// # Errors
     /// [`GridMismatch`] when the boxes or cells differ; nothing is changed then.
@@ -157,24 +157,24 @@ impl TriDexels {
         both.into_iter().try_for_each(|(a, b)| a.combine(operation, b))
     }
 
-    /// Volume: the mean of the three sets' own.
+    /// The volume: the mean of the three sets' volumes.
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.sets.iter().map(Dexels::volume).sum::<f64>() / 3.0
     }
 
-    /// In how many crossings of their lines the three sets do not agree whether there is material: 0, but for points in the
-    /// surface itself. The [surface](Self::surface) follows the majority.
+    /// The number of line crossings where the three sets disagree on whether there is material: 0, except for points on the surface itself. The
+    /// [surface](Self::surface) follows the majority.
     #[must_use]
     pub fn disagreements(&self) -> usize {
         contour::disagreements(self)
     }
 
-    /// A closed surface with sharp edges and corners, by dual contouring: see the notes on the algorithm in the source.
+    /// A closed surface with sharp edges and corners, by dual contouring. `docs/algorithms/tri-dexels.md` describes the algorithm.
     ///
-    /// Every edge has two triangles, every vertex one fan of them. Vertices are shared and their normals means, so for
-    /// pictures see [`Mesh::crisp`]. Features thinner than the distance of two lines may be missing. Material that reaches
-    /// beyond the box is cut off at it. The mesh is the same for any number of threads.
+    /// Every edge has two triangles and every vertex one fan of them. Vertices are shared and have mean normals; see [`Mesh::crisp`] for
+    /// pictures. Features thinner than the spacing of the lines may be missing. Material beyond the box is cut off. The mesh is the
+    /// same for any number of threads.
     ///
     /// # Errors
     /// [`MeshError::TooManyVertices`]
