@@ -1,17 +1,18 @@
 //! Guaranteed subdivision solvers: points, curves, surfaces, and charts for families of systems.
 //!
-//! A [`System`] is a number of equations in Bernstein form over a box. [`PointSolver`] finds all roots of square systems, [`CurveSolver`] the curves
-//! of systems with one equation fewer, [`SurfaceSolver`] the surface of one equation in three unknowns, [`ChartSolver`] the preimages of many
-//! targets under one map. [`BundleSolver`] solves many systems that differ in right-hand sides, root by root. [`Pieces`] makes systems of splines.
+//! A [`System`] consists of equations in Bernstein form over a box. [`PointSolver`] finds all roots of square systems, [`CurveSolver`] the curves
+//! of systems with one equation fewer than unknowns, [`SurfaceSolver`] the surface of one equation in three unknowns, and [`ChartSolver`] the
+//! preimages of many targets under one map. [`BundleSolver`] solves many systems that differ only in their right-hand sides. [`Pieces`] turns
+//! splines into systems.
 //!
-//! Nothing is lost: what a solver cannot certify it returns as an open box with its [`Cause`]. Every decision by a sign carries a bound of its
-//! rounding, from the coefficients (which count as exact unless they come with an error bound) to the result.
+//! No solution is lost: boxes that a solver cannot certify are returned as unresolved, with their [`Cause`]. Every decision based on a sign uses a
+//! rigorous bound of its rounding error. Coefficients count as exact unless they come with an error bound.
 //!
 //! | read | for |
 //! | --- | --- |
-//! | [`points`](PointSolver) | the tests of a box, and why they suffice |
-//! | `coefficients/` | how coefficients lie, and what rounding does to them |
-//! | `docs/algorithms/solvers.md` | theorems, sources, measurements, shortcomings |
+//! | `points/` | the tests of a box, and why they suffice |
+//! | `coefficients/` | the layout of coefficients, and their rounding errors |
+//! | `docs/algorithms/solvers.md` | theorems, sources, measurements, limitations |
 
 mod bundles;
 mod charts;

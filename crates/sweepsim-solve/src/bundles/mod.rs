@@ -21,8 +21,8 @@
 //! Targets that a box leaves undecided, and only these, go on to its halves. A root on a face between boxes is found from both; two finds of one
 //! target are one root where they are so near that the single-solution test, with second derivatives of the whole domain, leaves room for one only.
 //!
-//! This is another way to what [charts](crate::ChartSolver) find: other coefficients (of polynomials in all unknowns), second derivatives rather than
-//! ranges of first ones, a certificate a root rather than one a box.
+//! Bundles find the same as [charts](crate::ChartSolver), but use polynomials in all unknowns, second derivatives instead of ranges of first
+//! derivatives, and a certificate for each root instead of each box.
 
 mod cell;
 mod line;
@@ -36,7 +36,7 @@ use search::Search;
 use sweepsim_spline::Bernstein;
 use thiserror::Error;
 
-/// What is wrong with the forms of a bundle.
+/// Why a bundle is invalid.
 ///
 /// ```
 /// use sweepsim_solve::{Bernstein, Bundle, BundleError};
@@ -56,7 +56,7 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum BundleError {
-    /// Numerators and zeros are not as many as unknowns.
+    /// The number of numerators and zeros differs from the number of unknowns.
     #[error("{found} equations in {expected} unknowns")]
     Count {
         /// Given.
@@ -64,7 +64,7 @@ pub enum BundleError {
         /// Unknowns.
         expected: usize,
     },
-    /// A form (numerators first, then the weight, then zeros and conditions) has another number of variables.
+    /// A form (numerators first, then the weight, then zeros and conditions) has the wrong number of variables.
     #[error("form {form} has {found} variables, not {expected}")]
     Variables {
         /// Its number.
@@ -110,7 +110,7 @@ impl<const N: usize> Bundle<N> {
         Ok(Self { blocks })
     }
 
-    /// Asks only for solutions where exactly one of two forms is negative. Where both are or neither is may still be handed out.
+    /// Restricts the search to solutions where exactly one of two forms is negative. Others may still be reported.
     ///
     /// # Errors
     ///
@@ -127,12 +127,12 @@ impl<const N: usize> Bundle<N> {
     }
 }
 
-/// The search, with its memory kept from one call to the next.
+/// Solves bundles. It reuses its memory from one call to the next.
 #[derive(Debug)]
 pub struct BundleSolver {
     /// Limits; [`accept`](ChartOptions::accept) is in half sides of boxes.
     pub options: ChartOptions,
-    /// What all calls together did; `charts` counts boxes on which targets were tried.
+    /// Totals over all calls; `charts` counts boxes on which targets were tried.
     pub statistics: ChartStatistics,
     coefficients: Vec<f64>,
     scratch: Vec<f64>,
@@ -152,8 +152,8 @@ impl BundleSolver {
 
     /// Finds, for every target, all solutions in `[0, 1]ᴺ`.
     ///
-    /// Of the map only values at points are asked for, and its scales: it must be the one that the bundle's forms say. Each solution is
-    /// handed to `sink` once, or the box where it may hide is.
+    /// Only [`evaluate`](ChartMap::evaluate) and [`scales`](ChartMap::scales) of the map are used; it must be the map that the bundle's forms define.
+    /// Each solution is reported to `sink` once; boxes that may hold unreported solutions are reported as undecided.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         bundle: &Bundle<N>,

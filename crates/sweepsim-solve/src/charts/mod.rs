@@ -11,7 +11,7 @@
 //!    method finds the preimage, or the interval iteration of step 2 around better and better centres proves that there is none;
 //! 4. else it is split.
 //!
-//! What is *not* found: nothing. Boxes too small to split further are handed out as [`Undecided`] with their targets.
+//! No preimage is lost: boxes too small to split further are reported as [`Undecided`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 mod chart;
@@ -26,16 +26,16 @@ pub(crate) use trail::Trail;
 
 /// A map `R^N → R^N` with enclosures over boxes.
 pub trait ChartMap<const N: usize> {
-    /// A box, with whatever the map keeps of it.
+    /// A box, with any data that the map keeps for it.
     type Cell: Clone;
 
-    /// What else is known at a point where the map was evaluated.
+    /// Additional data at a point where the map was evaluated.
     type Seen: Clone;
 
-    /// The box, an interval per variable.
+    /// The box, one enclosure per variable.
     fn bounds(&self, cell: &Self::Cell) -> [Enclosure; N];
 
-    /// Encloses `Φ` over the box; `None` when the box holds no solution that is asked for.
+    /// Encloses `Φ` over the box; `None` if no solution in the box is of interest.
     fn values(&mut self, cell: &Self::Cell) -> Option<[Enclosure; N]>;
 
     /// Encloses `∂Φᵢ/∂xⱼ` over the box, as `[i][j]`.
@@ -47,7 +47,7 @@ pub trait ChartMap<const N: usize> {
     /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;
 
-    /// What counts as a large difference of each value: for the choice of the direction to split.
+    /// A typical size of each value, for choosing the direction of splits.
     fn scales(&self) -> [f64; N];
 
     /// How far each value of [`ChartMap::evaluate`] may be off by rounding.
@@ -61,7 +61,7 @@ pub struct Sample<const N: usize, S> {
     pub value: [f64; N],
     /// `∂Φᵢ/∂xⱼ` as `[i][j]`.
     pub jacobian: [[f64; N]; N],
-    /// What else the map knows there.
+    /// Additional data.
     pub seen: S,
 }
 
@@ -70,19 +70,19 @@ pub struct Sample<const N: usize, S> {
 pub struct Target<const N: usize> {
     /// Its number.
     pub number: usize,
-    /// Row and place in the row. Where neighbours differ evenly they are solved faster.
+    /// Row and position in the row. Evenly spaced neighbours are solved faster.
     pub place: [usize; 2],
     /// `q`.
     pub value: [f64; N],
 }
 
-/// A set of right-hand sides with a range query, in rows: targets of a row differ in their second value alone.
+/// A set of right-hand sides with a range query, in rows: the targets of a row differ only in their second value.
 pub trait Targets<const N: usize> {
-    /// How many targets lie in the range.
+    /// The number of targets in the range.
     fn count(&self, range: &[Enclosure; N]) -> usize;
 
-    /// Calls `visit` with each target in the range until that returns `false`: row by row, and in each upwards. Of a row, `narrow` is
-    /// shown the lowest, and says which second values are wanted, if any.
+    /// Calls `visit` with each target in the range, row by row and upwards in each row, until it returns `false`. For each row, `narrow` is
+    /// called with the lowest target, and returns the range of second values that are needed, if any.
     fn visit(
         &self,
         range: &[Enclosure; N],
@@ -103,27 +103,27 @@ pub struct Preimage<const N: usize, S = ()> {
     pub target: usize,
     /// The solution.
     pub x: [f64; N],
-    /// Where Newton's method came from in its last step.
+    /// The previous iterate of Newton's method.
     pub from: [f64; N],
-    /// What the map saw there.
+    /// Additional data of the map there.
     pub seen: S,
     /// The sign of `det ∂Φ` there: 1 or −1.
     pub orientation: i8,
 }
 
-/// Why a box could not be decided.
+/// Why a box is undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// It is as small as numbers allow.
+    /// It has the smallest size.
     Smallest,
-    /// The budget of boxes is spent.
+    /// The budget of boxes is used up.
     Budget,
     /// The [`Monitor`] asked to stop.
     Cancelled,
 }
 
-/// A box that may hold solutions for a target: neither found nor excluded.
+/// A box that may hold further solutions for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Undecided<const N: usize> {
     /// The target's number.
@@ -134,15 +134,15 @@ pub struct Undecided<const N: usize> {
     pub reason: Reason,
 }
 
-/// Receives what the search finds.
+/// Receives the results of a search.
 pub trait Sink<const N: usize, S = ()> {
     /// A solution.
     fn found(&mut self, preimage: Preimage<N, S>);
-    /// What was received so far, to [forget](Sink::forget) what comes after.
+    /// A mark for [`forget`](Sink::forget).
     fn mark(&self) -> usize;
-    /// Takes back the solutions since the mark: their box is looked at again, in parts.
+    /// Discards the solutions since the mark: their box is searched again in parts.
     fn forget(&mut self, mark: usize);
-    /// A box and a target that remain open.
+    /// An undecided box for a target.
     fn undecided(&mut self, undecided: Undecided<N>);
 }
 
@@ -150,9 +150,9 @@ pub trait Sink<const N: usize, S = ()> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ChartOptions {
-    /// The most boxes that one call may look at.
+    /// The maximum number of boxes per call.
     pub boxes: u64,
-    /// A box whose sides are all at most this part of the domain is not split further.
+    /// Boxes whose sides are all smaller than this fraction of the domain are not split further.
     pub smallest: f64,
     /// Newton's method ends with a step that leaves an error of about the square of this, in parts of the domain.
     pub accept: f64,

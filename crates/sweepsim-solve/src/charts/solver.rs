@@ -6,12 +6,12 @@ use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Tar
 use crate::{Enclosure, Monitor};
 use nalgebra::{Const, DimMin, SVector, ToTypenum};
 
-/// The search, with its stack kept from one call to the next.
+/// The chart solver. It reuses its stack from one call to the next.
 #[derive(Debug)]
 pub struct ChartSolver<C> {
     /// Limits.
     pub options: ChartOptions,
-    /// What all calls together did.
+    /// Totals over all calls.
     pub statistics: ChartStatistics,
     stack: Vec<(C, u32)>,
 }
@@ -36,7 +36,7 @@ impl<C: Clone> ChartSolver<C> {
 
     /// Finds, for every target, all its preimages in the box `root`.
     ///
-    /// Every preimage of every target is handed to `sink` once, or the box where it may hide is.
+    /// Each preimage is reported to `sink` once; boxes that may hold unreported ones are reported as undecided.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,

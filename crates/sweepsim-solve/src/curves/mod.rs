@@ -44,18 +44,18 @@ pub struct CurvePoint {
 pub enum CurveEnd {
     /// On the region's boundary.
     Boundary,
-    /// At the singular (or otherwise open) box of this number.
+    /// At the singular or unresolved box with this number.
     Singular(usize),
 }
 
-/// One component of the curve (less its singular points), as a polyline within the tolerance of it.
+/// One component of the curve without its singular points, as a polyline within the tolerance.
 ///
 /// Its direction is that of the wedge product of the equations' gradients (`∇f × ∇g` for two equations in three unknowns, `(f_y, −f_x)` for
 /// one in two).
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Curve {
-    /// The vertices, each on the curve up to rounding. A loop's first is not repeated at its end.
+    /// The vertices, on the curve up to rounding. The first vertex of a loop is not repeated at its end.
     pub points: Vec<CurvePoint>,
     /// `None` for a loop.
     pub ends: Option<[CurveEnd; 2]>,
@@ -65,21 +65,21 @@ pub struct Curve {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CurvePiece {
-    /// Numbers of the points where it begins and ends: each is shared with at most one other piece.
+    /// Numbers of its two end points. Each is shared with at most one other piece.
     pub ends: [usize; 2],
     /// The vertices, both ends among them, in the direction of the curve.
     pub points: Vec<CurvePoint>,
 }
 
-/// A box where the curve may be singular, or could not be settled.
+/// A box in which the curve may be singular, or could not be resolved.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Singular {
-    /// The box; touching ones are united.
+    /// The box. Adjacent boxes are merged.
     pub bounds: Vec<Enclosure>,
     /// Why it is open.
     pub cause: Cause,
-    /// The arcs that end here: their numbers, with `true` for the last end. No arc: an isolated point, or nothing.
+    /// The arcs that end here, with `true` if it is the arc's last vertex. If there are none, the box holds an isolated point or nothing.
     pub branches: Vec<(usize, bool)>,
 }
 
@@ -89,9 +89,9 @@ pub struct Singular {
 pub struct Curves {
     /// The components.
     pub curves: Vec<Curve>,
-    /// Singular and open boxes. Outside of these, `curves` are all there is.
+    /// Singular and unresolved boxes. Outside these, `curves` is complete.
     pub singular: Vec<Singular>,
-    /// By what part of the domain's sides the region was made larger, because the curve touches its boundary. Mostly 0.
+    /// The fraction of the domain by which the region was enlarged because the curve touches its boundary. Usually 0.
     pub skin: f64,
     /// What the search did.
     pub statistics: SolveStatistics,
@@ -161,7 +161,7 @@ impl CurveSolver {
     /// # Errors
     ///
     /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
-    /// there is one equation fewer, [`SolveError::Smallest`] for an impossible size or tolerance.
+    /// there is one equation fewer, [`SolveError::Smallest`] for an invalid size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Curves, SolveError> {
         self.check(system)?;
         let mut search = self.search(system, monitor);
@@ -170,7 +170,7 @@ impl CurveSolver {
         Ok(search.assemble(skin))
     }
 
-    /// Whether the system and the limits can be meant.
+    /// Checks that the system and the limits are valid.
     fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if n < 2 {
@@ -215,7 +215,7 @@ impl CurveSolver {
         }
     }
 
-    /// The same, handing over each component as a call.
+    /// As [`solve`](Self::solve), but calls `visit` with each component.
     ///
     /// # Errors
     ///
@@ -231,11 +231,11 @@ impl CurveSolver {
         Ok(curves.singular)
     }
 
-    /// The same, handing over each piece as soon as it is found, so that polylines need not be kept. Pieces come in no order; ends of
-    /// the same [`CurvePiece::ends`] number are the same point, so a caller that needs components joins them by these numbers.
+    /// As [`solve`](Self::solve), but calls `visit` with each piece as soon as it is found, so that polylines need not be stored. Pieces come in no
+    /// particular order. Ends with the same number in [`CurvePiece::ends`] are the same point, which tells how to join pieces.
     ///
-    /// The result has no curves, and its singular boxes no branches: only what is open, and the counts. If its
-    /// [`skin`](Curves::skin) is not 0, pieces may leave the region by so much.
+    /// The result holds only unresolved boxes, without branches, and the statistics. If its [`skin`](Curves::skin) is not 0, pieces may leave the
+    /// region by that much.
     ///
     /// ```
     /// use sweepsim_solve::{Bernstein, CurveSolver, Enclosure, System};

@@ -11,8 +11,8 @@
 //! 4. *Projection*: where the convex hull of an equation's coefficient ranges along an axis meets 0 (Sherbrooke, Patrikalakis 1993).
 //! 5. Reduce, or split a little off the middle, in the direction in which the Jacobian varies most.
 //!
-//! A box at the smallest size stays open, with its cause. A root on a face between boxes is found from both, and is known to be the
-//! same because each is the only one in a box `C` that also holds the other: never because it is near.
+//! A box at the smallest size stays unresolved. A root on a face between two boxes is found from both. The two are identified because each is the
+//! only root in a box `C` that contains the other, never because they are close.
 
 mod certify;
 #[cfg(feature = "rayon")]
@@ -31,7 +31,7 @@ pub use solver::PointSolver;
 pub enum RootLocation {
     /// Inside the region.
     Inside,
-    /// On the region's boundary, or nearer to it than the root's enclosure is wide: certified on a larger box.
+    /// On the boundary of the region, or so close that the enclosure touches it. Certified on a larger box.
     Boundary,
 }
 
@@ -39,11 +39,11 @@ pub enum RootLocation {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Root {
-    /// The root, as near as numbers allow.
+    /// The root, to machine precision.
     pub point: Vec<f64>,
     /// Holds the root.
     pub enclosure: Vec<Enclosure>,
-    /// Holds no other root. It may reach beyond the domain.
+    /// A box with no other root. It may extend beyond the domain.
     pub unique_in: Vec<Enclosure>,
     /// The sign of `det ∂f/∂x` at the root (and wherever the root is unique).
     pub orientation: i8,
@@ -55,9 +55,9 @@ pub struct Root {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Points {
-    /// Simple roots, each certified, in lexical order.
+    /// Simple roots, each certified, in lexicographic order.
     pub roots: Vec<Root>,
-    /// What could not be settled.
+    /// Boxes that could not be resolved.
     pub unresolved: Vec<UnresolvedBox>,
     /// What the search did.
     pub statistics: SolveStatistics,

@@ -7,7 +7,7 @@ use crate::numbers::{Double, Row};
 use crate::search::{Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, open_box, unite};
 use crate::{Monitor, System};
 
-/// The 0-D solver, with memory that it keeps from one system to the next.
+/// The 0-D solver. It reuses its memory from one system to the next.
 ///
 /// ```
 /// use sweepsim_solve::{Bernstein, Enclosure, PointSolver, System};
@@ -62,7 +62,7 @@ impl PointSolver {
         Ok(self.points(system))
     }
 
-    /// Whether the system and the limits can be meant.
+    /// Checks that the system and the limits are valid.
     pub(crate) fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if m != n {

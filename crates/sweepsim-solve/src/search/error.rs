@@ -1,22 +1,22 @@
-//! Why a solver refuses a system.
+//! Errors of the solvers.
 
 use thiserror::Error;
 
-/// A solver was given a system of another kind, or limits that make no sense.
+/// The system does not suit the solver, or its limits are invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SolveError {
-    /// Another number of equations is needed.
+    /// The number of equations is wrong.
     #[error("{equations} equations in {variables} variables; this solver needs {expected}")]
     Equations {
         /// Of the system.
         equations: usize,
         /// Of the system.
         variables: usize,
-        /// What this solver needs for so many variables.
+        /// What this solver needs for this number of variables.
         expected: usize,
     },
-    /// Another number of variables is needed.
+    /// The number of variables is wrong.
     #[error("{variables} variables; this solver takes {least} to {most}")]
     Variables {
         /// Of the system.
@@ -26,7 +26,7 @@ pub enum SolveError {
         /// The most.
         most: usize,
     },
-    /// [`SolveOptions::smallest`] or another size is not a number between 1e-14 and 1.
-    #[error("a smallest size or tolerance is not between 1e-14 and 1")]
+    /// [`SolveOptions::smallest`](super::SolveOptions::smallest) is not between 1e-14 and 1, or a tolerance is not positive.
+    #[error("the smallest size must be between 1e-14 and 1, and the tolerance positive")]
     Smallest,
 }

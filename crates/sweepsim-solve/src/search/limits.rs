@@ -1,4 +1,4 @@
-//! What all subdivision searches share: limits, counts, and what is left open.
+//! Limits, fates and counts of subdivision searches.
 
 use crate::{Enclosure, Monitor};
 use std::time::{Duration, Instant};
@@ -13,15 +13,15 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SolveOptions {
-    /// A box whose sides are all at most this part of the domain's is not split further. At least 1e-14.
+    /// Boxes whose sides are all smaller than this fraction of the domain are not split further. At least 1e-14.
     pub smallest: f64,
-    /// The most boxes that are looked at.
+    /// The maximum number of boxes.
     pub boxes: u64,
-    /// The most splits above a box.
+    /// The maximum number of splits above a box.
     pub depth: u32,
-    /// The most boxes that may stay open before the search gives up: a continuum of solutions must not flood it.
+    /// The maximum number of boxes that may stay unresolved before the search stops, so that a continuum of solutions does not flood it.
     pub unresolved: usize,
-    /// The longest that the search may take. Results then depend on the machine's speed; the other limits do not.
+    /// The maximum time. With this limit results depend on the speed of the machine; with the others they do not.
     pub time: Option<Duration>,
 }
 
@@ -82,33 +82,33 @@ pub enum Fate {
     Sign,
     /// The affine enclosures have no common zero in it.
     Linear,
-    /// Some equation cannot vanish in any part of some side.
+    /// The projections of an equation exclude it.
     Projection,
-    /// It holds one solution, or one piece of a curve or surface, with certificate.
+    /// It holds one certified solution, or one certified piece of a curve or surface.
     Certified,
-    /// The one solution that could lie in it lies outside.
+    /// The only solution that it could hold lies outside.
     Elsewhere,
     /// It was split.
     Split,
-    /// It stays open.
+    /// It stays unresolved.
     Unresolved,
 }
 
-/// Why a box stays open.
+/// Why a box stays unresolved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Cause {
-    /// It is as small as [`SolveOptions::smallest`]: a multiple root, a singular point, or solutions nearer to one another than that.
+    /// It is as small as [`SolveOptions::smallest`]: a multiple root, a singular point, or several solutions closer together than that.
     Smallest,
     /// An equation is zero on it up to rounding (or its stated error).
     Vanishing,
-    /// [`SolveOptions::boxes`] is spent.
+    /// [`SolveOptions::boxes`] is used up.
     Boxes,
     /// [`SolveOptions::depth`] is reached.
     Depth,
     /// [`SolveOptions::unresolved`] is reached.
     Flood,
-    /// [`SolveOptions::time`] is spent.
+    /// [`SolveOptions::time`] is used up.
     Time,
     /// The [`Monitor`] asked to stop.
     Cancelled,
@@ -117,36 +117,36 @@ pub enum Cause {
 impl std::fmt::Display for Cause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Smallest => "smallest size reached: a multiple or singular solution, or a cluster",
+            Self::Smallest => "smallest box size reached: a multiple or singular solution, or a cluster",
             Self::Vanishing => "an equation vanishes up to rounding",
-            Self::Boxes => "budget of boxes spent",
-            Self::Depth => "depth reached",
-            Self::Flood => "too many boxes stay open",
-            Self::Time => "time spent",
+            Self::Boxes => "budget of boxes used up",
+            Self::Depth => "maximum depth reached",
+            Self::Flood => "too many unresolved boxes",
+            Self::Time => "time used up",
             Self::Cancelled => "cancelled",
         })
     }
 }
 
-/// A box that may hold solutions besides those returned: neither settled nor excluded.
+/// A box that may hold further solutions: it was neither certified nor excluded.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnresolvedBox {
-    /// The box; touching ones of the same cause are united.
+    /// The box. Adjacent boxes with the same cause are merged.
     pub bounds: Vec<Enclosure>,
     /// Why.
     pub cause: Cause,
-    /// How many boxes of the subdivision it unites.
+    /// The number of merged boxes.
     pub boxes: usize,
 }
 
-/// How many boxes met which fate.
+/// Counts of a search, by the fate of boxes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SolveStatistics {
-    /// Boxes looked at: those of the subdivision itself, which a [`Monitor`](crate::Monitor) sees.
+    /// Boxes of the subdivision: those that a [`Monitor`](crate::Monitor) visits.
     pub boxes: u64,
-    /// Boxes of the searches on the faces of boxes (curves only). They have no fate here, but count towards the budget.
+    /// Boxes of searches on faces (curves only). They count towards the budget, but are not counted by fate.
     pub faces: u64,
     /// Of these, excluded by a sign of the coefficients.
     pub sign: u64,
@@ -154,19 +154,19 @@ pub struct SolveStatistics {
     pub linear: u64,
     /// Excluded by projection.
     pub projection: u64,
-    /// Settled with a certificate.
+    /// Certified.
     pub certified: u64,
-    /// Whose only candidate lies elsewhere.
+    /// Boxes whose only candidate lies elsewhere.
     pub elsewhere: u64,
     /// Split.
     pub splits: u64,
-    /// Left open.
+    /// Left unresolved.
     pub unresolved: u64,
     /// Reductions of boxes.
     pub reductions: u64,
     /// Attempts at a certificate.
     pub attempts: u64,
-    /// Computations anew from the first coefficients, in twice the precision.
+    /// Recomputations from the original coefficients in double-double precision.
     pub refreshed: u64,
     /// The most splits above a box.
     pub depth: u32,

@@ -8,14 +8,14 @@ use crate::numbers::MAX_UNKNOWNS;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use sweepsim_spline::{Bernstein, RationalBernstein};
 
-/// The most forms in a system with expressions, counting each place where one is used.
+/// The maximum number of forms in a system with expressions, counting each use.
 pub const MAX_FORMS: usize = MAX_UNKNOWNS;
 
-/// A function made of forms by `+`, `−`, `·` and `/`, as an [`Equation`].
+/// A function built from forms with `+`, `−`, `·` and `/`, for use as an [`Equation`].
 ///
-/// Nothing is expanded: only the forms are subdivided, and the solvers combine their bounds. That pays where the product or the
-/// common denominator would have many coefficients. Where it would not, expand: bounds of a single form are sharper, and only those are projected.
-/// Points where a divisor vanishes are no solutions; boxes in which one may vanish cannot be settled and are split.
+/// Expressions are not expanded: the solvers subdivide the forms and combine their bounds. This pays off if the product or the common
+/// denominator would have many coefficients. Otherwise expand, since the bounds of a single form are sharper. Points where a divisor
+/// vanishes are not solutions; boxes in which one may vanish cannot be certified and are split.
 ///
 /// ```
 /// use sweepsim_solve::{Bernstein, Enclosure, Expression, PointSolver, System};

@@ -8,10 +8,10 @@ use smallvec::SmallVec;
 use sweepsim_spline::{Bernstein, RationalBernstein};
 use thiserror::Error;
 
-/// The most coefficients that a system may have in all.
+/// The maximum number of coefficients of a system.
 pub const MAX_SYSTEM: usize = 1 << 24;
 
-/// One equation `f = 0`: a sum of Bernstein forms, with what the sum may differ from `f` by.
+/// One equation `f = 0`: a sum of Bernstein forms, with a bound of how much the sum differs from `f`.
 ///
 /// Every form has as many variables as the system, on `[0,1]ⁿ` (the system's domain maps to it). A form's own
 /// [`error`](Bernstein::error) counts as an error of its coefficients.
@@ -25,7 +25,7 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// `f` is the sum of the forms. If the forms depend on different variables, solvers use that: bounds are sharper and cheaper.
+    /// The sum of the forms. If the forms depend on different variables, bounds are sharper and cheaper to compute.
     #[must_use]
     pub fn sum(terms: Vec<Bernstein>) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl From<&Bernstein> for Equation {
     }
 }
 
-/// What is wrong with the parts of a system.
+/// Why a system is invalid.
 ///
 /// ```
 /// use sweepsim_solve::{Bernstein, Enclosure, System, SystemError};
@@ -89,13 +89,13 @@ impl From<&Bernstein> for Equation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum SystemError {
-    /// Between 1 and [`MAX_UNKNOWNS`] variables are possible.
+    /// A system has 1 to [`MAX_UNKNOWNS`] variables.
     #[error("a system has 1 to {MAX_UNKNOWNS} variables, not {variables}")]
     Variables {
-        /// As many were given.
+        /// The number of variables given.
         variables: usize,
     },
-    /// There is nothing to solve.
+    /// There are no equations.
     #[error("a system needs an equation")]
     NoEquations,
     /// More equations than variables.
@@ -106,7 +106,7 @@ pub enum SystemError {
         /// Variables given.
         variables: usize,
     },
-    /// A side of the domain is empty, reversed, infinite or NaN, or so far from 0 that its ends are neighbouring numbers.
+    /// A side of the domain is empty or infinite, or so far from 0 that its ends are adjacent numbers.
     #[error("the domain's side {variable} is not an interval of positive finite length")]
     Domain {
         /// The variable.
@@ -118,17 +118,17 @@ pub enum SystemError {
         /// The variable.
         variable: usize,
     },
-    /// A form has another number of variables.
+    /// A form has the wrong number of variables.
     #[error("equation {equation} has a form in {variables} variables, not {expected}")]
     FormVariables {
         /// The equation.
         equation: usize,
-        /// What its form has.
+        /// Variables of the form.
         variables: usize,
-        /// What the domain has.
+        /// Variables of the domain.
         expected: usize,
     },
-    /// An equation is the sum of no forms.
+    /// An equation is an empty sum.
     #[error("equation {equation} is an empty sum")]
     EmptySum {
         /// The equation.
@@ -170,7 +170,7 @@ pub struct System {
 }
 
 impl System {
-    /// The system of these equations over the domain, one interval a variable.
+    /// The system of these equations over a domain, given by one enclosure per variable.
     ///
     /// # Errors
     ///
@@ -215,7 +215,7 @@ impl System {
         })
     }
 
-    /// The same system, searched in a part of its domain only. Roots on the part's boundary count as on the boundary.
+    /// Restricts the search to a part of the domain. Roots on the boundary of that part count as boundary roots.
     ///
     /// # Errors
     ///
@@ -262,13 +262,13 @@ impl System {
         self.layout.m
     }
 
-    /// The domain, one interval a variable.
+    /// The domain, one enclosure per variable.
     #[must_use]
     pub fn domain(&self) -> &[Enclosure] {
         &self.domain
     }
 
-    /// The coefficients that the solvers subdivide: after parts that depend on different variables were separated.
+    /// The number of coefficients that the solvers subdivide, after separating parts that depend on different variables.
     #[must_use]
     pub fn coefficients(&self) -> usize {
         self.layout.len

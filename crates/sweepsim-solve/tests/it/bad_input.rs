@@ -29,7 +29,11 @@ fn domains_are_checked() {
         (-f64::MAX, f64::MAX),
         (1e17, 1e17 + 16.0),
     ] {
-        let bad = System::new(&[Enclosure::new(lo, hi).unwrap()], [&x]);
+        let Ok(side) = Enclosure::new(lo, hi) else {
+            assert!(lo > hi || lo.is_nan() || hi.is_nan(), "{lo} {hi}");
+            continue;
+        };
+        let bad = System::new(&[side], [&x]);
         assert_eq!(bad.unwrap_err(), SystemError::Domain { variable: 0 }, "{lo} {hi}");
     }
 }
