@@ -110,6 +110,8 @@ pub enum Cause {
     Flood,
     /// [`SolveOptions::time`] is used up.
     Time,
+    /// A mesh would have more vertices than can be numbered with 32 bits.
+    Vertices,
     /// The [`Monitor`] asked to stop.
     Cancelled,
 }
@@ -123,6 +125,7 @@ impl std::fmt::Display for Cause {
             Self::Depth => "maximum depth reached",
             Self::Flood => "too many unresolved boxes",
             Self::Time => "time used up",
+            Self::Vertices => "more vertices than can be numbered with 32 bits",
             Self::Cancelled => "cancelled",
         })
     }

@@ -5,6 +5,7 @@ use super::octree::{FINEST, OctreeNode, State};
 use crate::Monitor;
 use crate::coefficients::Cell;
 use crate::numbers::{MAX_UNKNOWNS, Row};
+use crate::search::Cause;
 use std::collections::BTreeMap;
 
 /// An edge of the finest neighbour: where it starts, its axis, its length.
@@ -62,8 +63,8 @@ impl<'a> Mesher<'a> {
         Some(bad)
     }
 
-    /// All triangles; `None` if cancelled. The octree must have passed the check.
-    pub(crate) fn mesh(&mut self) -> Option<Triangles> {
+    /// All triangles, with `most` vertices at most; else why there are none. The octree must have passed the check.
+    pub(crate) fn mesh(&mut self, most: usize) -> Result<Triangles, Cause> {
         let nodes = self.nodes;
         let mut vertices: Vec<[f64; 3]> = Vec::new();
         let mut triangles = Vec::new();
@@ -71,9 +72,13 @@ impl<'a> Mesher<'a> {
         for node in nodes {
             let State::Plain(cell) = &node.state else { continue };
             if self.monitor.cancelled() {
-                return None;
+                return Err(Cause::Cancelled);
             }
             let Cycle::One(cycle) = self.cycle(node) else { continue };
+            // At most one vertex on each edge of the cycle and one in the middle.
+            if vertices.len() + cycle.len() >= most {
+                return Err(Cause::Vertices);
+            }
             let mut corners = Vec::with_capacity(cycle.len());
             for edge in cycle {
                 let entry = known.get(&edge).copied();
@@ -97,7 +102,7 @@ impl<'a> Mesher<'a> {
                 triangles.push([corners[k].0, corners[(k + 1) % corners.len()].0, middle]);
             }
         }
-        Some((vertices, triangles))
+        Ok((vertices, triangles))
     }
 
     /// The leaf that holds a point, in half lattice units.

@@ -135,6 +135,11 @@ impl SurfaceSolver {
     /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
     /// [`SolveError::Smallest`] for an impossible size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
+        self.solve_within(system, monitor, u32::MAX as usize)
+    }
+
+    /// The same with this many vertices at most.
+    fn solve_within(&self, system: &System, monitor: &dyn Monitor, most: usize) -> Result<Surface, SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if n != 3 {
             return Err(SolveError::Variables {
@@ -180,17 +185,16 @@ impl SurfaceSolver {
         while search.stopped.is_none() && mesh.is_none() {
             let mut mesher = Mesher::new(&search.grid, &search.nodes, monitor);
             match mesher.check() {
-                Some(failures) if failures.is_empty() => mesh = mesher.mesh(),
+                Some(failures) if failures.is_empty() => match mesher.mesh(most) {
+                    Ok(triangles) => mesh = Some(triangles),
+                    Err(cause) => search.stopped = Some(cause),
+                },
                 Some(failures) => {
                     for node in failures {
                         search.split(node, monitor);
                     }
-                    continue;
                 }
-                None => {}
-            }
-            if mesh.is_none() {
-                search.stopped = Some(Cause::Cancelled);
+                None => search.stopped = Some(Cause::Cancelled),
             }
         }
         if let Some(cause) = search.stopped {
@@ -241,5 +245,27 @@ impl SurfaceSolver {
             unresolved: open.iter().map(|o| open_box(system, o)).collect(),
             statistics: search.statistics,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweepsim_spline::Bernstein;
+
+    #[test]
+    fn more_vertices_than_numbers_leave_the_surface_open() {
+        let square = |axis: usize| Bernstein::from_fn(&[2, 2, 2], |i| [0.25, -0.25, 0.25][i[axis]]).unwrap();
+        let sphere = square(0)
+            .add(&square(1))
+            .add(&square(2))
+            .sub(&Bernstein::constant(3, 0.16));
+        let system = System::new(&[Enclosure::UNIT; 3], [&sphere]).unwrap();
+        let solver = SurfaceSolver::new(0.05);
+        let whole = solver.solve_within(&system, &(), u32::MAX as usize).unwrap();
+        assert!(whole.unresolved.is_empty() && whole.vertices.len() > 100);
+        let some = solver.solve_within(&system, &(), whole.vertices.len() / 2).unwrap();
+        assert!(some.vertices.is_empty() && some.triangles.is_empty());
+        assert!(some.unresolved.iter().all(|u| u.cause == Cause::Vertices) && !some.unresolved.is_empty());
     }
 }

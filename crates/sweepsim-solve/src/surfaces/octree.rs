@@ -62,6 +62,10 @@ impl Search<'_> {
             let State::Plain(mut cell) = state else { continue };
             if self.stopped.is_none() {
                 self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
+                // Children are numbered with 32 bits.
+                if self.nodes.len() + 8 > u32::MAX as usize {
+                    self.stopped = Some(Cause::Boxes);
+                }
             }
             if let Some(cause) = self.stopped {
                 self.leave(number, cause);
