@@ -1,8 +1,8 @@
 //! Sweeps a ball end along an arc while its axis turns, and weighs what it cuts out of a block.
 
+use sweepsim::dexel::{Grid, Stock};
+use sweepsim::motion::{Move, Path, Pose, TipArc, Tool};
 use sweepsim::{Cut, Options, simulate, sweep};
-use sweepsim_dexel::{Grid, Stock};
-use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let tool = Tool::ball(3.0, 30.0)?;

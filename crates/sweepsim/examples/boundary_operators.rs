@@ -1,11 +1,11 @@
-//! Where the paper's boundary operator errs: dexels of one row as an SVG drawing, `cargo run --example boundary_operators > operators.svg`.
+//! Where the paper's boundary operator errs: dexels of one row as an SVG drawing, `cargo run -p sweepsim --example boundary_operators > operators.svg`.
 //!
 //! A cutter with three fins tilts as it moves. What the count gives is blue; what the paper's Algorithm 2 takes for gaps in it, red.
 
 use std::fmt::Write as _;
+use sweepsim::dexel::Grid;
+use sweepsim::motion::{Path, Pose, Profile, ProfileSegment, Tool};
 use sweepsim::{BoundaryOperator, Options, sweep};
-use sweepsim_dexel::Grid;
-use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let line = |rho: f64, zeta: f64| ProfileSegment::Line { to: [rho, zeta] };

@@ -40,10 +40,11 @@ pub type Probe = Result<Vec<Interval>, UnresolvedReason>;
 ///     Ray::new([5.0, -9.0, 2.0], [0.0, 1.0, 0.0])?,     // across it
 /// ];
 /// let found = probe(&tool, &path, &rays, &Options::default(), &())?;
-/// let ends = |n: usize| found[n].as_ref().map(|all| all.iter().map(|i| [i.lower.z, i.upper.z]).collect::<Vec<_>>());
-/// assert!((ends(0)?[0][0] - 1.0).abs() < 1e-6);
-/// assert!(ends(1)?.is_empty());
-/// assert!((ends(2)?[0][0] - 7.0).abs() < 1e-6 && (ends(2)?[0][1] - 11.0).abs() < 1e-6);
+/// let through = found[0].clone()?;
+/// assert!((through[0].lower.z - 1.0).abs() < 1e-6);
+/// assert!(found[1].clone()?.is_empty());
+/// let across = found[2].clone()?;
+/// assert!((across[0].lower.z - 7.0).abs() < 1e-6 && (across[0].upper.z - 11.0).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn probe(

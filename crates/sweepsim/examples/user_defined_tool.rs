@@ -1,9 +1,9 @@
 //! A tool from one's own B-spline patches: a cutter with the section of a rounded square, turned a quarter on its way.
 
+use sweepsim::dexel::Grid;
+use sweepsim::motion::{Path, Pose, Tool};
+use sweepsim::spline::{KnotVector, RationalSpline};
 use sweepsim::{Options, sweep};
-use sweepsim_dexel::Grid;
-use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_spline::{KnotVector, RationalSpline};
 
 /// A B-spline surface of degrees 3 around and 1 up, closed around, from rings of control points.
 fn surface(rings: [Vec<[f64; 3]>; 2]) -> Result<RationalSpline, Box<dyn std::error::Error>> {
