@@ -29,6 +29,7 @@ mod mesh;
 mod stock;
 mod surface;
 mod tri;
+mod vector;
 
 pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
 pub use dexels::{

@@ -1,5 +1,6 @@
 //! Places and directions of one's own.
 
+use crate::vector::{cross, dot};
 use thiserror::Error;
 
 /// A right-handed frame of three perpendicular unit vectors.
@@ -39,14 +40,6 @@ pub enum FrameError {
 const SKEW: f64 = 1e-12;
 /// Sine below which x is parallel to z.
 const LEAST: f64 = 1e-9;
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
-}
 
 /// Scaled by its largest number first, so that no square overflows.
 fn unit(a: [f64; 3]) -> Option<[f64; 3]> {

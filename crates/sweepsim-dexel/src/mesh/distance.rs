@@ -6,6 +6,7 @@
 //! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
 
 use super::{MeshError, TriangleSoup};
+use crate::vector::{cross, dot, sub};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -61,18 +62,6 @@ struct TreeNode {
     /// Faces `first..first + count`; of an inner node the second child is at `first`, the first right behind it.
     first: u32,
     count: u32,
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3])
 }
 
 fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {

@@ -5,6 +5,7 @@ use crate::dexels::{Dexels, Operation};
 use crate::grid::Grid;
 use crate::intervals::{Crossing, Source};
 use crate::mesh::TriangleSoup;
+use crate::vector::normal_of;
 use rayon::prelude::*;
 
 /// The dexels of the inside of a closed surface.
@@ -19,14 +20,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
         .par_iter()
         .flat_map_iter(|corners| {
             let [a, b, c] = *corners;
-            let normal = {
-                let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-                [
-                    u[1] * v[2] - u[2] * v[1],
-                    u[2] * v[0] - u[0] * v[2],
-                    u[0] * v[1] - u[1] * v[0],
-                ]
-            };
+            let normal = normal_of(*corners);
             let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
             let range = |k: usize, cells: usize, first: f64, step: f64| {
                 let lo = a[k].min(b[k]).min(c[k]);

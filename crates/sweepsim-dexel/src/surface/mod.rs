@@ -25,6 +25,7 @@ mod wall;
 use crate::dexels::Dexels;
 use crate::intervals::{End, Interval, Source};
 use crate::mesh::{MOST_VERTICES, Mesh, MeshError, check_vertices};
+use crate::vector::{dot, normal_of};
 use batch::TriangleBatch;
 use edge::{Class, Edge};
 use outline::Outline;
@@ -377,20 +378,6 @@ fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
         };
         mesh.triangles[*t][*c] = vertex;
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Normal of a triangle, as long as twice its area.
-fn normal_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
 }
 
 /// The vector of length 1; up, if there is none.
