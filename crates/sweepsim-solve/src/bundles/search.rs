@@ -3,8 +3,8 @@
 use super::cell::{Blocks, StackedBox};
 use super::line::{self, Found, Outcome, Window};
 use super::taylor::Taylor;
+use crate::charts::{BETWEEN, Trail, all_of, collapses, largest, widest};
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Target, Targets, Undecided};
-use crate::charts::{Trail, all_of, collapses, largest, widest};
 use crate::{Enclosure, Monitor};
 
 /// Boxes that are not good for certificates yet have each of at most this many targets tested before they are split.
@@ -162,8 +162,11 @@ where
     ) -> (usize, usize) {
         let before = self.lines.len();
         let mut trail = Trail::new();
+        let (mut asked, mut stopped) = (0_usize, false);
         self.each(frame, values, &mut |search, target| {
-            if search.monitor.cancelled() {
+            asked += 1;
+            stopped |= asked % BETWEEN == 0 && search.monitor.cancelled();
+            if stopped {
                 // Left to the box's halves, which will not be looked at.
                 search.lines.push(target);
                 return true;

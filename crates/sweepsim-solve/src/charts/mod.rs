@@ -21,7 +21,7 @@ mod trail;
 
 use crate::Enclosure;
 pub use solver::ChartSolver;
-pub(crate) use solver::{collapses, largest, widest};
+pub(crate) use solver::{BETWEEN, collapses, largest, widest};
 pub(crate) use trail::Trail;
 
 /// A map `R^N → R^N` with enclosures over boxes.

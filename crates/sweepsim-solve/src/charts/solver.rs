@@ -22,6 +22,8 @@ const FEW: usize = 4;
 const MANY: usize = 1000;
 /// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
+/// Targets between two questions to the monitor.
+pub(crate) const BETWEEN: usize = 16;
 
 impl<C: Clone> ChartSolver<C> {
     /// A search with these limits.
@@ -196,9 +198,11 @@ impl<C: Clone> ChartSolver<C> {
         // Of the last target looked at, and of the first one found in the row.
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
+        let mut asked = 0_usize;
         let window = |q: &[f64; N]| linear.window(value, q);
         targets.visit(values, &window, &mut |target| {
-            if monitor.cancelled() {
+            asked += 1;
+            if asked % BETWEEN == 0 && monitor.cancelled() {
                 clear = false;
                 return false;
             }

@@ -26,7 +26,7 @@ pub trait Monitor: Sync {
         let _ = (done, total);
     }
 
-    /// Whether to stop. Called before every box and in long loops, so it should be cheap, such as loading an atomic. Once it has returned `true` it
+    /// Whether to stop. Called before every box, and now and then in long loops, so it should be cheap, such as loading an atomic. Once it has returned `true` it
     /// must keep doing so.
     fn cancelled(&self) -> bool {
         false

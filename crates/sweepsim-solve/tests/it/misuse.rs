@@ -1,9 +1,11 @@
 //! Misuse of public constructors: errors, never a panic.
 
+use crate::monitors::Fold;
+use crate::support::targets::{Answer, List};
 use proptest::prelude::*;
 use sweepsim_solve::{
-    Bundle, ChartOptions, CurveSolver, Enclosure, Equation, Expression, Pieces, PointSolver, SolveOptions,
-    SurfaceSolver, System,
+    Bundle, BundleSolver, ChartOptions, ChartSolver, CurveSolver, Enclosure, Equation, Expression, Pieces, PointSolver,
+    SolveOptions, SurfaceSolver, System,
 };
 use sweepsim_spline::Bernstein;
 
@@ -102,6 +104,21 @@ proptest! {
     }
 
     #[test]
+    fn charts_with_any_limits_end(
+        smallest in number(), accept in number(), boxes in 0..60_u64, targets in proptest::collection::vec([number(), number()], 0..5),
+    ) {
+        let options = ChartOptions::default().boxes(boxes).smallest(smallest).accept(accept);
+        let targets = List(targets);
+        let mut answer = Answer::default();
+        ChartSolver::new(options).solve(&mut Fold, [Enclosure::UNIT; 2], &targets, &mut answer, &());
+        let (x, y) = (Bernstein::variable(2, 0), Bernstein::variable(2, 1));
+        let one = Bernstein::constant(2, 1.0);
+        let bundle = Bundle::new(vec![x.mul(&x).add(&y), x.mul(&y)], &one, vec![]).unwrap();
+        BundleSolver::new(options).solve(&bundle, &Fold, &targets, &mut answer, &());
+        prop_assert!(answer.found.iter().all(|found| targets.0[found.target].iter().all(|q| q.is_finite())));
+    }
+
+    #[test]
     fn bundles_of_anything_are_made_or_refused(
         numerators in proptest::collection::vec(form(), 0..4),
         zeros in proptest::collection::vec(form(), 0..4),
@@ -121,5 +138,4 @@ proptest! {
 #[test]
 fn no_splines_make_no_system() {
     assert!(Pieces::new(&[]).is_err());
-    assert!(ChartOptions::default().boxes > 0);
 }

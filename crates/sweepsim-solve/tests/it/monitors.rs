@@ -151,7 +151,7 @@ fn surfaces_are_cancelled_soon() {
 }
 
 /// `(x² + y, x y)` on the unit square: singular where `y = 2 x²`.
-struct Fold;
+pub struct Fold;
 
 impl ChartMap<2> for Fold {
     type Cell = [Enclosure; 2];
@@ -242,7 +242,7 @@ fn a_chart_of_many_targets_is_cancelled_among_them() {
     let (all, statistics) = search(&After::new(u64::MAX));
     assert_eq!((all.found.len(), all.open.len()), (targets.0.len(), 0));
     assert!(statistics.boxes < 10, "{}", statistics.boxes);
-    let soon = After::new(100);
+    let soon = After::new(10);
     let (some, statistics) = search(&soon);
     assert!(statistics.evaluations < 500, "{}", statistics.evaluations);
     assert!(some.open.iter().all(|u| u.reason == Reason::Cancelled));
