@@ -68,8 +68,8 @@ impl<'a> Tracer<'a> {
         done.map(|()| vertices)
     }
 
-    /// Adds the vertices after the first end; `None` if that fails or the search is cancelled. The part of the cell that the curve between the ends lies in is `parts[depth]`, made from the one
-    /// before it.
+    /// Adds the vertices after the first end; `None` if that fails or the search is cancelled. The part of the cell in which the curve between the
+    /// ends lies is `parts[depth]`, computed from the previous one.
     fn halve(
         &mut self,
         cell: &Cell,

@@ -13,9 +13,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const PARTS: usize = 128;
 
 impl PointSolver {
-    /// As [`solve`](Self::solve), on the threads of the current rayon pool. The result is the same for any number of threads (unless
-    /// [`SolveOptions::time`](crate::SolveOptions::time) is set or the monitor cancels it); it may differ from `solve`'s in the last digits, and in how boxes that stay
-    /// open are cut. Budgets hold for each of at most 128 parts of the search; the monitor
+    /// As [`solve`](Self::solve), on the threads of the current rayon pool. The result is the same for any number of threads, unless
+    /// [`SolveOptions::time`](crate::SolveOptions::time) is set or the monitor cancels the search. It may differ from the result of `solve` in the
+    /// last digits, and in how unresolved boxes are cut. Budgets apply to each of at most 128 parts of the search. The monitor
     /// [advances](Monitor::advance) by parts, and [visits](Monitor::visit) no boxes.
     ///
     /// ```
