@@ -81,7 +81,7 @@ fn one_message_with_its_place() {
                 "Quaternions(degree: 1, points: [(1, 0, 0, 0), (1, 0, 0, 0.1)])",
                 "Matrices(degree: 0, points: [((1, 0, 0), (0, 1, 0), (0, 0, 1))], tolerance: 1)",
             ),
-            "job.ron:10:193: the tolerance must be positive",
+            "job.ron:10:193: the tolerance must be positive and at most 1e-6, but is 1",
         ),
         (
             poses,
