@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         }
         let (turn, tip) = part.at(low);
-        let top = tip + turn.column(2) * reach;
+        let top = nalgebra::Vector3::from(tip) + turn.column(2) * reach;
         let from_slerp = (top - *first.get_or_insert(top)).norm();
         println!(
             "{name:16} {:3} parts, {from_slerp:8.4} mm from SLERP at {reach} mm above the tip",

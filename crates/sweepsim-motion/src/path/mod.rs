@@ -225,7 +225,8 @@ impl Path {
     /// // The centre of the arc stays at one point of the tool.
     /// for t in [0.0, 0.3, 1.0] {
     ///     let (turn, tip) = path.segments_of_symmetric(0, 5.0, 1e-6)[0].at(t);
-    ///     assert!((turn.transpose() * -tip - nalgebra::Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-15);
+    ///     let centre = turn.transpose() * -nalgebra::Vector3::from(tip);
+    ///     assert!((centre - nalgebra::Vector3::new(-2.0, 0.0, 0.0)).norm() < 1e-15);
     /// }
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

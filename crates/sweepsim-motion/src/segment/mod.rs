@@ -127,13 +127,18 @@ impl Segment {
 
     /// The tip at the start and at the end.
     #[must_use]
-    pub fn tips(&self) -> &[Vector3<f64>; 2] {
+    pub fn tips(&self) -> [[f64; 3]; 2] {
+        self.tips.map(Into::into)
+    }
+
+    pub(crate) fn tip_vectors(&self) -> &[Vector3<f64>; 2] {
         &self.tips
     }
 
     /// The same motion with the ends of the tip moved; in between it is displaced as by [`displaced`](Self::displaced).
     #[must_use]
-    pub fn with_tips(self, tips: [Vector3<f64>; 2]) -> Self {
+    pub fn with_tips<P: Into<[f64; 3]>>(self, tips: [P; 2]) -> Self {
+        let tips = tips.map(|tip| Vector3::from(tip.into()));
         match self.kind {
             Kind::Arc(_) => Self { tips, ..self },
             Kind::Curve(_) => {
@@ -146,7 +151,8 @@ impl Segment {
     /// The same motion with its tip displaced: by the first vector at the start, by the second at the end, and in between by `(1 − σ)`
     /// of the one and `σ` of the other, where `σ(t)` grows from 0 to 1.
     #[must_use]
-    pub fn displaced(mut self, by: [Vector3<f64>; 2]) -> Self {
+    pub fn displaced<P: Into<[f64; 3]>>(mut self, by: [P; 2]) -> Self {
+        let by = by.map(|by| Vector3::from(by.into()));
         // Control values displaced evenly: σ is a rational form with increasing control values, hence monotone.
         if let Kind::Curve(curve) = &mut self.kind {
             let last = curve.points.len() - 1;
@@ -162,7 +168,8 @@ impl Segment {
 
     /// The same motion in another place: rotated by `turn` about the origin, then shifted.
     #[must_use]
-    pub fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Self {
+    pub fn moved(&self, turn: &Matrix3<f64>, shift: impl Into<[f64; 3]>) -> Self {
+        let shift = Vector3::from(shift.into());
         let place = |point: &Vector3<f64>, weight: f64| turn * point + shift * weight;
         let mut moved = self.clone();
         moved.tips = self.tips.map(|tip| place(&tip, 1.0));
@@ -194,16 +201,20 @@ impl Segment {
 
     /// Of an [arc](Self::is_arc), `κ k`: the angular velocity times the weight, in space. Of other motions, see [`twist`](Self::twist).
     #[must_use]
-    pub fn spin(&self) -> Vector3<f64> {
+    pub fn spin(&self) -> [f64; 3] {
         match &self.kind {
-            Kind::Arc(spin) => *spin,
+            Kind::Arc(spin) => (*spin).into(),
             Kind::Curve(_) => self.velocity(SegmentEnd::Start)[0],
         }
     }
 
     /// The displacement of the tip; of an [arc](Self::is_arc), `b′`: its velocity.
     #[must_use]
-    pub fn travel(&self) -> Vector3<f64> {
+    pub fn travel(&self) -> [f64; 3] {
+        self.travel_vector().into()
+    }
+
+    pub(crate) fn travel_vector(&self) -> Vector3<f64> {
         self.tips[1] - self.tips[0]
     }
 
@@ -220,14 +231,20 @@ impl Segment {
         self.turns[last] / self.weights[last]
     }
 
-    /// `A` and `b` at `t`.
+    /// `A` and `b` at `t`. Outside `[0, 1]` the motion is extrapolated, and need not exist.
     #[must_use]
-    pub fn at(&self, t: f64) -> (Matrix3<f64>, Vector3<f64>) {
+    pub fn at(&self, t: f64) -> (Matrix3<f64>, [f64; 3]) {
         let (points, weights) = self.points();
         (
             value(&self.turns, t) / value(&self.weights, t),
-            value(&points, t) / value(&weights, t),
+            (value(&points, t) / value(&weights, t)).into(),
         )
+    }
+
+    /// `A` and `b` at `t`; `None` outside `[0, 1]`.
+    #[must_use]
+    pub fn try_at(&self, t: f64) -> Option<(Matrix3<f64>, [f64; 3])> {
+        (0.0..=1.0).contains(&t).then(|| self.at(t))
     }
 
     /// The fraction of the segment's time that has passed at `t`: for motions at constant angular speed, the fraction of the angle.

@@ -10,7 +10,7 @@ impl Segment {
     #[must_use]
     pub fn tip_rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
         match &self.kind {
-            Kind::Arc(_) => (vec![self.travel()], vec![1.0]),
+            Kind::Arc(_) => (vec![self.travel_vector()], vec![1.0]),
             Kind::Curve(curve) => {
                 let (rate, factor) = curve.rate();
                 let degree = rate.len().max(factor.len()) - 1;
@@ -39,7 +39,7 @@ impl Segment {
     pub fn twist(&self) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
         let curve = match &self.kind {
             Kind::Arc(spin) => {
-                let travel = self.travel();
+                let travel = self.travel_vector();
                 let back = |turn: &Matrix3<f64>| turn.tr_mul(&travel);
                 return (vec![self.start().tr_mul(spin)], self.turns.iter().map(back).collect());
             }
@@ -61,14 +61,16 @@ impl Segment {
 
     /// At one end, in space: the angular velocity and the velocity of the tip, both times a common positive factor.
     #[must_use]
-    pub fn velocity(&self, end: SegmentEnd) -> [Vector3<f64>; 2] {
+    pub fn velocity(&self, end: SegmentEnd) -> [[f64; 3]; 2] {
         if let Kind::Arc(spin) = &self.kind {
-            return [*spin, self.travel()];
+            return [*spin, self.travel_vector()].map(Into::into);
         }
         let (spins, travels) = self.twist();
         match end {
-            SegmentEnd::Start => [spins[0], travels[0]].map(|own| self.start() * own),
-            SegmentEnd::Finish => [spins[spins.len() - 1], travels[travels.len() - 1]].map(|own| self.end() * own),
+            SegmentEnd::Start => [spins[0], travels[0]].map(|own| (self.start() * own).into()),
+            SegmentEnd::Finish => {
+                [spins[spins.len() - 1], travels[travels.len() - 1]].map(|own| (self.end() * own).into())
+            }
         }
     }
 }

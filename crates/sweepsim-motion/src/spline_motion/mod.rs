@@ -7,7 +7,7 @@ pub use error::MotionError;
 
 use crate::pose::Pose;
 use crate::segment::{Segment, SegmentCurve};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use stretch::{MotionStretch, StretchTurning, of_matrices, of_quaternions, stretches};
 use sweepsim_spline::{BSpline, RationalSpline};
 
@@ -114,7 +114,7 @@ impl SplineMotion {
             };
             let segment = Segment::curve(turns, weights, curve);
             if let Some(before) = motion.segments.last() {
-                let (end, start) = (before.tips()[1], segment.tips()[0]);
+                let (end, start) = (before.tip_vectors()[1], segment.tip_vectors()[0]);
                 let tips = (end - start).norm() / (1.0 + end.amax());
                 let gap = tips.max((before.end() - segment.start()).norm());
                 if gap > 4.0 * joined {
@@ -134,10 +134,10 @@ impl SplineMotion {
     /// The pose at the start of segment `at`, or at the end.
     fn pose(&self, at: usize) -> Result<Pose, MotionError> {
         let (turn, tip, parameter) = match self.segments.get(at) {
-            Some(segment) => (segment.start(), segment.tips()[0], self.ranges[at].0),
+            Some(segment) => (segment.start(), segment.tip_vectors()[0], self.ranges[at].0),
             None => {
                 let last = &self.segments[at - 1];
-                (last.end(), last.tips()[1], self.ranges[at - 1].1)
+                (last.end(), last.tip_vectors()[1], self.ranges[at - 1].1)
             }
         };
         Pose::with_side(tip.into(), turn.column(2).into(), turn.column(0).into())
@@ -176,7 +176,8 @@ impl SplineMotion {
     ///
     /// # Errors
     /// [`MotionError::NoRotation`] or [`MotionError::Mirrored`] if `turn` is not a rotation to within 1e-12.
-    pub fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Result<Self, MotionError> {
+    pub fn moved(&self, turn: &Matrix3<f64>, shift: impl Into<[f64; 3]>) -> Result<Self, MotionError> {
+        let shift: [f64; 3] = shift.into();
         let (deviation, tolerance) = ((turn.tr_mul(turn) - Matrix3::identity()).norm(), 1e-12);
         if !(deviation <= tolerance) {
             let at = self.ranges[0].0;

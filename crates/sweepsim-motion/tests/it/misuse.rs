@@ -1,6 +1,6 @@
 //! Misuse of the public constructors: numbers that are not finite, wrong sizes, absurd measures. Errors, never a panic.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use sweepsim_motion::{
@@ -135,6 +135,8 @@ proptest! {
             for index in 0..path.moves() {
                 for part in path.segments(index, 10.0, deviation) {
                     prop_assert!(part.weights().iter().all(|w| *w > 0.0));
+                    prop_assert_eq!(part.try_at(0.25), Some(part.at(0.25)));
+                    prop_assert!(part.try_at(1.25).is_none() && part.try_at(f64::NAN).is_none());
                 }
             }
         }
@@ -149,8 +151,8 @@ proptest! {
         let tip = spline(degrees[1], 3, &tip).and_then(|tip| RationalSpline::from_polynomial(&tip));
         if let (Ok(turn), Ok(tip)) = (spline(degrees[0], 4, &turn), tip) {
             if let Ok(motion) = SplineMotion::from_quaternions(&turn, &tip) {
-                let _ = motion.moved(&Matrix3::identity(), Vector3::from(shift));
-                prop_assert!(motion.moved(&(Matrix3::identity() * 2.0), Vector3::zeros()).is_err());
+                let _ = motion.moved(&Matrix3::identity(), shift);
+                prop_assert!(motion.moved(&(Matrix3::identity() * 2.0), [0.0; 3]).is_err());
             }
             // A quaternion is not a matrix.
             let turn = RationalSpline::from_polynomial(&turn).expect("weights of 1");

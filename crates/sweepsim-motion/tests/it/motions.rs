@@ -61,7 +61,7 @@ fn deviation(path: &Path, limit: f64) -> f64 {
             let (turn, tip) = part.at(t);
             assert!((turn.tr_mul(&turn) - Matrix3::identity()).norm() < 1e-13);
             let (axis, expected) = law(from, to, &path.way(0), time);
-            worst = worst.max((tip - expected).norm() + (turn.column(2) - axis).norm() * REACH);
+            worst = worst.max((Vector3::from(tip) - expected).norm() + (turn.column(2) - axis).norm() * REACH);
         }
     }
     worst
@@ -100,7 +100,7 @@ fn twist_is_the_rate_of(part: &Segment, t: f64) -> Result<(), TestCaseError> {
     let h = 1e-5;
     let ((a, p), (c, q)) = (part.at(t - h), part.at(t + h));
     let over = |rate: (Vec<Vector3<f64>>, Vec<f64>)| bernstein(&rate.0, t) / bernstein(&rate.1, t);
-    prop_assert!((over(part.tip_rate()) - (q - p) / (2.0 * h)).norm() < 1e-4);
+    prop_assert!((over(part.tip_rate()) - (Vector3::from(q) - Vector3::from(p)) / (2.0 * h)).norm() < 1e-4);
     let (rate, weights) = part.turn_rate();
     let slope = bernstein(&rate, t) / bernstein(&weights, t);
     prop_assert!((slope - (c - a) / (2.0 * h)).norm() < 1e-4);
@@ -120,11 +120,12 @@ fn twist_is_the_rate_of(part: &Segment, t: f64) -> Result<(), TestCaseError> {
 /// Parts of one move join without a kink: the velocity after is a positive multiple of that before.
 fn smooth(parts: &[Segment]) -> Result<(), TestCaseError> {
     for pair in parts.windows(2) {
-        prop_assert!((pair[0].tips()[1] - pair[1].tips()[0]).norm() < 1e-12);
+        prop_assert!((Vector3::from(pair[0].tips()[1]) - Vector3::from(pair[1].tips()[0])).norm() < 1e-12);
         let [before, after] = [
             pair[0].velocity(SegmentEnd::Finish),
             pair[1].velocity(SegmentEnd::Start),
-        ];
+        ]
+        .map(|both| both.map(Vector3::from));
         let size = |v: &[Vector3<f64>; 2]| v[0].norm() * REACH + v[1].norm();
         let factor = size(&after) / size(&before);
         for k in 0..2 {
@@ -185,7 +186,7 @@ proptest! {
                 let (turn, tip) = part.at(at);
                 prop_assert!((turn.tr_mul(&turn) - Matrix3::identity()).norm() < 1e-13);
                 let (axis, expected) = law(&poses[0], &poses[1], &path.way(0), (n as f64 + part.time(at)) / parts.len() as f64);
-                let off = (tip - expected).norm() + (turn.column(2) - axis).norm() * REACH;
+                let off = (Vector3::from(tip) - expected).norm() + (turn.column(2) - axis).norm() * REACH;
                 prop_assert!(off <= limit + 1e-11, "{off:e} {limit:e}");
             }
         }

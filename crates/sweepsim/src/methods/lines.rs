@@ -50,8 +50,8 @@ impl PartBundles {
         };
         let placed = |end: SegmentEnd| {
             let (turn, tip) = match end {
-                SegmentEnd::Start => (segment.start(), segment.tips()[0]),
-                SegmentEnd::Finish => (segment.end(), segment.tips()[1]),
+                SegmentEnd::Start => (segment.start(), nalgebra::Vector3::from(segment.tips()[0])),
+                SegmentEnd::Finish => (segment.end(), nalgebra::Vector3::from(segment.tips()[1])),
             };
             let [before, after] = sides(parts, at, end);
             let bundle = |patch: &Patch| {
@@ -219,7 +219,7 @@ mod tests {
                     crate::methods::placement::twist(&segment, SegmentEnd::Start, &segment.start()),
                     Side::Beyond(true),
                 ];
-                let (turn, own_tip) = (segment.start(), segment.tips()[0]);
+                let (turn, own_tip) = (segment.start(), nalgebra::Vector3::from(segment.tips()[0]));
                 let map = PlacedMap::new(element, &mut cells, (turn, own_tip), [before, after], SIZE);
                 let sample = map.evaluate(&[at[0], at[1]]);
                 let [a, b] = plane(PlacedPatch::new(patch, &turn, &own_tip).position(), &at[..2]);

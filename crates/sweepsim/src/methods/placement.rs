@@ -8,7 +8,7 @@ use sweepsim_motion::{Segment, SegmentEnd};
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
     let back = turn.transpose();
-    let [spin, travel] = segment.velocity(end);
+    let [spin, travel] = segment.velocity(end).map(nalgebra::Vector3::from);
     Side::Moving(Twist {
         spin: (back * spin).into(),
         travel: (back * travel).into(),

@@ -141,8 +141,8 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
         let segment = &self.parts[at].segment;
         let (pose, source) = match end {
-            SegmentEnd::Start => ((segment.start(), segment.tips()[0]), self.source(at, 0.0)),
-            SegmentEnd::Finish => ((segment.end(), segment.tips()[1]), self.source(at, 1.0)),
+            SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
+            SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
         };
         let sides = sides(self.parts, at, end);
         for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {

@@ -177,7 +177,7 @@ fn condition(
     [normal, moment]: &[Vector3<f64>; 2],
 ) -> f64 {
     let back = turn.transpose();
-    let [spin, travel] = segment.velocity(end);
+    let [spin, travel] = segment.velocity(end).map(Vector3::from);
     (back * spin).dot(moment) + (back * travel).dot(normal)
 }
 

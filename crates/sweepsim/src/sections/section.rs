@@ -242,12 +242,12 @@ fn system(
     segment: &sweepsim_motion::Segment,
     plane: &Plane,
 ) -> Result<System, SystemError> {
-    let [first, last] = segment.tips();
+    let [first, last] = segment.tips().map(Vector3::from);
     match piece {
         BoundaryPiece::Patch(k) => PatchMotion::new(&tool.patches()[k], segment).section(plane),
         BoundaryPiece::Edge(k) => EdgeMotion::new(&tool.edges()[k], segment).section(plane),
-        BoundaryPiece::Placed(k) => PlacedPatch::new(&tool.patches()[k], &segment.start(), first).section(plane),
-        BoundaryPiece::Last(k) => PlacedPatch::new(&tool.patches()[k], &segment.end(), last).section(plane),
+        BoundaryPiece::Placed(k) => PlacedPatch::new(&tool.patches()[k], &segment.start(), &first).section(plane),
+        BoundaryPiece::Last(k) => PlacedPatch::new(&tool.patches()[k], &segment.end(), &last).section(plane),
     }
 }
 

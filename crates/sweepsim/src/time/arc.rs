@@ -50,10 +50,10 @@ impl ArcTimes {
         let mut times = Self {
             nodes: Vec::with_capacity(64),
             count,
-            spin: [(segment.start().transpose() * segment.spin()).into()],
-            tips: *segment.tips(),
-            velocity: segment.travel(),
-            pace: segment.spin(),
+            spin: [(segment.start().transpose() * Vector3::from(segment.spin())).into()],
+            tips: segment.tips().map(Vector3::from),
+            velocity: segment.travel().into(),
+            pace: segment.spin().into(),
         };
         let root = times.node(0.0, 1.0, turns, weights);
         times.nodes.push(root);

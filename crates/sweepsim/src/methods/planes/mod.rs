@@ -31,7 +31,7 @@ struct Forms {
 
 impl Forms {
     fn new(tool: &Tool, segment: &Segment) -> Self {
-        let [first, last] = segment.tips();
+        let [first, last] = segment.tips().map(Vector3::from);
         let at_rest = |turn: Matrix3<f64>, tip: &Vector3<f64>| {
             let patches = tool.patches().iter();
             patches.map(|patch| PlacedPatch::new(patch, &turn, tip)).collect()
@@ -43,7 +43,7 @@ impl Forms {
                 .map(|patch| PatchMotion::new(patch, segment))
                 .collect(),
             edges: tool.edges().iter().map(|edge| EdgeMotion::new(edge, segment)).collect(),
-            placed: [at_rest(segment.start(), first), at_rest(segment.end(), last)],
+            placed: [at_rest(segment.start(), &first), at_rest(segment.end(), &last)],
         }
     }
 }
