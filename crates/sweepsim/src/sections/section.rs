@@ -222,6 +222,8 @@ fn of_part(
             if curve.ends.is_none() {
                 points.push(points[0]);
             }
+            let points = refined(&moving, piece, &points, chord.of_step());
+            let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
             for points in kept(&moving, piece, &points) {
                 curves.push(SectionCurve {
                     cut,
@@ -249,6 +251,35 @@ fn system(
         BoundaryPiece::Placed(k) => PlacedPatch::new(&tool.patches()[k], &segment.start(), &first).section(plane),
         BoundaryPiece::Last(k) => PlacedPatch::new(&tool.patches()[k], &segment.end(), &last).section(plane),
     }
+}
+
+/// Halvings of a step of a polyline.
+const HALVINGS: u32 = 12;
+
+/// The polyline with as many more points as keep the middles of its steps within `off` of the curve: what is straight in the parameters may be
+/// round in space.
+fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -> Vec<Vec<f64>> {
+    let place = |x: &[f64]| Vector3::from(moving.see(piece, x).point.position);
+    let mut all: Vec<Vec<f64>> = Vec::with_capacity(points.len());
+    all.extend(points.first().map(|x| x.to_vec()));
+    for pair in points.windows(2) {
+        // What is still to be reached, the nearest last.
+        let mut ahead: Vec<(Vec<f64>, u32)> = vec![(pair[1].to_vec(), 0)];
+        let mut from = pair[0].to_vec();
+        while let Some((to, depth)) = ahead.last_mut() {
+            let middle: Vec<f64> = from.iter().zip(&*to).map(|(a, b)| 0.5 * (a + b)).collect();
+            let sag = (place(&middle) - 0.5 * (place(&from) + place(to))).norm();
+            if sag > off && *depth < HALVINGS {
+                *depth += 1;
+                let depth = *depth;
+                ahead.push((middle, depth));
+            } else {
+                all.extend(ahead.pop().map(|(to, _)| to));
+                from.clone_from(&all[all.len() - 1]);
+            }
+        }
+    }
+    all
 }
 
 /// The runs of a polyline that belong to the boundary of their move, cut where a condition changes its sign.

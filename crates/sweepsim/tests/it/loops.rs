@@ -114,3 +114,41 @@ fn loops_enclose_what_lines_find() {
         );
     }
 }
+
+#[test]
+fn holes_run_clockwise() {
+    // Around a square: the tool leaves an island.
+    let up = [0.0, 0.0, 1.0];
+    let around = path(&[
+        ([-10.0, -10.0, 0.0], up),
+        ([10.0, -10.0, 0.0], up),
+        ([10.0, 10.0, 0.0], up),
+        ([-10.0, 10.0, 0.0], up),
+        ([-10.0, -10.0, 0.0], up),
+    ]);
+    let tool = Tool::flat(3.0, 10.0).unwrap();
+    let plane = Plane::z(5.0).unwrap();
+    let found = section(&[Cut::new(&tool, &around)], &plane, 1e-3, &Options::new(1e-6), &()).unwrap();
+    let loops = found.loops();
+    assert_eq!((loops.closed.len(), loops.open.len()), (2, 0));
+    // Arcs are as close to their chords as was asked for.
+    let on_arc = |p: &[f64; 3]| (p[0] - 10.0).hypot(p[1] - 10.0);
+    for pair in found
+        .outline()
+        .iter()
+        .flat_map(|line| line.windows(2))
+        .filter(|pair| pair.iter().all(|p| p[0] > 10.01 && p[1] > 10.01))
+    {
+        let middle = [0, 1, 2].map(|k| 0.5 * (pair[0][k] + pair[1][k]));
+        assert!((on_arc(&middle) - 3.0).abs() < 1e-3, "{pair:?}");
+    }
+    let mut areas: Vec<f64> = loops
+        .closed
+        .iter()
+        .map(|line| area(std::slice::from_ref(line), &plane))
+        .collect();
+    areas.sort_by(f64::total_cmp);
+    let outer = 26.0 * 26.0 - (4.0 - std::f64::consts::PI) * 9.0;
+    assert!((areas[0] + 14.0 * 14.0).abs() < 0.05, "{areas:?}");
+    assert!((areas[1] - outer).abs() < 0.05, "{areas:?} for {outer}");
+}
