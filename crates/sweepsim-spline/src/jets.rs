@@ -37,7 +37,7 @@ pub struct Derivatives {
 }
 
 impl Derivatives {
-    /// The derivative taken `orders[i]` times by variable `i`: one number a component.
+    /// The derivative taken `orders[i]` times by variable `i`: one number per component.
     ///
     /// `None` beyond the total order, or unless there is one order for each variable.
     pub fn get(&self, orders: &[usize]) -> Option<&[f64]> {

@@ -1,8 +1,8 @@
 //! Multivariate tensor-product B-splines and Bernstein forms, rational or not, and their algebra.
 //!
-//! A geometric question becomes an equation between splines. This crate makes the equation: sums, products,
-//! derivatives, compositions of splines are splines again, as exact as `f64` allows, and know how exact that is. What
-//! solves it then needs only bounds, and these hold as computed.
+//! A geometric question becomes an equation between splines. This crate builds the equation: sums, products,
+//! derivatives and compositions of splines are splines again, as exact as `f64` allows, with bounds on their rounding errors.
+//! A solver then needs only bounds on their values, and these account for rounding.
 //!
 //! # In ten lines
 //!
@@ -33,18 +33,19 @@
 //! Curves, surfaces, volumes are the same type with one, two, three variables. In every grid of coefficients the first
 //! variable runs fastest (and, in [`BSpline`], the components of a control point before it).
 //!
-//! # What is promised
+//! # Guarantees
 //!
-//! - **Bounds.** Each form carries [`error`](Bernstein::error), a bound on the distance of its coefficients from those that exact
-//!   arithmetic would have given. Enclosures, cones, linear bounds include it. The scheme and its proof are in
-//!   `docs/error-bounds.md` of this crate; the tests hold every operation against exact rational arithmetic.
-//! - **No panic**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to store, is a form
-//!   with an infinite error. The others return errors that say which knot, weight, axis or size was wrong.
-//! - **No hidden tolerance.** Where one is needed it is an argument; where the question is *exact or not*, the error bounds decide.
+//! - **Bounds.** Each form carries [`error`](Bernstein::error), a bound on the distance of its coefficients from the results of exact
+//!   arithmetic. Enclosures, cones and linear bounds include it. The scheme and its proof are in
+//!   `docs/error-bounds.md` of this crate; the tests compare every operation with exact rational arithmetic.
+//! - **No panics**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to store, gives a form
+//!   with an infinite error. Other operations return errors that say which knot, weight, axis or size was wrong.
+//!   (The slice functions of [`kernel`] say where they need slices of a certain length.)
+//! - **No hidden tolerances.** Where one is needed, it is an argument; where the question is *exact or not*, the error bounds decide.
 //!
 //! # More
 //!
-//! `examples/operations.rs` shows every operation. Feature `serde`: all types are stored and, when read, checked.
+//! `examples/operations.rs` shows every operation. With the feature `serde` all types can be stored; they are checked when read.
 
 mod bernstein;
 mod bounds;

@@ -1,4 +1,4 @@
-//! What can be wrong with a patch, or with patches that are to enclose a tool.
+//! Errors of patches, and of boundaries made of patches.
 
 use sweepsim_spline::SplineError;
 use thiserror::Error;

@@ -1,4 +1,4 @@
-//! What can be wrong with a path.
+//! Errors of paths.
 
 use thiserror::Error;
 

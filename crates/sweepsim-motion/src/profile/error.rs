@@ -1,4 +1,4 @@
-//! What can be wrong with a profile.
+//! Errors of profiles.
 
 use sweepsim_spline::{KnotError, SplineError};
 use thiserror::Error;

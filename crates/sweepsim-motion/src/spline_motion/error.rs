@@ -1,4 +1,4 @@
-//! What can be wrong with a motion given by splines.
+//! Errors of motions given by splines.
 
 use crate::pose::PoseError;
 use sweepsim_spline::SplineError;

@@ -17,7 +17,7 @@ type Lanes = SmallVec<[Lane; 64]>;
 const ZERO: Lane = [0.0; LANES];
 
 impl Bernstein {
-    /// The values at many points: `points` has `variables()` coordinates a point, `values` room for one number each.
+    /// The values at many points: `points` has `variables()` coordinates per point, `values` room for one number each.
     ///
     /// As many points are done as both have; their number is returned. Of a form in no variables there is one point for
     /// each place in `values`.
@@ -34,7 +34,7 @@ impl Bernstein {
     }
 
     /// Values and gradients at many points: as [`evaluate_batch`](Self::evaluate_batch), and `gradients` has room for
-    /// `variables()` numbers a point, laid out as `points`.
+    /// `variables()` numbers per point, laid out as `points`.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

@@ -30,7 +30,7 @@ impl Bernstein {
         Self::computed(degrees, coefficients, error)
     }
 
-    /// All first partial derivatives, one a variable.
+    /// All first partial derivatives, one per variable.
     pub fn gradient(&self) -> Vec<Self> {
         (0..self.variables()).map(|axis| self.derivative(axis)).collect()
     }

@@ -46,7 +46,7 @@ impl Bernstein {
     /// `f(g₀(y), g₁(y), …)`: this form of the forms `inner`, one for each variable, in their variables `y`.
     ///
     /// With `inner` of degree 1 that is composition with an affine map; with forms of one variable, with a curve. The
-    /// `g`s need not stay in `[0,1]`: the polynomial goes on there. Degree in `y_k`: `Σ_i deg_i(f) · deg_k(g_i)`.
+    /// `g`s need not stay in `[0,1]`: the polynomial is extrapolated. Degree in `y_k`: `Σ_i deg_i(f) · deg_k(g_i)`.
     ///
     /// Cost: about one product of forms a coefficient of `f`. Error: that of the sums and products.
     ///

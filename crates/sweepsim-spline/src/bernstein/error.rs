@@ -1,8 +1,8 @@
-//! What can be wrong with a form.
+//! Errors of forms.
 
 use super::{MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
 
-/// Why coefficients are not a Bernstein form, or a form not what an operation needs.
+/// Why coefficients do not make a Bernstein form, or an operation cannot be applied to a form.
 ///
 /// ```
 /// use sweepsim_spline::{Bernstein, BernsteinError};

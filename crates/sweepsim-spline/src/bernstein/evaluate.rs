@@ -11,9 +11,9 @@ use crate::rounding::{UNDERFLOW, gamma, up};
 use smallvec::SmallVec;
 
 impl Bernstein {
-    /// The value at `point`, one coordinate a variable; further coordinates are not looked at.
+    /// The value at `point`, one coordinate per variable; further coordinates are ignored.
     ///
-    /// A coordinate that is missing counts as NaN, as does the value then. Outside `[0,1]ⁿ` the polynomial goes on.
+    /// A coordinate that is missing counts as NaN, as does the value then. Outside `[0,1]ⁿ` the polynomial is extrapolated.
     pub fn evaluate(&self, point: &[f64]) -> f64 {
         let mut values = Buffer::from_slice(&self.coefficients);
         for axis in (0..self.variables()).rev() {
@@ -92,7 +92,7 @@ impl Bernstein {
         }
     }
 
-    /// Bounds on the errors of a gradient at `point`, one a variable as far as `errors` has room.
+    /// Bounds on the errors of a gradient at `point`, one per variable as far as `errors` has room.
     ///
     /// The slope by a variable of degree `d` is a sum over differences of basis functions, whose absolute values sum to
     /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few roundings more. Where
@@ -149,7 +149,7 @@ impl Bernstein {
         jets::derivatives(Buffer::from_slice(&self.coefficients), 1, &tables, order)
     }
 
-    /// The matrix of second derivatives at `point`, one row and one column a variable.
+    /// The matrix of second derivatives at `point`, one row and one column per variable.
     pub fn hessian(&self, point: &[f64]) -> nalgebra::DMatrix<f64> {
         let n = self.variables();
         let all = self.derivatives(point, 2);

@@ -83,7 +83,7 @@ impl BernsteinMap {
         self.components.iter().map(Bernstein::error).fold(0.0, f64::max)
     }
 
-    /// The value at `point`, which must be in `[0,1]ⁿ`: one number a component.
+    /// The value at `point`, which must be in `[0,1]ⁿ`: one number per component.
     ///
     /// # Errors
     ///
@@ -93,7 +93,7 @@ impl BernsteinMap {
         Ok(self.evaluate(point))
     }
 
-    /// The value at `point`, one number a component.
+    /// The value at `point`, one number per component.
     pub fn evaluate(&self, point: &[f64]) -> Vec<f64> {
         self.components.iter().map(|c| c.evaluate(point)).collect()
     }

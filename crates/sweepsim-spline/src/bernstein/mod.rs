@@ -1,4 +1,4 @@
-//! The scalar Bernstein form and what it is made of.
+//! The scalar Bernstein form.
 
 mod algebra;
 mod batch;
@@ -20,7 +20,7 @@ pub use rational::{RationalBernstein, RationalError};
 use crate::rounding::magnitude;
 use smallvec::SmallVec;
 
-/// The degrees of a form, one a variable.
+/// The degrees of a form, one per variable.
 pub(crate) type Degrees = SmallVec<[usize; 4]>;
 
 /// The most coefficients a form may have: 2²⁸, two gibibytes.
@@ -37,15 +37,14 @@ pub const MAX_DEGREE: usize = 1000;
 /// With degrees `d₀, …, dₙ₋₁` the form is `Σ c[i₀,…,iₙ₋₁] · B(d₀,i₀)(x₀) ⋯ B(dₙ₋₁,iₙ₋₁)(xₙ₋₁)`,
 /// `B(d,i)(x) = C(d,i) xⁱ (1−x)ᵈ⁻ⁱ`. The first variable runs fastest: `c[i₀,i₁,i₂]` is at `i₀ + (d₀+1)(i₁ + (d₁+1) i₂)`.
 ///
-/// # What it promises
+/// # Guarantees
 ///
-/// - **Every operation is total.** A variable beyond [`variables`](Self::variables) is one that the form does not
-///   depend on: two forms with different numbers of variables add and multiply as functions of the larger number, the
+/// - **Every operation is total.** The form is constant in variables beyond [`variables`](Self::variables): two forms with different numbers of variables add and multiply as functions of the larger number, the
 ///   derivative by such a variable is 0, splitting by it gives two copies. Nothing panics.
-/// - **Every operation carries its rounding error.** [`error`](Self::error) bounds, for every coefficient, the distance from
+/// - **Every operation bounds its rounding error.** [`error`](Self::error) bounds, for every coefficient, the distance from
 ///   what exact arithmetic would have given, starting from the coefficients given to [`new`](Self::new) taken as exact. So
-///   [`enclosure`](Self::enclosure) holds as computed. Overflow, or a result above [`MAX_COEFFICIENTS`], gives a form with
-///   an infinite error, whose enclosure is `(−∞, ∞)`: true, and of no use.
+///   [`enclosure`](Self::enclosure) is rigorous. Overflow, or a result above [`MAX_COEFFICIENTS`], gives a form with
+///   an infinite error, whose enclosure is `(−∞, ∞)`.
 ///
 /// # Example
 ///
@@ -85,7 +84,7 @@ pub(crate) fn coefficient_count(degrees: &[usize]) -> Option<usize> {
 }
 
 impl Bernstein {
-    /// The form with these degrees (one a variable) and coefficients (first variable fastest).
+    /// The form with these degrees (one per variable) and coefficients (first variable fastest).
     ///
     /// # Errors
     ///
@@ -176,7 +175,7 @@ impl Bernstein {
         }
     }
 
-    /// The form of which nothing is known: what an operation returns that would overflow or not fit.
+    /// The form of which nothing is known: the result of an operation that overflows or would be too large.
     pub(crate) fn unknown(variables: usize) -> Self {
         Self {
             degrees: SmallVec::from_elem(0, variables),
@@ -306,7 +305,7 @@ pub(crate) fn range(values: &[f64]) -> (f64, f64) {
     )
 }
 
-/// A person's view: the degrees, then the coefficients, one line for each row of the first variable.
+/// Human-readable: the degrees, then the coefficients, one line for each row of the first variable.
 impl std::fmt::Display for Bernstein {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Bernstein form of degree {:?}", self.degrees.as_slice())?;

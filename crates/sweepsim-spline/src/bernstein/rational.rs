@@ -95,7 +95,7 @@ impl RationalBernstein {
         )
     }
 
-    /// The numerators, one a coordinate.
+    /// The numerators, one per coordinate.
     pub fn numerators(&self) -> &[Bernstein] {
         &self.numerators
     }

@@ -72,7 +72,7 @@ impl Bernstein {
 
     /// The form on `lo ≤ x_axis ≤ hi`, again on `[0,1]ⁿ`; with `lo > hi` reversed in that variable.
     ///
-    /// `lo` and `hi` may lie outside `[0,1]`: the polynomial goes on there.
+    /// `lo` and `hi` may lie outside `[0,1]`: the polynomial is extrapolated.
     #[must_use]
     pub fn restrict(&self, axis: usize, lo: f64, hi: f64) -> Self {
         let degree = self.degree(axis);

@@ -1,4 +1,4 @@
-//! Changing what a form is a function of: more variables, another order.
+//! Adding and reordering the variables of a form.
 
 use super::{Bernstein, BernsteinError, Degrees, MAX_VARIABLES};
 use smallvec::SmallVec;

@@ -20,7 +20,7 @@ use crate::bernstein::Bernstein;
 pub struct LinearBound {
     /// The value of `ℓ` at the origin.
     pub constant: f64,
-    /// The slopes of `ℓ`, one a variable.
+    /// The slopes of `ℓ`, one per variable.
     pub slopes: Vec<f64>,
     /// The least that `f − ℓ` can be.
     pub lower: f64,

@@ -1,4 +1,4 @@
-//! What can be said of all values at once: ranges, cones, linear bounds; each holds as computed.
+//! Bounds on all values at once: ranges, cones, linear bounds. All account for rounding errors.
 
 mod cone;
 mod linear;

@@ -13,9 +13,9 @@ use smallvec::SmallVec;
 /// A fitted spline, and how well it fits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// The spline. Its own error bound is 0: what it is off by is `residual`.
+    /// The spline. Its own error bound is 0; its deviation is `residual`.
     pub spline: BSpline,
-    /// The largest deviation in any component at any of the points looked at.
+    /// The largest deviation in any component at any of the sampled points.
     pub residual: f64,
 }
 

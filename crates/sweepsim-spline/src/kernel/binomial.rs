@@ -1,7 +1,7 @@
 //! Binomial coefficients as `f64`.
 //!
 //! Exact up to row 56 (`C(56, 28) < 2⁵³`); beyond, each carries at most the row's number of roundings; beyond row 1029
-//! they overflow, and whatever is made of them becomes a form with an infinite error bound.
+//! they overflow, and results that use them get an infinite error bound.
 
 const TABLED: usize = 33;
 

@@ -3,7 +3,7 @@
 use super::binomial;
 use std::ops::{Add, Mul};
 
-/// What a coefficient must be able to do: add, and be multiplied by a number. Implemented by whatever can.
+/// The operations of a coefficient: addition, and multiplication by a number. Implemented for every type that has them.
 pub trait Coefficient: Copy + Add<Output = Self> + Mul<f64, Output = Self> {}
 
 impl<A: Copy + Add<Output = A> + Mul<f64, Output = A>> Coefficient for A {}

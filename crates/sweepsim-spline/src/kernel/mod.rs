@@ -1,4 +1,4 @@
-//! The arithmetic of Bernstein coefficients on slices: what every form in this workspace is computed with.
+//! The arithmetic of Bernstein coefficients on slices, which all forms in this workspace share.
 //!
 //! Nothing here allocates, checks a domain, or tracks a rounding error. [`Bernstein`](crate::Bernstein) does
 //! all of that on top of these functions; use them directly where a form lives in memory of your own and time matters.
@@ -23,7 +23,7 @@
 //! # Lines
 //!
 //! Forms in one variable may have coefficients of any type that adds and is multiplied by numbers: [`product`], [`raised`],
-//! [`wronskian`] and [`derivative`] iterate over the coefficients of their result, so that the caller says where they go.
+//! [`wronskian`] and [`derivative`] iterate over the coefficients of their result, so that the caller decides where to store them.
 
 mod along;
 mod basis;

@@ -9,7 +9,7 @@ type Basis = SmallVec<[f64; 8]>;
 impl KnotVector {
     /// The basis functions that may differ from 0 at `x`: the index of the first, and `degree + 1` values.
     ///
-    /// Outside the domain the polynomials of the first or last span go on. Inside, each value has a relative error of at
+    /// Outside the domain the polynomials of the first or last span are extrapolated. Inside, each value has a relative error of at
     /// most `6p` roundings: only positive numbers are added.
     pub fn basis(&self, x: f64) -> (usize, Vec<f64>) {
         let span = self.span(x);

@@ -1,8 +1,8 @@
-//! What can be wrong with knots.
+//! Errors of knot vectors.
 
 use crate::bernstein::{MAX_COEFFICIENTS, MAX_DEGREE};
 
-/// Why numbers are not a knot vector.
+/// Why numbers do not make a knot vector.
 ///
 /// ```
 /// use sweepsim_spline::{KnotError, KnotVector};

@@ -96,7 +96,7 @@ impl KnotVector {
         breakpoints
     }
 
-    /// The Greville abscissae, one a basis function: the means of `p` knots (for degree 0 the middles of the spans).
+    /// The Greville abscissae, one per basis function: the means of `p` knots (for degree 0 the middles of the spans).
     ///
     /// The spline with these coefficients is the identity.
     pub fn greville(&self) -> Vec<f64> {

@@ -54,7 +54,7 @@ impl BSpline {
         Ok(self.with_rows(axis, &rows, target))
     }
 
-    /// The gradient or Jacobian as splines: all first partial derivatives, one a variable.
+    /// The gradient or Jacobian as splines: all first partial derivatives, one per variable.
     ///
     /// # Errors
     ///
@@ -105,7 +105,7 @@ impl BSpline {
         Ok(Self::computed(all, self.dimension, coefficients, error))
     }
 
-    /// The integral over the whole domain, one number a component, and a bound on the error of each.
+    /// The integral over the whole domain, one number per component, and a bound on the error of each.
     ///
     /// ```
     /// use sweepsim_spline::{BSpline, KnotVector};

@@ -1,9 +1,9 @@
-//! What can be wrong with a spline, or with the arguments of an operation.
+//! Errors of splines and of their operations.
 
 use crate::bernstein::{BernsteinError, MAX_COEFFICIENTS, MAX_VARIABLES};
 use crate::knots::KnotError;
 
-/// Why numbers are not a spline, or a spline not what an operation needs.
+/// Why numbers do not make a spline, or an operation cannot be applied to a spline.
 ///
 /// ```
 /// use sweepsim_spline::{BSpline, KnotVector, SplineError};
@@ -51,7 +51,7 @@ pub enum SplineError {
         /// Its value.
         weight: f64,
     },
-    /// More coefficients, variables or degree than allowed, or none.
+    /// No coefficients, or more coefficients, variables or degrees than allowed.
     #[error("no coefficients, or more than {MAX_COEFFICIENTS}, or more than {MAX_VARIABLES} variables")]
     Size,
     /// An error bound is negative or not a number.

@@ -41,7 +41,7 @@ impl BSpline {
         Ok(self.evaluate(point))
     }
 
-    /// The value at `point` (one coordinate a variable): `dimension()` numbers. Outside the domain the polynomials at its border go on.
+    /// The value at `point` (one coordinate per variable): `dimension()` numbers. Outside the domain the polynomials at its border are extrapolated.
     pub fn evaluate(&self, point: &[f64]) -> Vec<f64> {
         let mut value = vec![0.0; self.dimension];
         self.evaluate_into(point, &mut value);
@@ -195,7 +195,7 @@ impl BSpline {
         }
     }
 
-    /// The values at many points: `points` has `variables()` coordinates a point, `values` room for `dimension()` numbers each.
+    /// The values at many points: `points` has `variables()` coordinates per point, `values` room for `dimension()` numbers each.
     ///
     /// As many points are done as both have; their number is returned. Of a spline in no variables, as many as there is room.
     pub fn evaluate_batch(&self, points: &[f64], values: &mut [f64]) -> usize {
@@ -207,7 +207,7 @@ impl BSpline {
     }
 
     /// Values and first derivatives at many points: as [`evaluate_batch`](Self::evaluate_batch), and `slopes` has room for
-    /// `dimension() · variables()` numbers a point, laid out as by [`evaluate_jacobian_into`](Self::evaluate_jacobian_into).
+    /// `dimension() · variables()` numbers per point, laid out as by [`evaluate_jacobian_into`](Self::evaluate_jacobian_into).
     ///
     /// ```
     /// use sweepsim_spline::{BSpline, KnotVector};

@@ -23,7 +23,7 @@ use crate::rounding::magnitude;
 use rows::Row;
 use smallvec::SmallVec;
 
-/// The knot vectors of a spline, one a variable.
+/// The knot vectors of a spline, one per variable.
 pub(crate) type Knots = SmallVec<[KnotVector; 3]>;
 
 /// A tensor-product B-spline, a piecewise polynomial map from a box in `Rⁿ` to `Rᵐ`: curve, surface, volume and beyond.
@@ -32,9 +32,9 @@ pub(crate) type Knots = SmallVec<[KnotVector; 3]>;
 /// The first variable runs fastest among the points, the components fastest of all: component `k` of point `(i₀, i₁)` is at
 /// `k + m (i₀ + n₀ i₁)`.
 ///
-/// # What it promises
+/// # Guarantees
 ///
-/// - **Evaluation is total.** Outside the domain the polynomials at its border go on; a coordinate that is missing
+/// - **Evaluation is total.** Outside the domain the polynomials at its border are extrapolated; a coordinate that is missing
 ///   counts as NaN. Operations that need something of their arguments return a [`SplineError`] that says what was wrong.
 /// - **Every operation carries its rounding error**, as for [`Bernstein`](crate::Bernstein): [`error`](Self::error) bounds
 ///   for every coefficient the distance from what exact arithmetic would have given.
@@ -181,12 +181,12 @@ impl BSpline {
         self.dimension
     }
 
-    /// The knot vectors, one a variable.
+    /// The knot vectors, one per variable.
     pub fn knots(&self) -> &[KnotVector] {
         &self.knots
     }
 
-    /// The degree in variable `axis`; 0 if there is none.
+    /// The degree in variable `axis`; 0 if there is no such variable.
     pub fn degree(&self, axis: usize) -> usize {
         self.knots.get(axis).map_or(0, KnotVector::degree)
     }
@@ -295,7 +295,7 @@ pub(crate) fn coefficient_count(knots: &[KnotVector], dimension: usize) -> Resul
         .ok_or(SplineError::Size)
 }
 
-/// A person's view: the knots of each variable, then the control points, one a line.
+/// Human-readable: the knots of each variable, then the control points, one per line.
 impl std::fmt::Display for BSpline {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "B-spline R^{} → R^{}", self.variables(), self.dimension)?;

@@ -9,7 +9,7 @@ use crate::knots::KnotVector;
 use crate::rounding::{magnitude, up};
 use smallvec::SmallVec;
 
-/// One polynomial piece of a spline: where it is, and what it is there.
+/// One polynomial piece of a spline: its box, and the polynomial on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplinePiece {
     /// The box, one interval a variable.

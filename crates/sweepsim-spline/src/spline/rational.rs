@@ -29,7 +29,7 @@ pub struct RationalSpline {
     pub(super) homogeneous: BSpline,
 }
 
-/// One piece of a rational spline: where it is, and what it is there.
+/// One piece of a rational spline: its box, and the rational map on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RationalPiece {
     /// The box, one interval a variable.
@@ -41,7 +41,7 @@ pub struct RationalPiece {
 impl RationalSpline {
     /// The spline with these knots, control points (`dimension` numbers each, first variable fastest) and weights.
     ///
-    /// The products of weight and point are rounded; the error bound says so.
+    /// The products of weight and point are rounded; the error bound includes that.
     ///
     /// # Errors
     ///
@@ -120,7 +120,7 @@ impl RationalSpline {
         self.homogeneous.dimension() - 1
     }
 
-    /// The knot vectors, one a variable.
+    /// The knot vectors, one per variable.
     pub fn knots(&self) -> &[KnotVector] {
         self.homogeneous.knots()
     }
@@ -147,7 +147,7 @@ impl RationalSpline {
         Ok(self.evaluate(parameters))
     }
 
-    /// The point at `parameters`. Outside the domain the polynomials at its border go on.
+    /// The point at `parameters`. Outside the domain the polynomials at its border are extrapolated.
     pub fn evaluate(&self, parameters: &[f64]) -> Vec<f64> {
         let mut value = self.homogeneous.evaluate(parameters);
         let weight = value.pop().unwrap_or(f64::NAN);
@@ -173,7 +173,7 @@ impl RationalSpline {
         (value, error)
     }
 
-    /// The points at many parameters: `variables()` numbers a point in, `dimension()` out; returns how many were done.
+    /// The points at many parameters: `variables()` numbers per point in, `dimension()` out; returns how many were done.
     pub fn evaluate_batch(&self, parameters: &[f64], values: &mut [f64]) -> usize {
         let (n, m) = (self.variables(), self.dimension());
         let count = parameters
@@ -309,7 +309,7 @@ impl From<RationalSpline> for BSpline {
     }
 }
 
-/// A person's view: knots, then control points with their weights, one a line.
+/// Human-readable: knots, then control points with their weights, one per line.
 impl std::fmt::Display for RationalSpline {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "rational B-spline R^{} → R^{}", self.variables(), self.dimension())?;

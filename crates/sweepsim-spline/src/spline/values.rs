@@ -1,4 +1,4 @@
-//! Splines put together: components, affine maps of the values, products of separate variables, composition.
+//! Combining splines: components, affine maps of the values, products of separate variables, composition.
 
 use super::rows::{self, Row};
 use super::{BSpline, Knots, SplineError};
