@@ -1,4 +1,4 @@
-//! What is swept: patches and edges of a tool, prepared once per tool, and cut into cells on demand.
+//! Patches and edges of a tool as forms, prepared once per tool.
 //!
 //! Only the tool enters here, no motion: the cells of `(u, v)` serve all segments of a path. Each cell keeps the *control
 //! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the

@@ -1,14 +1,18 @@
 //! The envelope systems of a tool under a motion, by the paper's names, as exact Bernstein forms.
 //!
-//! | of | unknowns | surface | section by a plane | points on a line |
-//! | --- | --- | --- | --- | --- |
-//! | a patch | `u, v, t` | Eq. 2, [`envelope`](PatchMotion::envelope) | Eq. 4, [`section`](PatchMotion::section) | Eq. 6, [`line`](PatchMotion::line) |
-//! | a sharp edge | `r, t` | Eq. 3: no equation | Eq. 5, [`section`](EdgeMotion::section) | Eq. 7, [`line`](EdgeMotion::line) |
-//! | a placed patch (cap, kink) | `u, v` | no equation | [`section`](PlacedPatch::section) | [`line`](PlacedPatch::line) |
+//! | of | unknowns | surface | section by a plane | points on a line | the same as a map, for charts |
+//! | --- | --- | --- | --- | --- | --- |
+//! | a patch | `u, v, t` | Eq. 2, [`envelope`](PatchMotion::envelope) | Eq. 4, [`section`](PatchMotion::section) | Eq. 6, [`line`](PatchMotion::line) | `PatchMap` in `patch_map.rs`: `(X, Y, g)` |
+//! | a sharp edge | `r, t` | Eq. 3: no equation | Eq. 5, [`section`](EdgeMotion::section) | Eq. 7, [`line`](EdgeMotion::line) | `EdgeMap` in `edge_map.rs`: `(X, Y)`, and both `g` |
+//! | a placed patch (cap, kink) | `u, v` | no equation | [`section`](PlacedPatch::section) | [`line`](PlacedPatch::line) | `PlacedMap` in `placed_map.rs`: `(X, Y)`, and `g` before and after |
 //!
 //! All rational forms are over one positive weight, which is cleared: `⟨F, n⟩ = d` becomes `⟨F̂, n⟩ − d W = 0`. The envelope
-//! condition is taken in its lowest degree: `w g = ⟨M, κ A₀ᵀk⟩ + ⟨N, Âᵀ b′⟩`, of degree 2 in `t` (mathematics of charts in the
-//! project's `docs/algorithms/charts.md`).
+//! condition is taken in its lowest degree: `w g = ⟨M, κ A₀ᵀk⟩ + ⟨N, Âᵀ b′⟩`, of degree 2 in `t` (see the project's
+//! `docs/algorithms/charts.md`).
+//!
+//! The default method does not build these systems. It bounds and evaluates the same functions `X`, `Y` and `g` as maps, from cells of the patch and
+//! pieces of the motion, and solves Eq. 6 and 7 for all lines at once: a line is a value of the map. The maps lie beside this module in
+//! `envelope/`; `methods/search.rs` poses each equation once for all methods, and a unit test compares every map with its system.
 
 pub use crate::envelope::plane::{Plane, PlaneError};
 use nalgebra::{Matrix3, Vector3};
@@ -199,7 +203,7 @@ impl EdgeMotion {
         }
     }
 
-    /// Numerators of the position `(X, Y, Z)` in space, and their weight: Eq. 3, a surface by itself.
+    /// Numerators of the position `(X, Y, Z)` in space, and their weight: Eq. 3, a surface without any condition.
     #[must_use]
     pub fn position(&self) -> (&[Bernstein; 3], &Bernstein) {
         (&self.place.numerators, &self.place.weight)

@@ -62,7 +62,7 @@ pub(super) struct Passage {
     pub outer: bool,
 }
 
-/// So many chord errors before and after a crossing curves are looked at: far enough for the two to be told apart.
+/// Curves are tested this many chord errors before and after a crossing: far enough to tell them apart.
 const BESIDE: f64 = 8.0;
 
 /// Where the curves cross one another, for each of them; not yet with what bounds the volume.

@@ -1,4 +1,4 @@
-//! Sections of a swept volume by a plane, as curves: the paper's Eq. 4 and 5 for themselves.
+//! Sections of a swept volume by a plane, as curves: the paper's Eq. 4 and 5.
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
@@ -38,7 +38,7 @@ pub struct Section {
     pub plane: Plane,
     /// The curves of all pieces of the envelope, also those inside the volume.
     pub curves: Vec<SectionCurve>,
-    /// Pieces whose curves could not all be established, with the numbers of their cut and move.
+    /// Pieces whose curves are not certain, with the numbers of their cut and move.
     pub open: Vec<(usize, BoundaryPiece, u32)>,
     /// How far the curves may be from their polylines.
     pub(super) chord: f64,
@@ -73,7 +73,7 @@ const BOXES: u64 = 20_000;
 /// The section of what the cuts sweep together by a plane of any direction, as polylines that are at most `chord` off the curves.
 ///
 /// # Errors
-/// [`SweepError`]: cancelled, or a tolerance that is none (`chord` counts as one).
+/// [`SweepError`]: cancelled, or an invalid tolerance or chord error.
 ///
 /// ```
 /// use sweepsim::{Cut, Options, section, systems::Plane};
@@ -144,7 +144,7 @@ pub fn section(
     Ok(section)
 }
 
-/// Whether points of the envelope bound the volume: what is so far outside of them is not swept. Where that could not be established, they count
+/// Whether points of the envelope bound the volume: what is so far outside of them is not swept. Where that is not certain, they count
 /// as outer.
 pub(crate) fn outer(
     cuts: &[Cut],

@@ -39,7 +39,7 @@ pub struct EnvelopeSurface {
 pub struct EnvelopeSurfaces {
     /// All pieces, also those inside the volume.
     pub surfaces: Vec<EnvelopeSurface>,
-    /// Pieces whose surface could not be established everywhere, with the numbers of their cut and move.
+    /// Pieces whose surface is not certain everywhere, with the numbers of their cut and move.
     pub open: Vec<(usize, BoundaryPiece, u32)>,
 }
 
@@ -70,7 +70,7 @@ const STEPS: usize = 128;
 /// their parameters; they are cut off where a condition changes its sign, which is looked for on a grid.
 ///
 /// # Errors
-/// [`SweepError`]: cancelled, or a tolerance that is none (`chord` counts as one).
+/// [`SweepError`]: cancelled, or an invalid tolerance or chord error.
 pub fn envelope_surfaces(
     cuts: &[Cut],
     chord: f64,

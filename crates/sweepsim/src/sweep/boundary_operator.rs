@@ -31,7 +31,7 @@ impl fmt::Display for BoundaryOperator {
     }
 }
 
-/// A name that is no boundary operator.
+/// The error for an unknown name of a boundary operator.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("unknown boundary operator `{0}`: expected `coverage` or `paper`")]
 pub struct UnknownBoundaryOperator(pub String);

@@ -31,7 +31,7 @@ impl fmt::Display for Method {
     }
 }
 
-/// A name that is no method.
+/// The error for an unknown name of a method.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("unknown method `{0}`: expected `charts`, `planes`, `lines` or `surface`")]
 pub struct UnknownMethod(pub String);
@@ -54,13 +54,13 @@ impl FromStr for Method {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// How far interval ends may be off, in the unit of all lengths (see the crate's page on generic position).
+    /// Tolerance of interval ends, in the unit of all lengths. The crate's front page says what it means.
     pub tolerance: f64,
     /// How crossings are found.
     pub method: Method,
-    /// How they become intervals.
+    /// How crossings become intervals.
     pub boundary: BoundaryOperator,
-    /// What [`Source::path`](sweepsim_dexel::Source) says.
+    /// Number of the path in the [sources](sweepsim_dexel::Source::Cut) of ends.
     pub path_number: u32,
 }
 

@@ -25,7 +25,7 @@ pub type Probe = Result<Vec<Interval>, UnresolvedReason>;
 ///
 /// # Errors
 ///
-/// [`SweepError`]: cancelled, or a tolerance that is invalid.
+/// [`SweepError`]: cancelled, or an invalid tolerance.
 ///
 /// ```
 /// use sweepsim::prelude::*;

@@ -72,6 +72,6 @@ impl Statistics {
 pub struct Sweep {
     /// Its dexels; ends carry the normal of the envelope and the segment and time that made them.
     pub volume: Dexels,
-    /// What was done.
+    /// How it was computed.
     pub statistics: Statistics,
 }

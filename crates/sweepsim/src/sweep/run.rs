@@ -15,7 +15,7 @@ use sweepsim_solve::Monitor;
 /// Runs in the current rayon pool; the result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`SweepError`]: cancelled, or a tolerance that is none.
+/// [`SweepError`]: cancelled, or an invalid tolerance.
 pub fn sweep(
     tool: &Tool,
     path: &Path,
@@ -33,7 +33,7 @@ pub fn sweep(
         ..Statistics::default()
     };
     let mut failed: Vec<UnresolvedDexel> = Vec::new();
-    // The paper takes each move by itself.
+    // The paper sweeps each move separately.
     let length = match options.boundary {
         BoundaryOperator::Coverage => CHUNK,
         BoundaryOperator::Paper => 1,

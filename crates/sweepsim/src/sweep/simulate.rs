@@ -26,13 +26,13 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// What is left of a stock.
+/// What remains of a stock.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Simulation {
     /// The material that no cut took away; ends made by a tool know which [cut](sweepsim_dexel::Source), move and time.
     pub remaining: Dexels,
-    /// What was done, over all cuts.
+    /// Statistics of all cuts together.
     pub statistics: Statistics,
 }
 

@@ -7,13 +7,13 @@ use crate::sweep::simulate::{Cut, Simulation, simulate};
 use sweepsim_dexel::{Dexels, TriDexels};
 use sweepsim_solve::Monitor;
 
-/// What is left of a stock, along all three axes.
+/// What remains of a stock, along all three axes.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct TriSimulation {
     /// The material that no cut took away.
     pub remaining: TriDexels,
-    /// What was done along `x`, `y` and `z`.
+    /// Statistics along `x`, `y` and `z`.
     pub statistics: [Statistics; 3],
 }
 

@@ -7,7 +7,7 @@
 //! cross, the span is halved at a point of the curve, and the boxes of the halves shrink around it by the mean value theorem.
 //!
 //! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. Where curves or spans
-//! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), the answer is none, and the patch is
+//! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), no crossings are returned, and the patch is
 //! left to the charts of the column's lines.
 
 use crate::envelope::AnyBox;

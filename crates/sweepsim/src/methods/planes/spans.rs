@@ -46,7 +46,7 @@ pub(super) struct Cutting<'a, const N: usize, M: AnyBox<N>, K> {
     pub accept: f64,
     pub sink: &'a mut K,
     pub statistics: &'a mut ChartStatistics,
-    /// Spans that may still be looked at.
+    /// Spans that may still be examined.
     pub left: u32,
 }
 
@@ -78,7 +78,7 @@ where
         }
         let mark = self.map.mark();
         let cell = self.map.place(&within);
-        // Where the map asks for nothing (an edge both of whose faces move in, …) no crossing counts.
+        // Where the map excludes the box (both faces of an edge move inwards, say) no crossing counts.
         let lines = self
             .map
             .values(&cell)
