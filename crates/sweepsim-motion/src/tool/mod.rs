@@ -2,6 +2,8 @@
 
 mod apt;
 mod circle_segment;
+#[cfg(test)]
+mod circle_segment_tests;
 mod cutters;
 mod measures;
 mod surfaces;
