@@ -7,10 +7,12 @@ mod page;
 mod run;
 mod section;
 mod summary;
+mod task;
 mod tri_surface;
 
 pub(crate) use compare::compare;
 pub(crate) use convert::convert;
 pub(crate) use inspect::inspect;
-pub(crate) use run::{Task, run};
+pub(crate) use run::run;
 pub(crate) use section::section;
+pub(crate) use task::Task;

@@ -1,6 +1,6 @@
 //! `report.html`: the report for people. It shows `part.png`, which must be next to it.
 
-use super::run::Task;
+use super::task::Task;
 use crate::session::{tool_in_words, words};
 use std::fmt::Write as _;
 use sweepsim_formats::{Job, Report};

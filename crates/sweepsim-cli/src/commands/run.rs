@@ -2,6 +2,7 @@
 
 use super::page::Page;
 use super::summary::{NAMED, summary};
+use super::task::{Task, sweeping};
 use super::tri_surface;
 use crate::arguments::{Output, RunOptions};
 use crate::session::{Failure, JobSession, phase, picture, print, words};
@@ -14,15 +15,6 @@ use sweepsim_formats::{Job, Report, ReportedDexel, write_dexels_binary, write_de
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
 const CHORD: f64 = 0.02;
-
-/// What is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Task {
-    /// What the tools leave of the stock.
-    Simulate,
-    /// What the tools sweep.
-    Sweep,
-}
 
 /// The result of a run.
 struct Outcome {
@@ -118,13 +110,6 @@ fn json(report: &Report) -> Result<String, Failure> {
     report
         .to_json()
         .map_err(|error| Failure::message(format!("cannot make the report: {error}")))
-}
-
-/// The options of the sweep.
-pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
-    Options::new(job.tolerance)
-        .method(options.method)
-        .boundary(options.boundary)
 }
 
 /// Computes the dexels along z.

@@ -1,6 +1,6 @@
 //! The summary of `simulate` and `sweep`.
 
-use super::run::Task;
+use super::task::Task;
 use crate::session::{JobSession, Lines, words};
 use sweepsim_formats::Report;
 

@@ -1,6 +1,6 @@
 //! `--tri`: a surface from dexels along all three axes.
 
-use super::run::{Task, sweeping};
+use super::task::{Task, sweeping};
 use crate::arguments::RunOptions;
 use crate::session::{CRISP, Failure, JobSession, phase};
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};

@@ -1,0 +1,21 @@
+//! What `simulate` and `sweep` compute, and with which options.
+
+use crate::arguments::RunOptions;
+use sweepsim::Options;
+use sweepsim_formats::Job;
+
+/// What is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// What the tools leave of the stock.
+    Simulate,
+    /// What the tools sweep.
+    Sweep,
+}
+
+/// The options of the sweep.
+pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
+    Options::new(job.tolerance)
+        .method(options.method)
+        .boundary(options.boundary)
+}
