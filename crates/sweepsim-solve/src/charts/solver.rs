@@ -202,7 +202,7 @@ impl<C: Clone> ChartSolver<C> {
         let window = |q: &[f64; N]| linear.window(value, q);
         targets.visit(values, &window, &mut |target| {
             asked += 1;
-            if asked % BETWEEN == 0 && monitor.cancelled() {
+            if asked.is_multiple_of(BETWEEN) && monitor.cancelled() {
                 clear = false;
                 return false;
             }

@@ -31,7 +31,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
             segment.moved(&turn, shift)
         }
     };
-    let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip().into()));
+    let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip()));
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(poses.len());

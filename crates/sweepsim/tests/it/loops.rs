@@ -53,6 +53,9 @@ fn path(poses: &[([f64; 3], [f64; 3])]) -> Path {
     .unwrap()
 }
 
+/// Cuts, the height of the plane, and the number of loops.
+type SectionCase = (Vec<(Tool, Path)>, f64, usize);
+
 #[test]
 fn loops_enclose_what_lines_find() {
     let up = [0.0, 0.0, 1.0];
@@ -61,7 +64,7 @@ fn loops_enclose_what_lines_find() {
         ([0.0, 6.0, 0.0], [0.0, -0.4, 1.0]),
         ([20.0, -4.0, 3.0], [-0.4, 0.0, 1.0]),
     ]);
-    let cases: Vec<(Vec<(Tool, Path)>, f64, usize)> = vec![
+    let cases: Vec<SectionCase> = vec![
         (vec![(Tool::bull(5.0, 1.5, 30.0).unwrap(), leaning.clone())], -3.3, 1),
         (vec![(Tool::ball(3.0, 25.0).unwrap(), leaning.clone())], 0.7, 1),
         // Two grooves apart, and two that overlap.
