@@ -38,7 +38,7 @@ fn all_tools_along_all_motions() {
         .flat_map(|t| (0..motions.len()).map(move |m| (t, m)))
         .collect();
     assert!(cases.len() >= 200, "{}", cases.len());
-    let cases = sample("tools along motions", &cases, 40);
+    let cases = sample("tools along motions", &cases, 24);
     let check = |&(t, m): &(usize, usize)| {
         let grid = grid(t + m, &motions[m].path);
         judged(tools[t].0, &tools[t].1, &motions[m], &grid, (t + m) % tools.len() == 0)
