@@ -5,7 +5,7 @@
 use std::fs::File;
 use std::io::BufWriter;
 use sweepsim_dexel::{Grid, Stock};
-use sweepsim_picture::{Axis, Drawing, Section, View};
+use sweepsim_picture::{Axis, CuttingPlane, Drawing, View};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).unwrap_or_else(|| "ball.png".to_owned());
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut view = View::default();
     view.size = [800, 600];
-    let sections = [Section {
+    let sections = [CuttingPlane {
         axis: Axis::Y,
         at: -4.0,
     }];

@@ -1,11 +1,11 @@
 //! Still pictures of triangle meshes, computed without a GPU.
 //!
 //! A [`Mesh`] stands on a plane under a soft sky, with a large lamp to the viewer's left. Faces that tools cut
-//! are bronze, faces of the stock steel; or each vertex has a value, and a colour map and a [`legend`] show it. [Sections](Section)
+//! are bronze, faces of the stock steel; or each vertex has a value, and a colour map and a [`legend`] show it. [Sections](CuttingPlane)
 //! cut the part open. The same mesh gives the same bytes at any number of threads.
 //!
 //! ```
-//! use sweepsim_picture::{Axis, Drawing, Mesh, Section, View};
+//! use sweepsim_picture::{Axis, Drawing, Mesh, CuttingPlane, View};
 //!
 //! // A tetrahedron, its triangles counter-clockwise seen from outside.
 //! let mesh = Mesh {
@@ -16,7 +16,7 @@
 //! let mut view = View::default();
 //! view.size = [200, 150];
 //! view.azimuth = 30.0;
-//! let sections = [Section { axis: Axis::Z, at: 10.0 }];
+//! let sections = [CuttingPlane { axis: Axis::Z, at: 10.0 }];
 //! let image = view.draw(&Drawing::new(&mesh).sections(&sections));
 //! let png: Vec<u8> = image.png()?;
 //! assert!(png.starts_with(b"\x89PNG"));
@@ -47,4 +47,4 @@ mod view;
 
 pub use image::{Image, ImageError};
 pub use sweepsim_dexel::Mesh;
-pub use view::{Axis, Drawing, Section, View, render};
+pub use view::{Axis, CuttingPlane, Drawing, View, render};

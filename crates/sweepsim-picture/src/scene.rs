@@ -1,7 +1,7 @@
 //! The mesh to draw: checked, clipped at the sections, and scaled.
 
 use crate::vector::{Vector, cross, sub, unit};
-use crate::view::{Drawing, Section};
+use crate::view::{CuttingPlane, Drawing};
 use sweepsim_dexel::Mesh;
 
 /// Triangles in the unit ball.
@@ -75,7 +75,7 @@ impl ClippedMesh {
     }
 
     /// Removes the side of a section where `side · (place − at)` is positive.
-    fn cut_off(self, section: &Section, side: f64) -> Self {
+    fn cut_off(self, section: &CuttingPlane, side: f64) -> Self {
         let height = |v: u32| side * (self.vertices[v as usize].place[section.axis.index()] - section.at);
         let mut kept = Self::default();
         let mut numbers = vec![u32::MAX; self.vertices.len()];
@@ -118,7 +118,7 @@ impl ClippedMesh {
     }
 }
 
-fn between(a: Vertex, b: Vertex, s: f64, section: &Section) -> Vertex {
+fn between(a: Vertex, b: Vertex, s: f64, section: &CuttingPlane) -> Vertex {
     let t = s as f32;
     let mut place = [0, 1, 2].map(|k| a.place[k] + s * (b.place[k] - a.place[k]));
     place[section.axis.index()] = section.at;
@@ -134,7 +134,7 @@ impl Scene {
     /// `towards` is the direction of the viewer; everything between the viewer and a section is removed.
     pub fn new(drawing: &Drawing<'_>, towards: [f64; 3]) -> Self {
         let mut clipped = ClippedMesh::new(drawing);
-        let sections: Vec<(&Section, f64)> = drawing
+        let sections: Vec<(&CuttingPlane, f64)> = drawing
             .sections
             .iter()
             .filter(|section| section.at.is_finite())

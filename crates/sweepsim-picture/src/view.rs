@@ -28,7 +28,7 @@ impl Axis {
 
 /// A plane across an axis. Everything in front of it, as seen by the viewer, is removed; where it cuts the part, the inside shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct CuttingPlane {
     /// The axis that the plane is perpendicular to.
     pub axis: Axis,
     /// Where the plane crosses the axis. A section that is not finite removes nothing.
@@ -41,7 +41,7 @@ pub struct Drawing<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) values: &'a [f32],
     pub(crate) range: f32,
-    pub(crate) sections: &'a [Section],
+    pub(crate) sections: &'a [CuttingPlane],
 }
 
 impl<'a> Drawing<'a> {
@@ -66,7 +66,7 @@ impl<'a> Drawing<'a> {
 
     /// Cuts the mesh open.
     #[must_use]
-    pub fn sections(self, sections: &'a [Section]) -> Self {
+    pub fn sections(self, sections: &'a [CuttingPlane]) -> Self {
         Self { sections, ..self }
     }
 }

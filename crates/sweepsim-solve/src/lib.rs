@@ -26,7 +26,8 @@ mod systems;
 
 pub use bundles::{Bundle, BundleError, BundleSolver};
 pub use charts::{
-    ChartMap, ChartOptions, ChartSolver, ChartStatistics, Preimage, Reason, Sample, Sink, Target, Targets, Undecided,
+    ChartMap, ChartOptions, ChartSolver, ChartStatistics, ChartTarget, Preimage, Sample, Sink, Targets,
+    UnresolvedTarget,
 };
 pub use coefficients::MAX_DEGREE;
 pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveSolver, Curves, Singular};

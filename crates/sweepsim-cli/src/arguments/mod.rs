@@ -6,7 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
-use sweepsim_picture::{Section, View};
+use sweepsim_picture::{CuttingPlane, View};
 use values::{area, camera, cells, parsed, plane, section, size, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
@@ -176,7 +176,7 @@ pub(crate) struct ViewOptions {
     pub camera: View,
     /// Cuts the part open at a plane, like z=5. May be given for several axes.
     #[arg(long, value_name = "AXIS=MM", value_parser = section)]
-    pub section: Vec<Section>,
+    pub section: Vec<CuttingPlane>,
     /// The width and height of pictures, in pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = size)]
     pub size: [usize; 2],

@@ -1,7 +1,7 @@
 //! Parsers of option values.
 
 use sweepsim::systems::Plane;
-use sweepsim_picture::{Axis, Image, Section, View};
+use sweepsim_picture::{Axis, CuttingPlane, Image, View};
 
 /// Parses one of several names, which clap lists in its help.
 pub(super) fn parsed<T, const N: usize>(names: [&'static str; N]) -> clap::builder::ValueParser
@@ -79,7 +79,7 @@ pub(super) fn camera(text: &str) -> Result<View, String> {
     }
 }
 
-pub(super) fn section(text: &str) -> Result<Section, String> {
+pub(super) fn section(text: &str) -> Result<CuttingPlane, String> {
     let parts = text
         .split_once('=')
         .map(|(axis, at)| (axis.trim(), at.trim().parse::<f64>()));
@@ -90,7 +90,7 @@ pub(super) fn section(text: &str) -> Result<Section, String> {
         _ => None,
     };
     match (axis, parts) {
-        (Some(axis), Some((_, Ok(at)))) if at.is_finite() => Ok(Section { axis, at }),
+        (Some(axis), Some((_, Ok(at)))) if at.is_finite() => Ok(CuttingPlane { axis, at }),
         _ => Err("expected an axis and a number, like z=5".to_owned()),
     }
 }

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sweepsim_dexel::Mesh;
-use sweepsim_picture::{Axis, Drawing, Image, ImageError, Section, View, legend};
+use sweepsim_picture::{Axis, CuttingPlane, Drawing, Image, ImageError, View, legend};
 
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
@@ -46,7 +46,7 @@ proptest! {
         view.legend = angles[0];
         view.field_of_view = angles[1];
         view.orthographic = orthographic;
-        let sections = [Section { axis: Axis::Z, at }, Section { axis: Axis::X, at: 0.5 * at }];
+        let sections = [CuttingPlane { axis: Axis::Z, at }, CuttingPlane { axis: Axis::X, at: 0.5 * at }];
         let mut image = view.draw(&Drawing::new(&mesh).values(&values, range as f32).sections(&sections));
         legend::draw(&mut image, range as f32);
         prop_assert_eq!(image.size(), size.map(|side| side.max(1)));

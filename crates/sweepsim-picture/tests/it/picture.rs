@@ -1,7 +1,7 @@
 //! Pictures are deterministic, plausible, and complete.
 
 use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock};
-use sweepsim_picture::{Axis, Drawing, Image, Section, View, legend, render};
+use sweepsim_picture::{Axis, CuttingPlane, Drawing, Image, View, legend, render};
 
 const SIZE: [usize; 2] = [160, 120];
 
@@ -140,7 +140,7 @@ fn sections_lay_open_the_inside() {
         view.elevation = 90.0;
         view.orthographic = true;
     });
-    let sections = [Section { axis: Axis::Z, at: 6.0 }];
+    let sections = [CuttingPlane { axis: Axis::Z, at: 6.0 }];
     let open = view.draw(&Drawing::new(&mesh).sections(&sections));
     let closed = view.render(&mesh);
     let at = |image: &Image, x: f64, y: f64| {
@@ -164,8 +164,8 @@ fn sections_lay_open_the_inside() {
     // Below the cavity, and where there is nothing.
     let cut = |at: f64| {
         let sections = [
-            Section { axis: Axis::Z, at },
-            Section {
+            CuttingPlane { axis: Axis::Z, at },
+            CuttingPlane {
                 axis: Axis::X,
                 at: f64::NAN,
             },
@@ -177,7 +177,7 @@ fn sections_lay_open_the_inside() {
     // From below it is the other half that is left.
     let mut below = view;
     below.elevation = -90.0;
-    let open = below.draw(&Drawing::new(&mesh).sections(&[Section { axis: Axis::Z, at: 2.0 }]));
+    let open = below.draw(&Drawing::new(&mesh).sections(&[CuttingPlane { axis: Axis::Z, at: 2.0 }]));
     assert!(warm(at(&open, 20.0, 15.0)));
 }
 

@@ -153,7 +153,7 @@ impl BundleSolver {
     /// Finds, for every target, all solutions in `[0, 1]ᴺ`.
     ///
     /// Only [`evaluate`](ChartMap::evaluate) and [`scales`](ChartMap::scales) of the map are used; it must be the map that the bundle's forms define.
-    /// Each solution is reported to `sink` once; boxes that may hold unreported solutions are reported as undecided.
+    /// Each solution is reported to `sink` once; boxes that may hold unreported solutions are reported as unresolved.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         bundle: &Bundle<N>,

@@ -4,8 +4,8 @@ use super::cell::{Blocks, StackedBox};
 use super::line::{self, Found, Outcome, Window};
 use super::taylor::Taylor;
 use crate::charts::{BETWEEN, Trail, all_of, collapses, largest, widest};
-use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Target, Targets, Undecided};
-use crate::{Enclosure, Monitor};
+use crate::charts::{ChartMap, ChartOptions, ChartStatistics, ChartTarget, Preimage, Sink, Targets, UnresolvedTarget};
+use crate::{Cause, Enclosure, Monitor};
 
 /// Boxes that are not good for certificates yet have each of at most this many targets tested before they are split.
 const FEW: usize = 6;
@@ -30,7 +30,7 @@ pub(super) struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     pub coefficients: Vec<f64>,
     pub scratch: &'a mut Vec<f64>,
     /// Targets that boxes on the stack are left with.
-    pub lines: Vec<Target<N>>,
+    pub lines: Vec<ChartTarget<N>>,
     pub straddlers: Vec<Straddler<N, M::Seen>>,
 }
 
@@ -83,19 +83,19 @@ where
         let small = |j: usize| frame.hi[j] - frame.lo[j] <= self.options.smallest;
         let idle = |j: usize| (0..N).all(|i| slopes[i][j].magnitude() == 0.0);
         let tiny = (0..N).all(|j| small(j) || idle(j));
-        let reason = if tiny {
-            Some(Reason::Smallest)
+        let cause = if tiny {
+            Some(Cause::Smallest)
         } else if *budget == 0 {
-            Some(Reason::Budget)
+            Some(Cause::Boxes)
         } else {
-            self.monitor.cancelled().then_some(Reason::Cancelled)
+            self.monitor.cancelled().then_some(Cause::Cancelled)
         };
-        if let Some(reason) = reason {
+        if let Some(cause) = cause {
             self.each(frame, &values, &mut |_, target| {
-                sink.undecided(Undecided {
+                sink.unresolved(UnresolvedTarget {
                     target: target.number,
                     bounds,
-                    reason,
+                    cause,
                 });
                 true
             });
@@ -134,7 +134,7 @@ where
         &mut self,
         frame: &StackedBox<N>,
         values: &[Enclosure; N],
-        visit: &mut dyn FnMut(&mut Self, Target<N>) -> bool,
+        visit: &mut dyn FnMut(&mut Self, ChartTarget<N>) -> bool,
     ) {
         match frame.lines {
             None => {
@@ -273,13 +273,13 @@ where
                     None => sink.found(one.preimage.clone()),
                     Some(other) => {
                         if !self.same(one, other) {
-                            sink.undecided(Undecided {
+                            sink.unresolved(UnresolvedTarget {
                                 target: one.preimage.target,
                                 bounds: std::array::from_fn(|j| {
                                     let (x, pad) = (one.preimage.x[j], 4.0 * (one.error[j] + other.error[j]));
                                     Enclosure::hull(x - pad, x + pad)
                                 }),
-                                reason: Reason::Smallest,
+                                cause: Cause::Smallest,
                             });
                         }
                     }

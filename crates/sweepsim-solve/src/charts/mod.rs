@@ -11,7 +11,7 @@
 //!    method finds the preimage, or the interval iteration of step 2 around better and better centres proves that there is none;
 //! 4. else it is split.
 //!
-//! No preimage is lost: boxes too small to split further are reported as [`Undecided`] with their targets.
+//! No preimage is lost: boxes too small to split further are reported as [`UnresolvedTarget`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 mod chart;
@@ -19,7 +19,7 @@ mod linear;
 mod solver;
 mod trail;
 
-use crate::Enclosure;
+use crate::{Cause, Enclosure};
 pub use solver::ChartSolver;
 pub(crate) use solver::{BETWEEN, collapses, largest, widest};
 pub(crate) use trail::Trail;
@@ -67,7 +67,7 @@ pub struct Sample<const N: usize, S> {
 
 /// A right-hand side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target<const N: usize> {
+pub struct ChartTarget<const N: usize> {
     /// Its number.
     pub number: usize,
     /// Row and position in the row. Evenly spaced neighbours are solved faster.
@@ -87,7 +87,7 @@ pub trait Targets<const N: usize> {
         &self,
         range: &[Enclosure; N],
         narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
-        visit: &mut dyn FnMut(&Target<N>) -> bool,
+        visit: &mut dyn FnMut(&ChartTarget<N>) -> bool,
     );
 }
 
@@ -111,27 +111,15 @@ pub struct Preimage<const N: usize, S = ()> {
     pub orientation: i8,
 }
 
-/// Why a box is undecided.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Reason {
-    /// It has the smallest size.
-    Smallest,
-    /// The budget of boxes is used up.
-    Budget,
-    /// The [`Monitor`] asked to stop.
-    Cancelled,
-}
-
 /// A box that may hold further solutions for a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Undecided<const N: usize> {
+pub struct UnresolvedTarget<const N: usize> {
     /// The target's number.
     pub target: usize,
     /// The box.
     pub bounds: [Enclosure; N],
     /// Why.
-    pub reason: Reason,
+    pub cause: Cause,
 }
 
 /// Receives the results of a search.
@@ -142,8 +130,8 @@ pub trait Sink<const N: usize, S = ()> {
     fn mark(&self) -> usize;
     /// Discards the solutions since the mark: their box is searched again in parts.
     fn forget(&mut self, mark: usize);
-    /// An undecided box for a target.
-    fn undecided(&mut self, undecided: Undecided<N>);
+    /// A box that may hold further solutions for a target.
+    fn unresolved(&mut self, target: UnresolvedTarget<N>);
 }
 
 /// Limits of the search.

@@ -2,8 +2,8 @@
 
 use super::chart::{Chart, Outcome, Region, Witness};
 use super::linear::{Contraction, Linear};
-use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Reason, Sink, Targets, Trail, Undecided, all_of};
-use crate::{Enclosure, Monitor};
+use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail, UnresolvedTarget, all_of};
+use crate::{Cause, Enclosure, Monitor};
 use nalgebra::{Const, DimMin, SVector, ToTypenum};
 
 /// The chart solver. It reuses its stack from one call to the next.
@@ -38,7 +38,7 @@ impl<C: Clone> ChartSolver<C> {
 
     /// Finds, for every target, all its preimages in the box `root`.
     ///
-    /// Each preimage is reported to `sink` once; boxes that may hold unreported ones are reported as undecided.
+    /// Each preimage is reported to `sink` once; boxes that may hold unreported ones are reported as unresolved.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,
@@ -91,17 +91,17 @@ impl<C: Clone> ChartSolver<C> {
             let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
             let idle = |j: usize| (0..N).all(|i| jacobian[i][j].magnitude() == 0.0);
             let tiny = (0..N).all(|j| small(j) || idle(j));
-            let reason = if tiny {
-                Some(Reason::Smallest)
+            let cause = if tiny {
+                Some(Cause::Smallest)
             } else if budget == 0 {
-                Some(Reason::Budget)
+                Some(Cause::Boxes)
             } else {
-                monitor.cancelled().then_some(Reason::Cancelled)
+                monitor.cancelled().then_some(Cause::Cancelled)
             };
-            if let Some(reason) = reason {
+            if let Some(cause) = cause {
                 targets.visit(&values, &all_of, &mut |target| {
                     let target = target.number;
-                    sink.undecided(Undecided { target, bounds, reason });
+                    sink.unresolved(UnresolvedTarget { target, bounds, cause });
                     true
                 });
                 continue;

@@ -1,6 +1,6 @@
 //! Crossings of the faces of cells, certified.
 
-use super::subdivide::{Crossing, OpenCell, Search, stopped};
+use super::subdivide::{FaceCrossing, OpenCell, Search, stopped};
 use crate::coefficients::Cell;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
 use crate::{CancelOnly, Monitor};
@@ -75,7 +75,7 @@ impl Search<'_> {
         };
         let clean = self.points.open.is_empty() && self.points.found.iter().all(|f| !f.boundary);
         for found in &self.points.found {
-            self.crossings.push(Crossing {
+            self.crossings.push(FaceCrossing {
                 point: place(&found.point, 0.0),
                 lo: place(&found.lo, -1.0),
                 hi: place(&found.hi, 1.0),

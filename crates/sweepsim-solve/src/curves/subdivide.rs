@@ -11,7 +11,7 @@ use std::time::Instant;
 
 /// A crossing of a face, in inner coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Crossing {
+pub(crate) struct FaceCrossing {
     pub point: Row,
     pub lo: Row,
     pub hi: Row,
@@ -51,7 +51,7 @@ pub(super) struct Search<'a> {
     pub options: SolveOptions,
     pub points: &'a mut PointSolver,
     pub tracer: Tracer<'a>,
-    pub crossings: Vec<Crossing>,
+    pub crossings: Vec<FaceCrossing>,
     pub pieces: Vec<GraphPiece>,
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,

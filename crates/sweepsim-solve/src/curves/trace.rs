@@ -7,7 +7,7 @@
 
 use super::CurvePoint;
 use super::graph::{Graph, Tube, minor, tube, without};
-use super::subdivide::Crossing;
+use super::subdivide::FaceCrossing;
 use crate::coefficients::Cell;
 use crate::numbers::double::Double;
 use crate::numbers::{MAX_UNKNOWNS, Row, apply, inverse};
@@ -51,7 +51,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// The vertices from one end to the other, `ends` being sorted by the graph's variable.
-    pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&Crossing; 2]) -> Option<Vec<Vertex>> {
+    pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&FaceCrossing; 2]) -> Option<Vec<Vertex>> {
         let mut vertices = vec![self.vertex(cell, graph, &ends[0].point)];
         let mut parts = std::mem::take(&mut self.parts);
         parts.resize_with(DEPTH + 2, Cell::default);

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use support::targets::{Answer, List};
 use sweepsim_solve::{
     Bundle, BundleSolver, Cause, ChartMap, ChartOptions, ChartSolver, CurveSolver, Enclosure, Fate, Monitor,
-    PointSolver, Reason, Sample, SolveStatistics, SurfaceSolver, System,
+    PointSolver, Sample, SolveStatistics, SurfaceSolver, System,
 };
 use sweepsim_spline::Bernstein;
 
@@ -222,7 +222,7 @@ fn charts_are_cancelled_soon() {
         if monitor.patience == u64::MAX {
             assert!(answer.found.len() + answer.open.len() >= targets.0.len());
         }
-        answer.open.iter().any(|u| u.reason == Reason::Cancelled)
+        answer.open.iter().any(|u| u.cause == Cause::Cancelled)
     });
 }
 
@@ -245,7 +245,7 @@ fn a_chart_of_many_targets_is_cancelled_among_them() {
     let soon = After::new(10);
     let (some, statistics) = search(&soon);
     assert!(statistics.evaluations < 500, "{}", statistics.evaluations);
-    assert!(some.open.iter().all(|u| u.reason == Reason::Cancelled));
+    assert!(some.open.iter().all(|u| u.cause == Cause::Cancelled));
     assert!(some.found.len() + some.open.len() >= targets.0.len());
 }
 
@@ -267,7 +267,7 @@ fn bundles_are_cancelled_soon() {
     for patience in [0, 10, all.asked() / 2] {
         let monitor = After::new(patience);
         let (some, part) = search(&monitor);
-        assert!(some.open.iter().any(|u| u.reason == Reason::Cancelled), "{patience}");
+        assert!(some.open.iter().any(|u| u.cause == Cause::Cancelled), "{patience}");
         assert!(part.evaluations <= statistics.evaluations * 2 / 3, "{patience}");
     }
 }

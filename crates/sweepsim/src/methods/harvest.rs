@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use sweepsim_dexel::Crossing;
-use sweepsim_solve::{ChartStatistics, Preimage, Reason, Sink, Undecided};
+use sweepsim_solve::{Cause, ChartStatistics, Preimage, Sink, UnresolvedTarget};
 
 /// A crossing and the number of its line.
 pub(crate) type Numbered = (u32, Crossing);
@@ -12,14 +12,14 @@ pub(crate) type Numbered = (u32, Crossing);
 pub(crate) struct Harvest {
     pub crossings: Vec<Numbered>,
     /// Lines with a box that could not be decided.
-    pub open: Vec<(u32, Reason)>,
+    pub open: Vec<(u32, Cause)>,
     pub statistics: ChartStatistics,
 }
 
 /// Makes crossings of preimages as they come.
 pub(super) struct Reaper<'a, F> {
     crossings: &'a mut Vec<Numbered>,
-    open: &'a mut Vec<(u32, Reason)>,
+    open: &'a mut Vec<(u32, Cause)>,
     make: F,
 }
 
@@ -38,8 +38,8 @@ impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> f
         self.crossings.truncate(mark);
     }
 
-    fn undecided(&mut self, undecided: Undecided<N>) {
-        self.open.push((undecided.target as u32, undecided.reason));
+    fn unresolved(&mut self, target: UnresolvedTarget<N>) {
+        self.open.push((target.target as u32, target.cause));
     }
 }
 

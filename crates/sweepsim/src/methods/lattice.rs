@@ -1,7 +1,7 @@
 //! The dexel lines as targets of the charts.
 
 use sweepsim_dexel::Grid;
-use sweepsim_solve::{Enclosure, Target, Targets};
+use sweepsim_solve::{ChartTarget, Enclosure, Targets};
 
 /// Dexel lines `i[0] ..= i[1]` × `j[0] ..= j[1]` of a grid, all moved by `shift`.
 #[derive(Clone, Debug)]
@@ -105,7 +105,7 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
         &self,
         range: &[Enclosure; N],
         narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
-        visit: &mut dyn FnMut(&Target<N>) -> bool,
+        visit: &mut dyn FnMut(&ChartTarget<N>) -> bool,
     ) {
         let Some([is, js]) = self.range(range[0], range[1]) else {
             return;
@@ -123,7 +123,7 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
                 let Some(number) = self.grid.index(i, j) else {
                     continue;
                 };
-                let target = Target {
+                let target = ChartTarget {
                     number,
                     place: [i, j],
                     value,

@@ -28,7 +28,7 @@ pub(crate) struct WorkShare {
     pub columns: [usize; 2],
 }
 
-/// A way to find the preimages of dexel lines under the maps of the envelope: every one exactly once, or the line is reported as undecided.
+/// A way to find the preimages of dexel lines under the maps of the envelope: every one exactly once, or the line is reported as unresolved.
 pub(crate) trait CrossingMethod<'a>: Sized + Sync {
     /// What the method needs to know of a chunk of the path, computed once for all its lines.
     fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self;

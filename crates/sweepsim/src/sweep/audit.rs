@@ -5,14 +5,14 @@ use crate::methods::harvest::{Harvest, Numbered};
 use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::{self, BoundaryOperator};
 use crate::sweep::report::{Statistics, UnresolvedDexel, UnresolvedReason};
-use crate::sweep::schedule::Job;
+use crate::sweep::schedule::SweepJob;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
 use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Operation, cover};
-use sweepsim_solve::Reason;
+use sweepsim_solve::Cause;
 
-impl Job<'_> {
+impl SweepJob<'_> {
     /// Counts the crossings of a chunk to intervals, repairs what does not add up, and unites the intervals with the volume.
     pub fn count(
         &self,
@@ -91,7 +91,7 @@ impl Job<'_> {
             self.line(chunk, line as usize, attempt, space, &mut harvest);
             if let Some((_, why)) = harvest.open.first() {
                 reason = match why {
-                    Reason::Budget => UnresolvedReason::Budget,
+                    Cause::Boxes => UnresolvedReason::Budget,
                     _ => UnresolvedReason::SmallestBox,
                 };
                 continue;

@@ -33,8 +33,8 @@ impl Plan {
         grid: &'a Grid,
         options: &Options,
         monitor: &'a dyn Monitor,
-    ) -> Job<'a> {
-        Job {
+    ) -> SweepJob<'a> {
+        SweepJob {
             tool,
             cutter: &self.cutter,
             grid,
@@ -54,7 +54,7 @@ impl Plan {
 }
 
 /// What all chunks of a sweep share.
-pub(super) struct Job<'a> {
+pub(super) struct SweepJob<'a> {
     pub tool: &'a Tool,
     pub cutter: &'a Cutter,
     pub grid: &'a Grid,
@@ -68,7 +68,7 @@ pub(super) struct Job<'a> {
     pub monitor: &'a dyn Monitor,
 }
 
-impl Job<'_> {
+impl SweepJob<'_> {
     /// Runs `work` with a workspace.
     pub fn with_space<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.spaces.lock().map(|mut spaces| spaces.pop()).unwrap_or_default();

@@ -9,7 +9,7 @@ type Rows = [[f64; 3]; 3];
 
 /// A piece of the motion: rows of `A(t)` over its weight, per Bernstein coefficient in `t`.
 #[derive(Clone, Debug)]
-struct Node {
+struct TimePiece {
     lower: f64,
     upper: f64,
     parts: u32,
@@ -29,7 +29,7 @@ struct Node {
 /// The pieces of one segment, made on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct ArcTimes {
-    nodes: Vec<Node>,
+    nodes: Vec<TimePiece>,
     /// Coefficients in `t`: 1 or 3.
     pub count: usize,
     /// `κ A₀ᵀ k`.
@@ -84,9 +84,9 @@ impl ArcTimes {
         self.nodes.truncate(mark);
     }
 
-    fn node(&self, lower: f64, upper: f64, turns: [Matrix3<f64>; 3], weights: [f64; 3]) -> Node {
+    fn node(&self, lower: f64, upper: f64, turns: [Matrix3<f64>; 3], weights: [f64; 3]) -> TimePiece {
         let row = |m: &Matrix3<f64>, r: usize| [m[(r, 0)], m[(r, 1)], m[(r, 2)]];
-        let mut node = Node {
+        let mut node = TimePiece {
             lower,
             upper,
             parts: u32::MAX,

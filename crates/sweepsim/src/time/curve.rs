@@ -69,7 +69,7 @@ const SPIN: usize = 4;
 const TRAVEL: usize = 5;
 
 #[derive(Clone, Debug)]
-struct Node {
+struct TimePiece {
     lower: f64,
     upper: f64,
     parts: u32,
@@ -87,7 +87,7 @@ struct Node {
 /// The pieces of one segment, made on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct CurveTimes {
-    nodes: Vec<Node>,
+    nodes: Vec<TimePiece>,
     sizes: [f64; 2],
     /// Whether orientation and tip have the same weights: then `X` is a convex combination of sums of control values.
     joint: bool,
@@ -284,9 +284,9 @@ fn values(channel: &Channel, r: usize) -> Vec<f64> {
     values
 }
 
-fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> Node {
+fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> TimePiece {
     let width = upper - lower;
-    Node {
+    TimePiece {
         offsets: joint.then(|| [TIP, TIP_RATE].map(|k| [0, 1].map(|r| values(&channels[k], r)))),
         rows: [0, 1].map(|r| control_rows(&channels[TURN], r)),
         spin_rows: [0, 1].map(|r| control_rows(&channels[TURN_RATE], r)),

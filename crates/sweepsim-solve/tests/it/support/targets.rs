@@ -1,6 +1,6 @@
 //! Targets of charts and bundles, and what is found of them.
 
-use sweepsim_solve::{Enclosure, Preimage, Sink, Target, Targets, Undecided};
+use sweepsim_solve::{ChartTarget, Enclosure, Preimage, Sink, Targets, UnresolvedTarget};
 
 /// Targets, each a row of its own.
 pub struct List<const N: usize>(pub Vec<[f64; N]>);
@@ -15,10 +15,10 @@ impl<const N: usize> Targets<N> for List<N> {
         &self,
         range: &[Enclosure; N],
         narrow: &dyn Fn(&[f64; N]) -> Option<Enclosure>,
-        visit: &mut dyn FnMut(&Target<N>) -> bool,
+        visit: &mut dyn FnMut(&ChartTarget<N>) -> bool,
     ) {
         for (number, value) in self.0.iter().enumerate() {
-            let target = Target {
+            let target = ChartTarget {
                 number,
                 place: [number, 0],
                 value: *value,
@@ -36,7 +36,7 @@ impl<const N: usize> Targets<N> for List<N> {
 #[derive(Default)]
 pub struct Answer<const N: usize> {
     pub found: Vec<Preimage<N>>,
-    pub open: Vec<Undecided<N>>,
+    pub open: Vec<UnresolvedTarget<N>>,
 }
 
 impl<const N: usize> Sink<N> for Answer<N> {
@@ -52,7 +52,7 @@ impl<const N: usize> Sink<N> for Answer<N> {
         self.found.truncate(mark);
     }
 
-    fn undecided(&mut self, undecided: Undecided<N>) {
-        self.open.push(undecided);
+    fn unresolved(&mut self, target: UnresolvedTarget<N>) {
+        self.open.push(target);
     }
 }
