@@ -15,13 +15,14 @@
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
-//! | G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) | [`gcode::read`] | |
+//! | G-code (`.nc`, `.ngc`, `.tap`, `.txt`…) | [`gcode::read`] | |
 //! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
-//! | either, by extension | [`read_file`] | |
+//! | either, by content | [`read_file`] | |
 //!
 //! A program is never half understood in silence: a word that could move the tool in an unknown way is an [`NcError`] with line and
 //! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
 
+mod content;
 mod error;
 pub mod gcode;
 mod machine;

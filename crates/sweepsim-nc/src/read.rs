@@ -1,7 +1,8 @@
-//! Program files, by extension.
+//! Program files, by content.
 
 use std::path::Path;
 
+use crate::content::Content;
 use crate::error::{NcError, NcProblem, TextPosition};
 use crate::program::Program;
 use crate::read_options::ReadOptions;
@@ -9,38 +10,63 @@ use crate::{gcode, table};
 
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
-/// The extensions that [`read_file`] knows, for messages.
-const EXTENSIONS: &str = ".csv, .nc, .ngc, .gcode, .tap or .mpf";
+/// What these files can be, for messages.
+const EXPECTED: &str = "G-code, or a table of poses with the columns x,y,z,i,j,k";
+/// What to do with formats that are only recognised.
+const INSTEAD: &str = "expected G-code from a post-processor, or its poses as a table with the columns x,y,z,i,j,k";
 
-/// Reads a program from a file: a table of poses (`.csv`), or G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`).
+/// Reads a program from a file: G-code or a table of poses.
+///
+/// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; what the usual extensions of
+/// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) name is read as such if the content does not tell. APT, CLSF and Heidenhain's
+/// Klartext are recognised but not read yet.
 ///
 /// # Errors
-/// [`NcError`]: the file cannot be read, its extension is unknown, or its content is invalid.
+/// [`NcError`]: the file cannot be read, or its content is invalid, not supported or not recognised.
 pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError> {
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let bytes = || std::fs::read(file).map_err(|error| NcError::new(NcProblem::Read(error), None));
-    let read = match extension.as_deref() {
-        Some("csv") => bytes().and_then(|bytes| {
-            let unit = if options.inch { INCH } else { 1.0 };
-            table::read(utf8(&bytes)?, unit)
-        }),
-        // Comments come in all encodings; anything else that is not ASCII is an error of the reader.
-        Some("nc" | "ngc" | "gcode" | "tap" | "mpf") => {
-            bytes().and_then(|bytes| gcode::read(&String::from_utf8_lossy(&bytes), options))
-        }
-        Some("apt" | "cls" | "clsf" | "cl") => {
-            let problem = NcProblem::unsupported("APT and CLSF paths are", format!("expected {EXTENSIONS}"));
-            Err(NcError::new(problem, None))
-        }
-        _ => {
-            let found = extension.map_or("missing".into(), |e| format!(".{e}"));
-            let problem = NcProblem::value("the extension of this path file", found, EXTENSIONS);
-            Err(NcError::new(problem, None))
-        }
-    };
+    let read = std::fs::read(file)
+        .map_err(|error| NcError::new(NcProblem::Read(error), None))
+        .and_then(|bytes| read_bytes(&bytes, extension.as_deref(), options));
     let mut program = read.map_err(|error| error.in_file(file))?;
     program.files = vec![file.to_owned()];
     Ok(program)
+}
+
+fn read_bytes(bytes: &[u8], extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
+    let read_table = || table::read(utf8(bytes)?, if options.inch { INCH } else { 1.0 });
+    if extension == Some("csv") {
+        return read_table();
+    }
+    // Comments come in all encodings; anything else that is not ASCII is an error of the reader.
+    let text = String::from_utf8_lossy(bytes);
+    let fail = |problem, line: usize| {
+        let whole = text.lines().nth(line - 1).unwrap_or("");
+        let width = whole.chars().count();
+        Err(NcError::new(
+            problem,
+            Some(TextPosition::in_line(line, whole, 1, width)),
+        ))
+    };
+    match Content::of(&text) {
+        Content::Table => read_table(),
+        Content::Gcode => gcode::read(&text, options),
+        Content::Apt { line } => fail(NcProblem::unsupported("APT and CLSF paths are", INSTEAD), line),
+        Content::Heidenhain { line } => fail(
+            NcProblem::unsupported("programs in Heidenhain's Klartext are", INSTEAD),
+            line,
+        ),
+        // The reader of G-code says what is wrong with the line.
+        _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => gcode::read(&text, options),
+        Content::Numbers { line } => {
+            let found = "rows of numbers without a header";
+            fail(NcProblem::value("the content of this path file", found, EXPECTED), line)
+        }
+        Content::Binary | Content::Unknown => {
+            let problem = NcProblem::value("the content of this path file", "not recognised", EXPECTED);
+            Err(NcError::new(problem, None))
+        }
+    }
 }
 
 fn utf8(bytes: &[u8]) -> Result<&str, NcError> {

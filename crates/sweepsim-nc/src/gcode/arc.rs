@@ -110,6 +110,33 @@ impl CircularArc {
         Self::about((start, end), plane, centre, counter_clockwise, turns)
     }
 
+    /// Checks the word of the third axis (K in G17), which says nothing that the end does not: the pitch of a helix, or its rise. With
+    /// absolute centres it may also be the `height` of either end.
+    pub(crate) fn check_third(&self, word: f64, height: Option<f64>) -> Result<(), String> {
+        let [_, _, w] = self.plane;
+        let rise = self.end[w] - self.start[w];
+        let turns = self.sweep.abs() / TAU;
+        let pitch = rise / turns;
+        let near = |a: f64, b: f64| (a - b).abs() <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * b.abs());
+        // Controls differ in the sign of a pitch.
+        if near(word.abs(), rise.abs())
+            || near(word.abs(), pitch.abs())
+            || height.is_some_and(|height| near(height, self.start[w]) || near(height, self.end[w]))
+        {
+            return Ok(());
+        }
+        let (letter, axis) = (['I', 'J', 'K'][w], ['X', 'Y', 'Z'][w]);
+        Err(if rise == 0.0 {
+            format!(
+                "{letter} is {word} mm, but {axis} does not change along this arc: expected none, or its end in {axis}"
+            )
+        } else {
+            format!(
+                "{letter} is {word} mm, but {axis} changes by {rise} mm in {turns:.4} turns: expected none, the pitch {pitch:.4} or the rise {rise}"
+            )
+        })
+    }
+
     /// The arc as a single move of the tip.
     pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
         let [u, v, w] = self.plane;

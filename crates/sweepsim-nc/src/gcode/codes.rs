@@ -1,6 +1,7 @@
 //! The meaning of G and M codes.
 
 use super::arc::ArcPlane;
+use super::interpreter::Values;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,8 @@ pub(crate) enum Code {
     CancelMotion,
     Plane(ArcPlane),
     Inch(bool),
+    /// G70 and G71: units, or cycles if the block has their words.
+    InchOrCycle(bool),
     Absolute(bool),
     AbsoluteCentres(bool),
     TipControl(bool),
@@ -32,14 +35,45 @@ pub(crate) enum Code {
     },
     RestoreShift,
     Dwell,
+    /// G5: a spline, or a high-speed mode.
+    SplineOrMode,
+    /// G5.1: a spline, or a high-speed mode.
+    SplineOrContouring,
+    /// G64: corners may be rounded.
+    Blending,
+    /// Changes no geometry; its words are its own. What to note.
+    Ignored(&'static str),
     Harmless,
     /// Not supported; the reason as a subject with its verb.
     Refused(&'static str),
     Unknown,
 }
 
+/// The meaning of `G value` in a block: some codes mean different things with different words, on different controls.
+pub(crate) fn g_in(value: f64, values: &Values) -> Code {
+    const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
+    let given = |letters| values.first(letters).is_some();
+    match g(value) {
+        Code::SplineOrMode if given("XYZABCIJKQ") || !given("P") => Code::Refused("splines are"),
+        // P10001 and on call high-speed cycles, which move axes.
+        Code::SplineOrMode => match values.get('P') {
+            Some(0.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
+            _ => Code::Refused("high-speed modes other than P0 and P10000 are"),
+        },
+        Code::SplineOrContouring if given("XYZABCIJK") || !given("Q") => Code::Refused("splines are"),
+        // Q2 is smooth interpolation: it changes the path. R is a level of precision.
+        Code::SplineOrContouring => match values.get('Q') {
+            Some(0.0 | 1.0) if !given("LP") => HIGH_SPEED,
+            _ => Code::Refused("high-speed modes other than Q0 and Q1 are"),
+        },
+        // On lathes and on some mills (bolt circles) these are cycles, which have such words.
+        Code::InchOrCycle(_) if given("IJKLPQRDUW") => Code::Refused("cycles are"),
+        code => code,
+    }
+}
+
 /// The meaning of `G value`.
-pub(crate) fn g(value: f64) -> Code {
+fn g(value: f64) -> Code {
     let tenths = (value * 10.0).round();
     if (value * 10.0 - tenths).abs() > 1e-6 || !(0.0..=9999.0).contains(&tenths) {
         return Code::Unknown;
@@ -54,13 +88,20 @@ pub(crate) fn g(value: f64) -> Code {
             counter_clockwise: true,
         }),
         40 => Code::Dwell,
-        50..=53 => Code::Refused("splines are"),
+        50 => Code::SplineOrMode,
+        51 => Code::SplineOrContouring,
+        52 | 53 => Code::Refused("splines are"),
         100 => Code::SetOffsets,
         170 => Code::Plane([0, 1, 2]),
         180 => Code::Plane([2, 0, 1]),
         190 => Code::Plane([1, 2, 0]),
         200 => Code::Inch(true),
         210 => Code::Inch(false),
+        // Siemens's G700 and G710 are units of feeds too.
+        700 => Code::InchOrCycle(true),
+        710 => Code::InchOrCycle(false),
+        7000 => Code::Inch(true),
+        7100 => Code::Inch(false),
         280 | 300 => Code::Home,
         330..=339 | 760 => Code::Refused("threading is"),
         380..=389 | 310 => Code::Refused("probing is"),
@@ -69,7 +110,10 @@ pub(crate) fn g(value: f64) -> Code {
         434 => Code::TipControl(true),
         435 => Code::Refused("tip control with axis vectors is"),
         490 => Code::TipControl(false),
-        500 | 690 | 150 => Code::Harmless,
+        // The ends of scaling, rotation, polar coordinates, and of Haas's G254 and G268, whose beginnings are refused.
+        500 | 690 | 150 | 2550 | 2690 => Code::Harmless,
+        640 => Code::Blending,
+        1870 => Code::Ignored("smoothness (G187) changes no programmed point: ignored"),
         510 => Code::Refused("scaling is"),
         511 => Code::Refused("mirroring is"),
         680..=689 => Code::Refused("rotated frames are"),
@@ -89,8 +133,8 @@ pub(crate) fn g(value: f64) -> Code {
         921 => Code::CancelShift { forget: true },
         922 => Code::CancelShift { forget: false },
         923 => Code::RestoreShift,
-        // Compensation off, exact stop or blending, feed and speed modes, return levels of cycles, diameter mode off.
-        90 | 400 | 610 | 611 | 640 | 80 | 930 | 940 | 950 | 960 | 970 | 980 | 990 => Code::Harmless,
+        // Compensation off, exact stop, look-ahead, feed and speed modes, return levels of cycles, diameter mode off.
+        90 | 400 | 610 | 611 | 80 | 930 | 940 | 950 | 960 | 970 | 980 | 990 => Code::Harmless,
         70 => Code::Refused("lathe diameters are"),
         _ => Code::Unknown,
     }
@@ -104,7 +148,10 @@ pub(crate) enum Misc {
     SetTool,
     End,
     TipControl(bool),
-    Refused,
+    /// M99: the end of a main program.
+    Return,
+    /// Not supported; the reason as a subject with its verb.
+    Refused(&'static str),
     Unknown,
 }
 
@@ -119,7 +166,10 @@ pub(crate) fn m(value: f64) -> Misc {
         61 => Misc::SetTool,
         128 | 428 => Misc::TipControl(true),
         129 | 429 => Misc::TipControl(false),
-        97..=99 => Misc::Refused,
+        99 => Misc::Return,
+        96..=98 | 198 => Misc::Refused("subroutines are"),
+        72 | 73 => Misc::Refused("saved modes are"),
+        91 | 92 => Misc::Refused("machine coordinates by M code are"),
         // Stops, spindle, coolant, clamps, overrides, digital and analog output, modal state.
         0 | 1 | 3..=5 | 7..=11 | 19 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
         _ => Misc::Unknown,

@@ -7,6 +7,7 @@ use super::codes::{self, Code, Misc, MotionMode};
 use super::lexer::{self, Located, Word};
 use super::offsets::Offsets;
 use super::state::State;
+use super::title;
 use crate::error::{NcError, NcProblem, TextPosition};
 use crate::program::Program;
 use crate::read_options::ReadOptions;
@@ -34,7 +35,11 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
         begun: false,
         ended: false,
     };
-    for (index, line) in text.lines().enumerate() {
+    let leader = title::leader(text);
+    if leader > 0 {
+        reader.state.notes.add(1, "text before the first `%`: ignored");
+    }
+    for (index, line) in text.lines().enumerate().skip(leader) {
         let number = index + 1;
         reader.line(line, number).map_err(|(problem, span)| {
             let column = 1 + line[..span.start].chars().count();
@@ -113,6 +118,13 @@ fn code_name(word: &Word) -> String {
 
 impl Reader {
     fn line(&mut self, line: &str, number: usize) -> Result<(), Located> {
+        if !self.state.has_moved()
+            && let Some(title) = title::of(line)
+        {
+            self.begun = true;
+            self.state.notes.add(number, format!("title {title:?}: ignored"));
+            return Ok(());
+        }
         let block = lexer::block(line)?;
         if block.tape {
             self.ended = self.begun;
@@ -135,7 +147,7 @@ impl Reader {
         let mut motion_words = 0;
         for word in values.0.iter().filter(|word| word.letter == 'G') {
             let fail = |problem| Err((problem, word.span.clone()));
-            match codes::g(word.value) {
+            match codes::g_in(word.value, values) {
                 Code::Motion(motion) => {
                     self.modes.motion = Some(motion);
                     motion_words += 1;
@@ -148,6 +160,20 @@ impl Reader {
                 Code::CancelMotion => self.modes.motion = None,
                 Code::Plane(plane) => self.modes.plane = plane,
                 Code::Inch(inch) => self.modes.inch = inch,
+                Code::InchOrCycle(inch) => {
+                    self.modes.inch = inch;
+                    self.state
+                        .notes
+                        .add(line, "G70 and G71 are taken as inches and millimetres");
+                }
+                Code::Blending => {
+                    if let Some(tolerance) = values.get('P').filter(|p| *p > 0.0) {
+                        let message = format!(
+                            "G64 P{tolerance}: corners may be rounded by as much; the path is read as programmed"
+                        );
+                        self.state.notes.add(line, message);
+                    }
+                }
                 Code::Absolute(absolute) => self.modes.absolute = absolute,
                 Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
                 Code::TipControl(on) => self.length_control = on,
@@ -155,6 +181,7 @@ impl Reader {
                 Code::WorkOffset(index) => self.offsets.active = index,
                 Code::MachineCoordinates => machine_coordinates = true,
                 code @ (Code::Dwell
+                | Code::Ignored(_)
                 | Code::Home
                 | Code::SetOffsets
                 | Code::LocalShift
@@ -175,7 +202,7 @@ impl Reader {
                         "the path of the tool would be unknown; expected G0, G1, G2 or G3",
                     ));
                 }
-                Code::Unknown => {
+                Code::SplineOrMode | Code::SplineOrContouring | Code::Unknown => {
                     return fail(NcProblem::unsupported(
                         format!("{} is", code_name(word)),
                         "it could move the tool; expected a code of RS-274",
@@ -188,6 +215,7 @@ impl Reader {
         let whole = |problem| (problem, values.all());
         match action {
             Some((Code::Dwell, _)) => {}
+            Some((Code::Ignored(note), _)) => self.state.notes.add(line, note),
             Some((code, span)) => self.act(code, values, line).map_err(|problem| (problem, span))?,
             None => match (values.first("XYZABCIJKR"), self.modes.motion) {
                 (None, _) => {}
@@ -226,10 +254,9 @@ impl Reader {
                         "expected X Y Z A B C",
                     ));
                 }
-                'E' if values
-                    .0
-                    .iter()
-                    .any(|w| w.letter == 'M' && (62.0..=68.0).contains(&w.value)) => {}
+                'E' if values.0.iter().any(|w| {
+                    (w.letter == 'M' && (62.0..=68.0).contains(&w.value)) || (w.letter == 'G' && w.value == 187.0)
+                }) => {}
                 'E' => {
                     return fail(NcProblem::unsupported(
                         "E words are",
@@ -293,9 +320,19 @@ impl Reader {
                     self.change_tool(tool);
                 }
                 Misc::TipControl(on) => self.kinematics = on,
-                Misc::Refused => {
-                    let what = format!("{} (subroutines) is", code_name(word));
-                    let problem = NcProblem::unsupported(what, "expected a program without calls");
+                Misc::Return if values.first("PLQ").is_none() => {
+                    self.state
+                        .notes
+                        .add(line, "M99 ends the program here; a machine may start it again");
+                    ends = true;
+                }
+                Misc::Return => {
+                    let problem = NcProblem::unsupported("M99: jumps are", "expected M99 alone, or M30");
+                    return Err((problem, word.span.clone()));
+                }
+                Misc::Refused(what) => {
+                    let what = format!("{}: {what}", code_name(word));
+                    let problem = NcProblem::unsupported(what, "expected a program without them");
                     return Err((problem, word.span.clone()));
                 }
                 Misc::Unknown => self

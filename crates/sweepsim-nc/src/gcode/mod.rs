@@ -1,9 +1,9 @@
 //! G-code (RS-274): what the tool does in the part's frame.
 //!
 //! Supported: `G0 G1 G2 G3` (arcs and helices in `G17 G18 G19`, by centre or radius, with `P` turns), `G90 G91`,
-//! `G90.1 G91.1`, `G20 G21`, work offsets (`G54`…`G59.3`, `G10 L2/L20`, `G52`, `G92`), tip control (`M428`, `M128`, `G43.4`; off with
+//! `G90.1 G91.1`, `G20 G21`, `G70 G71`, work offsets (`G54`…`G59.3`, `G10 L2/L20`, `G52`, `G92`), tip control (`M428`, `M128`, `G43.4`; off with
 //! `M429`, `M129`, `G49`) for tables with A/C or B/C axes ([`RotaryTable`](crate::RotaryTable)), tool changes, comments, block numbers,
-//! `%`, `/`, `M2 M30`. Speeds, coolant and dwell do not affect the geometry and are skipped.
+//! titles, `%`, `/`, `M2 M30 M99`. Speeds, coolant, dwell and high-speed modes do not affect the geometry and are skipped.
 //!
 //! Each of these decisions is reported as a [`Note`](crate::Note):
 //!
@@ -16,7 +16,11 @@
 //! - Where a feed move comes before all of X, Y and Z are known, the unknown ones are taken as 0.
 //! - Unknown words and codes are ignored if they cannot move the tool.
 //!
-//! Anything that could move the tool in a way that is not supported (`G5`, cycles, cutter compensation, rotated frames, subroutines,
+//! - `G92` before the first move says where the tool is, in the part's frame. Without its shift (`G92.1`, `G92.2`) only the machine knows
+//!   where absolute coordinates are: they are then errors.
+//! - `K` in a helix of `G17` (`J` in `G18`, `I` in `G19`) must agree with its end, as its pitch or its rise.
+//!
+//! Anything that could move the tool in a way that is not supported (splines, cycles, cutter compensation, rotated frames, subroutines,
 //! variables) is an error with its position.
 
 mod arc;
@@ -26,6 +30,7 @@ mod lexer;
 mod moves;
 mod offsets;
 mod state;
+mod title;
 mod turns;
 
 use crate::error::NcError;
@@ -51,4 +56,9 @@ use crate::read_options::ReadOptions;
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
     interpreter::read(text, options)
+}
+
+/// Whether a line is a block with a code or a coordinate.
+pub(crate) fn is_block(line: &str) -> bool {
+    lexer::block(line).is_ok_and(|block| block.words.iter().any(|word| "GMXYZT".contains(word.letter)))
 }

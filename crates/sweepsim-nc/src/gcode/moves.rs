@@ -9,6 +9,13 @@ use crate::error::NcProblem;
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
 
+/// Whether a block has a rotary word other than 0.
+fn turns(values: &Values) -> bool {
+    ['A', 'B', 'C']
+        .into_iter()
+        .any(|letter| values.get(letter).is_some_and(|value| value != 0.0))
+}
+
 impl Reader {
     fn unit(&self) -> f64 {
         if self.modes.inch { INCH } else { 1.0 }
@@ -65,21 +72,80 @@ impl Reader {
                 self.state.leave();
             }
             Code::SetOffsets => {
-                if values.get('R').is_some_and(|r| r != 0.0) || values.first("ABC").is_some_and(|w| w.value != 0.0) {
+                if values.get('R').is_some_and(|r| r != 0.0) {
                     return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
                 }
                 let index = values.get('P').unwrap_or(0.0);
                 match values.get('L') {
-                    Some(2.0) => self.offsets.set(index, words)?,
-                    Some(20.0) => self.offsets.set_here(index, words, self.state.xyz)?,
+                    Some(2.0) => {
+                        if turns(values) {
+                            return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                        }
+                        self.offsets.set(index, words)?;
+                    }
+                    Some(20.0) => {
+                        self.check_angles(values, "G10 L20")?;
+                        self.offsets.set_here(index, words, self.state.xyz)?;
+                    }
                     _ => self.state.notes.add(line, "G10 other than L2 and L20 is ignored"),
                 }
             }
-            Code::LocalShift => self.offsets.set_local(words),
-            Code::ShiftHere => self.offsets.shift_here(words, self.state.xyz)?,
-            Code::CancelShift { forget } => self.offsets.cancel_shift(forget),
-            Code::RestoreShift => self.offsets.restore_shift(),
+            Code::LocalShift => {
+                if turns(values) {
+                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                }
+                self.offsets.set_local(words);
+            }
+            Code::ShiftHere => {
+                self.check_angles(values, "G92")?;
+                let fresh = !self.state.has_moved();
+                let before = self.state.xyz;
+                self.offsets.shift_here(words, &mut self.state.xyz, fresh)?;
+                if self.state.xyz != before {
+                    self.state.notes.add(
+                        line,
+                        "G92 before the first move: the tool is taken to be there, in the part's frame",
+                    );
+                }
+            }
+            Code::CancelShift { forget } => {
+                if let Some(word) = values.first("XYZABC").filter(|word| !forget || word.value != 0.0) {
+                    return Err(NcProblem::syntax(format!(
+                        "{}{} next to a code that ends a G92: expected none{}",
+                        word.letter,
+                        word.value,
+                        if forget { ", or 0" } else { "" }
+                    )));
+                }
+                // Fanuc names the axes: G92.1 X0.
+                let any = values.first("XYZABC").is_some();
+                let axes = words.map(|word| !any || word.is_some());
+                let fresh = !self.state.has_moved();
+                self.offsets.cancel_shift(forget, axes, &mut self.state.xyz, fresh);
+            }
+            Code::RestoreShift => {
+                if let Some(word) = values.first("XYZABC") {
+                    return Err(NcProblem::syntax(format!(
+                        "{} next to G92.3: expected none",
+                        word.letter
+                    )));
+                }
+                self.offsets.restore_shift()?;
+            }
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Rotary words of a code that sets coordinates: allowed where they change nothing.
+    fn check_angles(&self, values: &Values, code: &str) -> Result<(), NcProblem> {
+        for (angle, letter) in self.state.abc.into_iter().zip(['A', 'B', 'C']) {
+            if values.get(letter).is_some_and(|value| value != angle) {
+                return Err(NcProblem::unsupported(
+                    format!("{code} with {letter} other than the current {angle} degrees is"),
+                    "expected X, Y, Z",
+                ));
+            }
         }
         Ok(())
     }
@@ -90,6 +156,9 @@ impl Reader {
         let abc = self.angles(values);
         let cuts = motion != MotionMode::Rapid;
         if cuts || !self.modes.absolute {
+            for k in (0..3).filter(|&k| self.state.xyz[k].is_none()) {
+                self.offsets.know(k)?;
+            }
             let relative = !self.modes.absolute || matches!(motion, MotionMode::Arc { .. });
             self.state.assume(line, |k| words[k].is_none() || relative);
         }
@@ -98,14 +167,21 @@ impl Reader {
             if let Some(word) = words[k] {
                 xyz[k] = Some(match xyz[k] {
                     Some(now) if !self.modes.absolute => now + word,
-                    _ => word + self.offsets.total()[k],
+                    _ => {
+                        self.offsets.know(k)?;
+                        word + self.offsets.total()[k]
+                    }
                 });
             }
         }
         if self.offsets.total() != [0.0; 3] {
             self.state.notes.add(
                 line,
-                "work offsets set by the program are applied: poses are in machine coordinates",
+                if self.offsets.made_by_shift() {
+                    "work offsets set by the program are applied"
+                } else {
+                    "work offsets set by the program are applied: poses are in machine coordinates"
+                },
             );
         }
         let [Some(x), Some(y), Some(z)] = xyz else {
@@ -151,6 +227,15 @@ impl Reader {
                 "a whole number from 1 on",
             ));
         }
+        if let Some(word) = values
+            .first("LQ")
+            .filter(|word| word.value != 0.0 && (word.letter, word.value) != ('L', 1.0))
+        {
+            return Err(NcProblem::unsupported(
+                format!("{} in an arc (turns, repeats or a spiral) is", word.letter),
+                "expected P for further turns",
+            ));
+        }
         let plane = self.modes.plane;
         let [u, v, w] = plane;
         let offsets = self.lengths(values, ['I', 'J', 'K']);
@@ -163,17 +248,13 @@ impl Reader {
             }
             Some(radius) => CircularArc::with_radius(ends, plane, radius * self.unit(), counter_clockwise, turns),
             None => {
-                if offsets[w].is_some_and(|offset| offset != 0.0) {
-                    return Err(NcProblem::syntax(format!(
-                        "{} does not belong to the arc's plane: expected {} and {}",
-                        ['I', 'J', 'K'][w],
-                        ['I', 'J', 'K'][u],
-                        ['I', 'J', 'K'][v]
-                    )));
-                }
                 let total = self.offsets.total();
                 let centre = match (self.modes.absolute_centres, offsets[u], offsets[v]) {
-                    (true, Some(cu), Some(cv)) => [cu + total[u], cv + total[v]],
+                    (true, Some(cu), Some(cv)) => {
+                        self.offsets.know(u)?;
+                        self.offsets.know(v)?;
+                        [cu + total[u], cv + total[v]]
+                    }
                     (false, None, None) | (true, _, _) => {
                         return Err(NcProblem::syntax(format!(
                             "this arc has no centre: expected {} and {}, or R",
@@ -183,7 +264,14 @@ impl Reader {
                     }
                     (false, cu, cv) => [start[u] + cu.unwrap_or(0.0), start[v] + cv.unwrap_or(0.0)],
                 };
-                CircularArc::about(ends, plane, centre, counter_clockwise, turns)
+                let arc = CircularArc::about(ends, plane, centre, counter_clockwise, turns);
+                match (arc, offsets[w].filter(|offset| *offset != 0.0)) {
+                    (Ok(arc), Some(height)) => {
+                        let absolute = self.modes.absolute_centres.then_some(height + total[w]);
+                        arc.check_third(height, absolute).map(|()| arc)
+                    }
+                    (arc, _) => arc,
+                }
             }
         }
         .map_err(NcProblem::syntax)?;

@@ -94,7 +94,7 @@ fn work_offsets() {
         [[5.0, 0.0, 0.0], [10.0, 0.0, 0.0]]
     );
     assert!(error("G54 G0 X0 Y0 Z0\nG55 X1").contains("2:1: a move in G55"));
-    assert!(error("G92 X0").contains("not known yet"));
+    assert!(error("G0 X0 Y0 Z0\nG28\nG92 X0").contains("not known yet"));
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn arcs() {
     assert!(error("G0 X0 Y0 Z0\nG2 X1").contains("no centre"));
     assert!(error("G0 X0 Y0 Z0\nG2 X1 R0.1").contains("too small"));
     assert!(error("G0 X0 Y0 Z0\nG2 X1 I5").contains("two radii"));
-    assert!(error("G0 X0 Y0 Z0\nG2 X1 I.5 K1").contains("K does not belong"));
+    assert!(error("G0 X0 Y0 Z0\nG2 X1 I.5 K1").contains("K is 1 mm, but Z does not change"));
     assert!(error("G0 X0 Y0 Z0\nG1 X1 I.5").contains("outside an arc"));
 }
 

@@ -1,6 +1,7 @@
 //! Programs that nobody here wrote.
 
 use super::folder;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use sweepsim_nc::{Program, ReadOptions, read_file};
 
@@ -127,4 +128,54 @@ fn meshes() {
         let soup = sweepsim_formats::read_stl(&data.join("3axis/solidworks_apt").join(name)).unwrap();
         assert!(soup.triangles.len() > least);
     }
+}
+
+/// All program files in a folder and below, but for tool tables, meshes and texts about them.
+fn programs_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        let extension = path
+            .extension()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_ascii_lowercase();
+        if path.is_dir() {
+            programs_below(&path, found);
+        } else if matches!(extension.as_str(), "nc" | "ngc" | "gcode" | "mpf" | "apt" | "txt") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+fn every_program_is_read_or_says_why_not() {
+    let data = folder();
+    let (mut read, mut poses) = (0, 0);
+    let mut refused: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for part in ["3axis", "5axis"] {
+        let mut files = Vec::new();
+        programs_below(&data.join(part), &mut files);
+        for file in files {
+            match read_file(&file, &ReadOptions::default()) {
+                Ok(program) => {
+                    read += 1;
+                    poses += program.poses.len();
+                }
+                Err(error) => {
+                    println!("{error}");
+                    let name = file.file_name().unwrap().to_string_lossy().into_owned();
+                    refused.entry(error.problem().to_string()).or_default().push(name);
+                }
+            }
+        }
+    }
+    println!("{read} read, {poses} poses");
+    let refused: Vec<(String, usize)> = refused.into_iter().map(|(why, files)| (why, files.len())).collect();
+    println!("{refused:#?}");
+    assert_eq!((read, refused), (0, vec![]));
 }

@@ -1,0 +1,189 @@
+//! The format of a text, by its first line that tells.
+
+use crate::gcode;
+
+/// What a text is. Lines count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Content {
+    Gcode,
+    /// A table of poses.
+    Table,
+    /// APT, CLSF, NCL.
+    Apt {
+        line: usize,
+    },
+    /// Klartext of Heidenhain's controls.
+    Heidenhain {
+        line: usize,
+    },
+    /// Rows of numbers without a header.
+    Numbers {
+        line: usize,
+    },
+    Binary,
+    Unknown,
+}
+
+/// Words of APT that a slash follows, and
+const APT: [&str; 32] = [
+    "CIRCLE",
+    "COOLNT",
+    "CSYS",
+    "CUTCOM",
+    "CUTTER",
+    "CYCLE",
+    "FEDRAT",
+    "FROM",
+    "GODLTA",
+    "GOTO",
+    "GOHOME",
+    "INSERT",
+    "INTOL",
+    "LOAD",
+    "LOADTL",
+    "MACHIN",
+    "MODE",
+    "MSYS",
+    "MULTAX",
+    "OUTTOL",
+    "PAINT",
+    "PARTNO",
+    "PPRINT",
+    "SELECT",
+    "SPINDL",
+    "TLDATA",
+    "TOOL PATH",
+    "TPRINT",
+    "TRNTYP",
+    "UNIT",
+    "UNITS",
+    "SETUP",
+];
+/// those that can stand without.
+const APT_ALONE: [&str; 4] = ["PARTNO", "PPRINT", "MACHIN", "FINI"];
+/// Words of Siemens's controls, which the reader of G-code knows to refuse by name.
+const SIEMENS: [&str; 9] = [
+    "DEF",
+    "PROC",
+    "EXTERN",
+    "MSG",
+    "TRAORI",
+    "TRAFOOF",
+    "TRANS",
+    "WORKPIECE",
+    "CYCLE800",
+];
+
+impl Content {
+    pub(crate) fn of(text: &str) -> Self {
+        if text.contains('\0') {
+            return Self::Binary;
+        }
+        for (index, line) in text.lines().enumerate() {
+            let line_number = index + 1;
+            let line = line.trim_start_matches('\u{feff}').trim();
+            if line.is_empty() || line.starts_with(['%', '(', ';']) && !line.starts_with("$$") {
+                continue;
+            }
+            if is_apt(line) {
+                return Self::Apt { line: line_number };
+            }
+            if is_heidenhain(line) {
+                return Self::Heidenhain { line: line_number };
+            }
+            if is_header(line) {
+                return Self::Table;
+            }
+            if is_numbers(line) {
+                return Self::Numbers { line: line_number };
+            }
+            if gcode::is_block(line) || is_siemens(line) {
+                return Self::Gcode;
+            }
+        }
+        Self::Unknown
+    }
+}
+
+/// The rest of a line after a block number, with or without its N.
+fn after_number(line: &str) -> &str {
+    let rest = line.strip_prefix(['N', 'n']).unwrap_or(line);
+    rest.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start()
+}
+
+fn is_apt(line: &str) -> bool {
+    if line.starts_with("$$") {
+        return true;
+    }
+    let upper = line.to_ascii_uppercase();
+    let end = upper.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(upper.len());
+    if APT_ALONE.contains(&&upper[..end]) && !upper[end..].starts_with(['=', '[', '(']) {
+        return true;
+    }
+    upper
+        .split_once('/')
+        .is_some_and(|(word, _)| APT.contains(&word.trim_end()))
+}
+
+fn is_heidenhain(line: &str) -> bool {
+    let upper = after_number(line).to_ascii_uppercase();
+    let mut words = upper.split_whitespace();
+    matches!(
+        (words.next(), words.next()),
+        (Some("BEGIN"), Some("PGM")) | (Some("BLK"), Some("FORM")) | (Some("TOOL"), Some("CALL" | "DEF"))
+    )
+}
+
+/// The header of a table of poses.
+fn is_header(line: &str) -> bool {
+    let names: Vec<String> = line.split(',').map(|name| name.trim().to_ascii_lowercase()).collect();
+    ["x", "y", "z", "i", "j", "k"]
+        .iter()
+        .all(|name| names.iter().any(|found| found == name))
+}
+
+fn is_numbers(line: &str) -> bool {
+    let mut words = line
+        .split(|c: char| c.is_whitespace() || c == ',' || c == ';')
+        .filter(|word| !word.is_empty())
+        .peekable();
+    words.peek().is_some() && words.all(|word| word.parse::<f64>().is_ok_and(f64::is_finite))
+}
+
+fn is_siemens(line: &str) -> bool {
+    let upper = after_number(line).to_ascii_uppercase();
+    let end = upper.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(upper.len());
+    SIEMENS.contains(&&upper[..end])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_line_that_tells() {
+        for (text, content) in [
+            ("%\n(part)\nO100\nN10 G21\n", Content::Gcode),
+            ("OFinal ToolPath\nG0 X1", Content::Gcode),
+            ("X1 Y2 Z3", Content::Gcode),
+            ("N30 DEF REAL _x", Content::Gcode),
+            ("%_N_PART_MPF\nN10 MSG(\"x\")", Content::Gcode),
+            ("x, y, z, i, j, k\n0,0,0,0,0,1", Content::Table),
+            ("rapid,X,Y,Z,I,J,K", Content::Table),
+            ("$$ made by hand\nGOTO/1,2,3", Content::Apt { line: 1 }),
+            ("\nPARTNO bracket\nUNITS / MM", Content::Apt { line: 2 }),
+            ("TOOL PATH/FINISH,TOOL,D10", Content::Apt { line: 1 }),
+            ("goto / 1, 2, 3", Content::Apt { line: 1 }),
+            ("0 BEGIN PGM 12 MM", Content::Heidenhain { line: 1 }),
+            ("; part\nBEGIN PGM PART MM", Content::Heidenhain { line: 2 }),
+            ("5 TOOL CALL 3 Z S2000", Content::Heidenhain { line: 1 }),
+            ("1.5 -2 3e-1 0 0 1", Content::Numbers { line: 1 }),
+            ("a text\nof two lines", Content::Unknown),
+            ("GOTO 10", Content::Unknown),
+            ("", Content::Unknown),
+            ("G0\0X1", Content::Binary),
+        ] {
+            assert_eq!(Content::of(text), content, "{text:?}");
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! The content of a file decides its format where the extension does not.
+
+use proptest::prelude::*;
+use sweepsim_nc::{Program, ReadOptions, read_file};
+
+/// Reads `text` from a file of that name: the program, or the error after the folder's name.
+fn read(name: &str, text: &[u8]) -> Result<Program, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join(name);
+    std::fs::write(&file, text).unwrap();
+    read_file(&file, &ReadOptions::default()).map_err(|error| {
+        let message = error.to_string();
+        message[folder.path().to_str().unwrap().len() + 1..].to_owned()
+    })
+}
+
+const NAMES: [&str; 10] = [
+    "a.nc", "a.txt", "a.NCD", "a.tap", "a.h", "a.mpf", "a.cls", "a.ncl.8", "a", "O1000",
+];
+
+#[test]
+fn gcode_and_tables_by_any_name() {
+    for name in NAMES {
+        let program = read(name, b"%\nO1000 (part)\nG21\nG0 X0 Y0 Z5\nG1 Z0\n").unwrap();
+        assert_eq!(program.poses[1].pose.tip(), [0.0, 0.0, 0.0], "{name}");
+        let program = read(name, b"x,y,z,i,j,k\n1,2,3,0,0,1\n").unwrap();
+        assert_eq!(program.poses[0].pose.tip(), [1.0, 2.0, 3.0], "{name}");
+    }
+    assert!(read("a.csv", b"G0 X0 Y0 Z5\n").is_err(), "a .csv is a table");
+}
+
+#[test]
+fn what_is_recognised_but_not_read() {
+    let instead = "expected G-code from a post-processor, or its poses as a table with the columns x,y,z,i,j,k";
+    for name in NAMES {
+        assert_eq!(
+            read(name, b"$$ by hand\nPARTNO/1\nGOTO/1,2,3\n").unwrap_err(),
+            format!("{name}:1:1: APT and CLSF paths are not supported yet: {instead}")
+        );
+        assert_eq!(
+            read(name, b"\nTOOL PATH/MILL,TOOL,D10\nTLDATA/MILL,32.,5.,75.,0.,0.\n").unwrap_err(),
+            format!("{name}:2:1: APT and CLSF paths are not supported yet: {instead}")
+        );
+        assert_eq!(
+            read(name, b"0 BEGIN PGM 12 MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n").unwrap_err(),
+            format!("{name}:1:1: programs in Heidenhain's Klartext are not supported yet: {instead}")
+        );
+    }
+}
+
+#[test]
+fn what_is_not_recognised() {
+    let expected = "but must be G-code, or a table of poses with the columns x,y,z,i,j,k";
+    assert_eq!(
+        read("a.txt", b"-20.1 -18.5 1.6 0 0 1\n").unwrap_err(),
+        format!("a.txt:1:1: the content of this path file is rows of numbers without a header, {expected}")
+    );
+    for content in [&b""[..], b"dear all\n", b"\0\x01\x02", b"{\"version\": 36}"] {
+        assert_eq!(
+            read("a.txt", content).unwrap_err(),
+            format!("a.txt: the content of this path file is not recognised, {expected}")
+        );
+    }
+    // The extension says G-code: its reader says what is wrong, and where.
+    assert_eq!(
+        read("a.nc", b"dear all\n").unwrap_err(),
+        "a.nc:1:1: statements like `dear` are not supported yet: expected RS-274 words, a letter and a number each (Siemens and macro \
+         programs: post-process them first)"
+    );
+    // So it does with dialects that it knows.
+    assert!(
+        read("a.txt", b"N10 DEF REAL _x\n")
+            .unwrap_err()
+            .starts_with("a.txt:1:5: statements like `DEF`")
+    );
+}
+
+fn words() -> impl Strategy<Value = String> {
+    let words = [
+        "G0 ",
+        "G1",
+        "G2",
+        "G5 ",
+        "G5.1",
+        "G64",
+        "G70",
+        "G92",
+        "G92.1",
+        "G92.2",
+        "G92.3",
+        "G52",
+        "G10 L20",
+        "G255",
+        "M99",
+        "M6",
+        "O",
+        "O1 T",
+        "<",
+        ">",
+        "%",
+        ":1",
+        "P10000",
+        "P0",
+        "Q1",
+        "X1",
+        "Y",
+        "Z0",
+        "I1",
+        "J-1",
+        "K2",
+        "R2",
+        "A90",
+        "GOTO/",
+        "$$",
+        "BEGIN PGM",
+        "x,y,z,i,j,k",
+        "1.5 ",
+        "\n",
+        "\n",
+        "\n",
+        "é",
+        "\0",
+    ];
+    prop::collection::vec(prop_oneof![8 => prop::sample::select(words.to_vec()).prop_map(str::to_owned), 1 => any::<char>().prop_map(String::from)], 0..60)
+        .prop_map(|parts| parts.concat())
+}
+
+proptest! {
+    #[test]
+    fn garbage_never_panics(text in words(), name in prop::sample::select(NAMES.to_vec()), moved: bool) {
+        let text = if moved { format!("G0 X0 Y0 Z0\n{text}") } else { text };
+        let _ = read(name, text.as_bytes());
+    }
+
+    #[test]
+    fn bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), name in prop::sample::select(NAMES.to_vec())) {
+        let _ = read(name, &bytes);
+    }
+}
