@@ -61,6 +61,8 @@ const APT: [&str; 32] = [
 ];
 /// those that can stand without.
 const APT_ALONE: [&str; 4] = ["PARTNO", "PPRINT", "MACHIN", "FINI"];
+/// The most lines that tell nothing, such as titles, before the one that does.
+const MOST_OTHER: usize = 5;
 /// Words of Siemens's controls, which the reader of G-code knows to refuse by name.
 const SIEMENS: [&str; 9] = [
     "DEF",
@@ -79,6 +81,7 @@ impl Content {
         if text.contains('\0') {
             return Self::Binary;
         }
+        let mut other = 0;
         for (index, line) in text.lines().enumerate() {
             let line_number = index + 1;
             let line = line.trim_start_matches('\u{feff}').trim();
@@ -97,8 +100,12 @@ impl Content {
             if is_numbers(line) {
                 return Self::Numbers { line: line_number };
             }
-            if gcode::is_block(line) || is_siemens(line) {
+            if gcode::is_block(line) || gcode::is_subroutine_or_variable(line) || is_siemens(line) {
                 return Self::Gcode;
+            }
+            other += 1;
+            if other > MOST_OTHER {
+                break;
             }
         }
         Self::Unknown
@@ -181,6 +188,9 @@ mod tests {
             ("a text\nof two lines", Content::Unknown),
             ("GOTO 10", Content::Unknown),
             ("", Content::Unknown),
+            ("a\nlonger\ntext\nin\nwhich\none\nline\nis\nG1\nX1", Content::Unknown),
+            ("o<pocket> sub\nG1 X1", Content::Gcode),
+            ("#1 = 5\nG1 X#1", Content::Gcode),
             ("G0\0X1", Content::Binary),
         ] {
             assert_eq!(Content::of(text), content, "{text:?}");

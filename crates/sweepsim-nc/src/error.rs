@@ -120,6 +120,8 @@ impl NcProblem {
 
 /// A program that cannot be read: what is wrong, in which file, and where, as far as each is known.
 ///
+/// It is the first problem; [`further`](Self::further) lists what else is wrong with the program, as far as that can be told.
+///
 /// Its `Display` is one line: `file:line:column: what is wrong, and what was expected`.
 #[derive(Debug)]
 pub struct NcError(Box<Inner>);
@@ -129,6 +131,7 @@ struct Inner {
     file: Option<PathBuf>,
     position: Option<TextPosition>,
     problem: NcProblem,
+    further: Vec<NcError>,
 }
 
 impl NcError {
@@ -137,12 +140,24 @@ impl NcError {
             file: None,
             position,
             problem,
+            further: Vec::new(),
         }))
     }
 
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
         self.0.file.get_or_insert_with(|| file.to_owned());
+        for error in &mut self.0.further {
+            error.0.file.get_or_insert_with(|| file.to_owned());
+        }
         self
+    }
+
+    /// The first of `errors`, with the others; `None` without any.
+    pub(crate) fn all(errors: Vec<Self>) -> Option<Self> {
+        let mut errors = errors.into_iter();
+        let mut first = errors.next()?;
+        first.0.further = errors.collect();
+        Some(first)
     }
 
     /// The file, if there is one.
@@ -161,6 +176,20 @@ impl NcError {
     #[must_use]
     pub fn problem(&self) -> &NcProblem {
         &self.0.problem
+    }
+
+    /// The other problems of the program, by line: each once, where it first occurs, and at most a hundred.
+    ///
+    /// Only the reader of G-code goes on after a problem. What depends on a position that a problem has made unknown is not judged.
+    #[must_use]
+    pub fn further(&self) -> &[NcError] {
+        &self.0.further
+    }
+
+    /// Takes the other problems out of this one.
+    #[must_use]
+    pub fn take_further(&mut self) -> Vec<NcError> {
+        std::mem::take(&mut self.0.further)
     }
 
     /// The file, the position and the problem.

@@ -5,6 +5,9 @@ use std::process::ExitCode;
 use sweepsim_formats::FormatError;
 use sweepsim_nc::NcError;
 
+/// The most problems of a program that are shown after the first.
+const MOST_FURTHER: usize = 9;
+
 /// Why a command ends without a result.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -43,8 +46,18 @@ impl From<sweepsim_dexel::MeshError> for Failure {
 }
 
 impl From<NcError> for Failure {
-    fn from(error: NcError) -> Self {
-        FormatError::from(error).into()
+    fn from(mut error: NcError) -> Self {
+        let further = error.take_further();
+        let mut text = FormatError::from(error).render(true);
+        let more = further.len().saturating_sub(MOST_FURTHER);
+        for error in further.into_iter().take(MOST_FURTHER) {
+            text.push_str("\n\n");
+            text.push_str(&FormatError::from(error).render(true));
+        }
+        if more > 0 {
+            text.push_str(&format!("\n\n{more} more problems of other kinds"));
+        }
+        Self::Bad(text)
     }
 }
 

@@ -255,7 +255,7 @@ fn one_message_with_its_place() {
         (
             poses,
             "file: \"path.xyz\"".into(),
-            "path.xyz: the extension of this path file is .xyz",
+            "path.xyz: the content of this path file is not recognised",
         ),
         (
             poses,

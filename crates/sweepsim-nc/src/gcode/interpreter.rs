@@ -1,5 +1,6 @@
 //! Executes a program block by block.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use super::arc::ArcPlane;
@@ -11,6 +12,9 @@ use super::title;
 use crate::error::{NcError, NcProblem, TextPosition};
 use crate::program::Program;
 use crate::read_options::ReadOptions;
+
+/// The most problems after the first one.
+const MOST_FURTHER: usize = 100;
 
 pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
     if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
@@ -34,21 +38,31 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
         length_control: false,
         begun: false,
         ended: false,
+        uncertain: false,
     };
+    let mut errors: Vec<NcError> = Vec::new();
+    let mut messages = HashSet::new();
     let leader = title::leader(text);
     if leader > 0 {
         reader.state.notes.add(1, "text before the first `%`: ignored");
     }
     for (index, line) in text.lines().enumerate().skip(leader) {
         let number = index + 1;
-        reader.line(line, number).map_err(|(problem, span)| {
-            let column = 1 + line[..span.start].chars().count();
-            let width = line[span].chars().count();
-            NcError::new(problem, Some(TextPosition::in_line(number, line, column, width)))
-        })?;
-        if reader.ended {
+        if let Err((problem, span)) = reader.line(line, number) {
+            reader.go_on();
+            if messages.insert(problem.to_string()) {
+                let column = 1 + line[..span.start].chars().count();
+                let width = line[span].chars().count();
+                let position = TextPosition::in_line(number, line, column, width);
+                errors.push(NcError::new(problem, Some(position)));
+            }
+        }
+        if reader.ended || errors.len() > MOST_FURTHER {
             break;
         }
+    }
+    if let Some(error) = NcError::all(errors) {
+        return Err(error);
     }
     if !reader.state.has_moved() {
         let line = text.lines().count().max(1);
@@ -81,6 +95,8 @@ pub(super) struct Reader {
     pub(super) length_control: bool,
     pub(super) begun: bool,
     pub(super) ended: bool,
+    /// After a problem: what the program has said so far is not fully known.
+    pub(super) uncertain: bool,
 }
 
 /// The words of a block, by letter.
@@ -117,6 +133,14 @@ fn code_name(word: &Word) -> String {
 }
 
 impl Reader {
+    /// Goes on after a problem, to find others: where the tool is now is not known.
+    fn go_on(&mut self) {
+        self.uncertain = true;
+        self.state.xyz = [None; 3];
+        self.state.leave();
+        self.modes.motion = None;
+    }
+
     fn line(&mut self, line: &str, number: usize) -> Result<(), Located> {
         if !self.state.has_moved()
             && let Some(title) = title::of(line)
@@ -219,6 +243,8 @@ impl Reader {
             Some((code, span)) => self.act(code, values, line).map_err(|problem| (problem, span))?,
             None => match (values.first("XYZABCIJKR"), self.modes.motion) {
                 (None, _) => {}
+                // The block with the motion code may be the one with the problem.
+                (Some(_), None) if self.uncertain => {}
                 (Some(word), None) => {
                     let problem = NcProblem::syntax(format!(
                         "{} without a motion code: expected G0, G1, G2 or G3 here or before",

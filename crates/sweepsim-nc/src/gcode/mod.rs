@@ -40,7 +40,7 @@ use crate::read_options::ReadOptions;
 /// Reads a program.
 ///
 /// # Errors
-/// [`NcError`] with line and column at the first block that is invalid or ambiguous.
+/// [`NcError`] with line and column at the first block that is invalid or ambiguous; [`NcError::further`] has the others.
 ///
 /// ```
 /// use sweepsim_nc::{ReadOptions, gcode};
@@ -56,6 +56,12 @@ use crate::read_options::ReadOptions;
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
     interpreter::read(text, options)
+}
+
+/// Whether a line begins a subroutine or loop, or sets a variable.
+pub(crate) fn is_subroutine_or_variable(line: &str) -> bool {
+    let rest = line.trim_start_matches(['O', 'o']);
+    rest.starts_with(['#', '<']) && (rest.len() < line.len() || line.contains('='))
 }
 
 /// Whether a line is a block with a code or a coordinate.

@@ -53,7 +53,11 @@ impl Reader {
 
     pub(super) fn act(&mut self, code: Code, values: &Values, line: usize) -> Result<(), NcProblem> {
         let words = self.lengths(values, ['X', 'Y', 'Z']);
+        let here_unknown = (0..3).any(|k| words[k].is_some() && self.state.xyz[k].is_none());
         match code {
+            // An earlier problem has made the position unknown; see `Reader::go_on`.
+            Code::SetOffsets | Code::ShiftHere if self.uncertain && here_unknown => {}
+            Code::RestoreShift if self.uncertain => {}
             Code::Home => {
                 let any = values.first("XYZABC").is_some();
                 for k in 0..3 {
@@ -155,6 +159,16 @@ impl Reader {
         let words = self.lengths(values, ['X', 'Y', 'Z']);
         let abc = self.angles(values);
         let cuts = motion != MotionMode::Rapid;
+        if self.uncertain && self.state.known().is_none() && (cuts || !self.modes.absolute) {
+            // Nothing is assumed about a position that an earlier problem has made unknown.
+            for k in 0..3 {
+                if let Some(word) = words[k] {
+                    self.state.xyz[k] = self.modes.absolute.then(|| word + self.offsets.total()[k]);
+                }
+            }
+            self.state.abc = abc;
+            return Ok(());
+        }
         if cuts || !self.modes.absolute {
             for k in (0..3).filter(|&k| self.state.xyz[k].is_none()) {
                 self.offsets.know(k)?;

@@ -271,3 +271,38 @@ fn the_third_word_of_a_helix() {
     );
     assert!(error("G2 X10 Y0 I-10 J0 Q1").contains("Q in an arc"));
 }
+
+/// All problems: lines and messages up to the reason.
+fn problems(text: &str) -> Vec<String> {
+    let error = read(text, &ReadOptions::default()).expect_err(text);
+    std::iter::once(&error)
+        .chain(error.further())
+        .map(|error| error.to_string().split(" not supported").next().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn all_problems_at_once() {
+    assert_eq!(
+        problems("G0 X0 Y0 Z5\nG81 X1 Z-1 R1 F100\nX2\nG80\nG1 X#1\nG41 D1 X5\nG81 X3\nM98 P5\nG2 X5 I1\nM30\nG42"),
+        [
+            "2:1: G81: canned cycles are",
+            "5:4: variables and expressions are",
+            "6:1: G41: cutter compensation is",
+            "8:1: M98: subroutines are"
+        ],
+        "each once, and none that follows from another"
+    );
+    assert_eq!(problems("G0 X0 Y0 Z5\nG1 X#1\nG92 X0\nG92.3\nG10 L20 P1 X0").len(), 1);
+    // A full position makes the following blocks certain again.
+    assert_eq!(
+        problems("G0 X0 Y0 Z5\nG1 X#1\nG0 X1 Y1 Z1\nG2 X9 I1"),
+        [
+            "2:4: variables and expressions are",
+            "4:1: the arc has two radii: its start is 1 mm and its end 7 mm from its centre, expected the same"
+        ]
+    );
+    assert!(problems("G1 X0 Y0 Z5\nX1 Y1\nX2 &")[0].starts_with("3:4: found '&'"));
+    let many: String = (0..1000).map(|k| format!("G{}\n", 1000 + k)).collect();
+    assert_eq!(problems(&many).len(), 101);
+}

@@ -175,7 +175,18 @@ fn every_program_is_read_or_says_why_not() {
         }
     }
     println!("{read} read, {poses} poses");
-    let refused: Vec<(String, usize)> = refused.into_iter().map(|(why, files)| (why, files.len())).collect();
-    println!("{refused:#?}");
-    assert_eq!((read, refused), (0, vec![]));
+    let reasons = [
+        ("APT and CLSF paths are not supported yet", 7),
+        ("O-words (subroutines, loops) are not supported yet", 1),
+        ("statements like `DEF` are not supported yet", 3),
+        // Tables in the literature's own formats.
+        ("the content of this path file is not recognised", 2),
+        ("the content of this path file is rows of numbers without a header", 27),
+        ("variables and expressions are not supported yet", 1),
+    ];
+    assert_eq!(refused.len(), reasons.len(), "{refused:#?}");
+    for ((why, files), (reason, count)) in refused.iter().zip(reasons) {
+        assert!(why.starts_with(reason) && files.len() == count, "{why}: {files:?}");
+    }
+    assert_eq!(read, 32);
 }
