@@ -215,6 +215,19 @@ fn inspect_tells_what_is_there() {
         "not understood, so said: {}",
         text(&output.stdout)
     );
+    // By its content, whatever its name; and all that is wrong with it.
+    fs::write(workdir.path("O1000"), "G0 X0 Y0 Z5\nG81 X1 Z-1 R1\nM98 P5\n").unwrap();
+    let output = inspect(&workdir, "O1000");
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(
+        said.contains("O1000:2:1") && said.contains("G81: canned cycles"),
+        "{said}"
+    );
+    assert!(
+        said.contains("O1000:3:1") && said.contains("M98: subroutines"),
+        "{said}"
+    );
 }
 
 /// Exit 2, one message that has all of `words`, nothing on standard output, nothing written.

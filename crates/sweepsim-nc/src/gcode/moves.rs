@@ -76,11 +76,12 @@ impl Reader {
                 self.state.leave();
             }
             Code::SetOffsets => {
-                if values.get('R').is_some_and(|r| r != 0.0) {
-                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
-                }
                 let index = values.get('P').unwrap_or(0.0);
                 match values.get('L') {
+                    // Of L1, L10 and L11 it is a tool's radius.
+                    Some(2.0 | 20.0) if values.get('R').is_some_and(|r| r != 0.0) => {
+                        return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                    }
                     Some(2.0) => {
                         if turns(values) {
                             return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));

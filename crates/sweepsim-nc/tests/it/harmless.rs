@@ -83,6 +83,11 @@ fn speeds_and_coolant() {
         assert_eq!(tips(&found), [[0.0, 0.0, 5.0], [10.0, 0.0, 5.0]], "{text}");
     }
     harmless("G255", &[]);
+    harmless("G10 L1 P1 R5 Z2", &["line 2: G10 other than L2 and L20 is ignored"]);
+    refused(
+        "G10 L2 P1 R45",
+        "1: work offsets that turn are not supported yet: expected X, Y, Z",
+    );
     harmless("G69", &[]);
     refused(
         "G254",

@@ -190,3 +190,19 @@ fn every_program_is_read_or_says_why_not() {
     }
     assert_eq!(read, 32);
 }
+
+/// LinuxCNC's own programs that must be refused.
+#[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+fn bad_programs_are_refused() {
+    let mut files = Vec::new();
+    programs_below(&folder().join("conformance/linuxcnc/interp/bad"), &mut files);
+    let read: Vec<&str> = files
+        .iter()
+        .filter(|file| read_file(file, &ReadOptions::default()).is_ok())
+        .filter_map(|file| file.file_name()?.to_str())
+        .collect();
+    assert_eq!(files.len(), 23);
+    // Its path is known, although a machine would not start without a feed.
+    assert_eq!(read, ["no-feed-rate.ngc"]);
+}
