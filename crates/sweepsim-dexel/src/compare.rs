@@ -13,7 +13,7 @@ use crate::mesh::TriangleSoup;
 use crate::stock::{StockError, mesh_dexels};
 use rayon::prelude::*;
 
-/// What became of one end.
+/// How one end differs from the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Deviation {
@@ -21,10 +21,10 @@ pub struct Deviation {
     pub line: u32,
     /// Number of the end on its line, from 0 going up.
     pub end: u32,
-    /// How far the end is outside of the target: negative inside of it. `None` when no end of the target that faces the same way is
+    /// The distance of the end outside the target, negative inside. `None` if no end of the target that faces the same way is
     /// within reach.
     pub distance: Option<f64>,
-    /// Area of surface that the end stands for: that of its cell over the cosine of its slope, at most a thousand cells.
+    /// The surface area that the end represents: that of its cell divided by the cosine of its slope, at most a thousand cells.
     pub area: f64,
 }
 
@@ -36,7 +36,7 @@ pub struct Comparison {
     pub volume: f64,
     /// Volume of the target.
     pub target: f64,
-    /// Volume of the dexels that is outside of the target.
+    /// Volume of the dexels outside the target.
     pub excess: f64,
     /// Volume of the target that is missing.
     pub missing: f64,
@@ -127,7 +127,7 @@ impl Comparison {
 /// `reach` and faces the same way (their normals less than 90° apart). For a mesh as target see [`compare_with_mesh`].
 ///
 /// # Errors
-/// [`GridMismatch`] when the grids differ.
+/// [`GridMismatch`] if the grids differ.
 ///
 /// ```
 /// use sweepsim_dexel::{Grid, Stock, compare};
@@ -156,7 +156,7 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
 /// that point is inside a triangle, the distance is along its normal.
 ///
 /// # Errors
-/// [`StockError`](crate::StockError): the mesh is not closed, or crosses itself.
+/// [`StockError`](crate::StockError): the mesh is not closed, or intersects itself.
 ///
 /// ```
 /// use sweepsim_dexel::{Grid, Stock, TriDexels, compare_with_mesh};
@@ -200,7 +200,7 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> 
     Ok(Comparison::sum(parts))
 }
 
-/// Area of surface that an end stands for.
+/// The surface area that an end represents.
 fn area(end: &End, cell: f64) -> f64 {
     cell / f64::from(end.normal[2].abs()).max(1e-3)
 }
@@ -215,7 +215,7 @@ fn column(dexels: &Dexels, target: &Dexels, i: usize, reach: f64) -> Comparison 
         part.volumes(line, goal, dx * dy);
         for (number, end) in line.iter().flat_map(|i| [i.lower, i.upper]).enumerate() {
             let mut nearest: Option<(f64, f64)> = None;
-            // The own line first: of equally near ends the first is taken.
+            // The end's own line comes first: of equally near ends the first is taken.
             for (a, b) in [(1, 1), (0, 1), (2, 1), (1, 0), (1, 2), (0, 0), (0, 2), (2, 0), (2, 2)] {
                 let (k, l) = (i + a, j + b);
                 if k == 0 || l == 0 || k > columns || l > rows {
@@ -247,7 +247,7 @@ fn dot(a: &End, b: &End) -> f32 {
     (0..3).map(|k| a.normal[k] * b.normal[k]).sum()
 }
 
-/// Length of what is in both.
+/// The length of the intersection.
 fn overlap(a: impl Iterator<Item = [f64; 2]>, b: impl Iterator<Item = [f64; 2]>) -> f64 {
     let mut b = b.peekable();
     let mut sum = 0.0;

@@ -1,4 +1,4 @@
-//! Solves one of the benchmark's systems again and again, for counting instructions (and allocations) per solution:
+//! Solves one of the benchmark systems repeatedly, to count instructions (and allocations) per solution:
 //!
 //! `perf stat -e instructions:u target/release/examples/repeat wilk_grid_8x8 1000`
 

@@ -1,4 +1,4 @@
-//! All roots of three equations in three unknowns: where three quadrics meet. What multiple roots look like is shown as well.
+//! All roots of three equations in three unknowns: where three quadrics meet. Also shows what multiple roots look like.
 //!
 //! `cargo run -p sweepsim-solve --example three_by_three`
 

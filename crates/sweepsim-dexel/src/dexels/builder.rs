@@ -27,7 +27,7 @@ pub struct DexelsBuilder {
 }
 
 impl DexelsBuilder {
-    /// A builder without lines.
+    /// Creates a builder without lines.
     #[must_use]
     pub fn new(grid: Grid) -> Self {
         Self {

@@ -1,12 +1,12 @@
 //! Sixty-four neighbouring lines in one piece of memory.
 //!
-//! Intervals of all lines of a chunk stand one after the other; a table of 65 numbers says where each line begins. So a line
+//! The intervals of all lines of a chunk are stored one after the other; a table of 65 numbers tells where each line begins. So a line
 //! costs 4 bytes, an interval its two ends, and a chunk without material one null pointer. A change of one line moves the
 //! rest of its chunk, a few kilobytes.
 //!
-//! Ends name the move that made them by its place in the chunk's own table of moves, so that a [`Source`] takes 32 bits:
-//! the number of the move first, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24 at first,
-//! and one fewer whenever the table outgrows the rest: times are good to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for 65,536.
+//! Ends refer to the move that made them by its index in the chunk's own table of moves, so that a [`Source`] takes 32 bits:
+//! first the index of the move, then the time in units of `2⁻⁽ᵇ⁻¹⁾` where `b` bits are left for it. There are 24 at first,
+//! and one fewer whenever the table outgrows the rest: times are accurate to 2⁻²⁴ for 256 moves, to 2⁻¹⁶ for 65,536.
 
 use super::packed::Packed;
 use super::segments::{CutSegment, LEAST_TIME, SegmentTable, Table};
@@ -66,7 +66,7 @@ impl Chunk {
         ends.filter_map(|end| table.path(end.source)).max()
     }
 
-    /// Bytes of memory, the chunk itself with what it points to.
+    /// Bytes of memory, of the chunk itself and everything it points to.
     pub fn bytes(&self) -> usize {
         size_of::<Self>()
             + self.pieces.capacity() * size_of::<PackedInterval>()
@@ -112,7 +112,7 @@ impl Chunk {
         }));
     }
 
-    /// Makes room for more moves: the table loses what no end names, then times lose bits. `out` holds intervals that are not
+    /// Makes room for more moves: the table drops moves that no end refers to, then times lose bits. `out` holds intervals that are not
     /// in the chunk yet.
     fn make_room(&mut self, more: usize, out: &mut [PackedInterval]) {
         let full = |moves: &SegmentTable| moves.moves.len() + more > 1 << (32 - moves.time);
@@ -132,7 +132,7 @@ impl Chunk {
         }
     }
 
-    /// Drops moves that no end names, and the second of any two that are the same.
+    /// Drops moves that no end refers to, and duplicates.
     fn tidy(&mut self, out: &mut [PackedInterval]) {
         let mut used = vec![false; self.moves.moves.len()];
         let time = self.moves.time;
@@ -201,7 +201,7 @@ impl Chunk {
         self.refill(scratch);
     }
 
-    /// Exactly as much memory as is needed, unless what there is nearly fits.
+    /// Allocates exactly as much memory as needed, unless the present amount nearly fits.
     fn refill(&mut self, pieces: &[PackedInterval]) {
         let room = self.pieces.capacity();
         if room < pieces.len() || room > pieces.len() + pieces.len() / 8 + 8 {
@@ -226,7 +226,7 @@ impl Chunk {
         self.moves.moves.shrink_to_fit();
     }
 
-    /// Gives back memory that is kept for growth.
+    /// Releases spare capacity.
     pub fn shrink(&mut self) {
         self.tidy(&mut []);
         self.pieces.shrink_to_fit();

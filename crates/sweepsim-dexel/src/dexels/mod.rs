@@ -58,7 +58,7 @@ pub struct Dexels {
     pub(super) grid: Grid,
     /// Never a chunk without material.
     pub(super) chunks: Vec<Option<Box<Chunk>>>,
-    /// Lists to work with, kept for their memory.
+    /// Scratch lists, kept to reuse their memory.
     scratch: [Vec<PackedInterval>; 2],
 }
 
@@ -122,7 +122,7 @@ impl Dexels {
         }
     }
 
-    /// As [`Dexels::from_fn`]; intervals without a positive length are left out.
+    /// As [`Dexels::from_fn`], but drops intervals without a positive length.
     pub(crate) fn filled(grid: Grid, write: impl Fn(usize, &mut Vec<Interval>) + Sync) -> Self {
         let mut dexels = Self::empty(grid);
         let chunks = dexels.chunks.par_iter_mut().enumerate();
@@ -235,7 +235,7 @@ impl Dexels {
         }
     }
 
-    /// Replaces a line by what `operation` makes of it and of `more`.
+    /// Replaces a line by the result of `operation` on it and `more`.
     fn change(&mut self, index: usize, more: &[Interval], operation: Run<Packed>) {
         let slot = &mut self.chunks[index / LINES];
         let chunk = slot.get_or_insert_default();
@@ -253,7 +253,7 @@ impl Dexels {
     /// Combines the material with that of `other`, in parallel.
     ///
     /// # Errors
-    /// [`GridMismatch`] when the grids differ.
+    /// [`GridMismatch`] if the grids differ.
     pub fn combine(&mut self, operation: Operation, other: &Self) -> Result<(), GridMismatch> {
         if self.grid != other.grid {
             return Err(GridMismatch);
@@ -275,7 +275,7 @@ impl Dexels {
                     }
                     _ => return,
                 };
-                // All of the other chunk in the terms of this one, line after line.
+                // The whole other chunk, line after line, with its moves numbered as in this one's table.
                 packed.clear();
                 chunk.adopt(more.table(), more.all(), packed);
                 let mut from = 0;
@@ -295,7 +295,7 @@ impl Dexels {
     /// Subtracts the material of `other`.
     ///
     /// # Errors
-    /// [`GridMismatch`] when the grids differ.
+    /// [`GridMismatch`] if the grids differ.
     pub fn subtract_all(&mut self, other: &Self) -> Result<(), GridMismatch> {
         self.combine(Operation::Difference, other)
     }
@@ -303,7 +303,7 @@ impl Dexels {
     /// Adds the material of `other`.
     ///
     /// # Errors
-    /// [`GridMismatch`] when the grids differ.
+    /// [`GridMismatch`] if the grids differ.
     pub fn unite_all(&mut self, other: &Self) -> Result<(), GridMismatch> {
         self.combine(Operation::Union, other)
     }
@@ -311,7 +311,7 @@ impl Dexels {
     /// Keeps only material that is also in `other`.
     ///
     /// # Errors
-    /// [`GridMismatch`] when the grids differ.
+    /// [`GridMismatch`] if the grids differ.
     pub fn intersect_all(&mut self, other: &Self) -> Result<(), GridMismatch> {
         self.combine(Operation::Intersection, other)
     }

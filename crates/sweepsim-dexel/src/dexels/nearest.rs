@@ -1,4 +1,4 @@
-//! The interval end nearest to a point: what made the surface there.
+//! The interval end nearest to a point, which tells what made the surface there.
 
 use super::Dexels;
 use crate::intervals::{End, Source};
@@ -34,14 +34,14 @@ impl Dexels {
         self.nearest_of(point.into(), |_| true)
     }
 
-    /// What made the surface at a point of the world, or next to it: the source of the nearest interval end, if one is within `reach`.
+    /// The source of the surface at or near a point of the world: that of the nearest interval end, if one is within `reach`.
     #[must_use]
     pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {
         let nearest = self.nearest_end(point)?;
         (nearest.distance <= reach).then_some(nearest.end.source)
     }
 
-    /// The nearest of those ends that are wanted.
+    /// The nearest end that passes the filter.
     pub(crate) fn nearest_of(&self, point: [f64; 3], wanted: impl Fn(&End) -> bool) -> Option<NearestEnd> {
         if !point.iter().all(|c| c.is_finite()) {
             return None;
@@ -54,7 +54,7 @@ impl Dexels {
         let finest = spacing[0].min(spacing[1]);
         let mut best: Option<NearestEnd> = None;
         for ring in 0..cells[0].max(cells[1]) {
-            // Lines of this ring are at least so far from the point, if it is on the grid; from others, further.
+            // Lines of this ring are at least this far from the point if it is on the grid, and farther otherwise.
             let least = (ring as f64 - 0.5).max(0.0) * finest;
             if best.as_ref().is_some_and(|best| best.distance < least) {
                 break;

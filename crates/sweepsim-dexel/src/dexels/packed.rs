@@ -1,8 +1,8 @@
 //! Ends as they are stored: 16 bytes.
 //!
-//! The height is kept to the bit. The normal is projected onto an octahedron, and that unfolded to a square: two numbers of 16
-//! bits, which turn it by at most 6.5e-5 and leave the directions of the axes as they are. The source is a number in the
-//! table of moves of the chunk and a time, in 32 bits.
+//! The height is stored exactly. The normal is projected onto an octahedron, which is unfolded to a square: two numbers of 16
+//! bits, which turn it by at most 6.5e-5 and keep axis directions exact. The source is an index into the
+//! chunk's table of moves and a time, in 32 bits.
 
 use crate::intervals::Endpoint;
 
@@ -46,7 +46,7 @@ fn sign(c: i32) -> i32 {
 }
 
 impl Octahedral {
-    /// The nearest direction, or nearly so. A vector without direction is taken as up.
+    /// The nearest direction, or nearly so. A zero or non-finite vector is taken as up.
     pub fn new(normal: [f32; 3]) -> Self {
         let n = normal.map(f64::from);
         let size = n.iter().map(|c| c.abs()).sum::<f64>();

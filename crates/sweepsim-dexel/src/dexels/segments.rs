@@ -1,4 +1,4 @@
-//! Which segments of which paths made the ends of a chunk.
+//! The table of segments that made the ends of a chunk.
 
 use super::chunk::PackedInterval;
 use super::packed::{Octahedral, Packed};
@@ -11,14 +11,14 @@ pub(crate) struct CutSegment {
     pub segment: u32,
 }
 
-/// How many entries of the table, counted from its end, are looked at for a move before it is entered again.
+/// How many entries, from the end of the table, are searched for a move before it is entered again.
 const LOOK: usize = 16;
 /// Bits of a time in a table of at most 256 moves.
 const TIME: u32 = 24;
-/// Fewest bits of a time: enough for no table that fits into memory to ask for less.
+/// The fewest bits of a time: no table that fits into memory leaves fewer.
 pub(super) const LEAST_TIME: u32 = 2;
 
-/// What a time needs to be read.
+/// What is needed to decode a time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Table<'a> {
     pub(super) moves: &'a [CutSegment],

@@ -79,7 +79,7 @@ impl Dexels {
         failures
     }
 
-    /// Updates by anything sorted by line: `read` makes intervals in normal form of all there is for a line. What it works with is kept
+    /// Updates from items sorted by line: `read` turns all items of a line into intervals in normal form. Its scratch memory is reused
     /// for the next line.
     fn update_by<T: Sync, W: Default>(
         &mut self,

@@ -1,4 +1,4 @@
-//! Places and directions of one's own.
+//! User-defined coordinate frames.
 
 use crate::vector::{cross, dot};
 use thiserror::Error;
@@ -18,14 +18,14 @@ pub struct Frame {
     axes: [[f64; 3]; 3],
 }
 
-/// Why vectors make no frame.
+/// Why a frame is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum FrameError {
     /// A number is not finite.
     #[error("the frame is not finite")]
     Infinite,
-    /// The direction of z is no direction.
+    /// The direction of z is the zero vector.
     #[error("the frame's z is zero")]
     Zero,
     /// The direction of x is parallel to z, or zero.
@@ -36,9 +36,9 @@ pub enum FrameError {
     Skewed,
 }
 
-/// How far from 1 and 0 the products of axes may be that are taken as they are.
+/// How far the products of axes may be from 1 and 0 for the axes to be stored exactly.
 const SKEW: f64 = 1e-12;
-/// Sine below which x is parallel to z.
+/// Below this sine, x counts as parallel to z.
 const LEAST: f64 = 1e-9;
 
 /// Scaled by its largest number first, so that no square overflows.
@@ -88,7 +88,7 @@ impl Frame {
         })
     }
 
-    /// A frame from its axes, which are stored exactly.
+    /// Creates a frame from its axes, which are stored exactly.
     ///
     /// # Errors
     /// [`FrameError`]: not finite, or not perpendicular unit vectors (by more than 1e-12), or left-handed.
@@ -107,7 +107,7 @@ impl Frame {
         }
     }
 
-    /// The world as seen along one of its axes: x, y, z are the world's with the numbers `axis + 1`, `axis + 2` and `axis` (mod 3).
+    /// The world seen along one of its axes: x, y and z are the world's axes `axis + 1`, `axis + 2` and `axis` (mod 3).
     #[must_use]
     pub fn cyclic(axis: usize) -> Self {
         let world = Self::WORLD.axes;
@@ -117,19 +117,19 @@ impl Frame {
         }
     }
 
-    /// Where its own origin is.
+    /// The origin, in world coordinates.
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// Its axes, as unit vectors of the world.
+    /// The axes, as unit vectors in world coordinates.
     #[must_use]
     pub fn axes(&self) -> [[f64; 3]; 3] {
         self.axes
     }
 
-    /// Whether it is that of the world.
+    /// Whether this is the frame of the world.
     #[must_use]
     pub fn is_world(&self) -> bool {
         *self == Self::WORLD

@@ -1,4 +1,4 @@
-//! The grid on which dexels stand.
+//! The grid of dexel lines.
 
 mod frame;
 
@@ -38,7 +38,7 @@ impl Grid {
     /// The maximum number of cells: their numbers fit in 32 bits.
     pub const MOST: usize = 4_000_000_000;
 
-    /// A grid over the rectangle from `min` to `max`.
+    /// Creates a grid over the rectangle from `min` to `max`.
     ///
     /// # Errors
     /// [`GridError`]: an empty area, no cells, or too many.
@@ -109,7 +109,7 @@ impl Grid {
         self.cells[0] * self.cells[1]
     }
 
-    /// Distance of neighbouring dexels along `x` and along `y`.
+    /// Distance between neighbouring dexels along `x` and along `y`.
     #[must_use]
     pub fn spacing(&self) -> [f64; 2] {
         [0, 1].map(|k| (self.max[k] - self.min[k]) / self.cells[k] as f64)
@@ -144,7 +144,7 @@ impl Grid {
         i * self.cells[1] + j
     }
 
-    /// The column and row of a dexel; those of a number beyond the grid are beyond it, too.
+    /// The column and row of a dexel. A number beyond the grid gives a position beyond it.
     #[must_use]
     pub fn place(&self, index: usize) -> (usize, usize) {
         (index / self.cells[1], index % self.cells[1])

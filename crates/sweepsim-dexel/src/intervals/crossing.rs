@@ -2,7 +2,7 @@
 //!
 //! Fix a line. Let `S` be the part of the strip of times `t` and heights `z` that the moving tool covers, and `c(z)` the number of
 //! connected components of `S` at height `z`. The swept volume meets the line exactly where `c ≥ 1`. Far below and far above, `c` is 0;
-//! each crossing tells by how much `c` jumps, going up. So the jumps add up to 0 and no partial sum is negative. A crossing that is
+//! each crossing says by how much `c` jumps, going up. So the jumps add up to 0 and no partial sum is negative. A crossing that is
 //! lost or found twice breaks this audit, unless a second error of opposite sign hides it.
 
 use super::interval::{End, Interval, Source};
@@ -102,7 +102,7 @@ fn end(crossing: &Crossing) -> End {
     }
 }
 
-/// Counts from crossing to crossing. Where the order of crossings is wrong intervals or gaps come out that are too thin.
+/// Counts from crossing to crossing. Where the order of crossings is wrong, the result has intervals or gaps that are too thin.
 fn chain(group: &[Crossing], mut sum: i32, lower: &mut Option<End>, intervals: &mut Vec<Interval>) {
     for crossing in group {
         sum += i32::from(crossing.jump);
@@ -149,7 +149,7 @@ mod tests {
                 prop_assert_eq!(covered, intervals.iter().any(|i| i.lower.z < z && z < i.upper.z));
             }
             prop_assert!(intervals.windows(2).all(|w| w[0].upper.z < w[1].lower.z));
-            // One crossing lost: found out.
+            // One crossing lost: detected.
             if !shuffled.is_empty() {
                 let lost = shuffled.len() / 2;
                 shuffled.remove(lost);
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn crossings_at_one_height_have_no_order() {
-        // A component ends where another begins, but for rounding: no gap. One that begins and ends there: no interval.
+        // If a component ends where another begins, up to rounding, there is no gap. If one begins and ends there, there is no interval.
         let ulp = f64::EPSILON;
         let mut crossings = [
             (0.0, 1),

@@ -35,7 +35,7 @@ impl Source {
     }
 }
 
-/// Why intervals are refused.
+/// Why intervals are rejected.
 ///
 /// ```
 /// use sweepsim_dexel::{IntervalError, IntervalSet};
@@ -70,7 +70,7 @@ pub enum IntervalError {
     Line {
         /// The line.
         line: usize,
-        /// How many there are.
+        /// The number of lines of the grid.
         lines: usize,
     },
 }
@@ -111,12 +111,12 @@ pub trait Endpoint: Copy {
     /// The height.
     fn height(&self) -> f64;
 
-    /// The same end seen from the other side, for when material and air swap.
+    /// The same end seen from the other side, for when material and air are swapped.
     #[must_use]
     fn flipped(self) -> Self;
 }
 
-/// A height and nothing else.
+/// A height without further data.
 impl Endpoint for f64 {
     fn height(&self) -> f64 {
         *self
@@ -139,7 +139,7 @@ pub struct End {
 }
 
 impl End {
-    /// The same place seen from the other side.
+    /// The same end seen from the other side.
     #[must_use]
     pub fn flipped(self) -> Self {
         Self {

@@ -5,7 +5,7 @@
 
 use super::interval::{Endpoint, Interval};
 
-/// An operation: of two lists, to the third.
+/// An operation: takes two lists, appends to the third.
 pub(crate) type Run<E> = fn(&[Interval<E>], &[Interval<E>], &mut Vec<Interval<E>>);
 
 /// `a ∖ b`. New ends are those of `b`, flipped.
@@ -33,7 +33,7 @@ pub(crate) fn difference<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out:
     }
 }
 
-/// `a ∪ b`; intervals that touch become one. Ends at one height: those of `a`.
+/// `a ∪ b`; intervals that touch become one. Of two ends at the same height, that of `a` is kept.
 ///
 /// `a` and `b` need only be sorted by their lower ends: intervals that overlap in one of them are joined as well.
 pub(crate) fn union<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
@@ -59,7 +59,7 @@ pub(crate) fn union<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut
     }
 }
 
-/// `a ∩ b`. Ends at one height: those of `a`.
+/// `a ∩ b`. Of two ends at the same height, that of `a` is kept.
 pub(crate) fn intersection<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], out: &mut Vec<Interval<E>>) {
     let (mut i, mut j) = (0, 0);
     while i < a.len() && j < b.len() {
@@ -83,7 +83,7 @@ pub(crate) fn intersection<E: Endpoint>(a: &[Interval<E>], b: &[Interval<E>], ou
 
 /// Brings intervals in any order, overlapping or empty, into normal form.
 pub(crate) fn normalise<E: Endpoint>(pieces: &mut Vec<Interval<E>>) {
-    // Comparisons with NaN are false: such intervals are none.
+    // Comparisons with NaN are false, so such intervals are dropped.
     pieces.retain(|piece| piece.lower.height() < piece.upper.height());
     let apart = |w: &[Interval<E>]| w[0].upper.height() < w[1].lower.height();
     if !pieces.windows(2).all(apart) {

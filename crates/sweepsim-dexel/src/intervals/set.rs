@@ -153,7 +153,7 @@ mod tests {
     use crate::End;
     use proptest::prelude::*;
 
-    /// Any intervals with ends on whole numbers: in no order, overlapping, empty, upside down.
+    /// Any intervals with ends on whole numbers: unsorted, overlapping, empty, reversed.
     fn pieces() -> impl Strategy<Value = Vec<[i32; 2]>> {
         proptest::collection::vec([0..60i32, 0..60i32], 0..14)
     }
@@ -163,7 +163,7 @@ mod tests {
         IntervalSet::from_intervals(pieces.map(|[a, b]| Interval::between(f64::from(*a), f64::from(*b)))).unwrap()
     }
 
-    /// The model: which unit cells are covered, by looking at every interval.
+    /// The model: which unit cells are covered, by testing every interval.
     fn cells(pieces: &[[i32; 2]]) -> Vec<bool> {
         (0..60).map(|k| pieces.iter().any(|[a, b]| *a <= k && k < *b)).collect()
     }

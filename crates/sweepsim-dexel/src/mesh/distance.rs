@@ -1,8 +1,8 @@
-//! How far a point is from a closed surface of triangles, and on which side.
+//! The signed distance of a point from a closed surface of triangles.
 //!
-//! The nearest triangle is found in a tree of boxes. The side is that of the *pseudonormal* at the nearest place: the face's normal; on
-//! an edge the sum of those of its two faces; on a vertex the sum of those around, each weighted by its angle there. With
-//! it the sign is right for every closed surface that does not cross itself, also where the nearest place is on a sharp
+//! The nearest triangle is found in a tree of boxes. The sign comes from the *pseudonormal* at the nearest point: the face's normal; on
+//! an edge, the sum of the normals of its two faces; at a vertex, the sum of those around it, each weighted by its angle there.
+//! This gives the right sign for every closed surface that does not intersect itself, even where the nearest point is on a sharp
 //! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
 
 use super::{MeshError, TriangleSoup};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 /// Triangles of a leaf of the tree.
 const LEAF: usize = 4;
-/// Most samples of [`DistanceTo::furthest`].
+/// The maximum number of samples of [`DistanceTo::furthest`].
 const SAMPLES: f64 = 2e6;
 
 /// A triangle surface, prepared for distance queries.
@@ -40,7 +40,7 @@ pub struct DistanceTo {
 pub struct Nearest {
     /// Signed distance of the point: negative inside.
     pub distance: f64,
-    /// Where.
+    /// The nearest point.
     pub place: [f64; 3],
     /// Unit normal of the triangle there.
     pub normal: [f64; 3],
@@ -76,7 +76,7 @@ enum NearestOn {
     Corner(usize),
 }
 
-/// The place of a triangle nearest to `p` (Ericson: *Real-Time Collision Detection*, 5.1.5).
+/// The point of a triangle nearest to `p` (Ericson: *Real-Time Collision Detection*, 5.1.5).
 fn nearest_on(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> ([f64; 3], NearestOn) {
     let (ab, ac, ap) = (sub(b, a), sub(c, a), sub(p, a));
     let (d1, d2) = (dot(ab, ap), dot(ac, ap));

@@ -8,7 +8,7 @@ use crate::mesh::TriangleSoup;
 use crate::vector::normal_of;
 use rayon::prelude::*;
 
-/// The dexels of the inside of a closed surface.
+/// The dexels inside a closed surface.
 pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, StockError> {
     soup.check_closed()?;
     let soup = &*soup.seen_from(grid.frame());
@@ -38,7 +38,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
             is.flat_map(move |i| js.clone().map(move |j| (i, j)))
                 .filter_map(move |(i, j)| {
                     let (x, y) = (grid.x(i) + shift[0], grid.y(j) + shift[1]);
-                    // Each edge is looked at from its lower end, so that both its triangles see the same number.
+                    // Each edge is evaluated from its lower end, so that both its triangles get the same number.
                     let side = |p: [f64; 3], q: [f64; 3]| {
                         let ordered = (p[0], p[1]) < (q[0], q[1]);
                         let (p, q) = if ordered { (p, q) } else { (q, p) };
@@ -65,7 +65,7 @@ pub(crate) fn mesh_dexels(grid: &Grid, soup: &TriangleSoup) -> Result<Dexels, St
         })
         .collect();
     let mut dexels = Dexels::empty(*grid);
-    // Triangles that meet on a line give the same height but for rounding.
+    // Triangles that meet on a line give the same height up to rounding.
     let size = soup
         .triangles
         .iter()

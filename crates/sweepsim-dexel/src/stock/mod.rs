@@ -1,4 +1,4 @@
-//! What there is before the first cut.
+//! The stock: the material before the first cut.
 
 mod from_mesh;
 
@@ -29,7 +29,7 @@ pub enum Stock {
         axis: [f64; 3],
         /// Radius.
         radius: f64,
-        /// Distance of the disks.
+        /// Distance between the disks.
         height: f64,
     },
     /// A ball.
@@ -47,7 +47,7 @@ pub enum Stock {
     Union(Vec<Stock>),
     /// The intersection of these; empty if there are none.
     Intersection(Vec<Stock>),
-    /// The first without the others.
+    /// The first solid without the others.
     Difference(Box<Stock>, Vec<Stock>),
 }
 
@@ -83,7 +83,7 @@ pub enum StockError {
     /// The dexels are on a different grid.
     #[error(transparent)]
     Grid(#[from] GridMismatch),
-    /// The triangles intersect each other, or are inside out: some lines leave the solid before they enter it.
+    /// The triangles intersect each other or are inside out: some lines leave the solid before they enter it.
     #[error("the mesh is inside out or intersects itself: at ({x}, {y}) a line leaves it before it enters")]
     Tangled {
         /// Where, in the frame of the grid.
@@ -102,7 +102,7 @@ pub(super) fn end(z: f64, normal: [f64; 3]) -> End {
 }
 
 impl Stock {
-    /// The dexels of the stock, which is in the world; the grid may be in a frame.
+    /// The dexels of the stock. The stock is in world coordinates; the grid may be in a frame.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Stock};
@@ -114,7 +114,7 @@ impl Stock {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
-    /// For meshes, lines are displaced by a generic 1e-9 of their spacing, so that none meets an edge.
+    /// For meshes, lines are displaced by 1e-9 of their spacing in a generic direction, so that none meets an edge.
     ///
     /// # Errors
     /// [`StockError`]: no volume, not finite, or a mesh that is not closed.

@@ -1,18 +1,18 @@
-//! Triangles as they are made.
+//! Collects triangles as they are generated.
 
 use super::{CRISP, dot, normal_of, unit};
 
-/// Cosine of 60°: what is steeper is nearly a wall.
+/// Cosine of 60°: anything steeper is nearly a wall.
 const STEEP: f64 = 0.5;
 
-/// Triangles of some squares. Vertex numbers below `ends` are those of ends, the others count up from there.
+/// Triangles of some squares. Vertex numbers below `ends` belong to ends; the others count up from there.
 pub(super) struct TriangleBatch {
     ends: u32,
     pub vertices: Vec<[f64; 3]>,
     pub normals: Vec<[f32; 3]>,
     pub cut: Vec<bool>,
     pub triangles: Vec<[u32; 3]>,
-    /// Triangles and their corners at ends that need another normal.
+    /// Triangles, and their corners at ends, that need another normal.
     pub creased: Vec<(u32, u8)>,
 }
 
@@ -59,7 +59,7 @@ impl TriangleBatch {
         let triangle = self.triangles.len() as u32;
         let mut numbers = [0; 3];
         for (k, corner) in corners.iter().enumerate() {
-            // Which way a steep triangle leans is chance; its dexel knows better.
+            // Which way a steep triangle leans is arbitrary; the normal of its dexel is more reliable.
             let crisp = if steep && f64::from(corner.normal[2].abs()) < STEEP {
                 0.0
             } else {
@@ -81,12 +81,12 @@ impl TriangleBatch {
         self.triangles.push(numbers);
     }
 
-    /// A triangle of an upper face given counter-clockwise seen from above, or of a lower one likewise.
+    /// A triangle of an upper or lower face, given counter-clockwise as seen from above.
     pub fn face(&mut self, upper: bool, [a, b, c]: [Corner; 3]) {
         self.triangle(if upper { [a, b, c] } else { [a, c, b] });
     }
 
-    /// A triangle of a wall, with the normals that it has.
+    /// A triangle of a wall, with its normals as given.
     pub fn wall(&mut self, forward: bool, [a, b, c]: [Corner; 3]) {
         if a.at == b.at || b.at == c.at || c.at == a.at {
             return;
@@ -96,7 +96,7 @@ impl TriangleBatch {
         self.triangles.push(numbers);
     }
 
-    /// Two triangles over four corners, along the better diagonal: that which leaves the normals nearer to the triangles'.
+    /// Two triangles over four corners, along the better diagonal: the one for which the normals are closer to those of the triangles.
     pub fn quad(&mut self, upper: bool, q: [Corner; 4]) {
         let fit = |corners: [usize; 3]| {
             let n = unit(normal_of(corners.map(|k| q[k].at)));

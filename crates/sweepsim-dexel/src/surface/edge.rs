@@ -1,4 +1,4 @@
-//! Which ends of two neighbouring dexels belong together.
+//! Matches the ends of two neighbouring dexels.
 
 use super::end;
 use crate::intervals::{End, Interval};
@@ -7,22 +7,22 @@ use smallvec::SmallVec;
 /// What happens along a grid edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Class {
-    /// Equally many ends, all joined smoothly.
+    /// Both dexels have the same number of ends, all joined smoothly.
     Smooth,
     /// Some end has no partner.
     Step,
-    /// Some partners meet at an angle, or two faces of one dexel do. There may be steps as well.
+    /// Some partners meet at an angle, or two faces of one dexel do. There may also be steps.
     Crease,
 }
 
-/// What an end is joined to.
+/// How an end is joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Link {
     /// Nothing.
     None,
-    /// That end of the neighbour, smoothly.
+    /// To this end of the neighbour, smoothly.
     Smooth(usize),
-    /// That end of the neighbour, at an angle.
+    /// To this end of the neighbour, at an angle.
     Crease(usize),
 }
 
@@ -32,7 +32,7 @@ pub(super) type Heights = SmallVec<[f64; 4]>;
 /// The joins along a grid edge, from its first dexel to its second.
 #[derive(Clone, Debug)]
 pub(super) struct Edge {
-    /// Of each dexel's ends.
+    /// The joins of each dexel's ends.
     pub links: [Links; 2],
     /// Where the first crease or wedge meets the edge: from 0 to 1.
     pub crease: Option<f64>,
@@ -40,13 +40,13 @@ pub(super) struct Edge {
     pub wedges: [SmallVec<[bool; 4]>; 2],
 }
 
-/// How near to its dexels an outline may cross an edge.
+/// How close to its dexels an outline may cross an edge.
 const MARGIN: f64 = 0.05;
-/// Normals that differ by more (in radians) are not those of one smooth face.
+/// Normals that differ by more than this (in radians) do not belong to one smooth face.
 const ANGLE: f64 = 0.7;
-/// Those that differ by more need not be.
+/// Normals that differ by more than this may or may not belong to one smooth face.
 const FAINT: f64 = 0.35;
-/// Steepest slope that is believed.
+/// The steepest slope that is trusted.
 const STEEPEST: f64 = 1e3;
 
 /// Slopes `∂z/∂x`, `∂z/∂y` of the surface at an end.
@@ -64,7 +64,7 @@ pub(super) fn slopes(end: &End, upper: bool) -> [f64; 2] {
 }
 
 /// How far a face at `z` goes up over `run` along a slope that ends at an outline: little where that adds material, unless
-/// there is some behind the outline.
+/// there is already material behind the outline.
 pub(super) fn rise(slope: f64, run: f64, upper: bool, z: f64, behind: &[Interval]) -> f64 {
     let shrink = 3.0 * run.abs();
     let rise = (slope * run).clamp(-shrink, shrink);
@@ -80,14 +80,14 @@ pub(super) fn rise(slope: f64, run: f64, upper: bool, z: f64, behind: &[Interval
     }
 }
 
-/// Rounds a height to a 2⁻³⁰th of the distance of dexels, or so: outlines that meet do so in the same bits.
+/// Rounds a height to about 2⁻³⁰ of the dexel spacing, so that outlines that meet agree to the bit.
 pub(super) fn snap(z: f64, distance: f64) -> f64 {
     let quantum = distance.log2().floor().exp2() * 2.0_f64.powi(-30);
     let snapped = (z / quantum).round() * quantum;
     if snapped.is_finite() { snapped } else { z }
 }
 
-/// Whether ends can be joined: how well (1 to 2), and where they meet if at an angle.
+/// Whether ends can be joined: how well (1 to 2), and where they meet if they do so at an angle.
 fn join(a: &End, b: &End, upper: bool, axis: usize, distance: f64) -> Option<(f64, Option<f64>)> {
     let (ga, gb) = (slopes(a, upper)[axis], slopes(b, upper)[axis]);
     let chord = (b.z - a.z) / distance;
@@ -98,7 +98,7 @@ fn join(a: &End, b: &End, upper: bool, axis: usize, distance: f64) -> Option<(f6
         return Some((2.0, None));
     }
     let [ta, tb, tc] = [ga, gb, chord].map(f64::atan);
-    // On a smooth surface the chord's direction is between those of the tangents, up to a change of curvature.
+    // On a smooth surface, the direction of the chord lies between those of the tangents, apart from changes of curvature.
     let between = cosine.clamp(-1.0, 1.0).acos();
     let allowed = 0.2 + 0.5 * between.min(1.2);
     let beyond = (ta.min(tb) - tc).max(tc - ta.max(tb));
@@ -120,7 +120,7 @@ fn join(a: &End, b: &End, upper: bool, axis: usize, distance: f64) -> Option<(f6
 }
 
 impl Edge {
-    /// What happens between two dexels at a distance along `x` (axis 0) or `y` (axis 1).
+    /// How the ends of two dexels are joined that are this far apart along `x` (axis 0) or `y` (axis 1).
     pub fn class(a: &[Interval], b: &[Interval], axis: usize, distance: f64) -> Class {
         if a.is_empty() && b.is_empty() {
             return Class::Smooth;
@@ -136,7 +136,7 @@ impl Edge {
         }
     }
 
-    /// The joins of the ends of two dexels: in order, as many and as good as possible.
+    /// Joins the ends of two dexels, in order, as many and as well as possible.
     pub fn new(a: &[Interval], b: &[Interval], axis: usize, distance: f64) -> Self {
         let (m, n) = (2 * a.len(), 2 * b.len());
         let mut edge = Self {
@@ -156,7 +156,7 @@ impl Edge {
                 }
             }
         } else if m > 0 && n > 0 {
-            // best[p][q]: of the ends from p and q on.
+            // best[p][q]: the best joins of the ends from p and q on.
             let mut best = vec![0.0_f64; (m + 1) * (n + 1)];
             let at = |p: usize, q: usize| p * (n + 1) + q;
             for p in (0..m).rev() {
@@ -183,8 +183,8 @@ impl Edge {
         edge
     }
 
-    /// Finds neighbours on a dexel, both without partners, whose tangents meet before the other dexel: there material,
-    /// or a gap, comes to its end. Where there is a plain step as well, that goes first.
+    /// Finds pairs of neighbouring ends on a dexel, both without partners, whose tangents meet before the other dexel: the material
+    /// or gap between them ends there. If there is also a plain step, that takes precedence.
     fn find_wedges(&mut self, lines: [&[Interval]; 2], axis: usize, distance: f64) {
         let (mut first, mut count) = (None, 0);
         for side in 0..2 {
@@ -222,7 +222,7 @@ impl Edge {
         self.crease = self.crease.or(meet);
     }
 
-    /// Where an outline crosses the edge that would like to cross at `s`.
+    /// Where an outline crosses the edge if it would ideally cross at `s`.
     pub fn crossing(&self, s: f64) -> f64 {
         self.crease.unwrap_or(s).clamp(MARGIN, 1.0 - MARGIN)
     }
@@ -248,7 +248,7 @@ impl Edge {
                         snap(z + rise, distance)
                     }
                     Link::Smooth(f) | Link::Crease(f) => {
-                        // From the first dexel's side, for the same bits on both.
+                        // Computed from the first dexel's side, so that both sides get the same bits.
                         let (p, q) = if side == 0 { (e, f) } else { (f, e) };
                         let ((za, ga), (zb, gb)) = (height(0, p), height(1, q));
                         let (low, high) = (za.min(zb), za.max(zb));
@@ -271,7 +271,7 @@ impl Edge {
     }
 }
 
-/// Makes heights grow by moving those that are not fixed.
+/// Makes heights increase by moving those that are not fixed.
 fn put_in_order(heights: &mut [f64], fixed: impl Fn(usize) -> bool) {
     let mut from = 0;
     while from < heights.len() {

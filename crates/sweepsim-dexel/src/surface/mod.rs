@@ -1,20 +1,20 @@
 //! A closed surface of triangles around dexels.
 //!
 //! The paper (section 6) spans two triangles over the upper and two over the lower ends of every square of four
-//! neighbouring dexels, with the envelope's normals at the corners. That is what happens here wherever the surface is
-//! smooth. Elsewhere a dexel stands for the cell around it:
+//! neighbouring dexels, with the envelope's normals at the corners. We do the same wherever the surface is
+//! smooth. Elsewhere a dexel represents the cell around it:
 //!
-//! 1. **Along every grid edge** the ends of its two dexels are [joined](edge): two ends go together when the line between
-//!    them is one that their normals allow for, so sheets find their continuation by tangents and not by overlap. A join
+//! 1. **Along every grid edge** the ends of its two dexels are [joined](edge): two ends belong together if the line between
+//!    them is compatible with their normals, so sheets are continued by tangents rather than by overlap. A join
 //!    is smooth or a *crease*, where the tangents meet at an angle. An end left over is a *step*.
-//! 2. **Creases and steps draw an outline** on the grid: a polyline with one vertex in every square that it passes and one
-//!    on every grid edge that it crosses. A crease says where it crosses: there the tangents meet. A step may be anywhere
-//!    between its dexels, so its [outline] is relaxed to a smooth line, and corners are kept.
-//! 3. **In every square** faces reach from the dexels to the outline by their tangents. Above the outline stand vertical
-//!    walls: wherever there is material on one side only.
+//! 2. **Creases and steps draw an outline** on the grid: a polyline with one vertex in every square that it passes through and one
+//!    on every grid edge that it crosses. A crease crosses where the tangents meet. A step may be anywhere
+//!    between its dexels, so its [outline] is relaxed to a smooth line that keeps its corners.
+//! 3. **In every square** faces extend from the dexels to the outline along their tangents. On the outline stand vertical
+//!    walls, wherever there is material on one side only.
 //!
-//! Around the grid stand dexels without material. So the surface of any dexels is closed: every edge is used as often in
-//! one direction as in the other. The mesh of a block on whole cells is that block.
+//! The grid is surrounded by dexels without material. So the surface of any dexels is closed: every edge is used equally often in
+//! both directions. The mesh of a block that fills whole cells is that block.
 
 mod batch;
 mod edge;
@@ -33,14 +33,14 @@ use rayon::prelude::*;
 use square::Square;
 use std::collections::HashMap;
 
-/// Cosine of 40°: a vertex whose normal is further from a triangle's is not shared with it.
+/// Cosine of 40°: a triangle does not share a vertex whose normal is farther than this from its own.
 const CRISP: f64 = 0.766;
 
 impl Dexels {
-    /// The surface of the material, closed, as triangles with normals, in the world.
+    /// The closed surface of the material, as triangles with normals, in world coordinates.
     ///
     /// Vertices lie at the ends of the intervals, and on outlines between dexels where there is a step or a crease; there each
-    /// side has a vertex of its own. At the ends the normals are those of the dexels. A vertex is marked as cut if a tool made
+    /// side has its own vertex. At the ends the normals are those of the dexels. A vertex is marked as cut if a tool made
     /// the end. A wall is marked as cut if a tool made the end that bounds the space in front of it; beside a dexel without
     /// material, if it is inside a hole or both ends of the interval behind it were cut. [`Dexels::sources`] tells which cuts.
     ///
@@ -62,10 +62,10 @@ impl Dexels {
         surface_within(self, MOST_VERTICES)
     }
 
-    /// For each vertex of a mesh of this material, what made the surface there: of vertices that are marked as cut, the source of the
-    /// nearest interval end that a tool made; of others, the stock.
+    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the source of the
+    /// nearest interval end that a tool made; for the others, the stock.
     ///
-    /// On steep walls the nearest end may be far away: [`TriDexels::sources`](crate::TriDexels::sources) is better there.
+    /// On steep walls the nearest end may be far away; [`TriDexels::sources`](crate::TriDexels::sources) is more accurate there.
     ///
     /// ```
     /// use sweepsim_dexel::{Grid, Interval, Source, Stock};
@@ -84,7 +84,7 @@ impl Dexels {
     }
 }
 
-/// Of each vertex, the source of the nearest end that a tool made, in any of the sets.
+/// For each vertex, the source of the nearest end that a tool made, in any of the sets.
 pub(crate) fn sources_in(sets: &[&Dexels], mesh: &Mesh) -> Vec<Source> {
     let source = |(number, place): (usize, &[f64; 3])| {
         let cut = mesh.cut.get(number).copied().unwrap_or(false);
@@ -96,7 +96,7 @@ pub(crate) fn sources_in(sets: &[&Dexels], mesh: &Mesh) -> Vec<Source> {
     mesh.vertices.par_iter().enumerate().map(source).collect()
 }
 
-/// The surface, if that many vertices are enough.
+/// The surface, if it needs at most this many vertices.
 fn surface_within(dexels: &Dexels, most: usize) -> Result<Mesh, MeshError> {
     check_vertices(2 * dexels.count(), most)?;
     let field = Field::new(dexels);
@@ -114,22 +114,22 @@ fn surface_within(dexels: &Dexels, most: usize) -> Result<Mesh, MeshError> {
     assemble(&field, parts, most)
 }
 
-/// Dexels with a rim of empty ones around them, and how their neighbours go together.
+/// Dexels with a rim of empty ones around them, and the joins between neighbours.
 ///
 /// Square `[si, sj]` has the dexels of columns `si − 1, si` and rows `sj − 1, sj`.
 struct Field<'a> {
     dexels: &'a Dexels,
-    /// The intervals of all dexels, as they are used many times.
+    /// The unpacked intervals of all dexels, since they are used many times.
     intervals: Vec<Interval>,
     cells: [usize; 2],
     spacing: [f64; 2],
     /// The number of the first end of each dexel.
     first: Vec<u32>,
-    /// Of each square: class of the edge along `x` on its lower side, and of that along `y` on its left.
+    /// For each square, the classes of the edge along `x` on its lower side and the edge along `y` on its left.
     classes: Vec<[Class; 2]>,
-    /// Dexels without material, joined to the border by such.
+    /// Dexels without material that are connected to the border through such dexels.
     outside: Vec<bool>,
-    /// Whether any of the material's boundary is that of a stock: then its outer walls are, too.
+    /// Whether any of the boundary belongs to a stock; if so, the outer walls do, too.
     stock: bool,
 }
 
@@ -139,7 +139,7 @@ struct Dexel<'a> {
     line: &'a [Interval],
     at: [f64; 2],
     first: u32,
-    /// Beside the stock: walls that face it are the stock's own.
+    /// Outside the stock: walls that face it belong to the stock.
     outside: bool,
 }
 
@@ -188,7 +188,7 @@ impl<'a> Field<'a> {
         field
     }
 
-    /// How many ends there are.
+    /// The number of ends.
     fn ends(&self) -> u32 {
         self.first.last().copied().unwrap_or(0)
     }
@@ -258,7 +258,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Marks dexels without material that are joined to the border of the grid by such.
+/// Marks dexels without material that are connected to the border of the grid through such dexels.
 fn outside(dexels: &Dexels) -> Vec<bool> {
     let grid = dexels.grid();
     let [columns, rows] = grid.cells();
@@ -296,7 +296,7 @@ fn outside(dexels: &Dexels) -> Vec<bool> {
     outside
 }
 
-/// Puts the columns' parts together behind the vertices of the ends.
+/// Appends the parts of all columns to the vertices of the ends.
 fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>, most: usize) -> Result<Mesh, MeshError> {
     let ends = field.ends() as usize;
     let vertices = ends + parts.iter().map(|p| p.vertices.len()).sum::<usize>();
@@ -345,11 +345,11 @@ fn assemble(field: &Field<'_>, parts: Vec<TriangleBatch>, most: usize) -> Result
     Ok(mesh)
 }
 
-/// Gives corners of triangles that the normal of their end does not suit a vertex with one that does: the mean of all such
+/// If the normal of an end does not suit a triangle, the triangle's corner gets a new vertex with a normal that does: the mean of all such
 /// triangles around the end, or the triangle's own.
 fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
     let across = |mesh: &Mesh, t: usize| normal_of(mesh.triangles[t].map(|v| mesh.vertices[v as usize]));
-    // Only looked up, so its order does not matter.
+    // Only used for lookups, so its order does not matter.
     let mut sums: HashMap<u32, ([f64; 3], Option<u32>)> = HashMap::new();
     for (t, c) in creased {
         let sum = &mut sums.entry(mesh.triangles[*t][*c]).or_insert(([0.0; 3], None)).0;
@@ -380,7 +380,7 @@ fn split(mesh: &mut Mesh, creased: &[(usize, usize)]) {
     }
 }
 
-/// The vector of length 1; up, if there is none.
+/// The unit vector; up for a zero vector.
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = dot(v, v).sqrt();
     if length > 0.0 {

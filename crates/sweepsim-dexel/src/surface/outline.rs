@@ -10,14 +10,14 @@ const REACH: f64 = 0.45;
 const STEPS: usize = 80;
 /// Steps of smoothing its directions.
 const SMOOTHING: usize = 24;
-/// Runs of at least this many cells on both sides make a corner.
+/// Straight runs of at least this many cells on both sides form a corner.
 const RUN: usize = 3;
 
 /// One vertex of the outlines per square.
 pub(super) struct Outline {
-    /// Number in `places` of a square, or [`NONE`].
+    /// The index into `places` for each square, or [`NONE`].
     slots: Vec<u32>,
-    /// Off the square's centre, in cells.
+    /// Offset from the square's centre, in cells.
     places: Vec<[f64; 2]>,
     /// Which way the outline runs, forwards or backwards.
     directions: Vec<[f64; 2]>,
@@ -35,7 +35,7 @@ pub(super) fn across([si, sj]: [usize; 2], k: usize) -> [usize; 2] {
     }
 }
 
-/// Off a square's centre, in cells: the point `s` along the direction of growing coordinate on edge `k`.
+/// Offset from a square's centre, in cells: the point `s` along the direction of growing coordinate on edge `k`.
 fn on_edge(k: usize, s: f64) -> [f64; 2] {
     match k {
         0 => [s - 0.5, -0.5],
@@ -45,7 +45,7 @@ fn on_edge(k: usize, s: f64) -> [f64; 2] {
     }
 }
 
-/// What pulls at an outline's vertex.
+/// What attracts a vertex of an outline.
 enum Pull {
     /// Nothing: it stays.
     Pinned,
@@ -68,7 +68,7 @@ impl Outline {
         let pulls: Vec<Pull> = squares.par_iter().map(|s| pull(field, &slots, *s)).collect();
         let mut places = vec![[0.0_f64; 2]; squares.len()];
         for step in 0..2 * STEPS {
-            // A step that draws together and one that drives apart: a staircase is smoothed, a ring does not shrink.
+            // One contracting step and one expanding step: a staircase is smoothed, but a ring does not shrink.
             let strength = if step % 2 == 0 { 0.6 } else { -0.5 };
             places = pulls
                 .par_iter()
@@ -97,7 +97,7 @@ impl Outline {
         outline
     }
 
-    /// The directions from each vertex's neighbour to the other, smoothed along the outline but not around corners.
+    /// For each vertex, the direction from one neighbour to the other, smoothed along the outline but not around corners.
     fn find_directions(&mut self, field: &Field<'_>, squares: &[[usize; 2]]) {
         let neighbours: Vec<Vec<usize>> = squares
             .par_iter()
@@ -163,7 +163,7 @@ impl Outline {
         [0, 1].map(|k| min[k] + (s[k] as f64 + off[k]) * field.spacing[k])
     }
 
-    /// Where the outline crosses the edge along `axis` which square `home` has as its lower or left one: from 0 to 1
+    /// Where the outline crosses the edge along `axis` that is the lower or left edge of square `home`: from 0 to 1
     /// between its dexels, and its normal there, towards the second dexel.
     pub fn crossing(&self, field: &Field<'_>, home: [usize; 2], axis: usize, first: [f64; 2]) -> (f64, [f64; 2]) {
         let before = across(home, if axis == 0 { 0 } else { 3 });
@@ -176,7 +176,7 @@ impl Outline {
         let mut normal = [0.0; 2];
         normal[axis] = along[other] / length;
         normal[other] = -along[axis] / length;
-        // The mean of those of its two squares, if it is not at a corner.
+        // The mean of the directions in its two squares, unless they are corners.
         let smooth = [before, home].map(|s| self.normal(field, s, normal));
         if let [Some(p), Some(q)] = smooth {
             normal = unit([p[0] + q[0], p[1] + q[1]], [0.0; 2]);
@@ -185,7 +185,7 @@ impl Outline {
     }
 }
 
-/// Direction to `p` from `q`; none for the same.
+/// Direction to `p` from `q`; zero if they coincide.
 fn unit(p: [f64; 2], q: [f64; 2]) -> [f64; 2] {
     let d = [p[0] - q[0], p[1] - q[1]];
     let length = d[0].hypot(d[1]);
@@ -215,8 +215,8 @@ fn run(field: &Field<'_>, mut s: [usize; 2], k: usize) -> (usize, usize) {
     (RUN, 0)
 }
 
-/// The edges by which the outline through a square goes on. Where one ends at another, that goes straight on; where
-/// creases end at steps, those do.
+/// The edges through which the outline through a square continues. Where one outline ends at another, the latter goes straight on; where
+/// creases end at steps, the steps do.
 fn through(field: &Field<'_>, s: [usize; 2]) -> Vec<usize> {
     let lines: Vec<usize> = (0..4).filter(|k| is_line(field, s, *k)).collect();
     if lines.len() < 3 {
@@ -250,7 +250,7 @@ fn pull(field: &Field<'_>, slots: &[u32], s: [usize; 2]) -> Pull {
         let turn = (l + 4 - (k + 2) % 4) % 4;
         let same_after = b.0 < RUN && b.1 == turn;
         let same_before = a.0 < RUN && a.1 == 4 - turn;
-        // Ends of strips one or two cells wide, but not the top cells of something round.
+        // Ends of strips one or two cells wide, but not the topmost cells of a round shape.
         let strip = (same_before && (b.0 > 1 || same_after)) || (same_after && a.0 > 1);
         if (a.0 >= RUN && b.0 >= RUN) || strip {
             return Pull::Pinned;

@@ -9,7 +9,7 @@ use smallvec::SmallVec;
 
 /// An edge of a square, from corner `k` to the next.
 pub(super) struct Side {
-    /// What the ends of corner `k`, and of the next, are joined to.
+    /// The joins of the ends of corner `k`, and of the next.
     pub(super) links: [SmallVec<[Link; 4]>; 2],
     /// Where an outline crosses it.
     pub(super) at: [f64; 2],
@@ -116,7 +116,7 @@ impl<'a> Square<'a> {
         square
     }
 
-    /// Number in the square of an end, to its corner and number there.
+    /// From an end's number in the square to its corner and its number there.
     fn owner(&self, number: usize) -> (usize, usize) {
         let q = (0..3).find(|q| number < self.offsets[q + 1]).unwrap_or(3);
         (q, number - self.offsets[q])
@@ -167,7 +167,7 @@ impl<'a> Square<'a> {
                 }
             };
             let rise = rise(0) + rise(1);
-            // Where a steep face meets a level one, the level one knows the height.
+            // Where a steep face meets a level one, the level one determines the height.
             let weight = 1.0 / (1.0 + slopes[0] * slopes[0] + slopes[1] * slopes[1]);
             let sum = &mut sums[groups[number]];
             *sum = (
@@ -185,7 +185,7 @@ impl<'a> Square<'a> {
                 (sum / weight).clamp(low.min(*high) - spare, high.max(*low) + spare)
             })
             .collect();
-        // In order along each dexel, as far as groups allow. Of two that cross, the more level one knows better.
+        // In order along each dexel, as far as groups allow. If two cross, the more level one wins.
         for _ in 0..4 {
             for q in 0..4 {
                 for number in self.offsets[q] + 1..self.offsets[q + 1] {

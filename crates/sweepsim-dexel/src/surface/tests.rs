@@ -222,7 +222,7 @@ fn normal() -> impl Strategy<Value = [f32; 3]> {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
-    /// Whatever there is on the lines: closed, and of about the volume of the dexels.
+    /// Whatever the lines contain, the surface is closed and has about the volume of the dexels.
     #[test]
     fn any_dexels_have_a_closed_surface(
         lines in proptest::collection::vec(

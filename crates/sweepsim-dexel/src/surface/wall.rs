@@ -7,7 +7,7 @@ use super::square::Square;
 use super::{Field, end, is_cut, unit};
 use smallvec::SmallVec;
 
-/// An outline of a face: its end of its corner, and whether that is the next one.
+/// An outline of a face: the end that it starts from, and whether that end is at the next corner.
 pub(super) struct Line {
     pub next: bool,
     pub end: usize,
@@ -92,7 +92,7 @@ impl Square<'_> {
         if lines.is_empty() {
             return;
         }
-        // Where walls of any edge may end over the square's vertex.
+        // The heights at which walls of any edge may end over the square's vertex.
         let mut breaks: SmallVec<[f64; 8]> = SmallVec::new();
         for l in 0..4 {
             for which in 0..2 {
@@ -136,7 +136,7 @@ impl Square<'_> {
                         cut,
                     }
                 };
-                // A steep face that looks the same way goes on in the wall.
+                // A steep face that faces the same way continues in the wall.
                 let face = |line: &Line, mut point: Corner| {
                     let normal = end(self.corners[(k + usize::from(line.next)) % 4].line, line.end).normal;
                     let n = normal.map(f64::from);
@@ -170,8 +170,8 @@ impl Square<'_> {
         }
     }
 
-    /// A wall stands where a face is too steep to be met by dexels. So steep ends of the space in front of it know its
-    /// direction: the sum of their normals' horizontal parts, as far as they are on the side of `normal`.
+    /// A wall stands where a face is too steep for dexels to meet. So the steep ends that bound the space in front of it give its
+    /// direction: the sum of the horizontal parts of those normals that are on the side of `normal`.
     fn steep_around(&self, k: usize, from_first: bool, z: f64, normal: [f64; 2]) -> [f64; 2] {
         let which = usize::from(from_first);
         let line = self.corners[(k + which) % 4].line;

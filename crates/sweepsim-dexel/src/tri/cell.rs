@@ -23,9 +23,9 @@ const fn edges() -> [(usize, [usize; 3]); 12] {
 /// The curves of a kind of cell.
 #[derive(Clone, Copy)]
 pub(super) struct Kind {
-    /// How many there are.
+    /// The number of curves.
     pub sheets: u8,
-    /// To which an edge belongs; 255 for none.
+    /// The curve that each edge belongs to; 255 for none.
     pub sheet: [u8; 12],
 }
 
@@ -81,7 +81,7 @@ const fn kind(corners: usize) -> Kind {
     Kind { sheets, sheet }
 }
 
-/// Joins the edges that are neighbours on a face. Its corners go around as (0,0), (1,0), (1,1), (0,1); edge `k` is from corner `k` to the next.
+/// Joins the edges that are neighbours on a face. The corners of the face are numbered around it as (0,0), (1,0), (1,1), (0,1); edge `k` is from corner `k` to the next.
 const fn join(corners: usize, mut root: [u8; 12], axis: usize, side: usize) -> [u8; 12] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     // An edge along u has the offset v and the side as those of the axes u + 1 = v and u + 2 = axis; one along v the side, then u.

@@ -1,19 +1,19 @@
 //! A closed surface from tri-dexels: dual contouring, with one vertex for each sheet in a cell.
 //!
-//! The lines of the three sets cross in the points of a lattice; a rim of points without material is put around it. Along each
-//! edge of the lattice whose ends differ there is an interval end, with its normal. In each cell of eight points:
+//! The lines of the three sets cross at the points of a lattice, which is surrounded by a rim of points without material. On each
+//! edge of the lattice whose two points differ there is an interval end, with its normal. In each cell of eight points:
 //!
-//! 1. Edges with an interval end are joined across the cell's faces to closed curves, as marching cubes would. Where all four
-//!    edges of a face have an end, the curves go around the points with material, on both sides of the face alike.
+//! 1. Edges with an interval end are joined across the cell's faces into closed curves, as in marching cubes. Where all four
+//!    edges of a face have an end, the curves go around the points with material, in both cells that share the face.
 //! 2. Each curve gets a vertex where the tangent planes of its ends meet: the least squares of the distances (Ju, Losasso,
-//!    Schaefer, Warren: *Dual Contouring of Hermite Data*, 2002). Where they do so more than one cell
-//!    outside, the best point within that.
+//!    Schaefer, Warren: *Dual Contouring of Hermite Data*, 2002). If that point is more than one cell
+//!    outside, the best point within that range is taken.
 //! 3. Each interval end gets a quadrilateral of the vertices in the four cells around its edge.
 //!
-//! That is the dual of a marching-cubes surface (Nielson: *Dual Marching Cubes*, 2004), hence closed, and each vertex has one
-//! fan of faces. What can go wrong is that two vertices are joined twice, when both of the curves that cross a face are one
-//! on each side of it. So an edge of the mesh across such a face gets a vertex of its own there, on its curve. (Others turn the
-//! curves of such a face; this way a cell needs to know nothing of its neighbours.)
+//! This is the dual of a marching-cubes surface (Nielson: *Dual Marching Cubes*, 2004), hence closed, and each vertex has one
+//! fan of faces. Only one thing can go wrong: two vertices are joined twice if the two curves that cross a face belong to the same
+//! curve on each side of it. So an edge of the mesh across such a face gets an extra vertex there, on its curve. (Others flip the
+//! curves of such a face; this way a cell does not depend on its neighbours.)
 
 use super::TriDexels;
 use super::cell::{CELLS, EDGES};
@@ -50,7 +50,7 @@ pub(crate) fn contour(solid: &TriDexels, most: usize) -> Result<Mesh, MeshError>
         let [i, j, k] = cell;
         first[i] + slabs[i].first[j * (lattice.points[2] - 1) + k] + u32::from(sheet)
     };
-    // Triangles, slab after slab of lines; then those that need vertices of their own, one after the other.
+    // Triangles, slab after slab of lines; then those that need extra vertices, one after the other.
     let slabs: Vec<(usize, usize)> = (0..3)
         .flat_map(|axis| (0..lattice.points[(axis + 1) % 3]).map(move |number| (axis, number)))
         .collect();
@@ -152,7 +152,7 @@ struct Extra {
     /// By the numbers of [`Key`]: the number of the vertex.
     numbers: BTreeMap<(usize, usize, usize), u32>,
     first: Option<u32>,
-    /// Their planes, and the box where they may be.
+    /// Their planes, and the box that must contain them.
     planes: Vec<(Planes, [[f64; 3]; 2])>,
 }
 
@@ -174,7 +174,7 @@ impl Extra {
         first + number
     }
 
-    /// Puts them behind the mesh's vertices.
+    /// Appends them to the mesh's vertices.
     fn finish(self, mesh: &mut Mesh) {
         for (planes, [lower, upper]) in &self.planes {
             mesh.vertices.push(planes.meet(*lower, *upper));
@@ -200,8 +200,8 @@ struct Face<'a> {
     hit: &'a Hit,
 }
 
-/// The vertices in the cells around an edge, counter-clockwise seen from outside, and the curves between each and the next where
-/// two cross the face of the lattice there.
+/// The vertices in the cells around an edge, counter-clockwise seen from outside, and the curve between each and the next if
+/// two curves cross the lattice face between them.
 struct Ring {
     corners: [u32; 4],
     keys: [Option<Key>; 4],
@@ -234,13 +234,13 @@ impl Face<'_> {
         });
         if !self.hit.upper {
             corners.reverse();
-            // What was before a corner is now after it.
+            // Reversed: what came before a corner now comes after it.
             keys = [2, 1, 0, 3].map(|k| keys[k]);
         }
         Ring { corners, keys }
     }
 
-    /// Two triangles, by the diagonal that stays nearer to the tangent plane.
+    /// Two triangles, along the diagonal that stays closer to the tangent plane.
     fn halves(&self, lattice: &Lattice, mesh: &Mesh, [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
         let place = lattice.place(self.axis, self.at, self.hit);
         let p = [a, b, c, d].map(|n| mesh.vertices[n as usize]);

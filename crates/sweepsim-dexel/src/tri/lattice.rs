@@ -1,4 +1,4 @@
-//! Which points of the lattice have material, and where it ends between them.
+//! Which points of the lattice are in material, and where the material ends between them.
 
 use super::TriDexels;
 use crate::dexels::Dexels;
@@ -12,11 +12,11 @@ pub(super) struct Lattice<'a> {
     /// Points along each axis, with the rim.
     pub points: [usize; 3],
     inside: Vec<bool>,
-    /// Points where the sets do not agree.
+    /// Points where the sets disagree.
     pub disagreements: usize,
 }
 
-/// How far beyond an edge, in steps, the end of an interval is still taken for one on it.
+/// How far beyond an edge, in steps, the end of an interval still counts as on it.
 const SLACK: f64 = 1e-3;
 
 impl<'a> Lattice<'a> {
@@ -74,7 +74,7 @@ impl<'a> Lattice<'a> {
         let last = self.points[axis] - 1;
         let first_from = |height: f64| {
             let guess = (height - self.min[axis]) / self.step[axis] + 0.5;
-            // At most one off by rounding.
+            // Off by at most one, due to rounding.
             let mut n = (guess.ceil().clamp(1.0, last as f64) as usize).saturating_sub(1).max(1);
             while n < last && self.coordinate(axis, n) < height {
                 n += 1;
@@ -84,7 +84,7 @@ impl<'a> Lattice<'a> {
         first_from(lower)..first_from(upper)
     }
 
-    /// Where point `n` of an axis is.
+    /// The position of point `n` of an axis.
     pub fn coordinate(&self, axis: usize, n: usize) -> f64 {
         self.min[axis] + (n as f64 - 0.5) * self.step[axis]
     }
@@ -149,7 +149,7 @@ impl<'a> Lattice<'a> {
             let slack = SLACK * self.step[axis];
             let near = |z: f64| low - slack <= z && z <= high + slack;
             let end = if inside {
-                // The last beginning, and the first end: nearest to the point with material.
+                // The last lower end, or the first upper end: the one nearest to the point with material.
                 intervals.iter().map(|i| i.lower).rfind(|end| near(end.z))
             } else {
                 intervals.iter().map(|i| i.upper).find(|end| near(end.z))
@@ -196,12 +196,12 @@ pub(super) struct Hit {
     /// Whether material ends there, going up.
     pub upper: bool,
     z: f64,
-    /// Not known where the sets do not agree.
+    /// Unknown where the sets disagree.
     pub normal: Option<[f32; 3]>,
     pub cut: bool,
 }
 
-/// All of an axis, by line and edge.
+/// All hits of an axis, by line and edge.
 pub(super) struct Hits {
     axis: usize,
     first: Vec<usize>,
@@ -213,7 +213,7 @@ impl Hits {
         at[(self.axis + 1) % 3] * lattice.points[(self.axis + 2) % 3] + at[(self.axis + 2) % 3]
     }
 
-    /// That on the edge from a point.
+    /// The hit on the edge from a point.
     pub fn find(&self, lattice: &Lattice<'_>, at: [usize; 3]) -> Option<&Hit> {
         let line = self.line(lattice, at);
         let hits = &self.hits[self.first[line]..self.first[line + 1]];
@@ -221,7 +221,7 @@ impl Hits {
         hits.binary_search_by_key(&edge, |hit| hit.edge).ok().map(|k| &hits[k])
     }
 
-    /// Those on lines with a given first number, with the points where their edges begin.
+    /// The hits on lines with a given first number, with the points where their edges begin.
     pub fn slab(&self, lattice: &Lattice<'_>, number: usize) -> impl Iterator<Item = ([usize; 3], &Hit)> {
         let across = lattice.points[(self.axis + 2) % 3];
         (0..across).flat_map(move |other| {

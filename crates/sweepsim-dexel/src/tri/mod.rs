@@ -14,7 +14,7 @@ use crate::stock::{Stock, StockError};
 use crate::surface::sources_in;
 use thiserror::Error;
 
-/// Three sets of dexels, along `x`, `y` and `z`, whose lines meet in the centres of `cells[0] × cells[1] × cells[2]` boxes.
+/// Three sets of dexels, along `x`, `y` and `z`, whose lines meet at the centres of `cells[0] × cells[1] × cells[2]` boxes.
 ///
 /// Dexels along an axis have the [frame](Grid::frame) of [`Frame::cyclic`]: their `x`, `y` and `z` are the axes `axis + 1`, `axis + 2`
 /// and `axis` (mod 3), and so are the coordinates of their normals. What is steep for one set is flat for another, so every face is met by lines
@@ -27,7 +27,7 @@ pub struct TriDexels {
     sets: [Dexels; 3],
 }
 
-/// Why there are no tri-dexels.
+/// Why tri-dexels are invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum TriDexelsError {
@@ -35,15 +35,15 @@ pub enum TriDexelsError {
     #[error(transparent)]
     Grid(#[from] GridError),
     /// The lines of the three sets do not meet.
-    #[error("the three sets of dexels do not share their lines' crossings")]
+    #[error("the lines of the three sets of dexels do not meet")]
     Mismatch,
-    /// The stock is none.
+    /// The stock is invalid.
     #[error(transparent)]
     Stock(#[from] StockError),
 }
 
 impl TriDexels {
-    /// No material in the box from `min` to `max`.
+    /// An empty box from `min` to `max`, without material.
     ///
     /// # Errors
     /// [`TriDexelsError::Grid`]: an empty box, no cells, or more than [`Grid::MOST`] in all.
@@ -63,7 +63,7 @@ impl TriDexels {
                 .map(|grid| grid.in_frame(Frame::cyclic(axis)))
         };
         let grids = [along(0)?, along(1)?, along(2)?];
-        // Room for a rim, too.
+        // Leaves room for a rim.
         let padded = cells
             .iter()
             .try_fold(1_usize, |all, n| all.checked_mul(n.checked_add(2)?));
@@ -73,10 +73,10 @@ impl TriDexels {
         }
     }
 
-    /// The part of a stock inside a box.
+    /// The part of a stock that lies inside a box.
     ///
     /// # Errors
-    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run cannot be part of the stock, since they have only one direction.
+    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run cannot be part of the stock, since they run in one direction only.
     ///
     /// ```
     /// use sweepsim_dexel::{Stock, TriDexels};
@@ -148,7 +148,7 @@ impl TriDexels {
     /// Combines the material with that of `other`.
     ///
     /// # Errors
-    /// [`GridMismatch`] when the boxes or cells differ; nothing is changed then.
+    /// [`GridMismatch`] if the boxes or cells differ; nothing is changed then.
     pub fn combine(&mut self, operation: Operation, other: &Self) -> Result<(), GridMismatch> {
         if self.sets.iter().zip(&other.sets).any(|(a, b)| a.grid() != b.grid()) {
             return Err(GridMismatch);
@@ -182,15 +182,15 @@ impl TriDexels {
         contour::contour(self, MOST_VERTICES)
     }
 
-    /// For each vertex of a mesh of this material, what made the surface there: of vertices that are marked as cut, the source of the
-    /// nearest interval end that a tool made, of all three sets; of others, the stock.
+    /// For each vertex of a mesh of this material, the source of the surface there: for vertices marked as cut, the source of the
+    /// nearest interval end in the three sets that a tool made; for the others, the stock.
     #[must_use]
     pub fn sources(&self, mesh: &Mesh) -> Vec<Source> {
         let [x, y, z] = &self.sets;
         sources_in(&[x, y, z], mesh)
     }
 
-    /// What made the surface at a point of the world, or next to it: the source of the nearest interval end of all three sets, if one is
+    /// The source of the surface at or near a point of the world: that of the nearest interval end in the three sets, if one is
     /// within `reach`.
     #[must_use]
     pub fn source_at(&self, point: impl Into<[f64; 3]>, reach: f64) -> Option<Source> {

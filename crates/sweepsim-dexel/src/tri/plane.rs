@@ -12,15 +12,15 @@ pub(super) struct Planes {
     cut: bool,
 }
 
-/// Directions in which the planes' normals spread less than this (as a sine) do not tell where the planes meet.
+/// Directions in which the planes' normals spread by less than this (as a sine) do not determine where the planes meet.
 const SPREAD: f64 = 0.1;
 
-/// How far beyond its cell, in cells, a vertex may be. An edge of the solid that passes a cell closely is followed by its vertex;
-/// neighbours do so, too, and their triangles are thin.
+/// How far beyond its cell, in cells, a vertex may be. The vertex of a cell follows an edge of the solid that passes close by;
+/// so do its neighbours, and their triangles are thin.
 const BEYOND: f64 = 1.0;
-/// How much less a distance from the middle counts than one from the planes, as squares, where the vertex is held near its cell.
+/// The weight of the squared distance from the middle, relative to those from the planes, if the vertex is held near its cell.
 const WEIGHT: f64 = 1e-3;
-/// Times that each coordinate is chosen anew there.
+/// The number of passes over the coordinates in that case.
 const SWEEPS: usize = 40;
 
 impl Planes {
@@ -54,8 +54,8 @@ impl Planes {
         }
     }
 
-    /// The point with the least squares of distances from the planes, as far from the [middle](Self::middle) as the planes tell;
-    /// when that is far out of the box, the best near it.
+    /// The least-squares point of the planes, displaced from the [middle](Self::middle) only in directions that the planes determine;
+    /// if that is far outside the box, the best point near the box.
     pub fn meet(&self, lower: [f64; 3], upper: [f64; 3]) -> [f64; 3] {
         let middle = self.middle();
         // AᵀA and Aᵀb of the normals, with b as distances from the middle.
@@ -98,7 +98,7 @@ impl Planes {
     }
 }
 
-/// The least of `xᵀAx − 2bᵀx + weight·xᵀx` within bounds around 0: one coordinate after the other, which converges for convex functions.
+/// Minimises `xᵀAx − 2bᵀx + weight·xᵀx` within bounds around 0, one coordinate after the other, which converges for convex functions.
 fn within(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> [f64; 3] {
     let mut x = [0.0; 3];
     for _ in 0..SWEEPS {
@@ -111,10 +111,10 @@ fn within(a: [[f64; 3]; 3], b: [f64; 3], bounds: [[f64; 2]; 3], weight: f64) -> 
     x
 }
 
-/// Eigenvalues of a symmetric matrix from the largest down, with unit vectors: by Jacobi's rotations.
+/// Eigenvalues of a symmetric matrix in decreasing order, with unit eigenvectors, by Jacobi rotations.
 fn eigen(mut a: [[f64; 3]; 3]) -> [(f64, [f64; 3]); 3] {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    // What is this small beside the trace of a positive semidefinite matrix is rounding.
+    // Entries this small relative to the trace of a positive semidefinite matrix are rounding errors.
     let small = f64::EPSILON * (a[0][0] + a[1][1] + a[2][2]) / 4.0;
     // Convergence is quadratic: five sweeps are enough for double precision.
     for _ in 0..8 {

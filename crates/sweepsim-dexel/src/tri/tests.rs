@@ -64,12 +64,12 @@ fn boxes_are_sharp() {
     assert_eq!(crisp.vertices.len(), mesh.vertices.len() + on[2] + 2 * on[3]);
     let level = |n: &[f32; 3]| n.iter().filter(|c| c.abs() > 1e-6).count() == 1;
     assert!(crisp.normals.iter().all(level));
-    // All vertices on faces, each edge followed, each corner met.
+    // All vertices are on faces, each edge is followed, each corner is reproduced.
     assert_eq!((on[0], on[3]), (0, 8));
     assert!(on[2] > 100);
 }
 
-/// A box around the origin, turned about an axis by an angle, as triangles; and its three directions.
+/// A box around the origin, rotated about an axis by an angle, as triangles; and its three directions.
 fn turned_box(half: [f64; 3], axis: [f64; 3], angle: f64) -> (TriangleSoup, [[f64; 3]; 3]) {
     let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
     let a = axis.map(|c| c / length);
@@ -122,7 +122,7 @@ fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
                 .filter(|d| **d < 2.0 * 6.5e-5 * step * 3.0_f64.sqrt())
                 .count();
             off_faces += usize::from(near == 0);
-            // Those that are on no face are in cells that an edge only just passes, whose lines see one of its faces once at most.
+            // Vertices on no face are in cells that an edge only just touches, where at most one line meets one of its faces.
             assert!(
                 near > 0 || off.iter().filter(|d| **d < step).count() >= 2,
                 "{v:?} {off:?}"
@@ -135,7 +135,7 @@ fn edges_of_turned_boxes_are_as_sharp_as_their_normals() {
             on_edges > 200 && off_faces * 100 < mesh.vertices.len(),
             "{on_edges} {off_faces}"
         );
-        // Edges that pass cells are followed: what is missing is less than that of a chamfer in each of them.
+        // Edges that pass cells are followed: less is missing than a chamfer in each of them would remove.
         let (found, exact) = (volume(&mesh), 8.0 * half.iter().product::<f64>());
         assert!((found - exact).abs() < 1e-4 * exact, "{found} {exact}");
     }
@@ -164,7 +164,7 @@ fn volumes_converge_with_the_square_of_the_distance_of_lines() {
     ];
     for (stock, exact) in cases {
         let error = |cells: usize| (volume(&solid(cells, &stock).surface().unwrap()) - exact).abs() / exact;
-        // Means over grids of nearly the same size: how the lines fall makes a difference.
+        // Means over grids of nearly the same size, since the positions of the lines matter.
         let mean = |cells: usize| (cells..cells + 6).map(error).sum::<f64>() / 6.0;
         let (coarse, fine) = (mean(24), mean(96));
         // The ratio of the mean sizes is 98.5 / 26.5.
@@ -266,7 +266,7 @@ fn part() -> impl Strategy<Value = Stock> {
     ]
 }
 
-/// A few parts, added, taken away, intersected.
+/// A few parts, united, subtracted, intersected.
 fn csg() -> impl Strategy<Value = Stock> {
     (part(), proptest::collection::vec((part(), 0..4), 0..5)).prop_map(|(first, more)| {
         more.into_iter().fold(first, |whole, (part, kind)| match kind {
@@ -307,7 +307,7 @@ proptest! {
 
     #[test]
     fn volumes_converge(stock in csg()) {
-        // The truth, from many lines: of a slab 1 thick and 9 wide they see 1.5 % more or less, less than what is allowed for.
+        // The true volume, from many lines: for a slab 1 thick and 9 wide they are within 1.5 %, less than the tolerance below.
         let grid = crate::Grid::new([-10.0; 2], [10.0; 2], [1501, 1501]).unwrap();
         let whole = Stock::Block { min: [-10.0; 3], max: [10.0; 3] };
         let exact = Stock::Intersection(vec![whole, stock.clone()]).dexels(&grid).unwrap().volume();
@@ -316,7 +316,7 @@ proptest! {
         prop_assert!((found - exact).abs() < 0.01 * exact + 0.5, "{} {} {:?}", found, exact, stock);
     }
 
-    /// Points at random: every kind of cell beside every other.
+    /// Random points: every kind of cell beside every other.
     #[test]
     fn any_lattice_gives_a_manifold(seed in any::<u64>(), share in 1..8_u32) {
         use crate::{Dexels, Interval};

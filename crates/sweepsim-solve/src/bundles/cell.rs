@@ -1,4 +1,4 @@
-//! Boxes of a bundle: how their coefficients lie, how they are split, what ranges they say.
+//! Boxes of a bundle: the layout of their coefficients, how they are split, and the ranges they give.
 
 use super::BundleError;
 use crate::coefficients::tensor;
@@ -7,7 +7,7 @@ use crate::{Enclosure, MAX_DEGREE};
 use sweepsim_spline::Bernstein;
 use sweepsim_spline::kernel;
 
-/// Forms of one degree, one after another.
+/// Forms of the same degree, stored one after another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block<const N: usize> {
     pub start: usize,
@@ -21,7 +21,7 @@ pub(super) struct Block<const N: usize> {
 }
 
 impl<const N: usize> Block<N> {
-    /// Coefficients between neighbours along an axis.
+    /// The stride between neighbours along an axis, in coefficients.
     pub fn inner(&self, axis: usize) -> usize {
         self.degrees[..axis].iter().map(|d| d + 1).product()
     }
@@ -57,7 +57,7 @@ pub(super) struct StackedBox<const N: usize> {
     /// Error of the coefficients of each block.
     pub noise: [f64; 3],
     pub depth: u32,
-    /// Targets that it is left with: a range in a list. None: all that lie in its range.
+    /// The targets that remain, as a range in a list; `None` for all that lie in its range.
     pub lines: Option<(usize, usize)>,
 }
 
@@ -143,13 +143,13 @@ impl<const N: usize> Blocks<N> {
         Ok(())
     }
 
-    /// Whether a form that shall be zero is so everywhere.
+    /// Whether a form that must be zero is zero everywhere.
     pub fn vanishes(&self) -> bool {
         let zeros = &self.blocks[ZEROS];
         (0..zeros.count).any(|k| zeros.form(&self.first, k).iter().all(|c| *c == 0.0))
     }
 
-    /// Equations with targets: the others shall be zero.
+    /// The number of equations with targets; the others must be zero.
     pub fn targeted(&self) -> usize {
         self.blocks[POSITION].count - 1
     }
@@ -197,7 +197,7 @@ impl<const N: usize> Blocks<N> {
         parts
     }
 
-    /// The range of each equation's left side over the box; none, where a form that shall be zero is not, or conditions do not differ.
+    /// The range of each equation's left side over the box; `None` where a form that must be zero is not, or where the conditions have the same sign.
     pub fn values(&self, frame: &StackedBox<N>, c: &[f64]) -> Option<[Enclosure; N]> {
         let [position, zeros, conditions] = &self.blocks;
         let mut values = [Enclosure::hull(0.0, 0.0); N];

@@ -5,9 +5,9 @@ use crate::charts::ChartMap;
 use crate::numbers::SINGULAR;
 use nalgebra::SVector;
 
-/// Newton's steps on one box.
+/// The maximum number of Newton steps on one box.
 const STEPS: usize = 12;
-/// Less than 1 by more than what bounds of bounds round by.
+/// Less than 1 by more than the rounding error of the bounds themselves.
 const SINGLE: f64 = 0.999;
 
 /// The part of a box where roots can be.
@@ -25,7 +25,7 @@ impl<const N: usize> Window<N> {
 
 pub(super) struct Found<const N: usize, S> {
     pub s: SVector<f64, N>,
-    /// The root is no farther from `s`.
+    /// The root is no farther than this from `s`.
     pub error: SVector<f64, N>,
     pub from: [f64; N],
     pub seen: S,
@@ -38,7 +38,7 @@ pub(super) enum Outcome<const N: usize, S> {
     Unclear,
 }
 
-/// The inverse and the sign of the determinant; none where the columns are dependent, or nearly so.
+/// The inverse and the sign of the determinant; `None` if the columns are linearly dependent, or nearly so.
 pub(super) fn inverse<const N: usize>(m: &Square<N>) -> Option<(Square<N>, i8)> {
     let mut adjoint = Square::<N>::zeros();
     let determinant;
@@ -59,7 +59,7 @@ pub(super) fn inverse<const N: usize>(m: &Square<N>) -> Option<(Square<N>, i8)> 
         }
         determinant = (0..N).map(|k| m[(0, k)] * adjoint[(k, 0)]).sum();
     }
-    // Of Hadamard's bound.
+    // A fraction of Hadamard's bound.
     let size: f64 = (0..N).map(|j| m.column(j).norm()).product();
     let regular = determinant.abs() > SINGULAR * size && size.is_finite();
     if !regular {
@@ -81,7 +81,7 @@ pub(super) fn solve<const N: usize, M: ChartMap<N>>(
 ) -> Outcome<N, M::Seen> {
     let mut s = guess;
     for _ in 0..STEPS {
-        // A guess that is not a number goes to the middle.
+        // A NaN guess becomes the centre.
         s = SVector::from_fn(|i, _| {
             let (lo, hi) = (window.lo[i], window.hi[i]);
             if s[i].is_nan() {
@@ -144,8 +144,8 @@ pub(super) fn solve<const N: usize, M: ChartMap<N>>(
     Outcome::Unclear
 }
 
-/// How far, at most, the equations of a target with this residual are from their linear picture about a point: a factor for each component of
-/// how far one goes, which is at most `far`.
+/// A bound for how far the equations of a target with this residual are from their linearisation about a point: a factor for each component of
+/// the distance from that point, which is at most `far`.
 fn deviation<const N: usize>(taylor: &Taylor<N>, rest: &SVector<f64, N>, far: &SVector<f64, N>) -> Square<N> {
     let mut deviation = Square::<N>::zeros();
     for r in 0..N {

@@ -1,7 +1,7 @@
 //! Bundles: the points of many systems that differ in their right-hand sides, each with a certificate of its own.
 //!
-//! Of `n` unknowns, `pᵢ / w = qᵢ` for some polynomials `pᵢ` over a positive weight `w`, and further polynomials are zero. Each target
-//! `q` makes a system, `F(z) = (p − q w, …) = 0`. The systems share their coefficients, so they go down one subdivision together: a box keeps
+//! In `n` unknowns, `pᵢ / w = qᵢ` for some polynomials `pᵢ` over a positive weight `w`, and further polynomials are zero. Each target
+//! `q` defines a system, `F(z) = (p − q w, …) = 0`. The systems share their coefficients, so one subdivision serves all of them: a box keeps
 //! those targets that lie in the range of `p / w` over it.
 //!
 //! Over a box, let `H` bound the second derivatives of `F` (of all targets in it), read off the Bernstein coefficients. For one target, at
@@ -11,17 +11,17 @@
 //! z − (s − K v) = −K v (∇w / w)(z − s) − ½ K H* (z − s)² / w,        |H*| ≤ H
 //! ```
 //!
-//! Three tests follow, for each target by itself (`line.rs`):
+//! This gives three tests for each target (`line.rs`):
 //!
-//! - *no root*: the right side is bounded over the part of the box where roots may be; what is farther from the Newton step is cut away, and when
-//!   nothing is left, there is none;
-//! - *existence*, by Brouwer: if the same bound, over a small ball about `s`, keeps the Newton step's image inside of the ball;
+//! - *no root*: the right side is bounded over the part of the box where roots may be; whatever is farther from the Newton step is cut away, and
+//!   if nothing is left, there is no root;
+//! - *existence*, by Brouwer: there is a root if the same bound, over a small ball about `s`, keeps the image of the Newton step inside the ball;
 //! - *single solution* (Newton and Kantorovich): if `|K| (H/2) |z − z*| / w < 1` about a root `z*` over what is left of the box, it is the only one.
 //!
 //! Targets that a box leaves undecided, and only these, go on to its halves. A root on a face between boxes is found from both; two finds of one
-//! target are one root where they are so near that the single-solution test, with second derivatives of the whole domain, leaves room for one only.
+//! target are the same root if they are so close that the single-solution test, with second derivatives of the whole domain, allows only one.
 //!
-//! Bundles find the same as [charts](crate::ChartSolver), but use polynomials in all unknowns, second derivatives instead of ranges of first
+//! Bundles find the same solutions as [charts](crate::ChartSolver), but use polynomials in all unknowns, second derivatives instead of ranges of first
 //! derivatives, and a certificate for each root instead of each box.
 
 mod cell;
@@ -59,33 +59,33 @@ pub enum BundleError {
     /// The number of numerators and zeros differs from the number of unknowns.
     #[error("{found} equations in {expected} unknowns")]
     Count {
-        /// Given.
+        /// The number of equations given.
         found: usize,
-        /// Unknowns.
+        /// The number of unknowns.
         expected: usize,
     },
     /// A form (numerators first, then the weight, then zeros and conditions) has the wrong number of variables.
     #[error("form {form} has {found} variables, not {expected}")]
     Variables {
-        /// Its number.
+        /// The form's number.
         form: usize,
-        /// Its variables.
+        /// The form's number of variables.
         found: usize,
-        /// The unknowns.
+        /// The number of unknowns.
         expected: usize,
     },
     /// A degree is above [`MAX_DEGREE`](crate::MAX_DEGREE).
     #[error("form {form} is of degree {degree}")]
     Degree {
-        /// Its number.
+        /// The form's number.
         form: usize,
-        /// Its largest degree.
+        /// The form's largest degree.
         degree: usize,
     },
     /// A coefficient or error bound is infinite or NaN.
     #[error("form {form} has a coefficient or bound that is not a finite number")]
     NotFinite {
-        /// Its number.
+        /// The form's number.
         form: usize,
     },
     /// A coefficient of the weight is not positive, beyond its error.
@@ -130,7 +130,7 @@ impl<const N: usize> Bundle<N> {
 /// Solves bundles. It reuses its memory from one call to the next.
 #[derive(Debug)]
 pub struct BundleSolver {
-    /// Limits; [`accept`](ChartOptions::accept) is in half sides of boxes.
+    /// Limits; [`accept`](ChartOptions::accept) is relative to half the side of a box.
     pub options: ChartOptions,
     /// Totals over all calls; `charts` counts boxes on which targets were tried.
     pub statistics: ChartStatistics,
@@ -139,7 +139,7 @@ pub struct BundleSolver {
 }
 
 impl BundleSolver {
-    /// A search with these limits.
+    /// Creates a solver with these limits.
     #[must_use]
     pub fn new(options: ChartOptions) -> Self {
         Self {

@@ -7,7 +7,7 @@ use crate::charts::{BETWEEN, Trail, all_of, collapses, largest, widest};
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, ChartTarget, Preimage, Sink, Targets, UnresolvedTarget};
 use crate::{Cause, Enclosure, Monitor};
 
-/// Boxes that are not good for certificates yet have each of at most this many targets tested before they are split.
+/// A box on which certificates would still fail has its targets tested one by one before it is split, if it has at most this many.
 const FEW: usize = 6;
 /// Targets are tried on a box where the bound of the single-solution test about its centre is at most this.
 const GOOD: f64 = 1.0;
@@ -26,7 +26,7 @@ pub(super) struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     pub monitor: &'a dyn Monitor,
     pub options: ChartOptions,
     pub statistics: &'a mut ChartStatistics,
-    /// Of the boxes on the stack, one after another.
+    /// Coefficients of the boxes on the stack, one box after another.
     pub coefficients: Vec<f64>,
     pub scratch: &'a mut Vec<f64>,
     /// Targets that boxes on the stack are left with.
@@ -58,7 +58,7 @@ where
         self.identify(sink);
     }
 
-    /// Treats a box; where to split it, and for which of its own targets, if that is needed.
+    /// Treats a box; returns where to split it, and for which of its own targets, if it needs splitting.
     fn visit<S: Sink<N, M::Seen>>(
         &mut self,
         frame: &StackedBox<N>,
@@ -152,7 +152,7 @@ where
         }
     }
 
-    /// Decides the box's targets; which are left, as a range of `lines`.
+    /// Decides the box's targets; returns those that remain undecided, as a range of `lines`.
     fn lines<S: Sink<N, M::Seen>>(
         &mut self,
         frame: &StackedBox<N>,
@@ -167,7 +167,7 @@ where
             asked += 1;
             stopped |= asked % BETWEEN == 0 && search.monitor.cancelled();
             if stopped {
-                // Left to the box's halves, which will not be looked at.
+                // Left to the box's halves, which will not be searched.
                 search.lines.push(target);
                 return true;
             }
@@ -206,7 +206,7 @@ where
         )
     }
 
-    /// The targets of a box that has few, without those that the bounds about its centre exclude.
+    /// The targets of a box with few targets, without those that the bounds about its centre exclude.
     fn few(&mut self, frame: &StackedBox<N>, values: &[Enclosure; N], taylor: &Taylor<N>) -> Option<(usize, usize)> {
         let before = self.lines.len();
         let mut count = 0;
@@ -224,7 +224,7 @@ where
         None
     }
 
-    /// Hands a root on, unless a neighbouring box may have it as well.
+    /// Reports a root, unless a neighbouring box may find it as well.
     fn put<S: Sink<N, M::Seen>>(
         &mut self,
         frame: &StackedBox<N>,
@@ -244,7 +244,7 @@ where
         };
         let mut straddles = false;
         for j in 0..N {
-            // The domain's own faces have no other side, and what lies beyond belongs to somebody else.
+            // The domain's own faces have no neighbour, and roots beyond them belong to another search.
             if x[j] < 0.0 || x[j] > 1.0 {
                 return;
             }
@@ -258,7 +258,7 @@ where
         }
     }
 
-    /// Hands on the roots near faces, once each.
+    /// Reports the roots near faces, each once.
     fn identify<S: Sink<N, M::Seen>>(&mut self, sink: &mut S) {
         let mut found = std::mem::take(&mut self.straddlers);
         found.sort_by_key(|straddler| straddler.preimage.target);
@@ -288,7 +288,7 @@ where
         }
     }
 
-    /// Whether two roots of one target must be one, by second derivatives of the whole domain.
+    /// Whether two roots of one target must be the same, by second derivatives of the whole domain.
     fn same(&mut self, a: &Straddler<N, M::Seen>, b: &Straddler<N, M::Seen>) -> bool {
         let root = self.blocks.root();
         let Some(values) = self.blocks.values(&root, &self.blocks.first) else {

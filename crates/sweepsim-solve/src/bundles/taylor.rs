@@ -1,4 +1,4 @@
-//! What a box says of all its targets: the map at its centre, and bounds of second derivatives.
+//! What a box tells about all its targets: the map at its centre, and bounds of second derivatives.
 
 use super::cell::{Blocks, POSITION, StackedBox, ZEROS};
 use super::line::Window;
@@ -6,9 +6,9 @@ use crate::Enclosure;
 use crate::charts::{ChartMap, Sample};
 use nalgebra::{SMatrix, SVector};
 
-/// Bounds hold so far beyond the box, in its sides: balls about roots near a face reach beyond it.
+/// Bounds hold this far beyond the box, relative to its sides, because balls about roots near a face extend beyond it.
 pub(super) const MARGIN: f64 = 1e-4;
-/// A relative error of Jacobians at points: some dozen roundings.
+/// The relative error of Jacobians at points: a few dozen roundings.
 const ROUNDING: f64 = 1e-13;
 
 pub(super) type Square<const N: usize> = SMatrix<f64, N, N>;
@@ -28,9 +28,9 @@ pub(super) struct Taylor<const N: usize> {
     total: [f64; N],
     /// Bounds of the derivatives of the weight, over the least weight; none for equations without targets.
     pub weight: [SVector<f64, N>; N],
-    /// What values may be off by.
+    /// The error of values.
     pub rounding: [f64; N],
-    /// What the Jacobian times a vector of size 1 may be off by, at any point of the box.
+    /// The error of the Jacobian times a vector of size 1, at any point of the box.
     pub doubt: [f64; N],
 }
 
@@ -123,7 +123,7 @@ impl<const N: usize> Taylor<N> {
                 shifted,
                 [&mut first_buffer, &mut second_buffer],
             );
-            // Targets as far from the centre's value as the range reaches.
+            // Targets are as far from the value at the centre as the range extends.
             let reach = (values[r].hi() - middle).max(middle - values[r].lo());
             second[r] = (bends + weight_bends * reach) / least;
             weight[r] = SVector::from(weight_slopes) / least;
@@ -180,7 +180,7 @@ impl<const N: usize> Taylor<N> {
             .fold(0.0, f64::max)
     }
 
-    /// What each direction contributes to it.
+    /// The contribution of each direction to it.
     pub fn smear(&self, inverse: &Square<N>) -> [f64; N] {
         std::array::from_fn(|j| {
             let part = |i: usize, r: usize| inverse[(i, r)].abs() * self.second[r].row(j).sum();
@@ -204,7 +204,7 @@ impl<const N: usize> Taylor<N> {
         (!window.is_empty()).then_some((window, guess))
     }
 
-    /// Whether two roots of one target, no farther from a point than `distance`, must be one.
+    /// Whether two roots of one target, no farther from a point than `distance`, must be the same.
     pub fn single<S>(&self, sample: &Sample<N, S>, distance: &[f64; N]) -> bool {
         let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * self.half[j]);
         let Some(inverse) = balanced_inverse(&scaled) else {
@@ -214,7 +214,7 @@ impl<const N: usize> Taylor<N> {
         (0..N).all(|i| {
             let row: f64 = (0..N)
                 .map(|r| {
-                    // The target is off the value here by at most what the Jacobian makes of the distance.
+                    // The target differs from the value here by at most the Jacobian times the distance.
                     let off: f64 = (0..N).map(|j| scaled[(r, j)].abs() * d[j]).sum::<f64>() * 2.0;
                     let bend = (self.second[r] * d).sum() + self.weight[r].sum() * off + self.doubt[r] * N as f64;
                     inverse[(i, r)].abs() * bend

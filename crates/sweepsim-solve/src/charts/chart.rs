@@ -7,12 +7,12 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 /// Steps in a chart before the box is split instead.
 const STEPS: usize = 32;
-/// When a preimage can only be in so small a part of the box, in half sides (besides rounding), Newton's answer says whether it is.
+/// If a preimage can only lie in a part of the box no larger than this, relative to half its sides (besides rounding), Newton's result decides whether there is one.
 const ON_FACE: f64 = 1e-11;
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
-/// A box of places, in coordinates scaled to that of a chart.
+/// A box of positions, in coordinates scaled to the box of a chart.
 #[derive(Clone, Copy)]
 pub(crate) struct Region<const N: usize> {
     lo: SVector<f64, N>,
@@ -46,7 +46,7 @@ impl<const N: usize> Region<N> {
         (0..N).any(|i| self.lo[i] > self.hi[i])
     }
 
-    /// The nearest place; the middle for what is not a number.
+    /// The nearest position; the centre for NaN.
     fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::from_fn(|i, _| {
             if s[i].is_nan() {
@@ -58,14 +58,14 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// A place in a chart, and `Φ` there.
+/// A position in a chart, and `Φ` there.
 #[derive(Clone, Copy)]
 pub(crate) struct Witness<const N: usize> {
     pub at: SVector<f64, N>,
     pub value: [f64; N],
 }
 
-/// What became of a target in a chart.
+/// The outcome for a target in a chart.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     Settled,
@@ -82,9 +82,9 @@ pub(crate) struct Chart<'a, const N: usize> {
     accept: [f64; 2],
 }
 
-/// So near a face, in half sides, Newton's method is as exact as if the box were the whole domain.
+/// This close to a face, relative to half the side, Newton's method is as accurate as if the box were the whole domain.
 const NEAR_FACE: f64 = 1e-4;
-/// No last step is longer than this.
+/// The last step is never longer than this.
 const LONGEST: f64 = 1e-3;
 
 impl<'a, const N: usize> Chart<'a, N> {
@@ -95,8 +95,8 @@ impl<'a, const N: usize> Chart<'a, N> {
         domain: &'a [Enclosure; N],
         accept: f64,
     ) -> Self {
-        // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; what else the
-        // map knows is off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
+        // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; the map's
+        // other data are off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
         let part = (0..N)
             .map(|i| bounds[i].radius() / domain[i].radius())
             .fold(0.0, f64::max);
@@ -111,7 +111,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         }
     }
 
-    /// Where a preimage of `q` seems to be, seen from a place, and the region that it is in if it is in the box.
+    /// Predicts from a position where a preimage of `q` is, and the region that must contain it if it is in the box.
     pub fn region(&self, witness: &Witness<N>, q: &[f64; N]) -> (SVector<f64, N>, Region<N>) {
         let step = self.linear.inverse * SVector::<f64, N>::from_fn(|i, _| q[i] - witness.value[i]);
         let reach = self.contraction.rest * step.abs() + self.contraction.slack;
@@ -164,7 +164,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                 return Outcome::Settled;
             }
             if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
-                // As near as rounding lets it come: a smaller box would know no more.
+                // As close as rounding allows: a smaller box would not help.
                 let rests = |next: &SVector<f64, N>| {
                     (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
                 };
@@ -182,7 +182,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         Outcome::Unclear
     }
 
-    /// Whether a point is in the box; of its faces only the lower ones, and upper ones of the domain, belong to it.
+    /// Whether a point is in the box. Only its lower faces, and upper faces on the domain's boundary, belong to it.
     fn owns(&self, s: &SVector<f64, N>) -> bool {
         let x = self.linear.point(s);
         (0..N).all(|i| {
@@ -195,7 +195,7 @@ impl<'a, const N: usize> Chart<'a, N> {
 /// `A⁻¹ b` for a small matrix.
 fn solve_linear<const N: usize>(matrix: &Square<N>, b: &SVector<f64, N>) -> Option<SVector<f64, N>> {
     if N == 3 {
-        // Cramer's rule: Newton's method corrects what it loses.
+        // Cramer's rule: Newton's method makes up for its errors.
         let column = |j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
         let (x, y, z, b) = (column(0), column(1), column(2), Vector3::new(b[0], b[1], b[2]));
         let (yz, xb) = (y.cross(&z), x.cross(&b));

@@ -1,4 +1,4 @@
-//! The linear picture of a map over a box, and how closely it encloses preimages.
+//! The linearisation of a map over a box, and how closely it encloses preimages.
 
 use crate::Enclosure;
 use crate::numbers::SINGULAR;
@@ -6,7 +6,7 @@ use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
-/// The linear picture of `Φ` over a box, in coordinates `s ∈ [−1, 1]^N` scaled to it.
+/// The linearisation of `Φ` over a box, in coordinates `s ∈ [−1, 1]^N` scaled to it.
 pub(crate) struct Linear<const N: usize> {
     pub centre: [f64; N],
     pub half: [f64; N],
@@ -14,7 +14,7 @@ pub(crate) struct Linear<const N: usize> {
     pub inverse: Square<N>,
     /// Entrywise bound of `|I − K J|`, rounding included.
     pub rest: Square<N>,
-    /// Radius part of it alone, for the choice of the split.
+    /// The part of it due to the radius alone, for choosing the split.
     pub smear: [f64; N],
     /// Rounding of a prediction.
     pub slack: SVector<f64, N>,
@@ -88,17 +88,17 @@ impl<const N: usize> Linear<N> {
         })
     }
 
-    /// How far a preimage in the box may be from what the centre predicts, in direction `i`.
+    /// How far a preimage in the box may be from the centre's prediction, in direction `i`.
     pub fn reach(&self, i: usize) -> f64 {
         self.rest.row(i).iter().sum::<f64>() + self.slack[i]
     }
 
-    /// `s − K(Φ(x(s)) − q)`: where a preimage of `q` should be, seen from `s`.
+    /// `s − K(Φ(x(s)) − q)`: the prediction from `s` for a preimage of `q`.
     pub fn predict(&self, s: &SVector<f64, N>, value: &[f64; N], q: &[f64; N]) -> SVector<f64, N> {
         s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
     }
 
-    /// The second values of targets with the other values of `q` that can have a preimage in the box, seen from the centre.
+    /// The range of second values for which targets that agree with `q` otherwise can have a preimage in the box, predicted from the centre.
     pub fn window(&self, value: &[f64; N], q: &[f64; N]) -> Option<Enclosure> {
         let mut window = Enclosure::WHOLE;
         if N < 2 {
@@ -114,7 +114,7 @@ impl<const N: usize> Linear<N> {
             let limit = 1.0 + self.reach(i) + 2.0 * self.slack[i];
             let (a, b) = ((-limit - base) / factor, (limit - base) / factor);
             let (lo, hi) = (a.min(b), a.max(b));
-            // With a factor of 0 the ends are infinite, or not numbers: they narrow nothing, and targets are tested one by one.
+            // With a factor of 0 the ends are infinite or NaN: they narrow nothing, and targets are tested one by one.
             if lo.is_finite() && hi.is_finite() {
                 window = window.intersection(Enclosure::hull(value[1] + lo, value[1] + hi))?;
             }
@@ -127,11 +127,11 @@ impl<const N: usize> Linear<N> {
     }
 }
 
-/// The mean value theorem's bound, iterated to its end.
+/// The bound of the mean value theorem, iterated to its limit.
 ///
-/// Seen from a point `c` of the box a preimage `s` is at `p = c − K(Φ(c) − q)`, but for `|s − p| ≤ R|s − c| + e` with the rounding `e`. So
+/// From a point `c` of the box, a preimage `s` is predicted at `p = c − K(Φ(c) − q)`, with `|s − p| ≤ R|s − c| + e` and the rounding `e`. So
 /// `|s − c| ≤ |p − c| + R|s − c| + e`, and as powers of `R` tend to 0, `|s − c| ≤ (I − R)⁻¹(|p − c| + e)`, and
-/// `|s − p| ≤ R(I − R)⁻¹|p − c| + (I − R)⁻¹e`: what is looked at near a preimage encloses it closely.
+/// `|s − p| ≤ R(I − R)⁻¹|p − c| + (I − R)⁻¹e`: an evaluation near a preimage encloses it closely.
 pub(crate) struct Contraction<const N: usize> {
     /// `R(I − R)⁻¹`.
     pub rest: Square<N>,
@@ -142,7 +142,7 @@ pub(crate) struct Contraction<const N: usize> {
 impl<const N: usize> Linear<N> {
     /// For `‖R‖∞ < 1`.
     pub fn contraction(&self) -> Option<Contraction<N>> {
-        // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of terms that are not negative. After k factors what is left out is, row by row,
+        // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of nonnegative terms. After k factors the omitted rest is, row by row,
         // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large.
         let norm = self.norm();
         let (mut sum, mut power, mut left) = (Square::<N>::identity() + self.rest, self.rest, norm * norm);
@@ -151,7 +151,7 @@ impl<const N: usize> Linear<N> {
             sum += sum * power;
             left *= left;
         }
-        // Besides, a few dozen roundings of terms of one sign.
+        // Plus a few dozen roundings of terms of the same sign.
         let remainder = left / (1.0 - norm) + 64.0 * f64::EPSILON;
         let spread = sum * self.rest;
         let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);

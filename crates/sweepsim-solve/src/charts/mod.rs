@@ -6,10 +6,10 @@
 //! 1. drops a box whose image holds no target;
 //! 2. encloses the Jacobian over the box and preconditions it with the inverse `K` of its midpoint. With `R = |I − K J(box)|`
 //!    (entrywise bound, in coordinates scaled to the box) every preimage `x` in the box satisfies, by the mean value theorem
-//!    around the centre `m`, `|x − m + K(Φ(m) − q)| ≤ R·1` componentwise: targets that fail it have none;
+//!    around the centre `m`, `|x − m + K(Φ(m) − q)| ≤ R·1` componentwise: targets that fail this have no preimage in the box;
 //! 3. if `‖R‖∞ < 1` the box is a chart: two preimages `p, q` of one target would give `(I − K J*)(p − q) = p − q`. Newton's
-//!    method finds the preimage, or the interval iteration of step 2 around better and better centres proves that there is none;
-//! 4. else it is split.
+//!    method finds the preimage, or the interval iteration of step 2 around ever better centres proves that there is none;
+//! 4. otherwise splits the box.
 //!
 //! No preimage is lost: boxes too small to split further are reported as [`UnresolvedTarget`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
@@ -91,7 +91,7 @@ pub trait Targets<const N: usize> {
     );
 }
 
-/// Rows that are wanted as they are.
+/// Does not narrow rows.
 pub(crate) fn all_of<const N: usize>(_: &[f64; N]) -> Option<Enclosure> {
     Some(Enclosure::WHOLE)
 }
@@ -183,9 +183,9 @@ impl ChartOptions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ChartStatistics {
-    /// Boxes looked at.
+    /// Boxes examined.
     pub boxes: u64,
-    /// Of these, boxes that were charts.
+    /// Of these, the number that were charts.
     pub charts: u64,
     /// Evaluations of the map.
     pub evaluations: u64,

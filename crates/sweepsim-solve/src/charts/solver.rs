@@ -16,17 +16,17 @@ pub struct ChartSolver<C> {
     stack: Vec<(C, u32)>,
 }
 
-/// Boxes with at most this many targets have each of them tested before a split.
+/// If a box has at most this many targets, each is tested before a split.
 const FEW: usize = 4;
-/// A box whose range holds so many targets is a chart only when it is [`CLOSE`] to linear.
+/// A box whose range holds this many targets is a chart only if it is [`CLOSE`] to linear.
 const MANY: usize = 1000;
 /// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
-/// Targets between two questions to the monitor.
+/// The number of targets between two calls of the monitor.
 pub(crate) const BETWEEN: usize = 16;
 
 impl<C: Clone> ChartSolver<C> {
-    /// A search with these limits.
+    /// Creates a solver with these limits.
     #[must_use]
     pub fn new(options: ChartOptions) -> Self {
         Self {
@@ -56,8 +56,8 @@ impl<C: Clone> ChartSolver<C> {
         self.solve_part(map, root, &domain, targets, sink, monitor);
     }
 
-    /// The same in one box of several that fill `domain`, and share nothing but faces: a preimage on a face is found in the
-    /// box above it only.
+    /// As [`solve`](Self::solve), in one of several boxes that fill `domain` and share only faces. A preimage on a face is found only in the
+    /// box above it.
     pub fn solve_part<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,
@@ -112,7 +112,7 @@ impl<C: Clone> ChartSolver<C> {
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
-                // Many targets are worth smaller charts, on which they are settled at first sight.
+                // With many targets, smaller charts pay off: each target is then settled by one evaluation.
                 let norm = linear.norm();
                 let chart = norm < 1.0 && (count < MANY || norm < CLOSE);
                 let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
@@ -134,7 +134,7 @@ impl<C: Clone> ChartSolver<C> {
                         self.statistics.charts += 1;
                         continue;
                     }
-                    // Newton's method went astray for some target: nothing of this box was handed out yet.
+                    // Newton's method failed for some target: nothing of this box has been reported yet.
                     Some(false) => {}
                     None => {
                         if count <= FEW && all_absent(&linear, &value, &values, targets) {
@@ -161,7 +161,7 @@ impl<C: Clone> ChartSolver<C> {
         }
     }
 
-    /// Solves all targets of a chart; `false` when one stayed unclear (then none was handed out).
+    /// Solves all targets of a chart; `false` if one stayed undecided (then none was reported).
     #[allow(clippy::too_many_arguments)]
     fn chart<const N: usize, M, T, S>(
         &mut self,
@@ -195,7 +195,7 @@ impl<C: Clone> ChartSolver<C> {
             options, statistics, ..
         } = self;
         let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
-        // Of the last target looked at, and of the first one found in the row.
+        // Of the last target examined, and of the first one found in the row.
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
         let mut asked = 0_usize;
@@ -213,7 +213,7 @@ impl<C: Clone> ChartSolver<C> {
             }
             let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
             region.intersect(&whole);
-            // What is near needs no second view.
+            // A close guess needs no second prediction.
             if (!close || last.is_none()) && !region.is_empty() {
                 let start = linear.predict(&centre.at, value, q);
                 region.intersect(&Region::around(&start, &reach));
@@ -273,10 +273,10 @@ fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
     absent
 }
 
-/// Whether the direction `axis` may have almost no length in the box, and adds little to the range of each value.
+/// Whether the direction `axis` may have almost no length in the box and adds little to the range of each value.
 ///
-/// So it is at a pole, where a patch's side has shrunk to a point, or where a tool turns about a point of its own: cutting
-/// across it leaves boxes that are as singular as before, and only cutting towards it gets away from it.
+/// This happens at a pole, where a side of a patch has shrunk to a point, or where a tool turns about one of its own points. Cutting
+/// across this direction leaves boxes that are as singular as before; only cutting towards the pole isolates it.
 pub(crate) fn collapses<const N: usize>(bounds: &[Enclosure; N], jacobian: &[[Enclosure; N]; N], axis: usize) -> bool {
     let half = bounds.map(Enclosure::radius);
     jacobian.iter().all(|row| {

@@ -1,9 +1,9 @@
 //! Guesses where the next solution is, from those of its neighbours on a lattice.
 
-/// Solutions that a guess takes into account, along a row or across rows.
+/// The number of solutions that a guess uses, along a row or across rows.
 const DEPTH: usize = 5;
 
-/// The coefficients, nearest first, of the polynomial through `k` even places, at the next one: `Σ (−1)ⁿ⁺¹ (k over n) xₙ`.
+/// The coefficients, nearest first, of the polynomial through `k` equally spaced places, at the next one: `Σ (−1)ⁿ⁺¹ (k over n) xₙ`.
 const EXTRAPOLATION: [&[f64]; DEPTH + 1] = [
     &[],
     &[1.0],
@@ -13,7 +13,7 @@ const EXTRAPOLATION: [&[f64]; DEPTH + 1] = [
     &[5.0, -10.0, 10.0, -5.0, 1.0],
 ];
 
-/// Places before the first of a row that it is continued to, when the next begins: that one may begin earlier.
+/// How many places a row is extended backwards when the next row begins, since that one may begin earlier.
 const BEFORE: usize = 3;
 
 /// The polynomial through `count` places, nearest first, at the next one.
@@ -28,7 +28,7 @@ fn extrapolate<const N: usize>(count: usize, place: impl Fn(usize) -> [f64; N]) 
     sum
 }
 
-/// What was found in a row, from its first place on.
+/// The solutions of a row, from its first place on.
 #[derive(Debug)]
 struct Row<const N: usize> {
     number: usize,
@@ -36,12 +36,12 @@ struct Row<const N: usize> {
     first: usize,
     /// NaN where nothing was found.
     found: Vec<[f64; N]>,
-    /// So many of the last were found one after the other.
+    /// The number of consecutive solutions found last.
     run: usize,
 }
 
 impl<const N: usize> Row<N> {
-    /// Continues the row backwards.
+    /// Extends the row backwards.
     fn close(&mut self) {
         let solutions = self.found[BEFORE..].iter().take_while(|s| !s[0].is_nan());
         let count = solutions.take(DEPTH).count();
@@ -57,7 +57,7 @@ impl<const N: usize> Row<N> {
 /// The solutions in the last rows of a lattice.
 #[derive(Debug)]
 pub(crate) struct Trail<const N: usize> {
-    /// The latest last.
+    /// In order; the latest comes last.
     rows: Vec<Row<N>>,
 }
 
@@ -107,7 +107,7 @@ impl<const N: usize> Trail<N> {
         (!s[0].is_nan()).then_some(s)
     }
 
-    /// Where the solution at this place of the lattice should be.
+    /// Predicts the solution at this place of the lattice.
     pub fn guess(&self, [number, place]: [usize; 2]) -> Option<[f64; N]> {
         let place = place + BEFORE;
         let row = self.rows.last()?;
