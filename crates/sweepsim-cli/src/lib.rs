@@ -1,9 +1,9 @@
 //! The `sweepsim` command: simulates NC programs with exact swept volumes.
 //!
-//! This library exists for the command's binary only. Use the crates below it in programs of your own: [`sweepsim`],
+//! This library exists only for the command's binary. In your own code, use the crates below it: [`sweepsim`],
 //! `sweepsim_dexel`, `sweepsim_formats`, `sweepsim_motion`, `sweepsim_nc`, `sweepsim_picture`.
 //!
-//! `arguments` is what users type, `session` what the commands share, `commands` has a module for each command.
+//! `arguments` parses the command line, `session` holds the code shared by the commands, and `commands` has a module for each command.
 
 mod arguments;
 mod commands;

@@ -45,7 +45,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// One after the other, so that rounding does not depend on the threads.
+    /// Sequentially, so that rounding does not depend on the number of threads.
     fn sum(parts: Vec<Self>) -> Self {
         let mut all = Self::default();
         for part in parts {

@@ -1,4 +1,4 @@
-//! From an STL to dexels to a mesh: of a file, or of the small one below.
+//! Converts an STL, or the small one below, to dexels and back to a mesh.
 //!
 //! `cargo run --release -p sweepsim-formats --example stl_to_dexels_to_mesh [-- IN.stl OUT.ply [DISTANCE]]`
 

@@ -8,7 +8,7 @@ use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::error::{FormatError, Problem};
 
-/// The bytes that any entry may expand to.
+/// The size in bytes to which any entry may expand.
 const FREE_BYTES: u64 = 1 << 28;
 /// How many times its compressed size an entry may expand to beyond that. Text compresses 10 times, noise not at all; 1000 times is
 /// a decompression bomb, or an array of equal numbers.
@@ -68,7 +68,7 @@ impl<'a> Archive<'a> {
             _ => damaged(),
         })?;
         let limit = FREE_BYTES.saturating_add(entry.compressed_size().saturating_mul(MOST_EXPANSION));
-        // Grows with what comes, whatever size the directory claims.
+        // Grows with the data read, whatever size the directory claims.
         let mut bytes = Vec::new();
         let read = (&mut entry).take(limit + 1).read_to_end(&mut bytes);
         if read.is_err() {

@@ -28,7 +28,7 @@ pub struct AtomicFile {
 }
 
 impl AtomicFile {
-    /// Begins a file that will be `path`. Its folder must exist.
+    /// Creates a file that will become `path`. Its folder must exist.
     ///
     /// # Errors
     /// [`Problem::Write`] with the name of the file.

@@ -1,6 +1,6 @@
 //! CRC-32 as in ZIP and PNG (ISO 3309).
 
-/// The checksum of several parts, one after the other.
+/// The checksum of several consecutive parts.
 pub(crate) fn crc32(parts: &[&[u8]]) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     for part in parts {

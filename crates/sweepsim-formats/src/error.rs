@@ -1,4 +1,4 @@
-//! What can be wrong with a file, and where: one message a person can act on.
+//! What is wrong with a file, and where, in one message that users can act on.
 
 use std::fmt;
 use std::io;
@@ -35,7 +35,7 @@ pub enum Problem {
     /// The file could not be written.
     #[error("cannot write this file: {0}")]
     Write(#[source] io::Error),
-    /// A file that this one names could not be read.
+    /// A file that this one refers to could not be read.
     #[error("cannot read the {what} file {}: {source}", .file.display())]
     Named {
         /// What the file is for.
@@ -61,7 +61,7 @@ pub enum Problem {
         /// What it must be.
         expected: String,
     },
-    /// Something that is understood but not supported.
+    /// Something that is recognised but not supported.
     #[error("{what} not supported yet: {instead}")]
     Unsupported {
         /// What, with its verb: "canned cycles are".

@@ -10,7 +10,7 @@ pub(crate) fn extension(file: &Path) -> String {
     extension.unwrap_or_default()
 }
 
-/// The error of an extension that no format has.
+/// The error for an unknown extension.
 pub(crate) fn unknown(file: &Path, what: &str, expected: impl Into<String>) -> FormatError {
     let found = match extension(file) {
         none if none.is_empty() => "missing".to_owned(),

@@ -17,7 +17,7 @@
 //! | what | read | write |
 //! | --- | --- | --- |
 //! | jobs (RON) | [`Job::read`] | |
-//! | tools of B-spline surfaces, motions of B-splines (RON) | with the job | |
+//! | tools made of B-spline surfaces, motions along B-splines (RON) | with the job | |
 //! | paths as programs and tables | with the job, by [`sweepsim_nc`] | |
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
 //! | meshes with normals (PLY) | [`read_ply`] | [`write_ply`] |

@@ -1,5 +1,5 @@
-//! Reads NC programs into canonical moves: poses in the part's frame, each with how the tool gets there and the file and line that
-//! say so. The crate knows no stock and no sweep; use it alone to convert, check or plot programs.
+//! Reads NC programs into canonical moves: poses in the part's frame, each with the way the tool gets there and its file and line.
+//! The crate knows nothing of stock or sweeps; use it alone to convert, check or plot programs.
 //!
 //! ```
 //! use sweepsim_nc::{ReadOptions, gcode};
@@ -19,7 +19,7 @@
 //! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
 //! | either, by content | [`read_file`] | |
 //!
-//! A program is never half understood in silence: a word that could move the tool in an unknown way is an [`NcError`] with line and
+//! Nothing is silently misread: a word that could move the tool in an unknown way is an [`NcError`] with line and
 //! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
 
 mod content;

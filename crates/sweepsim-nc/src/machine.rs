@@ -1,4 +1,4 @@
-//! Machines: what turns, and what the coordinates of a program mean on them.
+//! Machines: their rotary axes, and the meaning of a program's coordinates on them.
 
 use sweepsim_motion::RotaryTable;
 
@@ -6,7 +6,7 @@ use sweepsim_motion::RotaryTable;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Machine {
-    /// The rotary axes of the table. `None`: none, or those of the letters that a program uses.
+    /// The rotary axes of the table. `None` if there are none, or if they follow from the letters that a program uses.
     pub table: Option<RotaryTable>,
     /// Whether coordinates are those of the tip in the part's frame from the start, without a code in the program (`M428`, `M128`,
     /// `G43.4`).
@@ -23,7 +23,7 @@ impl Machine {
         }
     }
 
-    /// The same machine, with coordinates that are those of the tip from the start, or not.
+    /// Sets whether coordinates are those of the tip from the start.
     #[must_use]
     pub fn tip_control(self, on: bool) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! A program as canonical moves: a pose for each, how the tool gets there, and the line that says so.
+//! A program as canonical moves, each with a pose, the way the tool gets there, and the line of the program.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::machine::Machine;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProgramPose {
-    /// Where the tool is; lengths in millimetres.
+    /// The tool's pose, with lengths in millimetres.
     pub pose: Pose,
     /// Whether the move to this pose is a rapid.
     pub rapid: bool,
@@ -22,7 +22,7 @@ pub struct ProgramPose {
     /// Whether the tool moves here from the previous pose. `false` for the first pose, and where the path breaks (after a tool
     /// change or a move in machine coordinates).
     pub joined: bool,
-    /// The tool's number, if the program has named one.
+    /// The tool's number, if the program has selected one.
     pub tool: Option<u32>,
     /// The feed of this move as the program gives it; `None` for rapids, and before the first feed.
     pub feed: Option<f64>,
@@ -47,13 +47,13 @@ impl ProgramPose {
     }
 }
 
-/// Something in a file that was ignored or decided for the reader.
+/// Something in a file that was ignored, or assumed by the reader.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Note {
     /// The first line that it applies to, from 1.
     pub line: usize,
-    /// What, and how often.
+    /// What was ignored or assumed, and how often.
     pub message: String,
 }
 
@@ -80,9 +80,9 @@ pub struct Program {
     pub files: Vec<PathBuf>,
     /// The poses in order; consecutive ones differ where they are joined.
     pub poses: Vec<ProgramPose>,
-    /// The machine: as given, or as the program's words imply.
+    /// The machine, as given or as implied by the program's words.
     pub machine: Machine,
-    /// What was ignored or decided, one note of each kind, by line.
+    /// What was ignored or assumed: one note of each kind, sorted by line.
     pub notes: Vec<Note>,
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct Band {
     normals: Vec<Vector>,
     around: Vec<Around>,
     values: Vec<f32>,
-    /// How many more times a line of sight leaves the part than it enters it; empty without sections.
+    /// The number of times that a line of sight leaves the part, less the number of times that it enters; empty without sections.
     depth: Vec<i32>,
     /// Whether a sample sees the inside of the part through a section.
     inside: Vec<bool>,
@@ -161,8 +161,8 @@ impl Band {
         self.values[index] = value;
     }
 
-    /// Where a line of sight leaves the closed part once more than it enters it, it must have entered through a section. What the
-    /// sections leave of space is convex, so it entered through the last section that it meets, and nothing is in front.
+    /// If a line of sight leaves the closed part once more than it enters, it must have entered through a section. The space that the
+    /// sections leave is convex, so it entered through the last section that it meets, and nothing is in front of that.
     fn cut_open(&mut self, scene: &Scene, camera: &Camera, index: usize) -> bool {
         let [x, y] = self.place(index);
         let [from, ray] = camera.sight(x, y);

@@ -62,8 +62,8 @@ pub(crate) struct RunOptions {
     /// The number of dexels, like 300x200, instead of the job's.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
-    /// Makes the mesh and the picture from dexels along x, y and z: steep walls and edges are as sharp as flat ones, for three times the
-    /// work.
+    /// Builds the mesh and the picture from dexels along x, y and z: steep walls are as accurate as flat faces and edges are sharp, at three
+    /// times the cost.
     #[arg(long)]
     pub tri: bool,
     /// The tolerance in millimetres, instead of the job's.

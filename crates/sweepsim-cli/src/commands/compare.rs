@@ -198,7 +198,7 @@ fn describe(report: &mut ComparisonReport, options: &CompareOptions, found: &Com
     }
 }
 
-/// What the user is told.
+/// The summary for the user.
 fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
     let mut lines = Lines::default();
     let mut line = |label: &str, value: &str| lines.line(label, value);

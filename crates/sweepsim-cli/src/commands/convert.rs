@@ -27,7 +27,7 @@ pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
         }
         Kind::Mesh | Kind::Dexels => {
             let grid = options.grid.grid(None);
-            // A mesh has an area of its own, so the number of cells is enough.
+            // The mesh provides the area, so the number of cells is enough.
             let known = if Kind::of(input)? == Kind::Dexels { grid? } else { None };
             let solid = Solid::read(input, known.as_ref())?;
             write_solid(&solid, options, &mut line)?;

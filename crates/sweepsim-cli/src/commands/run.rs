@@ -78,7 +78,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
     })
 }
 
-/// The job, with the grid and the tolerance that the options name.
+/// The job, with the grid and the tolerance given by the options.
 fn read(options: &RunOptions) -> Result<Job, Failure> {
     let mut job = Job::read(&options.job)?;
     if let Some(cells) = options.cells {
@@ -234,7 +234,7 @@ fn write_mesh(options: &RunOptions, mesh: &Mesh, session: &mut JobSession, repor
     Ok(())
 }
 
-/// Writes the envelope: all of it, and the part that bounds the swept volume.
+/// Writes the whole envelope, and the part of it that bounds the swept volume.
 fn write_envelope(session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
     session.progress.phase("envelope");
     let options = Options::new(session.job.tolerance);

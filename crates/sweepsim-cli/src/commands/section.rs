@@ -69,7 +69,7 @@ fn table(section: &Section) -> String {
     text
 }
 
-/// What the user is told.
+/// The summary for the user.
 fn summary(section: &Section, session: &JobSession) -> Lines {
     let mut lines = Lines::default();
     let points: usize = section.curves.iter().map(|curve| curve.points.len()).sum();

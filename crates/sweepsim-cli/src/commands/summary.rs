@@ -4,10 +4,10 @@ use super::task::Task;
 use crate::session::{JobSession, Lines, words};
 use sweepsim_formats::Report;
 
-/// The most unresolved dexels, and missing pieces of the envelope, that are named.
+/// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
 pub(crate) const NAMED: usize = 10;
 
-/// What the user is told at the end of a run.
+/// The summary at the end of a run.
 pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads: usize, total: f64) -> Lines {
     let mut lines = Lines::default();
     let mut line = |label: &str, value: &str| lines.line(label, value);

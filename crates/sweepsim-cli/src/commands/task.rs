@@ -4,12 +4,12 @@ use crate::arguments::RunOptions;
 use sweepsim::Options;
 use sweepsim_formats::Job;
 
-/// What is computed.
+/// What to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Task {
-    /// What the tools leave of the stock.
+    /// The remaining stock.
     Simulate,
-    /// What the tools sweep.
+    /// The swept volume.
     Sweep,
 }
 

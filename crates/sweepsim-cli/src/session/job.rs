@@ -33,7 +33,7 @@ impl JobSession {
         cuts_of(&self.job)
     }
 
-    /// What the user is told if a sweep fails.
+    /// The message for the user if a sweep fails.
     pub fn failed(&self, error: SweepError) -> Failure {
         match error {
             SweepError::Cancelled => Failure::Interrupted,
@@ -46,7 +46,7 @@ impl JobSession {
         Failure::message(format!("{}: {message}", self.file.display()))
     }
 
-    /// The notes of the job, and of the files that it names.
+    /// The notes of the job, and of the files that it refers to.
     pub fn notes(&self) -> Vec<String> {
         let own = self
             .job

@@ -1,9 +1,9 @@
-//! What a command prints.
+//! The printed output of a command.
 
 use super::Failure;
 use std::fmt::Write as _;
 
-/// Lines with a label each, in two columns.
+/// Labelled lines, in two columns.
 #[derive(Debug, Default)]
 pub(crate) struct Lines(String);
 

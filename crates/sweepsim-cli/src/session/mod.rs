@@ -1,4 +1,4 @@
-//! What the commands share: jobs and parts from files, progress, output files, and what is printed.
+//! Code shared by the commands: jobs and parts from files, progress, output files, and printing.
 
 mod failure;
 mod job;

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use sweepsim_formats::{AtomicFile, write_atomically};
 
-/// The output folder, and the files wanted in it.
+/// The output folder, and the files to write to it.
 #[derive(Debug)]
 pub(crate) struct Outputs {
     folder: PathBuf,
@@ -61,7 +61,7 @@ impl Outputs {
     }
 }
 
-/// The folder that the options name, or `out/NAME`.
+/// The folder given by the options, or `out/NAME`.
 pub(crate) fn output_folder(out: Option<&Path>, name: &str) -> PathBuf {
     out.map_or_else(|| Path::new("out").join(folder_name(name)), Path::to_owned)
 }

@@ -115,7 +115,7 @@ pub(crate) fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
 }
 
 impl GridOptions {
-    /// The grid that the options name. Without an area it covers `around`, if that is known.
+    /// The grid given by the options. Without an area, it covers `around`, if known.
     pub fn grid(&self, around: Option<[[f64; 3]; 2]>) -> Result<Option<Grid>, Failure> {
         let failed = |error| Failure::message(format!("the grid: {error}"));
         if let Some(file) = &self.grid {

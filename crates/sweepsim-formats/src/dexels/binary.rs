@@ -29,9 +29,9 @@ use sweepsim_dexel::{Dexels, End, Frame, Grid, Source};
 use crate::error::{FormatError, Problem};
 
 pub(crate) const MAGIC: &[u8; 8] = b"sweepdxl";
-/// The version that is written where it can hold the numbers of all paths; up to [`WIDE`] is read.
+/// The version that is written if it can hold the numbers of all paths; versions up to [`WIDE`] are read.
 pub(crate) const VERSION: u32 = 1;
-/// As version 1, with numbers of paths from 65,535 on: readers of version 1 know none of these.
+/// As version 1, but with path numbers from 65,535 on, which readers of version 1 do not know.
 pub(crate) const WIDE: u32 = 2;
 pub(crate) const HEADER: usize = 64;
 /// Bytes of the frame after the header, if there is one.
@@ -50,12 +50,12 @@ pub(crate) const MOVE: u8 = 4;
 pub(crate) const TIME: u8 = 8;
 pub(crate) const STOCK: u8 = 16;
 
-/// Whether some number of a path is as high as what tables of numbers have for no path in 16 bits.
+/// Whether some path number reaches the 16-bit value that stands for no path in tables of numbers.
 pub(crate) fn has_wide_paths(dexels: &Dexels) -> bool {
     dexels.highest_path().is_some_and(|path| path >= u16::MAX.into())
 }
 
-/// Path, segment and time of a source as numbers for tables: the highest number of a path, in 32 bits, stands for the stock.
+/// Path, segment and time of a source as numbers for tables: the highest 32-bit path number stands for the stock.
 pub(crate) fn source_numbers(source: Source) -> (u32, u32, f32) {
     match source {
         Source::Stock => (u32::MAX, 0, 0.0),
@@ -63,7 +63,7 @@ pub(crate) fn source_numbers(source: Source) -> (u32, u32, f32) {
     }
 }
 
-/// The ends that those of a block are compared with.
+/// The ends from which those of a block are differenced.
 #[derive(Default)]
 pub(crate) struct Before {
     ends: Vec<(End, [i16; 2])>,

@@ -14,7 +14,7 @@ fn problem<T>(message: impl Into<String>) -> Result<T, FormatError> {
     Err(FormatError::new(Problem::syntax(message), None))
 }
 
-/// Reads `N` bytes, or returns how many there are.
+/// Reads `N` bytes, or returns how many were left.
 fn head<const N: usize>(reader: &mut impl Read) -> Result<Result<[u8; N], usize>, FormatError> {
     let mut bytes = Vec::with_capacity(N);
     let read = reader.take(N as u64).read_to_end(&mut bytes);
@@ -59,7 +59,7 @@ pub fn read_dexels_binary(reader: &mut impl Read) -> Result<Dexels, FormatError>
         let lines = u32::from_le_bytes(number(&header, 8)) as usize;
         let length = u32::from_le_bytes(number(&header, 12));
         payload.clear();
-        // Grows with the data that are really there.
+        // Grows with the data actually present.
         let read = reader.take(length.into()).read_to_end(&mut payload);
         if read.map_err(|error| FormatError::new(Problem::Read(error), None))? < length as usize {
             return cut_off();

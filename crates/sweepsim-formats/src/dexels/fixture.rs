@@ -11,8 +11,8 @@
 //!
 //! A header of four lines is followed by a line for each `i`, with the dexels by `j`: the number of intervals, and then `z0 z1 …` in
 //! units of a tenth of the tolerance. Each end is stored as the difference from its prediction by the dexels before it that have the same
-//! number of intervals: by the straight line through the last two, by the last one, or 0. `*k` stands for `k` more dexels without
-//! intervals, or whose differences are all 0. Flat faces, empty regions and slopes therefore cost next to nothing.
+//! number of intervals: from the straight line through the last two, from the last one, or 0. `*k` stands for `k` more dexels without
+//! intervals, or with differences that are all 0. Flat faces, empty regions and slopes therefore cost next to nothing.
 
 use sweepsim_dexel::{Dexels, Grid, Interval};
 
@@ -78,7 +78,7 @@ impl Fixture {
     /// The dexels of `job`, stored with `tolerance`.
     ///
     /// # Errors
-    /// More than 4 million dexels, a tolerance that is not positive, or ends too large for it.
+    /// More than 4 million dexels, a tolerance that is not positive, or ends too large for the tolerance.
     pub fn new(job: &str, dexels: &Dexels, tolerance: f64) -> Result<Self, FormatError> {
         let grid = *dexels.grid();
         Self::check(&grid, tolerance)?;
@@ -167,10 +167,10 @@ impl Fixture {
             .collect()
     }
 
-    /// The dexels with another number of intervals, or with an end more than 2 tolerances away.
+    /// The dexels with a different number of intervals, or with an end more than 2 tolerances away.
     ///
     /// # Errors
-    /// `dexels` are on another grid.
+    /// `dexels` are on a different grid.
     pub fn differences(&self, dexels: &Dexels) -> Result<Vec<FixtureDifference>, FormatError> {
         if *dexels.grid() != self.grid {
             return Err(problem(format!(

@@ -8,7 +8,7 @@
 //! | `line` | (n,) `<u4` | the line of each interval, `i · cells[1] + j`, never less than the one before |
 //! | `z` | (n, 2) `<f8` | the ends of each interval |
 //! | `normal` | (n, 2, 3) `<f4` | their normals |
-//! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | what made them: path 65535 for no tool; with more paths `path` is `<u4`, and 4294967295 for no tool |
+//! | `path`, `segment`, `t` | (n, 2) `<u2`, `<u4`, `<f4` | their sources: path 65535 for no tool; with more paths, `path` is `<u4` and 4294967295 stands for no tool |
 
 use std::io::Write;
 

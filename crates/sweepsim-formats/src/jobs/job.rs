@@ -1,4 +1,4 @@
-//! Jobs: what is cut, with which tools, along which paths.
+//! Jobs: what is cut, with which tools and along which paths.
 
 use std::collections::BTreeMap;
 use std::path::{Path as FilePath, PathBuf};
@@ -70,7 +70,7 @@ pub struct Job {
     pub stock: Stock,
     /// The tools by number.
     pub tools: BTreeMap<u32, Tool>,
-    /// Shanks and holders, by the numbers of their tools, in the frame of the tool: they move with it and must touch nothing.
+    /// Shanks and holders, by the numbers of their tools, in the frame of the tool. They move with it and must not touch anything.
     pub bodies: BTreeMap<u32, Vec<Body>>,
     /// The paths, in the order of cutting.
     pub paths: Vec<JobPath>,
@@ -96,23 +96,23 @@ pub struct Target {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// The depth by which too much may be removed.
+    /// The permitted depth of gouges.
     pub gouge: f64,
-    /// The height of what may be left.
+    /// The permitted height of remaining material.
     pub excess: f64,
 }
 
 impl Job {
-    /// Reads a job, and all files that it names.
+    /// Reads a job and all files that it refers to.
     ///
     /// # Errors
-    /// [`FormatError`] with file, line and column, and what was expected there.
+    /// [`FormatError`] with file, line and column, and what was expected.
     pub fn read(file: &FilePath) -> Result<Self, FormatError> {
         let text = text::read(file)?;
         Self::parse(&text, file)
     }
 
-    /// Reads a job from its text. `file` provides the default name, and the folder where relative file names start.
+    /// Reads a job from its text. `file` provides the default name, and the folder that relative file names refer to.
     ///
     /// # Errors
     /// As [`Job::read`].

@@ -1,4 +1,4 @@
-//! Jobs: RON files that say what is cut, with which tools, along which paths.
+//! Jobs: RON files that define what is cut, with which tools and along which paths.
 
 mod job;
 mod path_entry;

@@ -1,4 +1,4 @@
-//! The paths of a job: poses in the job itself, or a file whose extension says its format.
+//! The paths of a job: poses in the job itself, or a file whose extension determines its format.
 
 use std::path::{Path as FilePath, PathBuf};
 
@@ -16,7 +16,7 @@ pub struct JobPath {
     pub tool: u32,
     /// The poses, in millimetres.
     pub path: Path,
-    /// Where it comes from, for people: the name of a file, or its position in the job.
+    /// Where it comes from, for display: the name of a file, or its position in the job.
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Vec<bool>,
@@ -26,8 +26,8 @@ pub struct JobPath {
     pub notes: Vec<Note>,
 }
 
-/// The paths of a program. The tool axis turns by `law` where the program does not say how. `tool` is the job's tool for the whole
-/// program; without it the program's numbers are used.
+/// The paths of a program. The tool axis turns according to `law` where the program does not specify how. `tool` is the job's tool for the whole
+/// program; without it, the program's tool numbers are used.
 pub(crate) fn of_program(
     mut program: Program,
     file: &FilePath,
@@ -65,7 +65,7 @@ pub(crate) fn of_program(
         has_tool(number).map_err(|problem| at(problem, first.line))?;
         let poses = section.iter().map(|pose| pose.pose).collect();
         let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
-        // Tables do not say how the tool turns.
+        // Tables do not specify how the tool turns.
         let path = if moves.iter().all(|way| *way == Move::default()) {
             Path::with_law(poses, law)
         } else {

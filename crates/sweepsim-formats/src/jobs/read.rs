@@ -1,4 +1,4 @@
-//! From the text of a job to a [`Job`]: every value is checked, and errors have its position.
+//! From the text of a job to a [`Job`]: every value is checked, and errors give its position.
 
 use std::collections::BTreeMap;
 use std::path::Path as FilePath;
@@ -41,7 +41,7 @@ pub(crate) struct JobReader<'a> {
 }
 
 impl JobReader<'_> {
-    /// A problem of the value that the steps lead to.
+    /// A problem with the value that the steps lead to.
     pub(crate) fn error(&self, problem: Problem, steps: &[Step]) -> FormatError {
         let span = self.node(steps).span.clone();
         FormatError::new(problem, Some(TextPosition::of_bytes(self.text, span)))
@@ -199,7 +199,7 @@ impl JobReader<'_> {
         Ok(grid.in_frame(frame))
     }
 
-    /// A file that cannot be opened is an error of the job, at the position that names it.
+    /// A file that cannot be opened is an error in the job, at the position of its name.
     pub(crate) fn named<T>(
         &self,
         read: Result<T, FormatError>,

@@ -8,7 +8,7 @@
 //! )
 //! ```
 //!
-//! A curve without knots has evenly spaced ones over the domain of the other curve, or over `[0, 1]`. Without an orientation the tool axis
+//! A curve without knots gets evenly spaced knots over the domain of the other curve, or over `[0, 1]`. Without an orientation, the tool axis
 //! stays along z.
 
 use std::path::Path as FilePath;
@@ -24,7 +24,7 @@ use crate::text::SpanTree;
 /// The default deviation of a matrix from a rotation.
 const TOLERANCE: f64 = 1e-9;
 
-/// Reads a motion from its own file. Lengths are multiplied by `unit`.
+/// Reads a motion from a separate file. Lengths are multiplied by `unit`.
 pub(crate) fn read(file: &FilePath, unit: f64) -> Result<Path, FormatError> {
     let text = text::read(file)?;
     let parse = || {

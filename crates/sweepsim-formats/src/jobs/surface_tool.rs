@@ -1,4 +1,4 @@
-//! Tools made of B-spline surfaces: the file that `Surface("…")` names. A side of a surface may join several others.
+//! Tools made of B-spline surfaces: the file that `Surface("…")` refers to. A side of a surface may join several others.
 //!
 //! ```ron
 //! Surfaces(
@@ -78,7 +78,7 @@ fn parse(text: &str, unit: f64) -> Result<Tool, FormatError> {
     })
 }
 
-/// The surface, or a problem and the field that has it.
+/// The surface, or a problem and the field at fault.
 fn spline(raw: &Surface, unit: f64) -> Result<RationalSpline, (Problem, &'static str)> {
     let mut knots = Vec::with_capacity(2);
     for (axis, list) in raw.knots.iter().enumerate() {

@@ -9,7 +9,7 @@ use super::schema;
 use crate::error::Problem;
 use crate::text::SpanTree;
 
-/// A problem of a tool or a motion, and the steps from there to the field that has it.
+/// A problem with a tool or a motion, and the steps from there to the field at fault.
 pub(crate) struct Fault {
     pub problem: Problem,
     pub field: Vec<Step>,
@@ -53,7 +53,7 @@ impl From<Tool> for Made {
     }
 }
 
-/// Makes tool `number`. Lengths are multiplied by `unit`.
+/// Builds tool `number`. Lengths are multiplied by `unit`.
 pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, Fault> {
     let made = match *raw {
         schema::Tool::Ball { radius, length } => Tool::ball(radius * unit, length * unit),

@@ -131,7 +131,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
             if corners.iter().any(|v| *v as usize >= places.len() / 3) {
                 return Err(wrong());
             }
-            // Indices are `u32`: what they cannot number is an error above.
+            // Indices are `u32`; more vertices than they can number are an error above.
             mesh.triangles.push(corners.map(|v| (first + v as usize) as u32));
         }
     }

@@ -1,6 +1,6 @@
-//! STL, binary and ASCII, without trusting what the file says about itself.
+//! STL, binary and ASCII, without trusting what the file claims about itself.
 //!
-//! Not read by a library, so that ASCII coordinates are read as `f64` and errors name the line.
+//! We do not use a library, so that ASCII coordinates are read as `f64` and errors give the line.
 
 use std::io::Write;
 use std::path::Path;

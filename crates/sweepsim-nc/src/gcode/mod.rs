@@ -8,12 +8,12 @@
 //! Each of these decisions is reported as a [`Note`](crate::Note):
 //!
 //! - Arcs are divided into chords within [`ReadOptions::arc_tolerance`], unless [`ReadOptions::exact_arcs`] keeps them.
-//! - Between two blocks the tip moves straight, and the axis turns as [`ReadOptions::law`] says: by default by SLERP, whatever the
-//!   machine's rotary axes do in between. Only where the axis turns by more than 90° in one block are intermediate poses of the
-//!   rotary axes inserted.
-//! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there, and begins again once all
+//! - Between two blocks the tip moves straight, and the axis turns according to [`ReadOptions::law`]: by default by SLERP, whatever the
+//!   machine's rotary axes do in between. Intermediate poses of the rotary axes are inserted only where the axis turns by more than
+//!   90° in one block.
+//! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there and resumes once all
 //!   coordinates are known.
-//! - Where a feed move comes before all of X, Y and Z are known, the unknown ones are taken as 0.
+//! - If a feed move comes before X, Y and Z are all known, the unknown ones are taken as 0.
 //! - Unknown words and codes are ignored if they cannot move the tool.
 //!
 //! - `G92` before the first move says where the tool is, in the part's frame. Without its shift (`G92.1`, `G92.2`) only the machine knows

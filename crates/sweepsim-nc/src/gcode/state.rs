@@ -38,7 +38,7 @@ pub(crate) struct State {
     pub notes: NoteList,
     table: Option<RotaryTable>,
     table_given: bool,
-    /// Whether tip control holds from the start.
+    /// Whether tip control is on from the start.
     tip_control_given: bool,
     poses: Vec<ProgramPose>,
     /// Whether the tool moves to the next pose from the last one.
