@@ -1,8 +1,8 @@
-//! Why there is no result.
+//! Errors of sweeps.
 
 use thiserror::Error;
 
-/// Why there is no sweep.
+/// Why a sweep failed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SweepError {
@@ -18,7 +18,7 @@ pub enum SweepError {
         /// The largest coordinate.
         size: f64,
     },
-    /// The tolerance is finer than numbers of the path's size resolve.
+    /// The tolerance is too fine for the rounding of coordinates of this size.
     #[error("the tolerance {tolerance} is too fine for coordinates of up to {size}: at least {least} is needed")]
     TooFine {
         /// The tolerance.

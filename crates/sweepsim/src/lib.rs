@@ -1,7 +1,7 @@
 //! Exact swept volumes of milling tools along 5-axis motions, as dexels.
 //!
 //! [`sweep()`] computes what a tool sweeps along a path: for every line of a grid, the intervals in the swept volume. It solves the envelope
-//! condition `⟨N, V⟩ = 0` as the algebraic system that it is; nothing is sampled in time. [`simulate()`] removes what one or more tools sweep
+//! condition `⟨N, V⟩ = 0` as an algebraic system; nothing is sampled in time. [`simulate()`] removes the swept volumes of one or more tools
 //! from a stock. Every dexel is audited, and those that fail are [reported](UnresolvedDexel).
 //!
 //! ```
@@ -25,20 +25,20 @@
 //! | to | see |
 //! | --- | --- |
 //! | remove material from a stock | [`simulate()`], [`simulate_tri()`] |
-//! | ask which move made a point of the surface | [`Simulation::source_at`] |
+//! | find the move that made a point of the surface | [`Simulation::source_at`] |
 //! | intersect a sweep with single lines of any direction | [`probe()`] |
 //! | section a sweep, as curves, closed loops or SVG | [`section()`], [`Section::loops`], [`Section::svg`] |
 //! | get the envelope as triangles | [`envelope_surfaces()`] |
 //! | show progress, or cancel | [`Monitor`]: the last argument of every function, `&()` if not needed |
 //! | solve the paper's equations yourself | [`systems`], [`solve`] |
 //!
-//! The crates below are re-exported: tools and paths are in [`motion`], dexels, stocks and meshes in [`dexel`], the solvers in [`solve`],
-//! splines in [`spline`]. This crate suffices as a dependency.
+//! The underlying crates are re-exported: tools and paths are in [`motion`], dexels, stocks and meshes in [`dexel`], the solvers in [`solve`],
+//! and splines in [`spline`]. You need no other dependency.
 //!
 //! # Accuracy
 //!
 //! The dexels are exact, up to rounding, for an input that differs from the given one by less than a third of the
-//! [tolerance](Options::tolerance), so that nothing is degenerate: tips are displaced by at most a hundredth of it, dexel lines by a thousandth,
+//! [tolerance](Options::tolerance). The displacements avoid degenerate input: tips are displaced by at most a hundredth of it, dexel lines by a thousandth,
 //! and motions without an exact rational form are approximated to within a twentieth. A line whose audit fails is solved again, displaced farther
 //! each time, by at most a fifth. Intervals and gaps shorter than the tolerance may be missing or extra.
 

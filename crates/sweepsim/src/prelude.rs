@@ -1,4 +1,4 @@
-//! What most programs need: `use sweepsim::prelude::*;`
+//! The items that most programs need: `use sweepsim::prelude::*;`
 
 pub use crate::{Cut, Method, Monitor, Options, simulate, sweep};
 pub use sweepsim_dexel::{Dexels, Grid, Stock};

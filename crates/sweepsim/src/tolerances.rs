@@ -1,8 +1,8 @@
 //! Every length and limit that is derived from the tolerance, in one table.
 //!
 //! Programs are full of coincidences: a flat bottom moving sideways (`g ≡ 0` on a whole patch), a wall along a row of dexels, a tip exactly
-//! over a line. So that none of them is met, tips and lines are displaced by small parts of the tolerance. The dexels are those of the
-//! displaced input, up to rounding and the last step of Newton's method. In parts of the tolerance `τ`:
+//! over a line. To avoid them, tips and lines are displaced by small fractions of the tolerance. The dexels are those of the
+//! displaced input, up to rounding and the last step of Newton's method. As fractions of the tolerance `τ`:
 //!
 //! | what | at most | |
 //! | --- | --- | --- |
@@ -13,41 +13,41 @@
 //! | heights that count as one crossing's | 1/1000 | [`same_height`](Tolerances::same_height) |
 //! | the last step of Newton's method leaves | 1/1000 | [`last_step`](Tolerances::last_step) |
 //!
-//! Together they stay below `τ/3`: the dexels are those of an input that is within a third of the tolerance of the given one.
+//! Together they stay below `τ/3`: the dexels belong to an input within a third of the tolerance of the given one.
 
 use crate::error::SweepError;
 use nalgebra::Vector3;
 use sweepsim_solve::SolveOptions;
 
-/// The most that a tip is displaced.
+/// The maximum displacement of a tip.
 const TIP: f64 = 1e-2;
-/// How far motions may be from their law.
+/// The maximum deviation of motions from their law.
 const LAW: f64 = 5e-2;
-/// How far lines are displaced at first.
+/// The initial displacement of lines.
 const LINE: f64 = 1e-3;
-/// How many times as far attempt by attempt: each farther than the one before.
+/// The factors for the attempts, each larger than the one before.
 const ATTEMPTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 200.0];
-/// Crossings of a line as near as this have one height.
+/// Crossings of a line this close together count as having the same height.
 const SAME: f64 = 1e-3;
-/// What the last step of Newton's method may leave.
+/// The error that the last step of Newton's method may leave.
 const REST: f64 = 1e-3;
-/// How far off its surface a point is tested for being outside the volume: well above the sum of all displacements, even where the surface is
-/// steep.
+/// The distance from the surface at which a point is tested for being outside the volume: well above the sum of all displacements, even where the
+/// surface is steep.
 const OUTSIDE: f64 = 20.0;
-/// After so many poses the displacement of tips starts again from zero.
+/// After this many poses, the displacement of tips restarts from zero.
 const PERIOD: usize = 61;
-/// What the table above promises.
+/// The limit that the table above promises.
 const _: () = assert!(TIP + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
 
-/// Coordinates are right to within this part of the largest: a few dozen roundings.
+/// Coordinates are accurate to within this fraction of the largest: a few dozen roundings.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// The least tolerance, in parts of the largest coordinate. The smallest displacement, a thousandth of it, is then twenty roundings: lines are
-/// where they are said to be.
+/// The smallest tolerance, as a fraction of the largest coordinate. The smallest displacement, a thousandth of it, is then twenty roundings, so that
+/// displaced lines are where they should be.
 const FINEST: f64 = 2e4 * f64::EPSILON;
 /// Sums of products of three such coordinates stay far from overflow.
 const LARGEST: f64 = 1e90;
 
-/// A tolerance, and what follows from it for coordinates of some size.
+/// A tolerance, and the limits derived from it for coordinates of some size.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tolerances {
     tolerance: f64,
@@ -55,7 +55,7 @@ pub(crate) struct Tolerances {
 }
 
 impl Tolerances {
-    /// `size`: no coordinate that occurs is larger.
+    /// `size`: a bound on all coordinates.
     pub fn new(tolerance: f64, size: f64) -> Result<Self, SweepError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(SweepError::Tolerance(tolerance));
@@ -70,10 +70,10 @@ impl Tolerances {
         Ok(Self { tolerance, size })
     }
 
-    /// How often a line is solved again, displaced farther each time, before its dexel is reported as unresolved.
+    /// How many times a line is solved again, displaced farther each time, before its dexel is reported as unresolved.
     pub const REPAIRS: usize = ATTEMPTS.len() - 1;
 
-    /// By how much a line is displaced at an attempt, 0 to [`REPAIRS`](Self::REPAIRS): farther, and in another direction, than at the one before.
+    /// The displacement of a line at an attempt, 0 to [`REPAIRS`](Self::REPAIRS): farther than at the previous one, and in a different direction.
     pub fn line_displacement(&self, attempt: usize) -> [f64; 2] {
         let reach = LINE * self.tolerance * ATTEMPTS[attempt.min(Self::REPAIRS)];
         // Steps of the golden angle.
@@ -81,7 +81,7 @@ impl Tolerances {
         [reach * angle.cos(), reach * angle.sin()]
     }
 
-    /// By how much the tip of a pose is displaced: a sawtooth along a fixed direction without a simple relation to anything.
+    /// The displacement of the tip of a pose: a sawtooth along a fixed generic direction.
     ///
     /// Each translation is changed by the *same* vector, so that the sign of `g` on a patch that it decides is the same for all of them, and no
     /// kinks arise between collinear moves. The exception is every 61st, which takes all of the displacement back: before and after it there may be
@@ -95,28 +95,28 @@ impl Tolerances {
         direction() * (TIP * self.tolerance)
     }
 
-    /// How far motions may be from their law.
+    /// The maximum deviation of motions from their law.
     pub fn law_deviation(&self) -> f64 {
         LAW * self.tolerance
     }
 
-    /// Heights that differ by no more are the same.
+    /// Heights that differ by no more than this count as the same.
     pub fn same_height(&self) -> f64 {
         SAME * self.tolerance
     }
 
-    /// How far off its surface a point is tested for being outside the volume.
+    /// The distance from the surface at which a point is tested for being outside the volume.
     pub fn outside(&self) -> f64 {
         OUTSIDE * self.tolerance
     }
 
-    /// What rounding may do to a coordinate.
+    /// The rounding error of a coordinate.
     pub fn rounding(&self) -> f64 {
         ROUNDING * self.size
     }
 
-    /// The longest last step of Newton's method, in parts of the parameters' ranges: its square, times lengths of the size of the coordinates, is
-    /// what it leaves.
+    /// The longest last step of Newton's method, relative to the parameters' ranges: the remaining error is its square, times lengths of the size of the
+    /// coordinates.
     pub fn last_step(&self) -> f64 {
         (REST * self.tolerance / self.size).sqrt().clamp(1e-9, 1e-5)
     }
@@ -131,7 +131,7 @@ fn direction() -> Vector3<f64> {
 pub(crate) struct ChordTolerance(f64);
 
 impl ChordTolerance {
-    /// `chord`: how far the middle of a chord may be from the curve.
+    /// `chord`: the maximum distance of the midpoint of a chord from the curve.
     pub fn new(chord: f64) -> Result<Self, SweepError> {
         if !(chord > 0.0 && chord.is_finite()) {
             return Err(SweepError::Tolerance(chord));
@@ -150,7 +150,7 @@ impl ChordTolerance {
         (self.0 / fastest).clamp(1e-6, 0.05)
     }
 
-    /// How far the middle of a step of a grid may be off: half, as triangles have diagonals.
+    /// The permitted error at the midpoint of a grid step: half, since triangles have diagonals.
     pub fn of_step(self) -> f64 {
         0.5 * self.0
     }

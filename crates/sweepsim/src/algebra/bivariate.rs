@@ -1,11 +1,11 @@
-//! What cells of forms in `(u, v)` and in `t` have in common, and forms that are products.
+//! Code shared by cells of forms in `(u, v)` and in `t`, and forms that are products.
 
 use sweepsim_spline::Bernstein;
 
 /// One more than the largest degree of a coefficient tensor.
 pub(crate) const MOST: usize = 32;
 
-/// The two factors of `a(u) b(v)`, where a form is such a product up to rounding; constant factors have degree 0.
+/// The two factors of `a(u) b(v)`, if a form is such a product up to rounding; constant factors have degree 0.
 pub(crate) fn factors(form: &Bernstein) -> Option<[Bernstein; 2]> {
     let [p, q] = [0, 1].map(|axis| form.degree(axis));
     let at = |i: usize, j: usize| form.coefficients()[i + (p + 1) * j];

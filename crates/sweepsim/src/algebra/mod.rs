@@ -1,4 +1,4 @@
-//! What the engine computes with: bivariate Bernstein forms, vectors in fours, and ranges of forms over boxes.
+//! The engine's arithmetic: bivariate Bernstein forms, four-component vectors, and ranges of forms over boxes.
 
 pub(crate) mod bivariate;
 pub(crate) mod quad;

@@ -1,4 +1,4 @@
-//! Vectors of three numbers with a fourth component of zero, so that compilers make vector instructions of what is done to them.
+//! Vectors of three numbers with a fourth component of zero, so that compilers vectorise operations on them.
 
 use nalgebra::Vector3;
 
@@ -48,7 +48,7 @@ pub(crate) fn quadratics(x: f64) -> [[f64; 3]; 2] {
     [[y * y, 2.0 * x * y, x * x], [-2.0 * y, 2.0 * (y - x), 2.0 * x]]
 }
 
-/// `Σ bᵢ cᵢ`, number by number.
+/// `Σ bᵢ cᵢ`, component by component.
 #[inline]
 pub(crate) fn blend<const N: usize>(b: &[f64; 3], c: &[[f64; N]; 3]) -> [f64; N] {
     std::array::from_fn(|k| b[0] * c[0][k] + b[1] * c[1][k] + b[2] * c[2][k])

@@ -1,10 +1,10 @@
-//! Ranges of forms over boxes: the least and greatest of sums of products of control rows and control points.
+//! Ranges of forms over boxes: minima and maxima of sums of products of control rows and control points.
 //!
-//! Four points are taken at a time, which compilers make vector instructions of.
+//! Points are processed four at a time, which compilers vectorise.
 
 const LANES: usize = 4;
 
-/// A vector-valued list of coefficients: x, y and z apart.
+/// A vector-valued list of coefficients, with x, y and z stored separately.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triples<'a> {
     pub x: &'a [f64],
@@ -32,7 +32,7 @@ impl<'a> Triples<'a> {
     }
 }
 
-/// Least and greatest of what was taken in, but for NaN: see [`all_or_none`].
+/// The minimum and maximum of the numbers seen, ignoring NaN: see [`all_or_none`].
 struct Band {
     lo: [f64; LANES],
     hi: [f64; LANES],
@@ -68,10 +68,10 @@ impl Band {
     }
 }
 
-/// The range of what is not known: no box may be dropped for it.
+/// The range of an unknown quantity: it excludes no box.
 const UNKNOWN: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 
-/// Makes all numbers of a list NaN where one of them is not finite.
+/// Sets all numbers of a list to NaN if one of them is not finite.
 ///
 /// [`Band`] ignores NaN, which costs nothing in the inner loop. A list that is finite or NaN throughout has its true range, or [`UNKNOWN`]; one
 /// with a single NaN would have too small a range, and solutions would be lost.
@@ -90,7 +90,7 @@ pub(crate) fn all_or_none(list: &mut [f64]) {
     }
 }
 
-/// The range of some numbers, [`UNKNOWN`] where one of them is NaN.
+/// The range of some numbers, [`UNKNOWN`] if one of them is NaN.
 pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
     let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
     for value in values {
@@ -115,14 +115,14 @@ impl Triples<'_> {
         }
     }
 
-    /// Points four by four; the last four may repeat some.
+    /// The points in groups of four; the last group may repeat some.
     #[inline(always)]
     fn four(&self, k: usize) -> Four<'_> {
         let start = (LANES * k).min(self.len() - LANES);
         [self.x, self.y, self.z].map(|list| list[start..].first_chunk().unwrap_or(&[f64::NAN; LANES]))
     }
 
-    /// The points where there are fewer than four.
+    /// The points, if there are fewer than four.
     fn few(&self) -> std::ops::Range<usize> {
         0..if self.len() < LANES { self.len() } else { 0 }
     }
@@ -166,7 +166,7 @@ pub(crate) fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Trip
     band.range()
 }
 
-/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; one spin alone goes with all rows.
+/// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; a single spin is paired with all rows.
 pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
     let mut band = Band::new();
     let add = |a: [f64; LANES], b: [f64; LANES]| std::array::from_fn(|k| a[k] + b[k]);

@@ -1,4 +1,4 @@
-//! Forms of one pair of degrees side by side, evaluated together.
+//! Forms of the same degrees, stored side by side and evaluated together.
 
 use crate::algebra::bivariate::MOST;
 use crate::algebra::quad::quadratics;
@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 use sweepsim_spline::kernel::basis_with_slopes;
 
-/// Forms of one pair of degrees, side by side: per pair of polynomials a number of each.
+/// Forms of the same degrees, side by side: for each pair of basis polynomials, one coefficient of each form.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     degrees: [usize; 2],
@@ -14,7 +14,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// `forms`: of these degrees.
+    /// `forms` have these degrees.
     pub fn new(forms: &[Bernstein], degrees: [usize; 2]) -> Self {
         let count = (degrees[0] + 1) * (degrees[1] + 1);
         let c = (0..count)
@@ -42,7 +42,7 @@ impl Table {
         }
     }
 
-    /// Values and derivatives of the `K` forms, of no degree in the second variable.
+    /// Values and derivatives of the `K` forms, which have degree 0 in the second variable.
     pub fn along<const K: usize>(&self, u: f64) -> [[f64; K]; 2] {
         let rows = |i: usize| self.c.get(i * K..)?.first_chunk::<K>();
         if self.degrees == [2, 0]
@@ -67,7 +67,7 @@ impl Table {
     }
 }
 
-/// Adds what one polynomial in `v`, of these value and derivative, contributes.
+/// Adds the contribution of one polynomial in `v` with this value and derivative.
 fn accumulate<const K: usize>(sums: &mut [[f64; K]; 3], line: &[f64], [a, da]: [&[f64]; 2], [b, db]: [f64; 2]) {
     let (mut value, mut slope) = ([0.0; K], [0.0; K]);
     for ((c, a), da) in line.chunks_exact(K).zip(a).zip(da) {

@@ -26,18 +26,18 @@ struct Buffers {
     points: Vec<f64>,
 }
 
-/// The cells of one element, made on demand and kept.
+/// The cells of one element, created on demand and kept.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     nodes: Vec<CellNode>,
-    /// Of released cells.
+    /// The memory of released cells.
     spare: Vec<Buffers>,
-    /// Per field and axis, where the derivatives of N and M stand in `points`, and how long each is.
+    /// Per field and axis, the position and length of the derivatives of N and M in `points`.
     derivatives: Vec<[(usize, usize); 2]>,
     points: usize,
 }
 
-/// More cells than this are not kept for the next segment.
+/// Cells beyond this number are not kept for the next segment.
 const KEPT: usize = 4096;
 
 impl Cells {
@@ -75,7 +75,7 @@ impl Cells {
         cells
     }
 
-    /// Forgets cells when there are many.
+    /// Drops cells if there are many.
     pub fn trim(&mut self) {
         if self.nodes.len() > KEPT {
             self.nodes.truncate(1);
@@ -83,7 +83,7 @@ impl Cells {
         }
     }
 
-    /// A cell of its own, over any box; it is kept until it is [released](Self::release).
+    /// A separate cell over any box, kept until it is [released](Self::release).
     pub fn place(&mut self, element: &PatchForms, lower: [f64; 2], upper: [f64; 2]) -> u32 {
         let layout = &element.layout;
         let mut spare = self.spare.pop().unwrap_or_default();
@@ -106,12 +106,12 @@ impl Cells {
         self.nodes.len() as u32 - 1
     }
 
-    /// How many cells there are, to release those that come after.
+    /// The number of cells, as a mark for releasing later ones.
     pub fn mark(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Forgets the cells made since the mark: placed ones, and what they were split into.
+    /// Drops the cells created since the mark: placed ones, and their parts.
     pub fn release(&mut self, mark: usize) {
         let released = self.nodes.drain(mark..);
         self.spare.extend(released.map(|node| Buffers {

@@ -1,6 +1,6 @@
 //! Patches and edges of a tool as forms, prepared once per tool.
 //!
-//! Only the tool enters here, no motion: the cells of `(u, v)` serve all segments of a path. Each cell keeps the *control
+//! Nothing here depends on the motion: the cells of `(u, v)` serve all segments of a path. Each cell keeps the *control
 //! points* (coefficient over weight) of `F`, `F_u`, `F_v`, so that a rotated coordinate is bounded by dot products, and the
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
@@ -35,16 +35,16 @@ pub(crate) struct PatchForms {
     /// Largest coefficients of `N` and `M`.
     pub largest_normal: f64,
     pub largest_moment: f64,
-    /// A shorter way to its points, where there is one, arranged for the inner loop.
+    /// A faster evaluation of its points, if there is one, arranged for the inner loop.
     pub revolution: Option<Revolution>,
     frame: Option<LocalFrame>,
-    /// Homogeneous position, arranged for it.
+    /// Homogeneous position, arranged for the inner loop.
     pub places: Table,
-    /// All fields one after another, arranged for it.
+    /// All fields, one after another, arranged for the inner loop.
     pub normals: Table,
 }
 
-/// The tensors of a cell: position x, y, z, weight; then per variable the same of the derivative; then per field N, M.
+/// The tensors of a cell: position x, y, z, weight; then for each variable the same for the derivative; then for each field N, M.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub position: Slot,
@@ -135,7 +135,7 @@ impl PatchForms {
         }
     }
 
-    /// A point of a patch in the tool, its normal and the moment of that.
+    /// A point of a patch in the tool's frame, with its normal and the normal's moment.
     pub fn face(&self, at: [f64; 2]) -> (Vector3<f64>, [Vector3<f64>; 2]) {
         let [value, ..] = self.places.at::<4>(at);
         let [fields, ..] = self.normals.at::<6>(at);
@@ -143,7 +143,7 @@ impl PatchForms {
         (place, [0, 3].map(|k| triple(&fields[k..])))
     }
 
-    /// A point of an edge in the tool, the normals of both faces and the moments of those.
+    /// A point of an edge in the tool's frame, with the normals of both faces and their moments.
     pub fn rim(&self, r: f64) -> (Vector3<f64>, [[Vector3<f64>; 2]; 2]) {
         let [value, _] = self.places.along::<4>(r);
         let [fields, _] = self.normals.along::<12>(r);
@@ -165,7 +165,7 @@ impl PatchForms {
         (spot, fields)
     }
 
-    /// The frame of [`PatchForms::revolution`] in the tool; `None` when it is the tool's.
+    /// The frame of [`PatchForms::revolution`] in the tool; `None` if it is the tool's frame.
     pub fn frame(&self) -> Option<&LocalFrame> {
         self.frame.as_ref()
     }

@@ -1,10 +1,10 @@
-//! Surfaces of revolution by their two factors, a circle and a meridian: the shorter way to their points.
+//! Surfaces of revolution as products of a circle and a meridian, which are faster to evaluate.
 
 use crate::algebra::quad::{Quad, add, blend, mix, quadratics};
 use crate::time::placement::{Placing, Twisted};
 use sweepsim_motion::Revolved;
 
-/// A surface of revolution, its forms side by side: per polynomial.
+/// A surface of revolution, with its forms side by side for each polynomial.
 #[derive(Clone, Debug)]
 pub(crate) struct Revolution {
     /// Cosine, sine and weight.
@@ -67,7 +67,7 @@ impl Turned<'_> {
         }
     }
 
-    /// What a velocity makes of the circle or of its derivative: to be multiplied by `n_ρ`, `n_ζ` and `m`.
+    /// The effect of a velocity on the circle or its derivative, to be multiplied by `n_ρ`, `n_ζ` and `m`.
     fn parts(&self, twist: &Twisted, d: usize) -> [f64; 3] {
         let [c, s, w, _] = self.circle[d];
         let [a, b, z, _] = twist.travel;
@@ -105,8 +105,8 @@ mod tests {
     }
 
     proptest! {
-        /// Three ways to the points of surfaces of revolution agree: products of circle and meridian in a frame of their own, tensors, and
-        /// the patch as it is written, with differences for its derivatives.
+        /// Three evaluations of surfaces of revolution agree: products of circle and meridian in their own frame, tensors, and
+        /// the original patch, with finite differences for its derivatives.
         #[test]
         fn products_agree_with_tensors(
             at in [0.01..0.99, 0.01..0.99], radius in 0.5..20.0, turn in [-3.0..3.0, -3.0..3.0, -3.0..3.0],

@@ -1,4 +1,4 @@
-//! Maps over boxes of any place, besides those that subdivision makes.
+//! Maps over arbitrary boxes, not just those created by subdivision.
 
 use crate::envelope::edge_map::EdgeMap;
 use crate::envelope::enclosures::ROOT;
@@ -6,18 +6,18 @@ use crate::envelope::patch_map::PatchMap;
 use crate::envelope::placed_map::PlacedMap;
 use sweepsim_solve::{ChartMap, Enclosure};
 
-/// A map that can look at any box of its domain.
+/// A map that can be enclosed over any box of its domain.
 pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
-    /// The cell over all of the domain.
+    /// The cell over the whole domain.
     fn root(&self) -> Self::Cell;
 
     /// A cell over any box, kept until it is released.
     fn place(&mut self, bounds: &[Enclosure; N]) -> Self::Cell;
 
-    /// What there is, to release what comes after.
+    /// The number of cells, as a mark for releasing later ones.
     fn mark(&self) -> [usize; 2];
 
-    /// Forgets the cells placed since the mark.
+    /// Drops the cells placed since the mark.
     fn release(&mut self, mark: [usize; 2]);
 }
 

@@ -13,7 +13,7 @@ use crate::time::pieces::Times;
 use nalgebra::Vector3;
 use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
-/// What is seen on an edge: height, and of both faces `g` and the normal in space.
+/// Additional data at a point of an edge: its height, and `g` and the normal in space for both faces.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnEdge {
     pub height: Near<2>,

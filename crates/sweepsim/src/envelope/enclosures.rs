@@ -6,7 +6,7 @@ use crate::cutter::patch_forms::PatchForms;
 use crate::time::pieces::Times;
 use sweepsim_solve::Enclosure;
 
-/// Sums of products of a few numbers are right to within this part of the sum of their absolute values.
+/// Sums of products of a few numbers are accurate to within this fraction of the sum of their absolute values.
 pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
@@ -22,10 +22,10 @@ pub(super) fn interval((lo, hi): (f64, f64)) -> Enclosure {
     Enclosure::hull(lo, hi)
 }
 
-/// The size of things: what differences count as large, and how far rounding reaches.
+/// Length scales: which differences count as large, and the size of rounding errors.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Size {
-    /// Distance of neighbouring lines.
+    /// Distance between neighbouring lines.
     pub spacing: [f64; 2],
     /// Rounding of a coordinate.
     pub slack: f64,

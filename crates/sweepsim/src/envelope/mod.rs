@@ -3,12 +3,12 @@
 //! | the paper | system | map | jump of the coverage number, going up |
 //! | --- | --- | --- | --- |
 //! | Eq. 6: patch, line | [`systems::PatchMotion::line`] | [`PatchMap`] | `sign det ∂(X, Y, g)` |
-//! | Eq. 7: edge, line | [`systems::EdgeMotion::line`] | [`EdgeMap`] | `−sign(g_B − g_A) · sign det ∂(X, Y)` where just one of `g_A, g_B` is negative |
+//! | Eq. 7: edge, line | [`systems::EdgeMotion::line`] | [`EdgeMap`] | `−sign(g_B − g_A) · sign det ∂(X, Y)` where exactly one of `g_A, g_B` is negative |
 //! | caps and kinks, line | [`systems::PlacedPatch::line`] | [`PlacedMap`] | `−sign N_z · ([g₊ < 0] − [g₋ < 0])` |
 //!
 //! `X = ⟨row of A(t), F(u, v)⟩ + b(t)` is bounded by the dot products of control rows and control points, which are its control values (coefficient
-//! over weight), and so are its derivatives. `g = ⟨Ω, M⟩ + ⟨Aᵀb′, N⟩`, times a positive factor, is polynomial in `t` (of degree 2 for an arc:
-//! `⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩`), and of the degree of `N` in `(u, v)`. Everywhere, `g = 0` counts as `g ≥ 0`.
+//! over weight), and so are its derivatives. `g = ⟨Ω, M⟩ + ⟨Aᵀb′, N⟩`, times a positive factor, is a polynomial in `t` (of degree 2 for an arc:
+//! `⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩`) and has the degree of `N` in `(u, v)`. Everywhere, `g = 0` counts as `g ≥ 0`.
 
 mod any_box;
 mod edge_map;

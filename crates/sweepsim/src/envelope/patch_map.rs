@@ -10,7 +10,7 @@ use crate::time::pieces::Times;
 use nalgebra::Vector3;
 use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
-/// What is seen on a patch: height, and the normal in space.
+/// Additional data at a point of a patch: its height, and the normal in space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnPatch {
     pub height: Near<3>,

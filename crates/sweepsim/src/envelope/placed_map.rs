@@ -10,7 +10,7 @@ use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Enclosure, Sample};
 
-/// What is seen on a placed patch: height, `g` before and after, and the normal in space.
+/// Additional data at a point of a placed patch: its height, `g` before and after, and the normal in space.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OnPlaced {
     pub height: Near<2>,
@@ -19,7 +19,7 @@ pub(crate) struct OnPlaced {
     pub normal: Vector3<f64>,
 }
 
-/// What the tool does just before or after a pose, as its velocity there: in the tool's coordinates.
+/// The tool's velocity just before or after a pose, in the tool's coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Twist {
     pub spin: [f64; 3],
@@ -54,7 +54,7 @@ impl Side {
     }
 }
 
-/// A side of a joint as the frame of a patch sees it.
+/// A side of a joint, in the frame of a patch.
 enum Seen {
     Moving(Twisted),
     Beyond(bool),

@@ -15,7 +15,7 @@ pub struct Plane {
 #[non_exhaustive]
 pub enum PlaneError {
     /// The normal is zero or not finite.
-    #[error("the normal {0:?} of a plane must be finite, and not zero")]
+    #[error("the normal {0:?} of a plane must be finite and nonzero")]
     Normal([f64; 3]),
     /// The offset is not finite, or too large for the length of the normal.
     #[error("the offset {0} of a plane must be finite")]
@@ -23,7 +23,7 @@ pub enum PlaneError {
 }
 
 impl Plane {
-    /// The plane of the points with `⟨p, normal⟩ = offset`. The normal may have any length but zero; its largest component becomes ±1.
+    /// The plane of the points with `⟨p, normal⟩ = offset`. The normal may have any nonzero length; its largest component becomes ±1.
     ///
     /// # Errors
     ///
@@ -98,7 +98,7 @@ impl Plane {
         self.offset
     }
 
-    /// Two perpendicular unit vectors in the plane, right-handed together with the normal. The first is horizontal, the second points up as far as
+    /// Two perpendicular unit vectors in the plane, right-handed together with the normal. The first is horizontal, the second points up as steeply as
     /// the plane allows: for `x = const` they are `y` and `z`.
     #[must_use]
     pub fn frame(&self) -> [[f64; 3]; 2] {

@@ -1,4 +1,4 @@
-//! The envelope systems of a tool under a motion, by the paper's names, as exact Bernstein forms.
+//! The envelope systems of a tool under a motion, named as in the paper, as exact Bernstein forms.
 //!
 //! | of | unknowns | surface | section by a plane | points on a line | the same as a map, for charts |
 //! | --- | --- | --- | --- | --- | --- |
@@ -6,13 +6,13 @@
 //! | a sharp edge | `r, t` | Eq. 3: no equation | Eq. 5, [`section`](EdgeMotion::section) | Eq. 7, [`line`](EdgeMotion::line) | `EdgeMap` in `edge_map.rs`: `(X, Y)`, and both `g` |
 //! | a placed patch (cap, kink) | `u, v` | no equation | [`section`](PlacedPatch::section) | [`line`](PlacedPatch::line) | `PlacedMap` in `placed_map.rs`: `(X, Y)`, and `g` before and after |
 //!
-//! All rational forms are over one positive weight, which is cleared: `⟨F, n⟩ = d` becomes `⟨F̂, n⟩ − d W = 0`. The envelope
-//! condition is taken in its lowest degree: `w g = ⟨M, κ A₀ᵀk⟩ + ⟨N, Âᵀ b′⟩`, of degree 2 in `t` (see the project's
+//! All rational forms have a common positive weight, which is cleared: `⟨F, n⟩ = d` becomes `⟨F̂, n⟩ − d W = 0`. The envelope
+//! condition has the lowest possible degree: `w g = ⟨M, κ A₀ᵀk⟩ + ⟨N, Âᵀ b′⟩`, of degree 2 in `t` (see the project's
 //! `docs/algorithms/charts.md`).
 //!
 //! The default method does not build these systems. It bounds and evaluates the same functions `X`, `Y` and `g` as maps, from cells of the patch and
-//! pieces of the motion, and solves Eq. 6 and 7 for all lines at once: a line is a value of the map. The maps lie beside this module in
-//! `envelope/`; `methods/search.rs` poses each equation once for all methods, and a unit test compares every map with its system.
+//! pieces of the motion, and solves Eq. 6 and 7 for all lines at once: a line is a value of the map. The maps are in the same folder,
+//! `envelope/`; `methods/search.rs` sets up each equation once for all methods, and a unit test compares every map with its system.
 
 pub use crate::envelope::plane::{Plane, PlaneError};
 use nalgebra::{Matrix3, Vector3};
@@ -28,7 +28,7 @@ struct MovingPoint {
 }
 
 impl MovingPoint {
-    /// `⟨p, n⟩ = d`, the weight cleared.
+    /// `⟨p, n⟩ = d`, with the weight cleared.
     fn plane(&self, plane: &Plane) -> Bernstein {
         let [a, b, c] = plane.normal();
         let along = |k: usize, factor: f64| (factor != 0.0).then(|| self.numerators[k].scale(factor));
@@ -42,7 +42,7 @@ impl MovingPoint {
 /// The motion's forms in `t`.
 struct MotionForms {
     turns: Vec<Matrix3<f64>>,
-    /// Of the turns, times what makes their weight that of the tip.
+    /// The rotation, times the factor that makes its weight that of the tip.
     factor: Option<Bernstein>,
     weight: Bernstein,
     /// `b`, over the weight.
@@ -133,7 +133,7 @@ pub struct PatchMotion {
 }
 
 impl PatchMotion {
-    /// The forms of a patch that a segment moves.
+    /// The forms of a patch moved by a segment.
     #[must_use]
     pub fn new(patch: &Patch, segment: &Segment) -> Self {
         let motion = MotionForms::new(segment);
@@ -184,7 +184,7 @@ impl PatchMotion {
     }
 }
 
-/// A sharp edge under a motion: unknowns `r, t` in `[0, 1]²`. It belongs to the envelope where exactly one of its two
+/// A sharp edge under a motion: unknowns `r, t` in `[0, 1]²`. It lies on the envelope where exactly one of its two
 /// [conditions](EdgeMotion::conditions) is negative.
 #[derive(Clone, Debug)]
 pub struct EdgeMotion {
@@ -193,7 +193,7 @@ pub struct EdgeMotion {
 }
 
 impl EdgeMotion {
-    /// The forms of an edge that a segment moves.
+    /// The forms of an edge moved by a segment.
     #[must_use]
     pub fn new(edge: &Edge, segment: &Segment) -> Self {
         let motion = MotionForms::new(segment);
@@ -235,14 +235,14 @@ impl EdgeMotion {
 }
 
 /// A patch at rest: unknowns `u, v` in `[0, 1]²`. Caps are the part of it that moves inwards (at the start) or outwards (at the
-/// end), kinks the part that does one before and the other after.
+/// end), kinks the part whose direction changes between before and after.
 #[derive(Clone, Debug)]
 pub struct PlacedPatch {
     place: MovingPoint,
 }
 
 impl PlacedPatch {
-    /// The forms of a patch turned by `turn`, its tip at `tip`.
+    /// The forms of a patch turned by `turn`, with the tool's tip at `tip`.
     #[must_use]
     pub fn new(patch: &Patch, turn: &Matrix3<f64>, tip: &Vector3<f64>) -> Self {
         let numerators = [0, 1, 2].map(|r| {

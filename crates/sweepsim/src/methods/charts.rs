@@ -7,7 +7,7 @@ use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{CancelOnly, Sink};
 
-/// Charts need nothing but the maps.
+/// Charts need only the maps.
 pub(crate) struct Charts;
 
 impl CrossingMethod<'_> for Charts {

@@ -1,4 +1,4 @@
-//! Crossings, made of preimages as they come.
+//! Turns preimages into crossings as they are found.
 
 use nalgebra::Vector3;
 use sweepsim_dexel::Crossing;
@@ -7,7 +7,7 @@ use sweepsim_solve::{Cause, ChartStatistics, Preimage, Sink, UnresolvedTarget};
 /// A crossing and the number of its line.
 pub(crate) type Numbered = (u32, Crossing);
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Harvest {
     pub crossings: Vec<Numbered>,
@@ -16,7 +16,7 @@ pub(crate) struct Harvest {
     pub statistics: ChartStatistics,
 }
 
-/// Makes crossings of preimages as they come.
+/// Turns preimages into crossings as they are found.
 pub(super) struct Reaper<'a, F> {
     crossings: &'a mut Vec<Numbered>,
     open: &'a mut Vec<(u32, Cause)>,
@@ -50,7 +50,7 @@ pub(super) fn unit(normal: Vector3<f64>) -> [f32; 3] {
 }
 
 impl Harvest {
-    /// Receives preimages, of which `make` makes crossings.
+    /// Receives preimages, which `make` turns into crossings.
     pub(super) fn reaper<F>(&mut self, make: F) -> Reaper<'_, F> {
         Reaper {
             crossings: &mut self.crossings,
@@ -59,14 +59,14 @@ impl Harvest {
         }
     }
 
-    /// Adds what another search did.
+    /// Adds the statistics of another search.
     pub fn count(&mut self, statistics: &ChartStatistics) {
         self.statistics.boxes += statistics.boxes;
         self.statistics.charts += statistics.charts;
         self.statistics.evaluations += statistics.evaluations;
     }
 
-    /// Adds what another search found.
+    /// Adds the results of another search.
     pub fn merge(&mut self, other: Self) {
         self.crossings.extend(other.crossings);
         self.open.extend(other.open);

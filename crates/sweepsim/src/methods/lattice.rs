@@ -10,7 +10,7 @@ pub(crate) struct Lattice<'a> {
     pub shift: [f64; 2],
     pub i: [usize; 2],
     pub j: [usize; 2],
-    /// Where the first lines of the grid stand, and how many there are per length: about.
+    /// The approximate position of the grid's first lines, and their number per unit of length.
     first: [f64; 2],
     density: [f64; 2],
 }
@@ -47,7 +47,7 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// Whether some line stands in these ranges of `x` and `y`.
+    /// Whether some line lies in these ranges of `x` and `y`.
     pub fn meets(&self, [x, y]: [Enclosure; 2]) -> bool {
         self.numbers(0, x).is_some() && self.numbers(1, y).is_some()
     }
@@ -55,7 +55,7 @@ impl<'a> Lattice<'a> {
     /// The numbers of the lines along one direction whose coordinate lies in the range.
     pub fn numbers(&self, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
-        // NaN ranges hold everything.
+        // NaN ranges contain everything.
         let number = |z: f64, otherwise: usize| {
             let n = (z - self.first[axis]) * self.density[axis];
             if n.is_nan() {
@@ -66,7 +66,7 @@ impl<'a> Lattice<'a> {
         };
         let mut lo = number(range.lo(), window[0]) as usize;
         let mut hi = (number(range.hi(), window[1]) as usize + 1).min(window[1]);
-        // The product only guessed: the lines' own coordinates decide.
+        // The product is only a guess: the exact coordinates of the lines decide.
         while lo <= hi && self.coordinate(axis, lo) < range.lo() {
             lo += 1;
         }
@@ -79,7 +79,7 @@ impl<'a> Lattice<'a> {
         (lo <= hi).then_some((lo, hi))
     }
 
-    /// Where a line stands.
+    /// The position of a line.
     pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
         self.shift[axis]
             + if axis == 0 {

@@ -1,7 +1,7 @@
-//! Algorithm 4: for each line the systems of points, Eq. 6 of patches, Eq. 7 of edges, and those of caps and kinks.
+//! Algorithm 4: for each line, the point systems of patches (Eq. 6), of edges (Eq. 7), and of caps and kinks.
 //!
-//! From line to line only `x` and `y` change, so the systems of one patch under one motion are a [`Bundle`]: they go down one subdivision, each as
-//! long as its box may hold a solution, and each root has a certificate of its own.
+//! From line to line only `x` and `y` change, so the systems of one patch under one motion form a [`Bundle`]: they share one subdivision, each as
+//! long as the box may hold a solution, and each root has its own certificate.
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side};
@@ -15,7 +15,7 @@ use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
 use sweepsim_solve::{Bundle, CancelOnly, Sink};
 use sweepsim_spline::Bernstein;
 
-/// Columns of dexels whose lines make a bundle.
+/// The number of dexel columns whose lines form a bundle.
 const STRIP: usize = 128;
 
 /// The systems of each part of a chunk.
@@ -23,12 +23,12 @@ pub(crate) struct Lines {
     bundles: Vec<PartBundles>,
 }
 
-/// The systems of one part of a path. Where there are none (numbers out of range), charts are used.
+/// The systems of one part of a path. Where they cannot be built (numbers out of range), charts are used.
 #[derive(Clone, Debug)]
 struct PartBundles {
     patches: Vec<Option<Bundle<3>>>,
     edges: Vec<Option<Bundle<2>>>,
-    /// At its start, and where it is the last one, at its end.
+    /// At its start and, if it is the last part, at its end.
     placed: [Vec<Option<Bundle<2>>>; 2],
 }
 
@@ -86,7 +86,7 @@ impl CrossingMethod<'_> for Lines {
         }
     }
 
-    /// By blocks of parts, and within them by strips of columns, whose lines make a bundle.
+    /// In blocks of parts, and within these in strips of columns, whose lines form a bundle.
     fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
         let strips = || {
             (0..columns)
@@ -140,7 +140,7 @@ impl CrossingMethod<'_> for Lines {
     }
 }
 
-/// `g` at a placement, in the patch's parameters; beyond the ends of a path a constant of its sign.
+/// `g` at a placement, in the patch's parameters; beyond the ends of a path, a constant of the same sign.
 fn condition(side: &Side, field: &NormalField) -> Option<Bernstein> {
     let twist = match side {
         Side::Beyond(negative) => return Some(Bernstein::constant(2, if *negative { -1.0 } else { 1.0 })),
@@ -190,7 +190,7 @@ mod tests {
     }
 
     proptest! {
-        /// Bundles take bounds from the forms and points from the maps: both must be of the same functions.
+        /// Bundles take bounds from the forms and points from the maps, so both must describe the same functions.
         #[test]
         fn maps_are_what_the_forms_say(
             tool in 0..3usize,
@@ -205,7 +205,7 @@ mod tests {
             let segment: Segment = Segment::between(&start, &Pose::new(tip, axis).unwrap()).remove(0);
             let mut times = Times::new(&segment);
             let (faces, rims) = PatchForms::all(&tool);
-            // Some hundred roundings of numbers of up to a hundred, and of products of two.
+            // About a hundred roundings of numbers of up to a hundred, and of products of two.
             let near = |a: f64, b: f64| (a - b).abs() <= 1e-10;
             for (patch, element) in tool.patches().iter().zip(&faces) {
                 let motion = PatchMotion::new(patch, &segment);

@@ -1,4 +1,4 @@
-//! What every method of finding crossings does.
+//! The interface of the methods that find crossings.
 
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
 use crate::methods::lattice::Lattice;
@@ -8,7 +8,7 @@ use std::ops::Range;
 use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{Monitor, Sink};
 
-/// A map of one part of the path, and the lines whose preimages are wanted.
+/// A map of one part of the path, and the lines whose preimages are to be found.
 #[derive(Clone, Copy)]
 pub(crate) struct Query<'a> {
     /// Number of the part in its chunk.
@@ -16,11 +16,11 @@ pub(crate) struct Query<'a> {
     /// Number of the tool's patch or edge.
     pub number: usize,
     pub lines: &'a Lattice<'a>,
-    /// Asked in the inner loops whether to stop.
+    /// Tells the inner loops whether to stop.
     pub monitor: &'a dyn Monitor,
 }
 
-/// What a worker does at a time: these parts of the path, on the lines of these columns.
+/// A unit of work: these parts of the path, on the lines of these columns.
 #[derive(Clone, Debug)]
 pub(crate) struct WorkShare {
     pub parts: Range<usize>,
@@ -30,10 +30,10 @@ pub(crate) struct WorkShare {
 
 /// A way to find the preimages of dexel lines under the maps of the envelope: every one exactly once, or the line is reported as unresolved.
 pub(crate) trait CrossingMethod<'a>: Sized + Sync {
-    /// What the method needs to know of a chunk of the path, computed once for all its lines.
+    /// The method's data for a chunk of the path, computed once for all its lines.
     fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self;
 
-    /// How the work on so many parts and columns is shared out. The order of the shares is that of the crossings.
+    /// Divides the work on this many parts and columns into units. Crossings come in the order of the units.
     fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
         in_blocks(parts)
             .map(|parts| WorkShare {
@@ -60,7 +60,7 @@ pub(crate) trait CrossingMethod<'a>: Sized + Sync {
     );
 }
 
-/// Parts of a path that a worker takes at a time.
+/// The number of parts of a path that a worker takes at a time.
 const BLOCK: usize = 4;
 
 /// Parts in blocks of a few.

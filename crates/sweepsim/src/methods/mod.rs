@@ -1,7 +1,7 @@
 //! The four ways to find where dexel lines cross the boundary of a sweep.
 //!
-//! All of them solve the same equations: [`search`] poses them, as maps of [`envelope`](crate::envelope), and hands each map to a
-//! [`CrossingMethod`](method::CrossingMethod). A method only says how the preimages of the lines are found; what they mean is the same for all.
+//! All of them solve the same equations: [`search`] sets them up as maps of [`envelope`](crate::envelope), and passes each map to a
+//! [`CrossingMethod`](method::CrossingMethod). A method only determines how the preimages of the lines are found; their meaning is the same for all.
 
 pub(crate) mod charts;
 pub(crate) mod harvest;

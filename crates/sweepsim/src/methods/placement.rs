@@ -15,7 +15,7 @@ pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> 
     })
 }
 
-/// What moves before and after the tool is where a part starts, or where the last part of a path ends.
+/// The motions before and after the placement at the start of a part, or at the end of the last part of a path.
 pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [Side; 2] {
     let segment = &parts[at].segment;
     if end == SegmentEnd::Finish {

@@ -1,4 +1,4 @@
-//! The equations of a stretch of path, and what their solutions mean: the crossings of dexel lines with the envelope, the edges, kinks and the
+//! The equations of a stretch of path, and the meaning of their solutions: the crossings of dexel lines with the envelope, the edges, the kinks and the
 //! two caps.
 
 use crate::cutter::Cutter;
@@ -74,7 +74,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Where a crossing at the time `t` of a part comes from.
+    /// The source of a crossing at time `t` of a part.
     fn source(&self, at: usize, t: f64) -> Source {
         let part = &self.parts[at];
         Source::Cut {
@@ -107,7 +107,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where just one of its faces moves inwards.
+    /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
     fn edges(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.edges.iter().zip(&mut space.edges).enumerate() {
             let mut map = EdgeMap {
@@ -137,7 +137,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// The tool at rest: it bounds the sweep where it moves inwards just before or just after, but not both.
+    /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
     fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
         let segment = &self.parts[at].segment;
         let (pose, source) = match end {

@@ -1,4 +1,4 @@
-//! Algorithm 1: the envelope of each patch as a surface in `u, v, t` (Eq. 2), cut by all lines within the boxes that hold it.
+//! Algorithm 1: the envelope of each patch as a surface in `u, v, t` (Eq. 2), intersected with all lines within the boxes that contain it.
 
 use crate::envelope::systems::PatchMotion;
 use crate::envelope::{AnyBox, EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT};
@@ -9,9 +9,9 @@ use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{CancelOnly, ChartMap, Sink, SurfaceSolver};
 
-/// How flat the surface is in its boxes, in parts of the parameters' ranges.
+/// How flat the surface is in its boxes, relative to the parameters' ranges.
 const FLATNESS: f64 = 0.02;
-/// Boxes of an envelope surface. Those without trouble need some ten to a thousand.
+/// The budget of boxes for an envelope surface. Well-behaved ones need about ten to a thousand.
 const BOXES: u64 = 2_000;
 
 /// Edges and patches at rest are surfaces without an equation: charts solve them.

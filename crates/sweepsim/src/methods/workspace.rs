@@ -1,4 +1,4 @@
-//! What one worker keeps from one part of a path to the next.
+//! The memory that one worker reuses from one part of a path to the next.
 
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
@@ -40,7 +40,7 @@ impl Workspace {
 }
 
 impl Solvers {
-    /// What was done since the last call.
+    /// The statistics since the last call.
     pub fn take_statistics(&mut self) -> ChartStatistics {
         let solved = [
             &mut self.moving.statistics,

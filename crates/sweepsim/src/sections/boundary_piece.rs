@@ -1,4 +1,4 @@
-//! Points of what bounds a swept volume, patch by patch: the envelope, edges, kinks and caps, as sections and surfaces show them.
+//! Points on the boundary of a swept volume, patch by patch: the envelope, edges, kinks and caps, as used by sections and surfaces.
 
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::path_parts::PathPart;
@@ -6,7 +6,7 @@ use crate::time::pieces::Times;
 use nalgebra::Vector3;
 use sweepsim_motion::{Segment, SegmentEnd, Tool};
 
-/// What a piece of a swept volume's boundary comes from.
+/// The origin of a piece of a swept volume's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum BoundaryPiece {
@@ -24,15 +24,15 @@ pub enum BoundaryPiece {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct BoundaryPoint {
-    /// Where it is.
+    /// The position.
     pub position: [f64; 3],
     /// Unit normal of the envelope, out of the tool.
     pub normal: [f64; 3],
-    /// When in its move, in `[0, 1]`.
+    /// The time in the move, in `[0, 1]`.
     pub t: f64,
 }
 
-/// A tool, prepared, with one part of a path.
+/// A prepared tool, with one part of a path.
 pub(crate) struct Moving<'a> {
     pub patches: &'a [PatchForms],
     pub edges: &'a [PatchForms],
@@ -41,7 +41,7 @@ pub(crate) struct Moving<'a> {
     times: Times,
 }
 
-/// A point, and by which sign of a condition it belongs to the boundary of the move: where the two differ.
+/// A point, and two conditions: it belongs to the boundary of the move where their signs differ.
 pub(crate) struct Seen {
     pub point: BoundaryPoint,
     pub sides: Option<[f64; 2]>,
@@ -110,7 +110,7 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// A time of the part as one of its move.
+    /// Converts a time of the part to a time of its move.
     fn time(&self, t: f64) -> f64 {
         let part = self.part();
         f64::from(part.start) + f64::from(part.share) * part.segment.time(t)
@@ -146,7 +146,7 @@ impl<'a> Moving<'a> {
         }
     }
 
-    /// The pieces of the part: all but the last cap, which only the last part has.
+    /// The pieces of the part, except the end cap, which only the last part has.
     pub fn pieces(&self, tool: &Tool) -> Vec<BoundaryPiece> {
         let (patches, edges) = (tool.patches().len(), tool.edges().len());
         let mut pieces: Vec<BoundaryPiece> = (0..patches).map(BoundaryPiece::Patch).collect();

@@ -7,20 +7,20 @@ use crate::sections::section::{Section, SectionCurve};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct SectionLoops {
-    /// Closed polylines, their first point repeated at the end. Seen against the plane's normal, material is on the left: outer loops run
+    /// Closed polylines, their first point repeated at the end. Seen from the tip of the plane's normal, material is on the left: outer loops run
     /// counter-clockwise, holes clockwise.
     pub closed: Vec<Vec<[f64; 3]>>,
-    /// What could not be closed: next to it some piece of the boundary is missing.
+    /// Lines that could not be closed, since some piece of the boundary next to them is missing.
     pub open: Vec<Vec<[f64; 3]>>,
 }
 
-/// Ends farther apart than this many chord errors are not joined: each curve, and each end, is within one of them.
+/// Ends farther apart than this many chord errors are not joined; each curve and each end is off by at most one.
 const REACH: f64 = 8.0;
-/// Of ends that are equally near, in this part the nearer points win.
+/// If ends are equally close to within this fraction, the closer points win.
 const TIE: f64 = 1e-3;
 
 impl Section {
-    /// The outline as closed loops: the runs of [`outline`](Self::outline) joined end to end, where two curves cross at their intersection.
+    /// The outline as closed loops: the runs of [`outline`](Self::outline) joined end to end. Runs of two crossing curves are joined at their intersection.
     ///
     /// ```
     /// use sweepsim::prelude::*;
@@ -53,10 +53,10 @@ impl Section {
     }
 }
 
-/// A point of a curve just before or after another curve crosses it: between its vertices, where it may enter the volume or leave it.
+/// A point of a curve, between its vertices, just before or after another curve crosses it, where it may enter or leave the volume.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Passage {
-    /// The number of the vertex before, and the part of the way to the next.
+    /// The number of the previous vertex, and the fraction of the way to the next.
     pub at: f64,
     pub point: BoundaryPoint,
     pub outer: bool,
@@ -65,7 +65,7 @@ pub(super) struct Passage {
 /// Curves are tested this many chord errors before and after a crossing: far enough to tell them apart.
 const BESIDE: f64 = 8.0;
 
-/// Where the curves cross one another, for each of them; not yet with what bounds the volume.
+/// Where each curve crosses the others, before testing what bounds the volume.
 pub(super) fn passages(curves: &[SectionCurve], [across, up]: [[f64; 3]; 2], chord: f64) -> Vec<Vec<Passage>> {
     let flat = |p: &BoundaryPoint| [across, up].map(|axis| (0..3).map(|k| axis[k] * p.position[k]).sum::<f64>());
     let mut pieces: Vec<(usize, usize, [[f64; 2]; 2])> = Vec::new();
@@ -125,7 +125,7 @@ pub(super) fn passages(curves: &[SectionCurve], [across, up]: [[f64; 3]; 2], cho
     found
 }
 
-/// Where two segments cross, in parts of each.
+/// Where two segments cross, as a fraction of each.
 fn crossing([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     let (along, other, between) = (sub(b, a), sub(d, c), sub(c, a));
     let determinant = cross(along, other);
@@ -136,7 +136,7 @@ fn crossing([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<[f64; 2]> {
     parts.iter().all(|part| (0.0..=1.0).contains(part)).then_some(parts)
 }
 
-/// A point in space, and where it is in the plane.
+/// A point in space, and its position in the plane.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     space: [f64; 3],
@@ -165,7 +165,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Twice how much a polyline keeps the normals on its right: negative where it runs the wrong way.
+/// Twice the extent to which a polyline has the normals on its right; negative if it runs the wrong way.
 fn sense(corners: &[Corner]) -> f64 {
     let right = |pair: &[Corner]| {
         let step = sub(pair[1].plane, pair[0].plane);
@@ -186,7 +186,7 @@ impl Run {
         }
     }
 
-    /// From the first point backwards, and from the last one onwards, to the neighbour.
+    /// From the first point back, and from the last one forwards, to the neighbour.
     fn head(&self) -> [Corner; 2] {
         let first = self.corners[0];
         [first, self.before.unwrap_or(first)]
@@ -198,7 +198,7 @@ impl Run {
     }
 }
 
-/// Cuts a curve into runs; a closed one that bounds the volume all along is a loop.
+/// Cuts a curve into runs; a closed curve that bounds the volume everywhere is a loop.
 fn runs_of(
     curve: &SectionCurve,
     passages: &[Passage],
@@ -231,7 +231,7 @@ fn runs_of(
                 return;
             }
             Some(first) => {
-                // Begin, and end, with a point inside the volume: no run is cut in two.
+                // Begin and end with a point inside the volume, so that no run is cut in two.
                 corners.pop();
                 let first = first % corners.len();
                 corners.rotate_left(first);
@@ -258,7 +258,7 @@ fn runs_of(
     }
 }
 
-/// Where two segments meet, in parts of the first.
+/// Where two segments meet, as a fraction of the first.
 fn meeting(first: [Corner; 2], second: [Corner; 2]) -> Option<f64> {
     crossing(first.map(|corner| corner.plane), second.map(|corner| corner.plane)).map(|[part, _]| part)
 }
@@ -276,10 +276,10 @@ fn distance(point: [f64; 2], [a, b]: [Corner; 2]) -> f64 {
     dot(off, off).sqrt()
 }
 
-/// Which run follows each, and where on the extension of its tail, if not straight on.
+/// The run that follows each run, and where on the extension of its tail, unless it follows directly.
 type Following = Vec<Option<(usize, Option<f64>)>>;
 
-/// Pairs tails with heads, the nearest first.
+/// Pairs tails with heads, the closest pairs first.
 fn matches(runs: &[Run], reach: f64) -> Following {
     let heads: Vec<[Corner; 2]> = runs.iter().map(Run::head).collect();
     let tails: Vec<[Corner; 2]> = runs.iter().map(Run::tail).collect();
@@ -323,7 +323,7 @@ fn matches(runs: &[Run], reach: f64) -> Following {
     next
 }
 
-/// Follows the runs: round a loop, or along what stays open.
+/// Follows the runs, around a loop or along an open line.
 fn join(runs: &[Run], next: &Following, reach: f64, loops: &mut SectionLoops) {
     let mut preceded = vec![false; runs.len()];
     for (to, _) in next.iter().flatten() {
@@ -331,7 +331,7 @@ fn join(runs: &[Run], next: &Following, reach: f64, loops: &mut SectionLoops) {
     }
     let mut done = vec![false; runs.len()];
     let (mut closed, mut open): (Vec<Vec<Corner>>, Vec<Vec<Corner>>) = (Vec::new(), Vec::new());
-    // What nothing precedes begins an open line; all others are in loops.
+    // Runs without a predecessor begin open lines; all others are in loops.
     let starts = (0..runs.len()).filter(|n| !preceded[*n]);
     for start in starts.chain((0..runs.len()).filter(|n| preceded[*n])) {
         if done[start] {
@@ -363,7 +363,7 @@ fn join(runs: &[Run], next: &Following, reach: f64, loops: &mut SectionLoops) {
             open.push(line);
         }
     }
-    // Two pieces may share a part of the boundary, like the caps of a path that ends where it begins: once is enough.
+    // Two pieces may share a part of the boundary, like the caps of a path that ends where it begins; keep it once.
     let near = |corner: &Corner, line: &[Corner]| {
         line.windows(2)
             .any(|pair| distance(corner.plane, [pair[0], pair[1]]) <= reach)
@@ -382,7 +382,7 @@ fn join(runs: &[Run], next: &Following, reach: f64, loops: &mut SectionLoops) {
     loops.open.extend(open.into_iter().map(space));
 }
 
-/// Closes a line whose end lies on an earlier part of it, and drops what is before that.
+/// Closes a line whose end lies on an earlier part of it, and drops the part before that.
 fn closes_on_itself(line: &mut Vec<Corner>, reach: f64) -> bool {
     let Some(end) = line.last().copied() else { return false };
     let on = (0..line.len().saturating_sub(3)).find(|k| distance(end.plane, [line[*k], line[*k + 1]]) <= reach);

@@ -1,4 +1,4 @@
-//! The boundary of a sweep for itself: sections by planes, and surfaces.
+//! The boundary of a sweep as a result: plane sections and surfaces.
 
 mod boundary_piece;
 mod loops;

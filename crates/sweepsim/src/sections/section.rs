@@ -20,13 +20,13 @@ use sweepsim_solve::{CancelOnly, CurveSolver, Monitor, System, SystemError};
 pub struct SectionCurve {
     /// Number of the cut.
     pub cut: usize,
-    /// What it comes from.
+    /// The origin of the curve.
     pub piece: BoundaryPiece,
     /// Number of the move.
     pub segment: u32,
-    /// Its points, in order. A closed curve's first is its last.
+    /// The points, in order. The first point of a closed curve is repeated at the end.
     pub points: Vec<BoundaryPoint>,
-    /// Per point, whether it bounds the volume: no other part of any sweep covers it.
+    /// For each point, whether it bounds the volume, that is, no other part of any sweep covers it.
     pub outer: Vec<bool>,
 }
 
@@ -36,13 +36,13 @@ pub struct SectionCurve {
 pub struct Section {
     /// The plane.
     pub plane: Plane,
-    /// The curves of all pieces of the envelope, also those inside the volume.
+    /// The curves of all pieces of the envelope, including those inside the volume.
     pub curves: Vec<SectionCurve>,
-    /// Pieces whose curves are not certain, with the numbers of their cut and move.
+    /// Pieces whose curves are uncertified, with the numbers of their cut and move.
     pub open: Vec<(usize, BoundaryPiece, u32)>,
-    /// How far the curves may be from their polylines.
+    /// The maximum distance between the curves and their polylines.
     pub(super) chord: f64,
-    /// Per curve, where others cross it.
+    /// For each curve, where others cross it.
     pub(super) passages: Vec<Vec<Passage>>,
 }
 
@@ -67,10 +67,10 @@ impl Section {
     }
 }
 
-/// Boxes that the curves of one piece may take.
+/// The budget of boxes for the curves of one piece.
 const BOXES: u64 = 20_000;
 
-/// The section of what the cuts sweep together by a plane of any direction, as polylines that are at most `chord` off the curves.
+/// The section of the volume that the cuts sweep together by a plane of any direction, as polylines within `chord` of the curves.
 ///
 /// # Errors
 /// [`SweepError`]: cancelled, or an invalid tolerance or chord error.
@@ -125,7 +125,7 @@ pub fn section(
         }
     }
     section.passages = passages(&section.curves, plane.frame(), chord);
-    // Passages are on chords: they are tested farther off.
+    // Passages lie on chords, so they are tested farther away.
     let off = Tolerances::new(options.tolerance, 0.0)?.outside();
     let vertices = section.curves.iter().flat_map(|curve| &curve.points);
     let between = section
@@ -144,7 +144,7 @@ pub fn section(
     Ok(section)
 }
 
-/// Whether points of the envelope bound the volume: what is so far outside of them is not swept. Where that is not certain, they count
+/// Whether points of the envelope bound the volume: the points this far outside them are not swept. If that is uncertain, they count
 /// as outer.
 pub(crate) fn outer(
     cuts: &[Cut],
@@ -169,7 +169,7 @@ pub(crate) fn outer(
     Ok(outer)
 }
 
-/// Whether the tool comes near the plane.
+/// Whether the tool comes close to the plane.
 fn reaches(part: &PathPart, plane: &Plane, reach: f64) -> bool {
     let normal = Vector3::from(plane.normal());
     let margin = reach * normal.norm();
@@ -253,17 +253,17 @@ fn system(
     }
 }
 
-/// Halvings of a step of a polyline.
+/// The maximum number of halvings of a step of a polyline.
 const HALVINGS: u32 = 12;
 
-/// The polyline with as many more points as keep the middles of its steps within `off` of the curve: what is straight in the parameters may be
-/// round in space.
+/// The polyline with as many more points as needed to keep the midpoints of its steps within `off` of the curve: a curve that is straight in the
+/// parameters may be round in space.
 fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -> Vec<Vec<f64>> {
     let place = |x: &[f64]| Vector3::from(moving.see(piece, x).point.position);
     let mut all: Vec<Vec<f64>> = Vec::with_capacity(points.len());
     all.extend(points.first().map(|x| x.to_vec()));
     for pair in points.windows(2) {
-        // What is still to be reached, the nearest last.
+        // The points still to be reached, the nearest last.
         let mut ahead: Vec<(Vec<f64>, u32)> = vec![(pair[1].to_vec(), 0)];
         let mut from = pair[0].to_vec();
         while let Some((to, depth)) = ahead.last_mut() {
@@ -314,8 +314,8 @@ fn kept(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]]) -> Vec<Vec<Bou
     runs
 }
 
-/// A bound of how fast the point moves with a parameter: the largest difference of neighbouring control points, times the degree,
-/// times how much the weights vary.
+/// A bound on how fast the point moves with a parameter: the largest difference of neighbouring control points, times the degree,
+/// times the variation of the weights.
 pub(crate) fn stretch(position: &[sweepsim_spline::Bernstein; 3], weight: &sweepsim_spline::Bernstein) -> f64 {
     let weights = weight.coefficients();
     let point = |i: usize| Vector3::from([0, 1, 2].map(|k| position[k].coefficients()[i] / weights[i]));

@@ -1,4 +1,4 @@
-//! The envelope as surfaces: the paper's Algorithm 1 before it meets any line.
+//! The envelope as surfaces: the paper's Algorithm 1, before intersecting with lines.
 
 use crate::cutter::Cutter;
 use crate::envelope::systems::PatchMotion;
@@ -21,7 +21,7 @@ use sweepsim_solve::{CancelOnly, Monitor, SurfaceSolver};
 pub struct EnvelopeSurface {
     /// Number of the cut.
     pub cut: usize,
-    /// What it comes from.
+    /// The origin of the piece.
     pub piece: BoundaryPiece,
     /// Number of the move.
     pub segment: u32,
@@ -29,17 +29,17 @@ pub struct EnvelopeSurface {
     pub vertices: Vec<BoundaryPoint>,
     /// Counter-clockwise seen from outside the tool.
     pub triangles: Vec<[u32; 3]>,
-    /// Per vertex, whether it bounds the swept volume: no other part of any sweep covers it.
+    /// For each vertex, whether it bounds the swept volume, that is, no other part of any sweep covers it.
     pub outer: Vec<bool>,
 }
 
-/// The envelope of some sweeps, with their kinks and caps.
+/// The envelope of one or more sweeps, with their kinks and caps.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct EnvelopeSurfaces {
-    /// All pieces, also those inside the volume.
+    /// All pieces, including those inside the volume.
     pub surfaces: Vec<EnvelopeSurface>,
-    /// Pieces whose surface is not certain everywhere, with the numbers of their cut and move.
+    /// Pieces whose surface is not certified everywhere, with the numbers of their cut and move.
     pub open: Vec<(usize, BoundaryPiece, u32)>,
 }
 
@@ -59,15 +59,15 @@ impl EnvelopeSurfaces {
     }
 }
 
-/// Boxes that one surface may take.
+/// The budget of boxes for one surface.
 const BOXES: u64 = 200_000;
-/// The most steps of the grid over an edge or a placed patch, a direction.
+/// The maximum number of grid steps over an edge or a placed patch, in each direction.
 const STEPS: usize = 128;
 
-/// The envelope of what the cuts sweep, as triangles that are about `chord` off at most.
+/// The envelope of the cuts, as triangles that are within about `chord` of it.
 ///
-/// The mesh of a patch's envelope (Eq. 2) has the topology of the surface in its parameters `u, v, t`, guaranteed. Edges and placed patches are given by
-/// their parameters; they are cut off where a condition changes its sign, which is looked for on a grid.
+/// The mesh of a patch's envelope (Eq. 2) is guaranteed to have the topology of the surface in its parameters `u, v, t`. Edges and placed patches are given by
+/// their parameters; they are trimmed where a condition changes sign, which is tested on a grid.
 ///
 /// # Errors
 /// [`SweepError`]: cancelled, or an invalid tolerance or chord error.
@@ -174,10 +174,10 @@ fn orient(vertices: &[BoundaryPoint], triangles: &mut [[u32; 3]]) {
     }
 }
 
-/// A piece with two parameters over a grid, where it belongs to the boundary of its move.
+/// The part of a piece with two parameters that belongs to the boundary of its move, over a grid.
 fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: ChordTolerance) -> (Vec<BoundaryPoint>, Vec<[u32; 3]>) {
     let place = |x: [f64; 2]| Vector3::from(moving.see(piece, &x).point.position);
-    // Steps in each direction: as many as keep the middles of steps within half the chord, on a few lines.
+    // Steps in each direction: enough to keep the midpoints of steps within half the chord error, on a few lines.
     let steps = [0, 1].map(|axis| {
         let mut steps = 4;
         let at = |along: f64, across: f64| if axis == 0 { [along, across] } else { [across, along] };
@@ -251,7 +251,7 @@ fn by_grid(moving: &Moving, piece: BoundaryPiece, chord: ChordTolerance) -> (Vec
     (mesh.vertices, triangles)
 }
 
-/// Vertices shared by triangles: corners of the grid, and where its edges are cut off.
+/// Vertices shared by triangles: corners of the grid, and points where its edges are trimmed.
 struct Clipped {
     vertices: Vec<BoundaryPoint>,
     corners: HashMap<usize, u32>,

@@ -3,14 +3,14 @@
 use crate::sections::section::Section;
 use std::fmt::Write as _;
 
-/// Width of the drawing, in its units; its height follows.
+/// Width of the drawing, in its own units; the height follows from it.
 const WIDTH: f64 = 1000.0;
-/// Free space around, in parts of the width.
+/// The margin, as a fraction of the width.
 const MARGIN: f64 = 0.04;
 
 impl Section {
-    /// The section as an SVG drawing: what bounds the volume in a strong line, other parts of the envelope in a thin one. Lengths are
-    /// written beside a scale.
+    /// The section as an SVG drawing, with thick lines for the boundary of the volume, thin lines for other parts of the envelope, and a
+    /// labelled scale.
     #[must_use]
     pub fn svg(&self) -> String {
         let [across, up] = self.plane.frame();
@@ -37,7 +37,7 @@ impl Section {
             for (pair, flags) in curve.points.windows(2).zip(curve.outer.windows(2)) {
                 let [a, b] = [0, 1].map(|k| place(flat(&pair[k].position)));
                 let out = if flags[0] && flags[1] { &mut outer } else { &mut inner };
-                // A String takes all that is written to it.
+                // Writing to a String cannot fail.
                 let _ = write!(out, "M{:.2} {:.2}L{:.2} {:.2}", a[0], a[1], b[0], b[1]);
             }
         }

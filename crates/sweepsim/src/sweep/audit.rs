@@ -1,4 +1,4 @@
-//! Crossings counted to intervals, audited, and repaired.
+//! Crossings are counted into intervals, audited, and repaired.
 
 use crate::error::SweepError;
 use crate::methods::harvest::{Harvest, Numbered};
@@ -118,7 +118,7 @@ impl SweepJob<'_> {
     }
 }
 
-/// The intervals that Algorithm 2 makes of the crossings of a line, those that overlap united. Where crossings are missing it may make some without
+/// The intervals that Algorithm 2 makes of the crossings of a line, with overlapping ones united. Where crossings are missing, some may have zero
 /// length.
 fn in_order(crossings: &mut [Crossing]) -> Vec<Interval> {
     let intervals = boundary_operator::by_normals(crossings).into_iter();

@@ -1,10 +1,10 @@
 //! The paper's boundary operator, as printed, beside the coverage count that is used by default.
 //!
 //! Algorithm 2 of Machchhar, Plakhotnik and Elber reads a line's crossings from below: a normal that points down may start an
-//! interval, one that points up may end it, and an interval is complete when the next start follows an end. It is kept to compare with, repaired
-//! only where it returns nothing at all: the last interval is handed out after the loop. What it does not see is how often a point is covered.
-//! In `start start end start end end` (two sheets of the envelope overlap from before the first end until after the third start) all is one interval;
-//! it returns two. `docs/algorithms/coverage.md` has the pictures.
+//! interval, one that points up may end it, and an interval is complete when the next start follows an end. It is kept for comparison, with a single
+//! correction: the last interval is returned after the loop. It ignores how often a point is covered.
+//! In `start start end start end end` (two sheets of the envelope overlap from before the first end until after the third start), everything is one interval,
+//! but it returns two. `docs/algorithms/coverage.md` has pictures.
 
 use std::fmt;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! The sweep of a path: crossings of all dexel lines, chunk by chunk, counted to intervals, audited, and repaired.
+//! The sweep of a path: crossings of all dexel lines, chunk by chunk, counted into intervals, audited, and repaired.
 
 mod audit;
 mod boundary_operator;

@@ -1,4 +1,4 @@
-//! How to sweep.
+//! Options of a sweep.
 
 use crate::sweep::boundary_operator::BoundaryOperator;
 use std::fmt;
@@ -12,11 +12,11 @@ pub enum Method {
     /// One subdivision for all lines: boxes on which the envelope system is injective.
     #[default]
     Charts,
-    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision that leads there.
+    /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision.
     Lines,
-    /// Curves in the planes `x = const`, cut by the lines: the paper's Algorithm 3.
+    /// Curves in the planes `x = const`, intersected with the lines: the paper's Algorithm 3.
     Planes,
-    /// The envelope as surfaces, cut by the lines: the paper's Algorithm 1.
+    /// The envelope as surfaces, intersected with the lines: the paper's Algorithm 1.
     Surface,
 }
 
@@ -50,11 +50,11 @@ impl FromStr for Method {
     }
 }
 
-/// How to sweep.
+/// Options of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Tolerance of interval ends, in the unit of all lengths. The crate's front page says what it means.
+    /// Tolerance of interval ends, in the unit of all lengths. The crate's front page explains what it guarantees.
     pub tolerance: f64,
     /// How crossings are found.
     pub method: Method,
@@ -76,7 +76,7 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The default with this tolerance.
+    /// The default options with this tolerance.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
@@ -99,7 +99,7 @@ impl Options {
         self
     }
 
-    /// Chooses the number of the path that sources carry.
+    /// Chooses the path number that sources carry.
     #[must_use]
     pub fn path_number(mut self, number: u32) -> Self {
         self.path_number = number;

@@ -16,7 +16,7 @@ pub(crate) struct Plan {
 }
 
 impl Plan {
-    /// Everything as seen from `frame`. `extent`: coordinates of the lines.
+    /// Transforms everything into `frame`. `extent`: coordinates of the lines.
     pub fn new(
         tool: &Tool,
         path: &Path,

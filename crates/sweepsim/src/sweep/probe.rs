@@ -15,7 +15,7 @@ use sweepsim_dexel::{Dexels, End, Frame, Grid, Interval};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
 
-/// The intervals of a swept volume on one line, or why they are not certain.
+/// The intervals of a swept volume on one line, or why they are uncertified.
 pub type Probe = Result<Vec<Interval>, UnresolvedReason>;
 
 /// The intervals of the volume that `tool` sweeps along `path` on lines of any direction. Heights of ends are distances from the ray's origin,
@@ -82,7 +82,7 @@ pub fn probe(
     Ok(found)
 }
 
-/// The intervals on lines along the `z` of a frame, given by their `x` and `y` there; all is in the frame.
+/// The intervals on lines along the `z` of a frame, given by their `x` and `y` there. All coordinates are in the frame.
 pub(crate) fn probe_lines(
     tool: &Tool,
     path: &Path,
@@ -94,7 +94,7 @@ pub(crate) fn probe_lines(
     let plan = Plan::new(tool, path, frame, lines.iter().flatten().copied(), options)?;
     let monitor = &Latch::new(monitor);
     let spaces = Mutex::new(Vec::new());
-    // Half a cell about the line: it only tells the search what is small.
+    // Half a cell about the line, which only gives the search a length scale.
     let half = f64::max(0.01 * plan.cutter.reach, 16.0 * plan.tolerances.rounding());
     let one = |[x, y]: &[f64; 2]| -> Probe {
         let cell = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]);
@@ -124,7 +124,7 @@ pub(crate) fn probe_lines(
     Ok(found)
 }
 
-/// Remembers a cancellation: of thousands of lines, none asks again.
+/// Remembers a cancellation, so that the remaining lines stop at once.
 struct Latch<'a> {
     monitor: &'a dyn Monitor,
     cancelled: AtomicBool,

@@ -19,12 +19,12 @@ pub enum RayError {
     #[error("the origin {0:?} of a ray must be finite")]
     Origin([f64; 3]),
     /// The direction is zero or not finite.
-    #[error("the direction {0:?} of a ray must be finite, and not zero")]
+    #[error("the direction {0:?} of a ray must be finite and nonzero")]
     Direction([f64; 3]),
 }
 
 impl Ray {
-    /// The line from `origin` along `direction`, which may have any length but zero.
+    /// The line from `origin` along `direction`, which may have any nonzero length.
     ///
     /// # Errors
     ///
@@ -34,7 +34,7 @@ impl Ray {
         if !origin.iter().all(|x| x.is_finite()) {
             return Err(RayError::Origin(origin));
         }
-        // Scaled first: squares of very small or large components are lost.
+        // Scaled first, since squares of very small or large components would underflow or overflow.
         let largest = direction.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         if !(largest > 0.0 && direction.iter().all(|x| x.is_finite())) {
             return Err(RayError::Direction(direction));
@@ -46,7 +46,7 @@ impl Ray {
         })
     }
 
-    /// The point from which distances count.
+    /// The point from which distances are measured.
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
         self.origin
@@ -64,13 +64,13 @@ impl Ray {
         [0, 1, 2].map(|k| self.origin[k] + distance * self.direction[k])
     }
 
-    /// A frame about the world's origin whose `z` is the direction: the world itself where it is.
+    /// A frame about the world's origin whose `z` is the direction; the world's own frame if it already points that way.
     pub(crate) fn frame(&self) -> Frame {
         let z = self.direction;
         if z == [0.0, 0.0, 1.0] {
             return Frame::WORLD;
         }
-        // Any direction that is not nearly the same.
+        // Any direction that is not nearly parallel.
         let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
         let mut x = [0.0; 3];
         x[least] = 1.0;

@@ -1,9 +1,9 @@
-//! What comes out of a sweep: its volume, what was done, and what could not be.
+//! The result of a sweep: its volume, statistics, and unresolved dexels.
 
 use sweepsim_dexel::{AuditFailure, Dexels, IntervalError};
 use thiserror::Error;
 
-/// A dexel whose intervals are not certain.
+/// A dexel whose intervals are uncertified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnresolvedDexel {
@@ -15,7 +15,7 @@ pub struct UnresolvedDexel {
     pub reason: UnresolvedReason,
 }
 
-/// Why the intervals of a dexel are not certain.
+/// Why the intervals of a dexel are uncertified.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum UnresolvedReason {
@@ -25,15 +25,15 @@ pub enum UnresolvedReason {
     /// A box of the smallest size was neither excluded nor solved: a multiple or singular solution.
     #[error("a box could not be decided at the smallest size")]
     SmallestBox,
-    /// The crossings do not add up: one is missing, or there is one too many.
+    /// The crossings do not add up: one is missing or extra.
     #[error("the coverage count does not close: sum {}, lowest {}, at z = {}", .0.sum, .0.lowest, .0.z)]
     Audit(AuditFailure),
-    /// The crossings make no sorted, disjoint intervals.
+    /// The crossings do not form sorted, disjoint intervals.
     #[error(transparent)]
     Intervals(#[from] IntervalError),
 }
 
-/// What a sweep did.
+/// Statistics of a sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Statistics {
@@ -47,9 +47,9 @@ pub struct Statistics {
     pub charts: u64,
     /// Dexels that are not empty.
     pub covered: usize,
-    /// Dexels that failed their first audit, and passed it on a line displaced within the tolerance.
+    /// Dexels that failed their first audit, but passed it on a line displaced within the tolerance.
     pub repaired: usize,
-    /// Dexels that passed no audit: their intervals are not certain.
+    /// Dexels that passed no audit: their intervals are uncertified.
     pub unresolved: Vec<UnresolvedDexel>,
 }
 
@@ -70,7 +70,7 @@ impl Statistics {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Sweep {
-    /// Its dexels; ends carry the normal of the envelope and the segment and time that made them.
+    /// The dexels. Ends carry the normal of the envelope and the segment and time that made them.
     pub volume: Dexels,
     /// How it was computed.
     pub statistics: Statistics,

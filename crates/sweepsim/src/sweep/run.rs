@@ -10,7 +10,7 @@ use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
 
-/// The volume that `tool` sweeps along `path`, on the dexels of `grid`, in whatever frame they stand. The path is in the world.
+/// The volume that `tool` sweeps along `path`, on the dexels of `grid`, which may be in any frame. The path is in world coordinates.
 ///
 /// Runs in the current rayon pool; the result does not depend on the number of threads.
 ///

@@ -1,4 +1,4 @@
-//! The work of a sweep, shared out among threads: which lines meet which parts of the path.
+//! Distributes the work of a sweep among threads: which lines meet which parts of the path.
 
 use crate::cutter::Cutter;
 use crate::envelope::Size;
@@ -23,7 +23,7 @@ use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
 use sweepsim_solve::Monitor;
 
-/// Segments whose crossings are counted together. Longer chunks save caps, shorter ones memory.
+/// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
 pub(super) const CHUNK: usize = 256;
 
 impl Plan {
@@ -63,7 +63,7 @@ pub(super) struct SweepJob<'a> {
     pub boundary: BoundaryOperator,
     pub path: u32,
     pub size: Size,
-    /// Workspaces that no worker uses just now.
+    /// Workspaces that are not in use.
     pub spaces: Mutex<Vec<Workspace>>,
     pub monitor: &'a dyn Monitor,
 }
@@ -80,7 +80,7 @@ impl SweepJob<'_> {
         result
     }
 
-    /// All crossings of a chunk, in an order that does not depend on the threads.
+    /// All crossings of a chunk, in an order that does not depend on the number of threads.
     pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
         match self.method {
             Method::Charts => self.by::<Charts>(chunk),
@@ -134,7 +134,7 @@ impl SweepJob<'_> {
         Ok(all)
     }
 
-    /// The crossings of one line, moved as in the given attempt.
+    /// The crossings of one line, displaced as in the given attempt.
     pub fn line(&self, chunk: &[PathPart], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
         let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
         let search = self.search(&Charts, chunk, &lines);

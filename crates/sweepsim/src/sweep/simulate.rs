@@ -1,4 +1,4 @@
-//! Several cuts: what they take out of a stock, or sweep together.
+//! Several cuts: removed from a stock, or swept together.
 
 use crate::error::SweepError;
 use crate::sweep::options::Options;
@@ -8,13 +8,13 @@ use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
 
-/// A tool and where it goes.
+/// A tool and its path.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Cut<'a> {
     /// The tool.
     pub tool: &'a Tool,
-    /// Its poses.
+    /// The path.
     pub path: &'a Path,
 }
 
@@ -30,13 +30,13 @@ impl<'a> Cut<'a> {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Simulation {
-    /// The material that no cut took away; ends made by a tool know which [cut](sweepsim_dexel::Source), move and time.
+    /// The remaining material; ends made by a tool record their [cut](sweepsim_dexel::Source), move and time.
     pub remaining: Dexels,
     /// Statistics of all cuts together.
     pub statistics: Statistics,
 }
 
-/// Watches one cut of several: counts its moves after those before it.
+/// Monitors one of several cuts: adds the moves of the previous cuts to its progress.
 struct Share<'a> {
     monitor: &'a dyn Monitor,
     before: usize,
@@ -55,7 +55,7 @@ impl Monitor for Share<'_> {
     }
 }
 
-/// Sweeps the cuts one after the other; the number of a cut becomes the path of its sources.
+/// Sweeps the cuts one after the other; the number of a cut becomes the path number of its sources.
 fn each(
     cuts: &[Cut],
     grid: &Grid,
@@ -80,13 +80,13 @@ fn each(
         take(swept.volume);
         before += moves;
     }
-    // A dexel may stay open in several cuts: the first reason stands for all.
+    // A dexel may stay unresolved in several cuts; only the first reason is kept.
     statistics.unresolved.sort_by_key(|open| (open.i, open.j));
     statistics.unresolved.dedup_by_key(|open| (open.i, open.j));
     Ok(statistics)
 }
 
-/// Takes what the cuts sweep, one after the other, out of `stock`.
+/// Removes the volumes that the cuts sweep, one after the other, from `stock`.
 ///
 /// [`Options::path_number`] is set to the number of each cut.
 ///

@@ -1,18 +1,18 @@
-//! Which move made a point of a surface.
+//! Finds the move that made a point of a surface.
 
 use crate::sweep::simulate::Simulation;
 use crate::sweep::tri::TriSimulation;
 use sweepsim_dexel::{Dexels, Source};
 
-/// The end of a dexel near a point: what made it, and where it is.
+/// The end of a dexel near a point: its source and position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SurfaceSource {
     /// The stock, or the path, move and time.
     pub source: Source,
-    /// Where the end is, in the world.
+    /// The position of the end, in world coordinates.
     pub position: [f64; 3],
-    /// How far it is from the point.
+    /// The distance from the point.
     pub distance: f64,
 }
 
@@ -25,7 +25,7 @@ fn nearest(dexels: &Dexels, point: [f64; 3]) -> Option<SurfaceSource> {
         return None;
     }
     let (cells, spacing) = (grid.cells(), grid.spacing());
-    // Up to a cell beside the grid.
+    // Up to one cell beyond the grid.
     let number = |k: usize| {
         let n = ((local[k] - grid.min()[k]) / spacing[k]).floor();
         (n >= -1.0 && n <= cells[k] as f64).then_some(n as isize)
@@ -54,11 +54,11 @@ fn nearest(dexels: &Dexels, point: [f64; 3]) -> Option<SurfaceSource> {
 }
 
 impl Simulation {
-    /// Which path, move and time made the surface at a point (or that the stock's own surface is there): what the nearest end of a dexel remembers.
-    /// `None` where no dexel near the point holds material.
+    /// The source of the surface at a point: the path, move and time that made it, or the stock, as recorded by the nearest end of a dexel.
+    /// `None` if no dexel near the point contains material.
     ///
-    /// Dexels have no ends on walls along their lines: [`TriSimulation::source_at`] knows those too. How far the end is from the point says
-    /// how much the answer is worth.
+    /// Dexels have no ends on walls parallel to their lines; [`TriSimulation::source_at`] covers those, too. The distance of the end from the point
+    /// tells how reliable the answer is.
     ///
     /// ```
     /// use sweepsim::dexel::{Source, Stock};

@@ -1,4 +1,4 @@
-//! Cuts in tri-dexels: walls of any direction are met squarely by the lines of one set.
+//! Cuts in tri-dexels: for walls of any direction, the lines of one set meet them at a steep angle.
 
 use crate::error::SweepError;
 use crate::sweep::options::Options;
@@ -7,17 +7,17 @@ use crate::sweep::simulate::{Cut, Simulation, simulate};
 use sweepsim_dexel::{Dexels, TriDexels};
 use sweepsim_solve::Monitor;
 
-/// What remains of a stock, along all three axes.
+/// The remaining stock, along all three axes.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct TriSimulation {
-    /// The material that no cut took away.
+    /// The remaining material.
     pub remaining: TriDexels,
     /// Statistics along `x`, `y` and `z`.
     pub statistics: [Statistics; 3],
 }
 
-/// Watches one of three passes over all moves.
+/// Monitors one of three passes over all moves.
 struct Pass<'a> {
     monitor: &'a dyn Monitor,
     number: usize,
@@ -33,7 +33,7 @@ impl Monitor for Pass<'_> {
     }
 }
 
-/// Takes what the cuts sweep out of `stock`, as [`simulate`](fn@simulate) does, on the lines along each axis.
+/// Removes the volumes that the cuts sweep from `stock`, as [`simulate`](fn@simulate) does, on the lines along each axis.
 ///
 /// # Errors
 /// Those of [`sweep`](crate::sweep).
@@ -50,7 +50,7 @@ impl Monitor for Pass<'_> {
 /// let up = [0.0, 0.0, 1.0];
 /// let path = Path::new(vec![Pose::new([-5.0, 5.0, 3.0], up)?, Pose::new([25.0, 5.0, 3.0], up)?])?;
 /// let part = simulate_tri(stock, &[Cut::new(&tool, &path)], &Options::default(), &())?.remaining;
-/// // A groove 4 wide and 2 deep, whose walls and edges are where they are, not where the nearest line is.
+/// // A groove 4 wide and 2 deep, whose walls and edges do not snap to the nearest line.
 /// let mesh = part.surface()?;
 /// let volume = mesh.soup().ok_or("no mesh")?.volume();
 /// assert!((volume - 18.0 * (8.0 * 5.0 - 4.0 * 2.0)).abs() < 0.01);

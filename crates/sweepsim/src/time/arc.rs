@@ -1,4 +1,4 @@
-//! The motion of an arc (straight tip, turn about one axis) cut into pieces of `t`: the simplest of motions, in its lowest degrees.
+//! The motion of an arc (straight tip, turn about one axis) cut into pieces of `t`: the simplest motion, in its lowest degrees.
 
 use crate::time::moment::Moment;
 use nalgebra::{Matrix3, Vector3};
@@ -26,7 +26,7 @@ struct TimePiece {
     pace: (f64, f64),
 }
 
-/// The pieces of one segment, made on demand.
+/// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct ArcTimes {
     nodes: Vec<TimePiece>,
@@ -154,7 +154,7 @@ impl ArcTimes {
         &self.nodes[piece as usize].rows[r][..self.count]
     }
 
-    /// Control rows of the coordinate `r` of `[κk]× A`, and the range of `1/w` they are still to be multiplied by.
+    /// Control rows of the coordinate `r` of `[κk]× A`, and the range of `1/w` by which they must still be multiplied.
     pub fn spin_rows(&self, piece: u32, r: usize) -> (&[[f64; 3]], (f64, f64)) {
         let node = &self.nodes[piece as usize];
         (&node.spin_rows[r][..self.count], node.pace)
@@ -183,7 +183,7 @@ impl ArcTimes {
         self.pace
     }
 
-    /// Of the whole: `Â`, its weight and `Âᵀ b′`.
+    /// For the whole motion: `Â`, its weight and `Âᵀ b′`.
     pub fn coefficients(&self) -> impl Iterator<Item = (Matrix3<f64>, f64, Vector3<f64>)> {
         let root = &self.nodes[0];
         (0..self.count).map(|i| (root.turns[i], root.weights[i], root.travel[i].into()))

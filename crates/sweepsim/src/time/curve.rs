@@ -1,7 +1,7 @@
 //! A motion of any degree cut into pieces of `t`.
 //!
 //! Each piece keeps the Bernstein coefficients of `Â, ŵ`, of `b`, of the rates `A′, b′` as numerators and denominators, and of the twist
-//! (what the tool sees of its own velocity, times one positive factor). Coefficients over weights are control values: their least and greatest
+//! (the velocity in the tool's frame, times one positive factor). Coefficients over weights are control values: the smallest and largest
 //! bound a rational form, because it is a convex combination of them.
 
 use crate::algebra::bivariate::MOST;
@@ -78,13 +78,13 @@ struct TimePiece {
     spin_rows: [Vec<[f64; 3]>; 2],
     tip: [(f64, f64); 2],
     velocity: [(f64, f64); 2],
-    /// Control values of `b` and of `b′`, where they go with those of `A` and `A′`.
+    /// Control values of `b` and of `b′`, if they have the same weights as those of `A` and `A′`.
     offsets: Option<[[Vec<f64>; 2]; 2]>,
     twist: [Vec<[f64; 3]>; 2],
     twist_slope: [Vec<[f64; 3]>; 2],
 }
 
-/// The pieces of one segment, made on demand.
+/// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct CurveTimes {
     nodes: Vec<TimePiece>,
@@ -98,7 +98,7 @@ fn triples(channel: &Channel) -> Vec<[f64; 3]> {
     certain((0..channel.len()).map(triple).collect())
 }
 
-/// Rows that ranges may be taken of: see [`all_or_none`].
+/// Rows whose ranges may be computed: see [`all_or_none`].
 fn certain(mut rows: Vec<[f64; 3]>) -> Vec<[f64; 3]> {
     all_or_none(rows.as_flattened_mut());
     rows
@@ -168,7 +168,7 @@ impl CurveTimes {
     /// A piece over any interval, `lower ≤ upper`, in the motion or a little beyond it.
     pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
         let channels = self.nodes[0].channels.each_ref().map(|channel| {
-            // Two cuts, the second in what the first has left: that must not be short, because its length is divided by.
+            // Two cuts, the second in what remains after the first, which must not be short since we divide by its length.
             if upper >= 0.5 {
                 let [below, _] = channel.split(upper);
                 let [_, part] = below.split(lower / upper);

@@ -1,4 +1,4 @@
-//! The inner loop: the motion at one time as a patch in a frame of its own sees it.
+//! The inner loop: the motion at one time, in the frame of a patch.
 
 use crate::algebra::quad::{Quad, add, blend, cross, mix, quad, quadratics, sub};
 use crate::time::moment::Moment;
@@ -14,7 +14,7 @@ pub(crate) struct Instant {
     spin: Quad,
     pivot: Quad,
     velocity: Quad,
-    /// As the frame sees it, and the derivative of that in `t`.
+    /// In the frame, with the derivative in `t`.
     pub own: Twisted,
     pub change: Twisted,
 }
@@ -33,27 +33,27 @@ impl Instant {
         }
     }
 
-    /// The velocity of what is at `place`.
+    /// The velocity of the point at `place`.
     pub fn moving(&self, place: &Quad) -> Quad {
         add(&cross(&self.spin, &sub(place, &self.pivot)), &self.velocity)
     }
 }
 
-/// A motion as a frame in the tool sees it.
+/// A motion, in a frame fixed to the tool.
 pub(crate) enum FramedMotion<'a> {
-    /// In its lowest degrees: those of an arc.
+    /// In the lowest degrees, those of an arc.
     FramedArc(Box<FramedArc>),
-    /// Of any degrees.
+    /// In any degrees.
     Any(&'a LocalFrame),
     /// The same, in the tool's own frame.
     AnyOwn,
 }
 
-/// An arc, whose tip goes straight, in a frame.
+/// An arc with a straight tip, in a frame.
 pub(crate) struct FramedArc {
-    /// Of a translation, always the same but for the origin.
+    /// For a translation, constant except for the origin.
     still: Option<Instant>,
-    /// Coefficients: the columns of the turn and the origin's arm, both times the weight; what the frame sees of `b′`; the weight.
+    /// Coefficients: the columns of the turn and the origin's arm, both times the weight; `b′` in the frame; the weight.
     c: [[f64; 16]; 3],
     tip: Quad,
     velocity: Quad,
@@ -147,7 +147,7 @@ mod tests {
     }
 
     proptest! {
-        /// The motion of an arc from its table of coefficients is the motion; velocities are differences of places.
+        /// The motion of an arc agrees with its table of coefficients; velocities agree with finite differences.
         #[test]
         fn arcs_agree_with_their_moments(t in 0.01..0.99, from in [-0.5..0.5, -0.5..0.5], to in [-0.5..0.5, -0.5..0.5], still in any::<bool>()) {
             let pose = |tip: [f64; 3], lean: [f64; 2]| Pose::new(tip, [lean[0], lean[1], 1.0]).unwrap();

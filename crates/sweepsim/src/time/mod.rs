@@ -1,4 +1,4 @@
-//! The motion: the parts of a path in generic position, each cut into pieces of `t`, and what a patch sees of it at one time.
+//! The motion: the parts of a path in generic position, each cut into pieces of `t`, and the motion at one time in the frame of a patch.
 
 pub(crate) mod arc;
 pub(crate) mod curve;

@@ -13,9 +13,9 @@ pub(crate) struct Moment {
     pub spin: Vector3<f64>,
     /// `b′`.
     pub velocity: Vector3<f64>,
-    /// The angular velocity as the tool sees it, times a positive factor.
+    /// The angular velocity in the tool's frame, times a positive factor.
     pub own_spin: Vector3<f64>,
-    /// Its derivative, where it changes.
+    /// Its derivative, if it is not constant.
     pub own_spin_slope: Option<Vector3<f64>>,
     /// `Aᵀ b′`, times the same factor.
     pub travel: Vector3<f64>,

@@ -1,24 +1,24 @@
-//! The parts of a path: its motions as seen from a frame, in generic position (see [`Tolerances`]).
+//! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Segment};
 
-/// A motion, and what it is of the path.
+/// A motion, and its place in the path.
 #[derive(Clone, Debug)]
 pub(crate) struct PathPart {
     pub segment: Segment,
     /// Number of the move.
     pub number: u32,
-    /// When in the move it begins, and how much of the move it is: moves that turn far have several parts.
+    /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
     pub start: f32,
     pub share: f32,
 }
 
-/// The motions along a path as seen from a frame, tips displaced. Moves that do not move are left out.
+/// The motions along a path in a frame, with displaced tips. Moves of length zero are left out.
 ///
-/// A tool that is not `symmetric` about its axis is carried along without turning about it, where the poses do not say how it turns.
+/// A tool that is not `symmetric` about its axis moves without turning about it, unless the poses specify how it turns.
 /// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
 pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tolerances: &Tolerances) -> Vec<PathPart> {
     let poses = path.poses();

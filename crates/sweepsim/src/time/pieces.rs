@@ -5,7 +5,7 @@ use crate::time::curve::CurveTimes;
 use crate::time::moment::{Moment, Rows};
 use sweepsim_motion::Segment;
 
-/// The pieces of one segment, made on demand.
+/// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
 pub(crate) enum Times {
     Arc(ArcTimes),
@@ -21,7 +21,7 @@ impl Times {
         }
     }
 
-    /// A piece of its own, over any interval; it is kept until it is [released](Self::release).
+    /// A separate piece over any interval, kept until it is [released](Self::release).
     pub fn place(&mut self, lower: f64, upper: f64) -> u32 {
         match self {
             Self::Arc(times) => times.place(lower, upper),
@@ -29,7 +29,7 @@ impl Times {
         }
     }
 
-    /// How many pieces there are, to release those that come after.
+    /// The number of pieces, as a mark for releasing later ones.
     pub fn mark(&self) -> usize {
         match self {
             Self::Arc(times) => times.mark(),
@@ -37,7 +37,7 @@ impl Times {
         }
     }
 
-    /// Forgets the pieces made since the mark: placed ones, and what they were split into.
+    /// Drops the pieces created since the mark: placed ones, and their parts.
     pub fn release(&mut self, mark: usize) {
         match self {
             Self::Arc(times) => times.release(mark),
@@ -67,7 +67,7 @@ impl Times {
         }
     }
 
-    /// Control rows of the coordinate `r` of `A′`, and a range of what they are still to be multiplied by.
+    /// Control rows of the coordinate `r` of `A′`, and the range of the factor by which they must still be multiplied.
     pub fn spin_rows(&self, piece: u32, r: usize) -> (Rows<'_>, (f64, f64)) {
         match self {
             Self::Arc(times) => times.spin_rows(piece, r),
@@ -75,7 +75,7 @@ impl Times {
         }
     }
 
-    /// Coefficients of the angular velocity as the tool sees it (one alone when it is constant) and of `Aᵀ b′`, times a common
+    /// Coefficients of the angular velocity in the tool's frame (only one if it is constant) and of `Aᵀ b′`, times a common
     /// positive factor.
     pub fn twist(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
         match self {
@@ -84,7 +84,7 @@ impl Times {
         }
     }
 
-    /// Coefficients of the derivatives of both: none of the first when it is constant, none of either when both are.
+    /// Coefficients of the derivatives of both: none of the first if it is constant, none of either if both are.
     pub fn twist_slope(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
         match self {
             Self::Arc(times) => (&[], times.travel_slope(piece)),

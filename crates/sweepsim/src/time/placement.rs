@@ -1,12 +1,12 @@
-//! A frame in the tool, placed and moving: how a patch sees the motion at one time.
+//! A frame fixed to the tool, placed and moving: the motion at one time, in the frame of a patch.
 
 use crate::algebra::quad::{Quad, quad};
 use nalgebra::{Matrix3, Vector3};
 
-/// A turn and a shift: a frame in another.
+/// A rotation and a shift: one frame in another.
 pub(crate) type LocalFrame = (Matrix3<f64>, Vector3<f64>);
 
-/// What a pose and a velocity look like from a frame in the tool.
+/// A pose and a velocity, in a frame fixed to the tool.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Twisted {
     /// The angular velocity, times a positive factor.
@@ -16,7 +16,7 @@ pub(crate) struct Twisted {
 }
 
 impl Twisted {
-    /// `spin` and `travel` as the tool sees them.
+    /// From `spin` and `travel` in the tool's frame.
     pub fn new(spin: &Vector3<f64>, travel: &Vector3<f64>, frame: Option<&LocalFrame>) -> Self {
         let (spin, travel) = match frame {
             None => (*spin, *travel),
@@ -37,7 +37,7 @@ pub(crate) struct Placing {
 }
 
 impl Placing {
-    /// Of a tool turned by `turn` with its tip at `tip`.
+    /// For a tool turned by `turn` with its tip at `tip`.
     pub fn new(turn: &Matrix3<f64>, tip: &Vector3<f64>, frame: Option<&LocalFrame>) -> Self {
         let (turn, origin) = match frame {
             None => (*turn, *tip),

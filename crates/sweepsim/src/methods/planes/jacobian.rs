@@ -1,14 +1,14 @@
-//! What the enclosure of a Jacobian says of a section's curve: whether it is regular, and along which variables it is monotone.
+//! What the enclosure of a Jacobian tells about a section's curve: whether it is regular, and along which variables it is monotone.
 
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum};
 use sweepsim_solve::Enclosure;
 
-/// What is seen of the equations without that of `Y`: row 0 is `X`, row 2 is `g`.
+/// The equations without that of `Y`: row 0 is `X`, row 2 is `g`.
 pub(super) fn rows<const N: usize>() -> impl Iterator<Item = usize> {
     (0..N).filter(|r| *r != 1)
 }
 
-/// The Jacobian of `X` (and `g`) with respect to the variables other than `over`; with one variable, a unit row fills it up.
+/// The Jacobian of `X` (and `g`) with respect to the variables other than `over`; with one variable, a unit row completes it.
 pub(super) fn without<const N: usize>(jacobian: &[[f64; N]; N], over: usize) -> Matrix2<f64> {
     let mut matrix = Matrix2::identity();
     for (n, r) in rows::<N>().enumerate() {

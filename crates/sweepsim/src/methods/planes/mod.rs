@@ -53,7 +53,7 @@ fn plane(lines: &Lattice) -> Plane {
     Plane::of_lines(lines.coordinate(0, lines.i[0]))
 }
 
-/// Solves a map by the curves in the lines' plane; by charts, where that does not decide it.
+/// Solves a map by the curves in the lines' plane, or by charts if that fails to decide it.
 fn slice<const N: usize, M: AnyBox<N>>(
     map: &mut M,
     system: impl FnOnce() -> Result<System, SystemError>,
@@ -79,7 +79,7 @@ impl CrossingMethod<'_> for Planes {
         Self { forms: forms.collect() }
     }
 
-    /// Column by column: each is a plane.
+    /// Column by column, since each column is a plane.
     fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {
         let column = |i: usize| WorkShare {
             parts: 0..parts,

@@ -3,10 +3,10 @@
 //! [`CurveSolver`] gives the curves of Eq. 4 (patches) and Eq. 5 (edges; caps and kinks alike) with the right connectivity, as
 //! polylines whose vertices lie on the curve. Each *span*, the curve between two vertices, lies in a known box: its chord's,
 //! widened by the polyline's tolerance. Where the Jacobian of `(X, Y, g)` is regular on the box, `Y` is monotone along the span: a
-//! line crosses it once, if it passes between the two ends, or never. Where it is not (about the extrema of `Y`), and a line may
+//! line crosses it once, if it passes between the two ends, or never. Where it is not (about the extrema of `Y`) and a line may
 //! cross, the span is halved at a point of the curve, and the boxes of the halves shrink around it by the mean value theorem.
 //!
-//! Signs of `Y − y` are taken once per vertex: along a closed curve, crossings of either direction are as many. Where curves or spans
+//! The sign of `Y − y` is taken once per vertex, so a closed curve has equally many crossings in both directions. Where curves or spans
 //! cannot be decided (a patch that hardly moves along its normal, a plane through a singular point), no crossings are returned, and the patch is
 //! left to the charts of the column's lines.
 
@@ -17,15 +17,15 @@ use crate::tolerances::curve_options;
 use nalgebra::{Const, DimMin, ToTypenum};
 use sweepsim_solve::{CancelOnly, ChartStatistics, CurveSolver, Curves, Enclosure, Sink, System, SystemError};
 
-/// Tolerances of the polylines, in parts of the parameters' ranges: the boxes of spans are this much wider than the chords'. The next
-/// is tried where a span of the one before could not be decided.
+/// Tolerances of the polylines, relative to the parameters' ranges: the boxes of spans are this much wider than those of the chords. The next
+/// tolerance is tried if a span could not be decided with the previous one.
 const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
-/// Boxes of a section, and of each search on a face of one. Sections without trouble need some ten to a hundred.
+/// The budget of boxes for a section, and for each search on a face of one. Well-behaved sections need about ten to a hundred.
 const BOXES: u64 = 4_000;
-/// Spans of a section, halves included. Sections without trouble need some hundred; where a curve almost touches itself there is no end to them.
+/// The budget of spans for a section, including halves. Well-behaved sections need about a hundred; where a curve almost touches itself, halving would never end.
 const SPANS: u32 = 4_000;
 
-/// Makes the curves of sections.
+/// Finds the curves of sections.
 #[derive(Debug)]
 pub(crate) struct Slicer {
     curves: CurveSolver,
@@ -42,7 +42,7 @@ impl Slicer {
     }
 
     /// Finds the preimages of the lines of `query`, all with one `x`, by way of the curves of `system` (which is `X = x`, and `g = 0`
-    /// where the map has it). `false`, and nothing found, where that does not decide it.
+    /// where the map has it). Returns `false`, and no preimages, if that does not decide it.
     pub fn solve<const N: usize, M>(
         &mut self,
         map: &mut M,
@@ -75,7 +75,7 @@ impl Slicer {
         false
     }
 
-    /// Cuts the curves by the lines; `false` if some span stays undecided.
+    /// Intersects the curves with the lines; `false` if some span stays undecided.
     fn cut<const N: usize, M>(
         &mut self,
         map: &mut M,
@@ -89,7 +89,7 @@ impl Slicer {
         M: AnyBox<N>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
-        // With a skin, curves run on beyond the domain: at most this far.
+        // With a skin, curves continue beyond the domain, at most this far.
         let region = Enclosure::hull(-2.0 * skin, 1.0 + 2.0 * skin);
         let mut cutting = Cutting {
             map,

@@ -6,12 +6,12 @@ use crate::methods::planes::jacobian::{minor_is_definite, regular, rows, without
 use nalgebra::{Const, DimMin, ToTypenum, Vector2};
 use sweepsim_solve::{ChartStatistics, Enclosure, Monitor, Preimage, Sample, Sink};
 
-/// Halvings of a span.
+/// The maximum number of halvings of a span.
 pub(super) const DEPTH: u32 = 44;
-/// Steps of Newton's method.
+/// The maximum number of Newton steps.
 const STEPS: usize = 24;
 
-/// A point of a curve, and where along the plane it is.
+/// A point of a curve, and its position along the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex<const N: usize> {
     pub x: [f64; N],
@@ -25,7 +25,7 @@ struct Slope<const N: usize> {
     slope: [f64; N],
 }
 
-/// Where the next crossing should be, by the parabola with the slopes of the last two: the latest first.
+/// Predicts the next crossing from the parabola through the last two with their slopes, the latest first.
 fn guess<const N: usize>(last: &[Option<Slope<N>>; 2], y: f64) -> Option<[f64; N]> {
     let latest = last[0]?;
     let step = y - latest.at.y;
@@ -37,7 +37,7 @@ fn guess<const N: usize>(last: &[Option<Slope<N>>; 2], y: f64) -> Option<[f64; N
     }))
 }
 
-/// The curves of one section being cut by the lines.
+/// The curves of one section, as they are intersected with the lines.
 pub(super) struct Cutting<'a, const N: usize, M: AnyBox<N>, K> {
     pub map: &'a mut M,
     pub lattice: &'a Lattice<'a>,
@@ -66,7 +66,7 @@ where
         Vertex { x, y }
     }
 
-    /// Cuts the curve from `p` to `q`, which lies in the box `within`; `false` if that stays undecided.
+    /// Intersects the curve from `p` to `q`, which lies in the box `within`, with the lines; `false` if that stays undecided.
     pub fn span(&mut self, p: &Vertex<N>, q: &Vertex<N>, within: [Enclosure; N], depth: u32) -> bool {
         self.statistics.boxes += 1;
         let Some(left) = self.left.checked_sub(1) else {
@@ -121,7 +121,7 @@ where
             };
             from = Vertex { x: found.x, y };
             before = [Some(Slope { at: from, slope }), before[0]];
-            // Beyond the domain another patch, or another segment, has the curve.
+            // Beyond the domain, the curve belongs to another patch or segment.
             if found.x.iter().all(|x| (0.0..=1.0).contains(x)) {
                 self.sink.found(found);
             }
@@ -168,7 +168,7 @@ where
 
     /// A point of the curve between `p` and `q`, and boxes around the two halves.
     ///
-    /// Some variable grows or falls all along the span: one without which the other equations' Jacobian is regular on the box.
+    /// Some variable is monotone along the span: one for which the Jacobian of the other equations without its column is regular on the box.
     fn halves(
         &mut self,
         p: &Vertex<N>,
@@ -229,8 +229,8 @@ where
         None
     }
 
-    /// A smaller box that holds all of the curve in `part`: by the mean value theorem around its middle, the other variables are
-    /// affine functions of `over`, up to how much the Jacobian varies.
+    /// A smaller box that holds all of the curve in `part`: by the mean value theorem about its middle, the other variables are
+    /// affine functions of `over`, up to the variation of the Jacobian.
     fn shrunk(&mut self, part: [Enclosure; N], over: usize) -> [Enclosure; N] {
         let mark = self.map.mark();
         let cell = self.map.place(&part);
