@@ -26,7 +26,7 @@ pub struct Body {
 /// ```
 /// use sweepsim_motion::{Assembly, BodyKind, Profile, ProfileSegment, Tool};
 ///
-/// // A holder 40 mm thick, 60 mm long, that begins 35 mm above the tip.
+/// // A holder of diameter 40 mm and length 60 mm that begins 35 mm above the tip.
 /// let line = |rho, zeta| ProfileSegment::Line { to: [rho, zeta] };
 /// let holder = Profile::new([0.0, 35.0], vec![line(20.0, 35.0), line(20.0, 95.0), line(0.0, 95.0)])?;
 /// let assembly = Assembly::new(Tool::ball(5.0, 30.0)?)
@@ -42,7 +42,7 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// A cutter alone.
+    /// Creates an assembly of a cutter alone.
     #[must_use]
     pub fn new(cutter: Tool) -> Self {
         Self {

@@ -2,7 +2,7 @@
 //!
 //! A [`Tool`] is a solid with patches and sharp edges; an [`Assembly`] adds a shank and a holder. A [`Path`] passes through [`Pose`]s by
 //! [`Move`]s, or [along](Path::along) a [`SplineMotion`]. It consists of [`Segment`]s: orientation and tip as Bernstein forms in `t`, which is all that
-//! code that bounds or solves the motion needs.
+//! solvers need.
 
 mod assembly;
 mod boundary;

@@ -1,4 +1,4 @@
-//! Where a tool is: its tip and the direction of its axis.
+//! Poses of a tool: its tip and the direction of its axis.
 
 use nalgebra::{Matrix3, Unit, Vector3};
 use thiserror::Error;
@@ -12,7 +12,7 @@ pub struct Pose {
     side: Option<Unit<Vector3<f64>>>,
 }
 
-/// Why numbers do not make a pose.
+/// Why a pose is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PoseError {
@@ -31,7 +31,7 @@ impl Pose {
     /// A pose with the tip at `tip` (lengths) and the axis along `axis` (any positive length; it is normalised).
     ///
     /// # Errors
-    /// [`PoseError`] when a number is not finite or the axis has no direction.
+    /// [`PoseError`] if a number is not finite or the axis has no direction.
     pub fn new(tip: [f64; 3], axis: [f64; 3]) -> Result<Self, PoseError> {
         if !tip.iter().all(|c| c.is_finite()) {
             return Err(PoseError::TipNotFinite(tip));
@@ -57,7 +57,7 @@ impl Pose {
     /// A pose that also fixes the spin of the tool about its axis: its `x` points along the component of `side` across the axis.
     ///
     /// # Errors
-    /// [`PoseError`] when a number is not finite, the axis has no direction, or `side` has none across it.
+    /// [`PoseError`] if a number is not finite, the axis has no direction, or `side` has no component across it.
     pub fn with_side(tip: [f64; 3], axis: [f64; 3], side: [f64; 3]) -> Result<Self, PoseError> {
         let pose = Self::new(tip, axis)?;
         let bad = PoseError::SideWithoutDirection(side);
@@ -76,7 +76,7 @@ impl Pose {
         }
     }
 
-    /// A pose whose parts are known to be valid.
+    /// Creates a pose from parts known to be valid.
     pub(crate) fn at(tip: Vector3<f64>, axis: Unit<Vector3<f64>>) -> Self {
         Self { tip, axis, side: None }
     }
@@ -93,7 +93,7 @@ impl Pose {
         self.axis.into_inner().into()
     }
 
-    /// Where the tool's `x` points, if the pose fixes it: a unit vector.
+    /// The direction of the tool's `x` as a unit vector, if the pose fixes it.
     #[must_use]
     pub fn side(&self) -> Option<[f64; 3]> {
         self.side.map(|side| side.into_inner().into())

@@ -5,12 +5,12 @@ use super::{NormalField, PatchError};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
-/// Stretches whose normals enclose no larger angle (its sine) join smoothly.
+/// Stretches join smoothly if the sine of the angle between their normals is at most this.
 pub(super) const SMOOTH: f64 = 1e-9;
 /// How a boundary is folded at a point of an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fold {
-    /// Not at all: the normals of both faces agree.
+    /// Smooth: the normals of both faces agree.
     Smooth,
     /// The material fills less than half a turn.
     Convex,
@@ -34,7 +34,7 @@ impl Edge {
     ///
     /// # Errors
     /// [`PatchError`]: forms in other than one variable, a degree above 7, weights that are not positive, normals that vanish inside or are not
-    /// normal to the curve, moments that are not `C × N`; both to within a bound of the rounding errors.
+    /// perpendicular to the curve, moments that are not `C × N`. The last two are checked to within a bound on the rounding errors.
     pub fn new(
         position: [Bernstein; 3],
         weight: Bernstein,
@@ -93,7 +93,7 @@ impl Edge {
         if turn.norm() <= SMOOTH * a.norm() * b.norm() {
             Fold::Smooth
         } else if turn.dot(&along) < 0.0 {
-            // From A to B the normal leans the way that leads from A to B.
+            // From A to B, the normal leans in the direction from A to B.
             Fold::Convex
         } else {
             Fold::Concave

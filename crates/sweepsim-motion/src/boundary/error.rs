@@ -3,7 +3,7 @@
 use sweepsim_spline::SplineError;
 use thiserror::Error;
 
-/// Why forms do not make a patch or an edge of a tool.
+/// Why a patch or an edge of a tool is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum PatchError {
@@ -12,9 +12,9 @@ pub enum PatchError {
     Variables {
         /// Which form.
         what: &'static str,
-        /// How many variables it must have.
+        /// The required number of variables.
         expected: usize,
-        /// How many variables it has.
+        /// The number of variables given.
         found: usize,
     },
     /// A degree is too high.
@@ -52,21 +52,21 @@ pub enum PatchError {
         "the moments are not F × N: w M − P × N has a coefficient of {off:e}, and rounding accounts for {allowed:e}"
     )]
     Moment {
-        /// The largest coefficient of what should be 0.
+        /// The largest coefficient of a form that should be 0.
         off: f64,
-        /// What rounding may make of 0.
+        /// The rounding error allowed.
         allowed: f64,
     },
-    /// The normals are not at right angles to the surface or curve.
+    /// The normals are not perpendicular to the surface or curve.
     #[error(
         "the normals are not at right angles to the direction of variable {axis}: off by {off:e}, and rounding accounts for {allowed:e}"
     )]
     NotNormal {
-        /// The variable along whose direction they are not.
+        /// The variable to whose direction they are not perpendicular.
         axis: usize,
-        /// The largest coefficient of what should be 0.
+        /// The largest coefficient of a form that should be 0.
         off: f64,
-        /// What rounding may make of 0.
+        /// The rounding error allowed.
         allowed: f64,
     },
     /// The normals point to the other side of the surface.
@@ -75,15 +75,15 @@ pub enum PatchError {
     /// A frame that is not a rotation and a finite origin.
     #[error("the frame is not a rotation with a finite origin")]
     Frame,
-    /// A parameter outside of the patch.
-    #[error("the parameter {parameter} is outside of [0, 1]")]
+    /// A parameter outside the patch.
+    #[error("the parameter {parameter} is outside [0, 1]")]
     Outside {
         /// Its value.
         parameter: f64,
     },
 }
 
-/// Why patches do not enclose a tool.
+/// Why a tool's boundary is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {
@@ -100,7 +100,7 @@ pub enum ToolError {
         /// The middle of the part.
         place: [f64; 3],
     },
-    /// Two patches that join face opposite ways.
+    /// Two patches that join face in opposite directions.
     #[error(
         "patches {patch} and {other} join at side {side} of the first, but one faces out of the tool and the other into it"
     )]
@@ -146,7 +146,7 @@ pub enum ToolError {
     Patch {
         /// The surface, from 0.
         surface: usize,
-        /// The piece between knots: its range of `u` and of `v`. The error counts `u` and `v` from 0 to 1 in it.
+        /// The piece between knots: its range of `u` and of `v`. In the error, `u` and `v` run from 0 to 1 over it.
         ranges: [(f64, f64); 2],
         /// Why.
         source: PatchError,

@@ -1,4 +1,4 @@
-//! How the sides of patches join to a closed boundary, and which joints are sharp.
+//! How the sides of patches join into a closed boundary, and which joints are sharp.
 //!
 //! Sides are cut where corners of other patches lie on them. The resulting *stretches* must join in pairs and run in opposite directions; a side
 //! that joins several others is a T-joint. Two stretches may have different parametrisations of the same curve: then the normals of one are converted
@@ -92,7 +92,7 @@ pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, Tool
     Ok(edges)
 }
 
-/// A multiple of the enclosed volume, by sums over each patch: for its sign alone.
+/// A multiple of the enclosed volume, by sums over each patch; only its sign matters.
 fn volume(patches: &[Patch]) -> f64 {
     const STEPS: usize = 24;
     let middle = |n: usize| (n as f64 + 0.5) / STEPS as f64;

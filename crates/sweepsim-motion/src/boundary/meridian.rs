@@ -31,7 +31,7 @@ impl Quarter {
             (angle.cos(), angle.sin())
         };
         let k = number as f64;
-        // The last quarter must end, to the bit, where the first begins.
+        // The last quarter must end exactly where the first begins.
         let end = if number == 3 { at(0.0) } else { at(k + 1.0) };
         let (start, middle) = (at(k), at(k + 0.5));
         Self {
@@ -162,7 +162,7 @@ impl Meridian {
         }
     }
 
-    /// All lists with three coefficients; `None` when one has more.
+    /// All lists with three coefficients; `None` if one has more.
     fn quadratics(&self) -> Option<[[f64; 3]; 6]> {
         let lists = [
             &self.rho,

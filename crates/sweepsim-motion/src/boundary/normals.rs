@@ -1,4 +1,4 @@
-//! Fields of surface normals: how they are made from a surface, and what must hold of them.
+//! Fields of surface normals: how they are computed from a surface, and their invariants.
 
 use super::PatchError;
 use nalgebra::Vector3;
@@ -7,16 +7,16 @@ use sweepsim_spline::Bernstein;
 /// Highest degree of a patch or an edge.
 pub(super) const MOST: usize = 7;
 
-/// Highest degree of normals and moments: those of a patch of the highest degree have four times its degree.
+/// Highest degree of normals and moments: four times that of patches.
 const MOST_OF_NORMALS: usize = 4 * MOST;
 
-/// So many roundings of the largest coefficients may have gone into normals and moments that a caller computed.
+/// The number of roundings of the largest coefficients allowed in normals and moments computed by a caller.
 const ROUNDINGS: f64 = 64.0;
 
 /// A field of surface normals `N` and their moments `M = F × N`, as Bernstein forms with one common positive factor.
 ///
-/// Invariants: six forms in the same variables, one or two; finite; of degrees that can be evaluated well. That they belong to a surface is
-/// checked where they meet it: by [`Patch::with_normals`](crate::Patch::with_normals) and [`Edge::new`](crate::Edge::new).
+/// Invariants: six finite forms in the same one or two variables, of degrees that can be evaluated accurately. Whether they belong to a surface is
+/// checked when they are combined with it: by [`Patch::with_normals`](crate::Patch::with_normals) and [`Edge::new`](crate::Edge::new).
 #[derive(Clone, Debug)]
 pub struct NormalField {
     pub(super) normal: [Bernstein; 3],
@@ -24,10 +24,10 @@ pub struct NormalField {
 }
 
 impl NormalField {
-    /// The field of these normals and moments.
+    /// Creates a field of these normals and moments.
     ///
     /// # Errors
-    /// [`PatchError`]: forms in other than one or two variables or not all in the same, a degree above 28, coefficients that are not finite,
+    /// [`PatchError`]: forms that are not in one or two variables, or not all in the same number, a degree above 28, coefficients that are not finite,
     /// normals that are 0.
     pub fn new(normal: [Bernstein; 3], moment: [Bernstein; 3]) -> Result<Self, PatchError> {
         let expected = normal[0].variables().clamp(1, 2);
@@ -56,7 +56,7 @@ impl NormalField {
         &self.moment
     }
 
-    /// Whether the field is normal to `position / weight`, and its moments are `F × N`, as far as rounding lets one see.
+    /// Whether the field is normal to `position / weight` and its moments are `F × N`, up to rounding.
     ///
     /// With `P` the position and `w` the weight, `w M − P × N`, and `w ⟨N, P′⟩ − w′ ⟨N, P⟩` for each variable, are 0. Their coefficients are computed with a
     /// bound of their rounding errors; the caller's own roundings add `64 ε` of the largest coefficients.
@@ -94,7 +94,7 @@ impl NormalField {
     }
 }
 
-/// Finite, in `expected` variables, of a degree that is not too high.
+/// Checks that forms are finite, in `expected` variables, and of an admissible degree.
 pub(super) fn check_form(form: &Bernstein, what: &'static str, expected: usize, most: usize) -> Result<(), PatchError> {
     let found = form.variables();
     if found != expected {
@@ -161,7 +161,7 @@ fn dot(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> Bernstein {
     a[0].mul(&b[0]).add(&a[1].mul(&b[1])).add(&a[2].mul(&b[2]))
 }
 
-/// Whether normals in one or two variables vanish nowhere inside. Boxes of the inside are cut until the normals of each lie in a half space; boxes at the sides may stay undecided.
+/// Whether normals in one or two variables vanish nowhere in the interior. Interior boxes are cut until the normals of each lie in a half-space; boxes at the sides may stay undecided.
 pub(super) fn check_normals(normal: &[Bernstein; 3]) -> Result<(), PatchError> {
     const DEPTH: usize = 14;
     let mut stack = vec![(normal.clone(), [[0.0, 1.0]; 2], 0)];

@@ -7,7 +7,7 @@ use sweepsim_spline::Bernstein;
 
 /// A smooth piece of a tool's boundary: `F = position / weight` on `[0, 1]²`, with `F_u × F_v` pointing out of the tool.
 ///
-/// Invariants: finite forms in two variables, of degree at most 7; positive weights; no fold inside; normals that are normal to the surface and point out.
+/// Invariants: finite forms in two variables, of degree at most 7; positive weights; no fold in the interior; normals perpendicular to the surface that point out.
 #[derive(Clone, Debug)]
 pub struct Patch {
     pub(super) position: [Bernstein; 3],
@@ -19,13 +19,13 @@ pub struct Patch {
 impl Patch {
     /// The patch `position / weight`, whose normal `F_u × F_v` points out of the tool.
     ///
-    /// Its normals and moments are made as Bernstein forms: with `P` the position and `w` the weight,
+    /// Its normals and moments are computed as Bernstein forms: with `P` the position and `w` the weight,
     /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule). Those of a piece of a surface
-    /// of revolution about the third axis, which is recognised where it is one but for rounding, have a lower degree.
+    /// of revolution about the third axis, which is recognised up to rounding, have a lower degree.
     ///
     /// # Errors
-    /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the inside (along the sides it
-    /// may vanish: poles).
+    /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the interior (it may
+    /// vanish along the sides, at poles).
     pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
         check_place(&position, &weight, 2)?;
         let found = recognised::field(&position, &weight);
@@ -47,10 +47,10 @@ impl Patch {
         })
     }
 
-    /// The patch `position / weight` with normals of your own, for surfaces whose normals have a lower degree than [`new`](Self::new) would find.
+    /// The patch `position / weight` with user-defined normals, for surfaces whose normals have a lower degree than [`new`](Self::new) would find.
     ///
-    /// They are verified: `field` must be normal to the surface and its moments `F × N`, both to within a bound of the rounding
-    /// errors, must vanish nowhere inside, and point to the side of `F_u × F_v`.
+    /// They are verified: `field` must be normal to the surface and its moments must be `F × N`, both to within a bound on the rounding
+    /// errors; it must vanish nowhere in the interior, and point to the same side as `F_u × F_v`.
     ///
     /// # Errors
     /// [`PatchError`]: as [`new`](Self::new), and [`Moment`](PatchError::Moment), [`NotNormal`](PatchError::NotNormal), [`Inward`](PatchError::Inward).
@@ -61,7 +61,7 @@ impl Patch {
         let own = Self::new(position, weight)?;
         field.check(&own.position, &own.weight)?;
         check_normals(&field.normal)?;
-        // Both fields are along the same line and vanish nowhere inside: one place decides. The one where that is clearest.
+        // Both fields are parallel and vanish nowhere inside, so one point decides. Take the clearest.
         let at =
             |field: &NormalField, u: f64, v: f64| Vector3::from([0, 1, 2].map(|k| field.normal[k].evaluate(&[u, v])));
         let places = [0.21, 0.37, 0.52, 0.68, 0.83];
@@ -97,13 +97,13 @@ impl Patch {
         &self.weight
     }
 
-    /// Its normals.
+    /// The normals.
     #[must_use]
     pub fn field(&self) -> &NormalField {
         &self.field
     }
 
-    /// The same as products of functions of `u` and of `v`, where it is a piece of a surface of revolution.
+    /// The patch as products of functions of `u` and of `v`, if it is a piece of a surface of revolution.
     #[must_use]
     pub fn revolved(&self) -> Option<&Revolved> {
         self.revolved.as_ref()

@@ -2,7 +2,7 @@
 //!
 //! With a circle `c² + s² = a²` in `u` and a meridian `ρ, ζ` over `ω` in `v`, `F = (c ρ, s ρ, a ζ) / (a ω)`, the normals are parallel to
 //! `N = (c n_ρ, s n_ρ, a n_ζ)` with `n_ρ = ζ′ω − ζω′` and `n_ζ = ρω′ − ρ′ω`, and `ω F × N = (−s m, c m, 0)` with `m = ζ n_ρ − ρ n_ζ`. `F_u × F_v` has many times
-//! the degree: what it has in common with `N`, a multiple of `ρ` among others, is left out, and with it the zeros at poles on the axis.
+//! that degree; its common factors, a multiple of `ρ` among them, are dropped, and with them the zeros at poles on the axis.
 
 use super::NormalField;
 use sweepsim_spline::Bernstein;
@@ -63,7 +63,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn form(c: &[f64]) -> Bernstein {
-    // As many coefficients as the degree says.
+    // As many coefficients as the degree requires.
     Bernstein::new(&[c.len() - 1], c.to_vec()).unwrap_or_else(|_| Bernstein::constant(1, 0.0))
 }
 
@@ -123,7 +123,7 @@ impl Revolution {
             let (before, after) = (form(&list[..q]), form(&list[1..]));
             after.mul(&form(&omega[..q])).sub(&before.mul(&form(&omega[1..])))
         };
-        // Anticlockwise the circle runs with F_u × F_v out of it, where the meridian goes up.
+        // If the circle runs counter-clockwise and the meridian upwards, F_u × F_v points out.
         let [(c0, s0), (c1, s1)] = [0, 1].map(|i| (self.circle[0][i], self.circle[1][i]));
         let sense = if c0 * s1 - s0 * c1 > 0.0 { 1.0 } else { -1.0 };
         let (out, up) = (wedge(zeta).scale(sense), wedge(rho).scale(-sense));
@@ -143,7 +143,7 @@ impl Revolution {
     }
 }
 
-/// The normals of a patch and their moments, where it is a piece of a surface of revolution about the third axis with circles in `u` or in `v`.
+/// The normals of a patch and their moments, if it is a piece of a surface of revolution about the third axis with circles in `u` or in `v`.
 pub(super) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<NormalField> {
     let alike = position.iter().all(|form| form.degrees() == weight.degrees());
     if !alike || weight.variables() != 2 {
@@ -159,7 +159,7 @@ pub(super) fn field(position: &[Bernstein; 3], weight: &Bernstein) -> Option<Nor
         if !swapped {
             return Some(field);
         }
-        // Other variables, and with them the other side.
+        // Swapped variables, and hence the opposite side.
         let turn = |form: &Bernstein| form.scale(-1.0).extend(2, &[1, 0]).ok();
         let all = |forms: &[Bernstein; 3]| Some([turn(&forms[0])?, turn(&forms[1])?, turn(&forms[2])?]);
         Some(NormalField {
@@ -210,7 +210,7 @@ mod tests {
     }
 
     proptest! {
-        /// The closed form is the general one, but for a positive factor, and its moments are `F × N`.
+        /// The closed form agrees with the general one up to a positive factor, and its moments are `F × N`.
         #[test]
         fn closed_and_general_normals_agree(
             start in -3.0..3.0, sweep in prop_oneof![0.2..1.6, -1.6..-0.2],
@@ -223,7 +223,7 @@ mod tests {
             let (closed, general) = (field(&position, &weight).unwrap(), normals(&position, &weight));
             let (n, m) = (at(&closed.normal, &place), at(&closed.moment, &place));
             let long = at(&general.normal, &place);
-            // Coefficients of the general normals are below 1e7, and lose what cancels.
+            // Coefficients of the general normals are below 1e7, and suffer from cancellation.
             prop_assert!(n.cross(&long).norm() <= 1e-13 * 1e7 * n.norm() && n.dot(&long) > -1e-6 * n.norm());
             if long.norm() > 1e-3 {
                 prop_assert!(n.dot(&long) > 0.0);

@@ -1,10 +1,10 @@
 //! The boundary of a tool of revolution as exact rational Bernstein patches, and the sharp edges between them.
 //!
 //! Legend (the paper's symbols): `F` position, `N` outward normal, `ρ, ζ` radius and height of the profile, `e(u)` the
-//! unit vector at azimuth `u`. With each normal goes its *moment* `M = F × N`: `(N, M)` are the Plücker coordinates of the
+//! unit vector at azimuth `u`. Each normal comes with its *moment* `M = F × N`: `(N, M)` are the Plücker coordinates of the
 //! surface normal, and under a rigid motion with velocity `b′` of the origin and angular velocity `ω` the envelope
 //! function is `g = ⟨N, V⟩ = ⟨N, b′⟩ + ⟨M, ω⟩`: linear in them. `N` and `M` are stored with a common positive factor, in the
-//! lowest degree there is: for a surface of revolution `M = (ζ n_ρ − ρ n_ζ)(z × e)` has the degree of `F`, not that of `F × N`.
+//! lowest possible degree: for a surface of revolution `M = (ζ n_ρ − ρ n_ζ)(z × e)` has the degree of `F`, not that of `F × N`.
 //!
 //! Poles are avoided where possible: a half ball at a tip has its poles on its rim, and a disk is one
 //! patch that is singular only at four points of its rim. Both lie at an azimuth that no machine axis favours.
@@ -16,10 +16,10 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use sweepsim_spline::Bernstein;
 
-/// The azimuth at which quarters of revolution begin, in radians: a number that no drawing uses.
+/// The azimuth at which quarters of revolution begin, in radians: a value that no drawing uses.
 const AZIMUTH: f64 = 0.392_217_5;
 
-/// Normals nearer than this (the sine of their angle) belong to a smooth joint.
+/// Normals closer than this (the sine of their angle) belong to a smooth joint.
 const SMOOTH: f64 = 1e-13;
 
 /// A unit disk about the origin as one biquadratic patch, singular only at its four corners on the rim
@@ -88,7 +88,7 @@ fn half_ball(radius: f64, zeta: f64, above: bool) -> Vec<Patch> {
     patches
 }
 
-/// A patch of the tool's own frame turned by `turn`, then moved by `shift`.
+/// A patch in the tool's frame, rotated by `turn`, then moved by `shift`.
 pub(super) fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) -> Patch {
     let combine = |forms: &[Bernstein; 3], row: usize, extra: &[(f64, &Bernstein)]| {
         let mut coefficients = vec![0.0; forms[0].coefficients().len()];
@@ -150,7 +150,7 @@ pub(crate) fn patches(profile: &Profile) -> Vec<Patch> {
 fn arc_patches(piece: &OutlinePiece, arc: &OutlineArc) -> Vec<Patch> {
     let mut patches = Vec::new();
     let (mut start, mut sweep, mut from, mut to) = (arc.start, arc.sweep, piece.from, piece.to);
-    // A ball at an end on the axis: take off the half ball, which has no pole there.
+    // A ball at an end on the axis: split off the half ball, which has no pole there.
     let ball = arc.centre.x == 0.0 && sweep > 0.0 && sweep >= FRAC_PI_2 * (1.0 - 1e-12);
     let mut last = None;
     if ball && from.x == 0.0 {

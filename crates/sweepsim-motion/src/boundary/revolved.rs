@@ -6,7 +6,7 @@ use super::{NormalField, Patch, PatchError};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_spline::Bernstein;
 
-/// A piece of a surface of revolution about the third axis of a frame of its own, as products of quadratic Bernstein forms.
+/// A piece of a surface of revolution about the third axis of its own frame, as products of quadratic Bernstein forms.
 ///
 /// In that frame, with circle `c, s, w` in `u` and meridian `ρ, ζ, ω, n_ρ, n_ζ, m` in `v`:
 /// `F = (c ρ, s ρ, w ζ) / (w ω)`, `N = (c n_ρ, s n_ρ, w n_ζ)`, `F × N = (−s m, c m, 0)`.
@@ -18,12 +18,12 @@ pub struct Revolved {
 }
 
 impl Revolved {
-    /// The piece with these coefficients: of the circle its cosine, sine and weight; of the meridian radius, height and weight, then of the normal its radius and
-    /// height, then the moment. The frame is how its axes are turned and where its origin is in the tool; `None` when it is the tool's.
+    /// The piece with these coefficients: cosine, sine and weight of the circle; radius, height and weight of the meridian, radius and
+    /// height of its normal, then the moment. The frame gives the rotation of its axes and its origin in the tool; `None` for the tool's frame.
     ///
     /// # Errors
-    /// [`PatchError`]: numbers that are not finite, weights that are not positive, a frame that is no rotation, normals that are not normal to
-    /// the surface, moments that are not theirs, a surface with a fold.
+    /// [`PatchError`]: numbers that are not finite, weights that are not positive, a frame that is not a rotation, normals that are not perpendicular to
+    /// the surface, moments that do not belong to them, a surface with a fold.
     pub fn new(
         circle: [[f64; 3]; 3],
         meridian: [[f64; 3]; 6],
@@ -54,7 +54,7 @@ impl Revolved {
     /// The patch.
     ///
     /// # Errors
-    /// None for values that [`new`](Self::new) made.
+    /// Never for values built by [`new`](Self::new).
     pub fn patch(&self) -> Result<Patch, PatchError> {
         let [c, s, w] = &self.circle;
         let [rho, zeta, omega, n_rho, n_zeta, moment] = &self.meridian;
@@ -92,13 +92,13 @@ impl Revolved {
         &self.circle
     }
 
-    /// Coefficients in `v`: radius, height and weight, then of the normal its radius and height, then the moment.
+    /// Coefficients in `v`: radius, height and weight, then radius and height of the normal, then the moment.
     #[must_use]
     pub fn meridian(&self) -> &[[f64; 3]; 6] {
         &self.meridian
     }
 
-    /// How the frame is turned and where its origin is in the tool; `None` when it is the tool's.
+    /// The rotation and the origin of the frame in the tool; `None` if it is the tool's frame.
     #[must_use]
     pub fn frame(&self) -> Option<(Matrix3<f64>, [f64; 3])> {
         self.frame.map(|(turn, origin)| (turn, origin.into()))

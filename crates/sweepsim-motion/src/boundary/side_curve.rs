@@ -4,7 +4,7 @@ use super::{NormalField, Patch, Side};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
-/// Places along a stretch at which two are compared.
+/// The number of points at which two stretches are compared.
 pub(super) const PLACES: usize = 17;
 /// A side as a curve in `r` from 0 to 1, with the normals of its patch.
 pub(super) struct SideCurve {
@@ -14,7 +14,7 @@ pub(super) struct SideCurve {
     pub(super) weight: Bernstein,
     pub(super) field: NormalField,
     pub(super) places: Vec<Vector3<f64>>,
-    /// A box that surely holds it: lower and upper corner.
+    /// A box that is certain to contain it: lower and upper corner.
     pub(super) bounds: [Vector3<f64>; 2],
 }
 
@@ -80,20 +80,20 @@ impl SideCurve {
         }))
     }
 
-    /// The unit normal of the patch at `r`; none at a pole, where it vanishes.
+    /// The unit normal of the patch at `r`; `None` at a pole, where it vanishes.
     pub(super) fn normal(&self, r: f64) -> Option<Vector3<f64>> {
         let normal = Vector3::from([0, 1, 2].map(|k| self.field.normal[k].evaluate(&[r])));
         normal.try_normalize(1e-12)
     }
 
-    /// The same; at a pole that beside it.
+    /// The same; at a pole, the normal beside it.
     pub(super) fn normal_or_beside(&self, r: f64) -> Vector3<f64> {
         let inside = r + (0.5 - r) * 1e-6;
         let found = self.normal(r).or_else(|| self.normal(inside));
         found.unwrap_or_else(Vector3::zeros)
     }
 
-    /// Where between `from` and `to` it is nearest to a point, and how far that is.
+    /// The parameter between `from` and `to` nearest to a point, and the distance.
     pub(super) fn nearest(&self, point: &Vector3<f64>, [from, to]: [f64; 2]) -> (f64, f64) {
         const STEPS: usize = 4 * PLACES;
         let distance = |r: f64| (self.at(r) - point).norm();

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use sweepsim_spline::Bernstein;
 use sweepsim_spline::kernel::binomial;
 
-/// Degree of normals that are carried over, how far they may be off, and how often the stretch is halved for that.
+/// The degree of converted normals, their permitted error, and how often the stretch is halved to meet it.
 const CARRIED: usize = 6;
 const CARRIED_ERROR: f64 = 1e-10;
 const HALVINGS: usize = 8;
@@ -28,7 +28,7 @@ impl JointStretch<'_> {
         self.curve.at(self.parameter(part))
     }
 
-    /// Whether it runs along the other, the other way or the same.
+    /// Whether it runs along the other, in the opposite or in the same direction.
     pub(super) fn runs_along(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
         // Corners that cut a side are within the tolerance of it, and of the corner that is the other's end.
         let gap = |end: usize| (self.ends[end] - other.ends[if backwards { 1 - end } else { end }]).norm();
@@ -44,7 +44,7 @@ impl JointStretch<'_> {
         self.keeps_pace(other, backwards, tolerance) || (covered(self, other) && covered(other, self))
     }
 
-    /// Whether they are at the same places at the same parts of their parameters.
+    /// Whether they have the same parametrisation: the same points at the same fractions of their parameters.
     fn keeps_pace(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
         (0..PLACES).all(|n| {
             let there = if backwards { 1.0 - part(n) } else { part(n) };
@@ -52,7 +52,7 @@ impl JointStretch<'_> {
         })
     }
 
-    /// Position, weight and normals between two parts of it, `from > to` for the other way.
+    /// Position, weight and normals between two fractions of it; `from > to` reverses the direction.
     fn forms(&self, from: f64, to: f64) -> ([Bernstein; 3], Bernstein, NormalField) {
         let [from, to] = [from, to].map(|part| self.parameter(part));
         let cut = |form: &Bernstein| form.restrict(0, from, to).assumed_exact();
@@ -64,7 +64,7 @@ impl JointStretch<'_> {
         (three(&self.curve.position), cut(&self.curve.weight), field)
     }
 
-    /// The sharp edges of its joint with another, which runs the other way.
+    /// The sharp edges of its joint with another, which runs in the opposite direction.
     pub(super) fn edges(&self, other: &Self, tolerance: f64) -> Vec<Edge> {
         let pace = self.keeps_pace(other, true, tolerance);
         let there = |part: f64| {
@@ -131,7 +131,7 @@ impl JointStretch<'_> {
     }
 }
 
-/// A polynomial through values at Chebyshev's places, and how far it is off between them.
+/// A polynomial through values at Chebyshev points, and its error between them.
 fn fitted(value: impl Fn(f64) -> Vector3<f64>) -> ([Bernstein; 3], f64) {
     let count = CARRIED + 1;
     let node = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / count as f64).cos();

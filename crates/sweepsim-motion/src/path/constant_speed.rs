@@ -1,19 +1,19 @@
 //! Moves at constant speed: all rotations are uniform and in step with the tip, to within a stated deviation.
 //!
-//! A move is divided into `m` equal parts of its time; in each, every turn by an angle `θ` is one rational arc in a common parameter
-//! `s`. With `τ = tan(θ/4)` and `x = 2s − 1` the part of the angle that has passed is `½ + ½ f(x)`, `f(x) = atan(τx)/atan τ`.
-//! The *time* of the part is defined by its largest angle, which is therefore exact. What remains is
+//! A move is divided into `m` parts of equal duration. In each, every turn by an angle `θ` is one rational arc in a common parameter
+//! `s`. With `τ = tan(θ/4)` and `x = 2s − 1`, the fraction of the angle covered is `½ + ½ f(x)`, `f(x) = atan(τx)/atan τ`.
+//! The *time* of the part is defined by its largest angle, which is therefore exact. The others deviate:
 //!
-//! - another turn, by a smaller angle `θ′`: off by at most `θ′ e₃`, and a point at the distance `r` from its axis by `r θ′ e₃`, because `f` grows
-//!   with `τ` from `x` on, and `f(x) − x ≤ (τ³/(3 atan τ)) x (1 − x²)`, so `½(f − x) ≤ e₃ = τ³/(9√3 atan τ)`;
-//! - straight ways, which are cubic in `s`: the odd cubic that has the value and the slope of `f` at both ends. Hermite's error is
-//!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a way of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
+//! - a turn by a smaller angle `θ′` is off by at most `θ′ e₃`, and a point at distance `r` from its axis by `r θ′ e₃`, because `f` increases
+//!   with `τ`, starting from `x`, and `f(x) − x ≤ (τ³/(3 atan τ)) x (1 − x²)`, so `½(f − x) ≤ e₃ = τ³/(9√3 atan τ)`;
+//! - straight displacements follow a cubic in `s`, the odd cubic with the value and the slope of `f` at both ends. The error of Hermite interpolation is
+//!   `|f⁽⁵⁾| x (1 − x²)²/5!` with `|atan⁽⁵⁾| ≤ 4!`, hence a displacement of length `d` is off by at most `d e₅`, `e₅ = (8/(125√5)) τ⁵/atan τ`.
 //!
 //! The spin of a symmetric tool about its axis is arbitrary. Along an arc of the tip about (nearly) the direction of its axis, the tool turns with the
 //! arc as one rigid body: its velocity field in its own frame is then (nearly) constant, and the centre of the arc stays
-//! at one point of the tool. Without that spin the centre line would travel round the tool, with `g = 0` all along it.
+//! at one point of the tool. Without that spin the centre line would travel around the tool, with `g = 0` all along it.
 //!
-//! Both fall with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
+//! Both decrease with a power of the angle, `r θ′ e₃` with its cube. Because the slopes at the ends are those of `f`, parts join without a kink.
 //! `docs/algorithms/motions.md` has the derivations.
 
 use super::rotary::{turn, unit_axis};
@@ -74,7 +74,7 @@ impl Turns {
             let [tilt, round] = [from[0] - to[0], from[1] - to[1]].map(f64::to_radians);
             let start = table.orientation(from);
             if round == 0.0 {
-                // The tilting axis stands where C turned it.
+                // The tilting axis is rotated by C.
                 let tilting = table.orientation([0.0, from[1]]) * unit_axis(table.tilting());
                 return one(start, tilting, tilt);
             }
@@ -147,7 +147,7 @@ type Turned = (Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>);
 /// A tool's axis counts as near that of an arc if the cosine of their angle is at least this: 1.8°. Beyond that the spin costs more than it saves.
 const NEAR: f64 = 0.9995;
 
-/// The angle by which a symmetric tool turns about its own axis along an arc, and with it.
+/// The angle by which a symmetric tool turns about its own axis together with an arc.
 fn own_turn(from: &Pose, to: &Pose, way: &Move) -> Option<f64> {
     let Course::Arc(arc) = way.course else { return None };
     if matches!(way.turning, Turning::Rotary { from, to, .. } if from[0] != to[0] || from[1] != to[1]) {
@@ -249,7 +249,7 @@ impl Tip {
     }
 }
 
-/// How far a point within `reach` of the tip may be off, when the move is divided into `m` parts.
+/// The maximum deviation of a point within `reach` of the tip if the move is divided into `m` parts.
 fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
     let [first, second] = turns.angles().map(|angle| angle / m as f64);
     let round = tip.angle() / m as f64;
@@ -264,8 +264,8 @@ fn deviation(tip: &Tip, turns: &Turns, reach: f64, m: usize) -> f64 {
     turned + tip.straight().norm() / m as f64 * quintic_part(tau)
 }
 
-/// The parts of a move at constant speed, of equal shares of its time. No point within `reach` of the tip is off by more than
-/// `limit` at any time; no part turns by more than 90°. How a `symmetric` tool turns about its axis is free.
+/// The parts of a move at constant speed, of equal duration. No point within `reach` of the tip is off by more than
+/// `limit` at any time; no part turns by more than 90°. The spin of a `symmetric` tool about its axis is arbitrary.
 pub(crate) fn segments(
     from: &Pose,
     to: &Pose,
@@ -280,7 +280,7 @@ pub(crate) fn segments(
     let largest = first.max(second).max(tip.angle());
     let least = (largest / FRAC_PI_2 - 1e-12).ceil().max(1.0) as usize;
     let good = |m: usize| deviation(&tip, &turns, reach, m) <= limit;
-    // The deviation falls with the number of parts: double, then bisect.
+    // The deviation decreases with the number of parts: double, then bisect.
     let (mut bad, mut count) = (least - 1, least);
     while !good(count) && count < MOST {
         bad = count;
@@ -324,12 +324,12 @@ pub(crate) fn segments(
             (turns, weights, spins) = with_own_turn((turns, weights, spins), own, n, count);
         }
         if weights.len() > 1 && point_weights.len() == weights.len() + 3 {
-            // In one degree both are bounded together.
+            // In the same degree, both can be bounded together.
             turns = product(&turns, &[1.0; 4], |turn, one| turn * *one);
             weights = product(&weights, &[1.0; 4], |w, one| w * one);
         }
         if own.is_some() {
-            // The same but for the order of sums: to the bit, they are bounded together.
+            // Equal except for the order of sums; if equal to the bit, they can be bounded together.
             point_weights.clone_from(&weights);
         }
         let curve = SegmentCurve {

@@ -2,14 +2,14 @@
 
 use thiserror::Error;
 
-/// Why poses do not make a path.
+/// Why a path is invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PathError {
     /// There are no poses.
     #[error("a path needs at least one pose")]
     Empty,
-    /// The axis would make half a turn in a plane that nothing determines.
+    /// The axis would make half a turn in an undetermined plane.
     #[error(
         "the axes of poses {index} and {} (counted from 0) are opposite: insert a pose between them to say which way to turn",
         .index + 1
@@ -18,7 +18,7 @@ pub enum PathError {
         /// The first of the two poses, counted from 0.
         index: usize,
     },
-    /// Some poses fix the spin of the tool about its axis, and some do not.
+    /// Some poses fix the spin of the tool about its axis, others do not.
     #[error(
         "pose {index} (counted from 0) and the one before it differ: one fixes the spin of the tool about its axis, the other does not"
     )]
@@ -26,7 +26,7 @@ pub enum PathError {
         /// The second of the two poses, counted from 0.
         index: usize,
     },
-    /// The number of moves is not one less than that of poses.
+    /// The number of moves is not one less than the number of poses.
     #[error("{moves} moves do not join {poses} poses: expected one move fewer than poses")]
     Count {
         /// The number of moves.
@@ -34,8 +34,8 @@ pub enum PathError {
         /// The number of poses.
         poses: usize,
     },
-    /// The angles of a machine's rotary axes are not finite, absurd, or do not point along the axis of a pose, or the pose says otherwise how
-    /// the tool is turned about its axis.
+    /// The angles of a machine's rotary axes are not finite, absurdly large, or do not point along the axis of a pose, or the pose gives a different
+    /// spin of the tool about its axis.
     #[error(
         "move {index} (counted from 0): the angles of the rotary axes are not those of the poses that it joins: expected angles within a million degrees that point along \
          the axes, and poses of tip and axis alone"
@@ -44,7 +44,7 @@ pub enum PathError {
         /// The move, counted from 0.
         index: usize,
     },
-    /// The tool would make half a turn in a direction that nothing determines.
+    /// The tool would make half a turn in an undetermined direction.
     #[error(
         "between poses {index} and {} (counted from 0) the tool makes half a turn: insert a pose between them to say which way",
         .index + 1

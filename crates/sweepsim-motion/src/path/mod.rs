@@ -1,4 +1,4 @@
-//! A tool path: the poses that a tool passes through, in order.
+//! Tool paths: the poses that a tool passes through, in order.
 
 mod constant_speed;
 mod error;
@@ -21,8 +21,8 @@ use std::f64::consts::PI;
 /// the plane in which the axis turns is not determined.
 const OPPOSITE: f64 = 1e-9;
 
-/// A sequence of at least one [`Pose`], with a move for each consecutive pair: with
-/// [`Path::new`], a straight line with SLERP of the axis (or of the full orientation, where poses give it).
+/// A sequence of at least one [`Pose`], with a move for each consecutive pair: for
+/// [`Path::new`], a straight line with SLERP of the axis (or of the full orientation, if the poses give it).
 ///
 /// Invariant: every move is determined. The axes of consecutive poses are not opposite where the axis turns the shortest way.
 ///
@@ -52,9 +52,9 @@ impl Path {
     /// The path through `poses`, straight and by SLERP.
     ///
     /// # Errors
-    /// [`PathError::Empty`] without a pose; [`PathError::OppositeAxes`] when two consecutive axes are within 1e-9 rad
-    /// of opposite, [`PathError::HalfTurn`] when two orientations are so near to half a turn apart; [`PathError::Mixed`] when only some
-    /// poses say how the tool is turned about its axis.
+    /// [`PathError::Empty`] without a pose; [`PathError::OppositeAxes`] if two consecutive axes are within 1e-9 rad
+    /// of opposite; [`PathError::HalfTurn`] if two orientations are that close to half a turn apart; [`PathError::Mixed`] if only some
+    /// poses fix the spin of the tool about its axis.
     pub fn new(poses: Vec<Pose>) -> Result<Self, PathError> {
         Self::checked(poses, Ways::Slerp)
     }
@@ -62,13 +62,13 @@ impl Path {
     /// The straight path through `poses` along which the tool turns by `law`. Rotary axes start at the angles nearest to 0.
     ///
     /// # Errors
-    /// As [`Path::new`]; rotary axes may turn any way, but poses must be tip and axis alone.
+    /// As [`Path::new`]. With rotary axes, the axis may turn any way, but poses must consist of tip and axis only.
     ///
     /// ```
     /// use sweepsim_motion::{Law, Path, Pose, RotaryTable};
     /// let poses = vec![Pose::new([0.0; 3], [0.3, 0.0, 1.0])?, Pose::new([9.0, 0.0, 0.0], [0.0, 0.3, 1.0])?];
     /// let path = Path::with_law(poses, Law::Rotary(RotaryTable::Ac))?;
-    /// // The tilt is the same at both ends, and so on the way: a quarter turn of the table.
+    /// // The tilt is the same at both ends, and so all along the way: a quarter turn of the table.
     /// let parts = path.segments(0, 50.0, 1e-4);
     /// let (turn, _) = parts[0].at(0.5);
     /// assert!((turn[(2, 2)] - 1.0 / 1.09_f64.sqrt()).abs() < 1e-12);
@@ -101,7 +101,7 @@ impl Path {
         Self::checked(poses, ways)
     }
 
-    /// The path through `poses` by one move between each two.
+    /// The path through `poses` with one move between each consecutive pair.
     ///
     /// # Errors
     /// As [`Path::new`], and [`PathError::Count`], [`PathError::Rotary`].
@@ -150,7 +150,7 @@ impl Path {
             if turn_between(&pair[0], &pair[1]).is_some_and(|(_, angle)| PI - angle <= OPPOSITE) {
                 return Err(PathError::HalfTurn { index });
             }
-            // Of opposite unit vectors the sum is as long as the angle that is missing to half a turn. Poses with all of an
+            // For nearly opposite unit vectors, the length of the sum is the angle missing to half a turn. Poses with a full
             // orientation turn about another axis, which is determined.
             let sum: Vector3<f64> = pair[0].axis_vector().into_inner() + pair[1].axis_vector().into_inner();
             if pair[0].side().is_none() && sum.norm() <= OPPOSITE {
@@ -200,8 +200,8 @@ impl Path {
 
     /// The segments of move `index`, of equal duration.
     ///
-    /// SLERP moves and user-defined motions are exact. Others stay, for a tool that reaches no farther than `reach` from its tip, within
-    /// `deviation` (a length) of their law at every time, as far as a million parts suffice.
+    /// SLERP moves and user-defined motions are exact. Other moves stay within `deviation` (a length) of their law at every time, for a tool that
+    /// reaches no farther than `reach` from its tip, provided that a million parts suffice.
     ///
     /// # Panics
     /// If there is no such move.
@@ -210,7 +210,7 @@ impl Path {
         self.parts(index, (reach, false), deviation)
     }
 
-    /// The same for a tool that is symmetric about its axis: its spin about the axis is arbitrary, and chosen so that the motion is easiest to solve.
+    /// As [`segments`](Self::segments), for a tool that is symmetric about its axis: its spin is arbitrary, and chosen so that the motion is easiest to solve.
     /// Along an arc of the tip about (nearly) the direction of the tool's axis, the tool turns with the arc as one rigid body.
     ///
     /// # Panics

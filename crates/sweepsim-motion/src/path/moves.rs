@@ -1,8 +1,8 @@
-//! How a tool moves from one pose to the next.
+//! Moves from one pose to the next.
 
 use super::{RotaryTable, TipArc};
 
-/// How a tool moves from one pose to the next: the course of its tip, and how it turns.
+/// A move from one pose to the next: the course of the tip, and how the tool turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Move {
     /// The course of the tip.
@@ -64,7 +64,7 @@ impl Move {
         }
     }
 
-    /// Along an arc or a helix, while the axis turns at constant speed.
+    /// A move along an arc or a helix, while the axis turns at constant speed.
     #[must_use]
     pub fn arc(arc: TipArc) -> Self {
         Self {

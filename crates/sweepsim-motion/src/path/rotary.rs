@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The rotary axes of a machine's table, which determine what its angles mean. With tip control a program's `xyz` is the tip
-/// in the part's frame, and the axis from the tip to the holder is, at the angles of the tilting axis (A or B) and of C,
+/// The rotary axes of a machine's table, which determine what its angles mean. With tip control, a program's `xyz` is the tip
+/// in the part's frame. At given angles of the tilting axis (A or B) and of C, the axis from the tip to the holder is
 ///
 /// | table | axis |
 /// | --- | --- |
@@ -15,7 +15,7 @@ use thiserror::Error;
 /// ```
 /// use sweepsim_motion::RotaryTable;
 /// assert_eq!(RotaryTable::Ac.axis([90.0, 90.0]), [1.0, 0.0, 0.0]);
-/// // Of all angles that point a tool there, those next to where the machine stands:
+/// // Of all angles that point a tool there, those nearest to the machine's current ones:
 /// let [a, c] = RotaryTable::Ac.angles([1.0, 0.0, 0.0], [80.0, 450.0]);
 /// assert!((a - 90.0).abs() < 1e-12 && (c - 450.0).abs() < 1e-12);
 /// ```
@@ -27,7 +27,7 @@ pub enum RotaryTable {
     Bc,
 }
 
-/// A name that is not a rotary table.
+/// The error for an unknown name of a rotary table.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{0:?} is not a rotary table: expected AC or BC")]
 pub struct UnknownTable(pub String);
@@ -49,7 +49,7 @@ pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     let turn = degrees.rem_euclid(360.0);
     let quadrant = (turn / 90.0).round();
     let (s, c) = (turn - 90.0 * quadrant).to_radians().sin_cos();
-    // `+ 0.0` makes -0 to 0.
+    // `+ 0.0` turns -0 into 0.
     match quadrant as u8 % 4 {
         0 => (s, c),
         1 => (c, -s + 0.0),
@@ -82,7 +82,7 @@ impl RotaryTable {
         }
     }
 
-    /// The whole orientation of the tool at the angles `[tilt, C]`, in degrees: tool coordinates to the part's.
+    /// The full orientation of the tool at the angles `[tilt, C]`, in degrees: from tool to part coordinates.
     #[must_use]
     pub fn orientation(self, [tilt, c]: [f64; 2]) -> Matrix3<f64> {
         about(2, -c) * about(self.tilting(), -tilt)
@@ -96,8 +96,8 @@ impl RotaryTable {
         }
     }
 
-    /// Angles `[tilt, C]`, in degrees, at which the tool points along `axis` (of any length): of all there are, those with the
-    /// least sum of the ways of both from `near`. Where C is free, it stays.
+    /// Angles `[tilt, C]`, in degrees, at which the tool points along `axis` (of any length): of all solutions, the one with the
+    /// smallest total travel of both axes from `near`. If C is arbitrary, it stays.
     #[must_use]
     pub fn angles(self, axis: [f64; 3], near: [f64; 2]) -> [f64; 2] {
         let [x, y, z] = axis;
@@ -122,7 +122,7 @@ impl RotaryTable {
         }
     }
 
-    /// Whether the angles point along `axis`, to within the rounding of either.
+    /// Whether the angles point along `axis`, up to the rounding of both.
     pub(crate) fn points_along(self, angles: [f64; 2], axis: Unit<Vector3<f64>>) -> bool {
         let size = 1.0 + angles[0].abs().max(angles[1].abs());
         (Vector3::from(self.axis(angles)) - axis.into_inner()).norm() <= 1e-12 * size

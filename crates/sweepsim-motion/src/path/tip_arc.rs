@@ -47,7 +47,7 @@ pub enum ArcError {
 const RADII: f64 = 1e-3;
 
 impl TipArc {
-    /// A turn by `angle` (radians, right-handed about `normal`) about the axis through `centre` along `normal` (of any length).
+    /// An arc by `angle` (radians, right-handed about `normal`) about the axis through `centre` along `normal` (of any length).
     ///
     /// # Errors
     /// [`ArcError`]: numbers that are not finite, no direction, no angle.
@@ -70,11 +70,11 @@ impl TipArc {
         })
     }
 
-    /// The arc from `from` to `to` about the axis through `centre` along `normal`: right-handed about it for `turns > 0`, the other way for
-    /// `turns < 0`; with more than one full turn for `|turns| > 1`. Where the ends lie in one direction from the axis, a full turn.
+    /// The arc from `from` to `to` about the axis through `centre` along `normal`: right-handed for `turns > 0`, left-handed for
+    /// `turns < 0`, with more than one full turn for `|turns| > 1`. If both ends lie in the same direction from the axis, it is a full turn.
     ///
     /// # Errors
-    /// [`ArcError`]: as [`new`](Self::new), and ends that are on the axis or whose distances from it differ by more than a thousandth.
+    /// [`ArcError`]: as [`new`](Self::new), and ends on the axis or with distances from it that differ by more than a thousandth.
     ///
     /// ```
     /// use sweepsim_motion::TipArc;
@@ -149,7 +149,7 @@ impl TipArc {
         from - n * n.dot(&from)
     }
 
-    /// Where it takes `from` after the fraction `part` of its angle, without the difference at its end.
+    /// The position of `from` after the fraction `part` of the angle, without the difference at the end.
     pub(crate) fn turned(&self, from: Vector3<f64>, part: f64) -> Vector3<f64> {
         let turn = Rotation3::from_axis_angle(&self.normal, self.angle * part);
         self.centre + turn * (from - self.centre)

@@ -1,8 +1,8 @@
-//! Splines of a profile: rational Bézier curves in `(ρ, ζ)`, and what must hold of them.
+//! Splines of a profile: rational Bézier curves in `(ρ, ζ)`, and their invariants.
 //!
-//! With positive weights the direction of travel is a sum of the legs of the control polygon with factors that are not negative (Floater, *Derivatives of
-//! rational Bézier curves*, CAGD 9, 1991). So a curve whose legs lie in an open half-plane neither stops nor meets itself, and neither do two that join
-//! where the legs of both lie in one: what is not so is halved.
+//! With positive weights, the direction of travel is a sum of the legs of the control polygon with nonnegative factors (Floater, *Derivatives of
+//! rational Bézier curves*, CAGD 9, 1991). So a curve whose legs lie in an open half-plane neither stops nor meets itself, and neither do two joined
+//! curves whose legs together lie in one. Curves that fail this are halved.
 
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::PI;
@@ -82,7 +82,7 @@ impl Bezier {
         (self.points[b] - self.points[a]).normalize()
     }
 
-    /// How far rounding of the control points (some steps of knot insertion each) may turn that direction.
+    /// How far rounding of the control points (a few steps of knot insertion each) may turn that direction.
     pub fn direction_error(&self, end: bool) -> f64 {
         let n = self.points.len();
         let (a, b) = if end { (n - 2, n - 1) } else { (0, 1) };
@@ -90,12 +90,12 @@ impl Bezier {
         16.0 * f64::EPSILON * size / (self.points[b] - self.points[a]).norm()
     }
 
-    /// Length of the control polygon: no less than the curve's.
+    /// Length of the control polygon, at least that of the curve.
     pub fn length(&self) -> f64 {
         self.legs().map(|leg| leg.norm()).sum()
     }
 
-    /// The smallest radius if some point between the ends reaches the axis, or an end that is not said to lie on it.
+    /// The smallest radius, if some point between the ends reaches the axis, or an end that should not lie on it.
     pub fn reaches_axis(&self, from_axis: bool, to_axis: bool) -> Option<f64> {
         const DEPTH: usize = 48;
         let mut stack = vec![(self.clone(), from_axis, to_axis, 0)];
@@ -152,7 +152,7 @@ impl Bezier {
     }
 }
 
-/// Whether vectors (but those that are 0) lie in an open half-plane.
+/// Whether all nonzero vectors lie in an open half-plane.
 pub(super) fn one_way(vectors: impl Iterator<Item = Vector2<f64>>) -> bool {
     let mut first = None;
     let (mut low, mut high) = (0.0_f64, 0.0_f64);
@@ -161,7 +161,7 @@ pub(super) fn one_way(vectors: impl Iterator<Item = Vector2<f64>>) -> bool {
         let angle = reference.perp(&v).atan2(reference.dot(&v));
         (low, high) = (low.min(angle), high.max(angle));
     }
-    // The angles are good to a few roundings.
+    // The angles are accurate to a few roundings.
     high - low < PI - 1e-12
 }
 

@@ -3,7 +3,7 @@
 use sweepsim_spline::{KnotError, SplineError};
 use thiserror::Error;
 
-/// Why a list of segments is not a profile. `segment` counts from 0.
+/// Why a profile is invalid. `segment` counts from 0.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ProfileError {
@@ -66,12 +66,12 @@ pub enum ProfileError {
         /// What is wrong.
         fault: SplineFault,
     },
-    /// Two segments cross or touch other than at their common end. A spline may do so with itself.
+    /// Two segments cross or touch other than at their common end. They may be the same spline.
     #[error("the profile crosses or touches itself: segments {first} and {second}")]
     SelfCrossing {
-        /// The one segment.
+        /// One segment.
         first: usize,
-        /// The other.
+        /// The other segment.
         second: usize,
     },
     /// A measure of a built-in cutter is out of range, or does not fit another.
@@ -86,7 +86,7 @@ pub enum ProfileError {
     },
 }
 
-/// Why a spline is not a segment of a profile. Points, weights and knots count from 0.
+/// Why a spline is not a valid segment of a profile. Points, weights and knots count from 0.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum SplineFault {
@@ -101,17 +101,17 @@ pub enum SplineFault {
     /// Fewer points than the degree needs.
     #[error("the spline has {found} points, but its degree needs at least {least}")]
     Points {
-        /// How many there must be.
+        /// The required number.
         least: usize,
-        /// How many there are.
+        /// The number given.
         found: usize,
     },
-    /// Not one weight for each point.
+    /// The number of weights differs from the number of points.
     #[error("the spline has {found} weights for {expected} points")]
     Weights {
-        /// How many points there are.
+        /// The number of points.
         expected: usize,
-        /// How many weights there are.
+        /// The number of weights.
         found: usize,
     },
     /// A weight is not positive, or so small that the normals would be lost in rounding.
@@ -122,12 +122,12 @@ pub enum SplineFault {
         /// Its value.
         value: f64,
     },
-    /// Not as many knots as points and degree need.
+    /// The number of knots does not match the points and the degree.
     #[error("the spline has {found} knots, but needs {expected}: points + degree + 1")]
     KnotCount {
-        /// How many there must be.
+        /// The required number.
         expected: usize,
-        /// How many there are.
+        /// The number given.
         found: usize,
     },
     /// The knots are invalid.
@@ -144,7 +144,7 @@ pub enum SplineFault {
         /// Where.
         knot: f64,
     },
-    /// It does not begin where the previous segment ends.
+    /// The spline does not begin where the previous segment ends.
     #[error("the spline begins at ({}, {}), but the profile is at ({}, {}) there", .found[0], .found[1], .expected[0], .expected[1])]
     Start {
         /// Its first point.

@@ -41,7 +41,7 @@ pub enum ProfileSegment {
         /// Its direction.
         turn: Turn,
     },
-    /// A B-spline curve, rational when it has weights.
+    /// A B-spline curve, rational if it has weights.
     Spline {
         /// Its degree, from 1 to 7.
         degree: usize,
@@ -56,8 +56,8 @@ pub enum ProfileSegment {
 
 /// The outline of a solid of revolution, made of lines, arcs and splines: from the tip on the axis to the top on the axis, with the material on its left.
 ///
-/// Invariants: finite; `ρ ≥ 0`, and `ρ = 0` at the two ends and nowhere else; starts below where it ends; no segment
-/// degenerate; does not cross or touch itself.
+/// Invariants: finite; `ρ ≥ 0`, with `ρ = 0` only at the two ends; the end lies above the start; no segment
+/// is degenerate; the profile does not cross or touch itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     start: [f64; 2],
@@ -68,7 +68,7 @@ impl Profile {
     /// A profile from `start` on the axis, through `segments`, to the top on the axis.
     ///
     /// # Errors
-    /// [`ProfileError`]: open, upside down, across the axis, self-crossing, or with an invalid segment.
+    /// [`ProfileError`]: the profile is open, upside down, crosses the axis or itself, or has an invalid segment.
     pub fn new(start: [f64; 2], segments: Vec<ProfileSegment>) -> Result<Self, ProfileError> {
         let profile = Self { start, segments };
         let pieces = profile.try_pieces()?;
@@ -102,7 +102,7 @@ impl Profile {
                 }
                 continue;
             }
-            // Away from the two ends the axis must stay clear; near them the piece must leave it.
+            // Away from the two ends, the profile must stay off the axis; near them, it must leave the axis.
             let inner = (number > 0 || piece.at(0.5).x <= 0.0, number + 1 < pieces.len());
             let rho = piece.smallest_rho();
             let touches = (inner.0 && number > 0 && piece.from.x <= 0.0) || (inner.1 && piece.to.x <= 0.0);

@@ -1,4 +1,4 @@
-//! The segments of a profile with their starts, splines cut at their knots: what its geometry is computed from.
+//! The segments of a profile with their starts, with splines cut at their knots: the basis of its geometry.
 
 use super::{Bezier, ProfileError, ProfileSegment, Turn, spline_spans};
 use nalgebra::Vector2;
@@ -7,12 +7,12 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// A part of a segment with its start, ready for geometry.
 #[derive(Clone, Debug)]
 pub(crate) struct OutlinePiece {
-    /// The segment it is of.
+    /// The segment that it belongs to.
     pub segment: usize,
     pub from: Vector2<f64>,
     pub to: Vector2<f64>,
     pub shape: Shape,
-    /// It goes on smoothly from the one before because a spline's knots say so.
+    /// Whether it continues the previous piece smoothly because of a spline's knots.
     pub smooth: bool,
 }
 
@@ -33,10 +33,10 @@ pub(crate) struct OutlineArc {
     pub sweep: f64,
 }
 
-/// Segments and radii that are shorter than this have no direction in `f64`: squares of lengths underflow.
+/// Segments and radii shorter than this have no direction in `f64`, since squares of lengths underflow.
 const LEAST: f64 = 1e-100;
 
-/// The distances of an arc's two ends from its centre may differ by this part of the radius.
+/// The distances of an arc's two ends from its centre may differ by this fraction of the radius.
 const ARC_SLACK: f64 = 1e-6;
 
 impl OutlinePiece {
@@ -84,7 +84,7 @@ impl OutlinePiece {
                         to: rb,
                     });
                 }
-                // Files give few digits: the centre is moved along its bisector, so that both ends lie on one circle exactly.
+                // Files have few digits, so the centre is moved to the bisector of the ends, which then lie exactly on one circle.
                 let chord = (to - from).normalize();
                 let centre = centre + chord * (from + (to - from) * 0.5 - centre).dot(&chord);
                 let (a, b) = (from - centre, to - centre);
@@ -142,7 +142,7 @@ impl OutlinePiece {
         }
     }
 
-    /// The same as curves, arcs in parts of at most a quarter.
+    /// The same as curves, with arcs in parts of at most a quarter.
     pub(super) fn curves(&self) -> Vec<Bezier> {
         match &self.shape {
             Shape::Line => vec![Bezier::line(self.from, self.to)],
@@ -252,7 +252,7 @@ pub(super) fn crosses(a: &OutlinePiece, b: &OutlinePiece, consecutive: bool, sca
             if det.abs() > 1e-12 * d.norm() * e.norm() {
                 meets.push(a.from + d * ((b.from - a.from).perp(&e) / det));
             } else if (b.from - a.from).perp(&d).abs() <= near * d.norm() {
-                // Collinear: overlapping parts show at an end of one inside the other.
+                // Collinear segments that overlap have an end of one inside the other.
                 meets.extend([a.from, a.to, b.from, b.to]);
             }
         }
@@ -289,7 +289,7 @@ pub(super) fn crosses(a: &OutlinePiece, b: &OutlinePiece, consecutive: bool, sca
             }
         }
     }
-    // A tangent joint resolves its double meeting point only to the square root of the rounding.
+    // At a tangent joint, the double intersection is resolved only to the square root of the rounding error.
     meets
         .into_iter()
         .any(|p| on(a, p) && on(b, p) && !(consecutive && (p - a.to).norm() <= 1e-4 * a.length().min(b.length())))

@@ -14,7 +14,7 @@ pub(super) struct Outline {
 }
 
 impl Outline {
-    /// From curves in order, with the numbers of their segments.
+    /// Creates an outline from curves in order, with the numbers of their segments.
     ///
     /// # Errors
     /// [`ProfileError::Spline`] where a curve stops.
@@ -36,7 +36,7 @@ impl Outline {
         Ok(Self { parts, near })
     }
 
-    /// Two segments (or one twice) that cross or touch.
+    /// Two segments (or the same one twice) that cross or touch.
     pub fn crossing(&self) -> Option<(usize, usize)> {
         self.within(0..self.parts.len())
     }

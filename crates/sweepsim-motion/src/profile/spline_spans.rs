@@ -4,7 +4,7 @@ use super::{Bezier, ProfileError, SplineFault};
 use nalgebra::Vector2;
 use sweepsim_spline::{KnotVector, RationalSpline, SplineError};
 
-/// A piece between knots, and whether the direction goes on smoothly where it begins because the knots say so.
+/// A piece between knots, and whether the knots make its direction continue smoothly from the previous piece.
 pub(super) struct OutlineSpan {
     pub curve: Bezier,
     pub smooth: bool,
@@ -12,9 +12,9 @@ pub(super) struct OutlineSpan {
 
 /// Highest degree: that of the patches of other tools.
 const MOST: usize = 7;
-/// The normal has the weight's third power as a factor: with a smaller weight (of the largest) it would be lost in rounding.
+/// The normal has the third power of the weight as a factor; with a smaller weight (relative to the largest), it would be lost in rounding.
 const LEAST_WEIGHT: f64 = 1e-4;
-/// Parts of the outline that are nearer than this part of its length touch.
+/// Parts of the outline closer than this fraction of its length count as touching.
 pub(super) const NEAR: f64 = 1e-9;
 /// The pieces between knots of a spline that begins at `from`.
 pub(super) fn spans(
@@ -106,7 +106,7 @@ pub(super) fn spans(
         let [rho, zeta] = [0, 1].map(|k| piece.map.numerators()[k].coefficients());
         let weight = piece.map.weight().coefficients();
         let mut curve = Bezier::standard(rho, zeta, weight);
-        // Neighbours meet to the bit.
+        // Neighbours meet exactly.
         curve.points[0] = at;
         if number + 1 == count {
             curve.points[degree] = end;

@@ -5,7 +5,7 @@ use crate::pose::Pose;
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
-/// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° either way, and `κ`.
+/// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° in either direction, and `κ`.
 pub(crate) fn rational_turn(k: Vector3<f64>, angle: f64) -> ([Matrix3<f64>; 3], [f64; 3], f64) {
     let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
     let (w, c, s) = (
@@ -19,7 +19,7 @@ pub(crate) fn rational_turn(k: Vector3<f64>, angle: f64) -> ([Matrix3<f64>; 3], 
     (turns, w, 2.0 * half_sine)
 }
 
-/// A right-handed frame whose third vector is `axis`: a function of the axis alone, continuous but at `−z`.
+/// A right-handed frame whose third vector is `axis`: a function of the axis alone, continuous except at `−z`.
 pub(crate) fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
     let z = axis.into_inner();
     let (first, second) = if z.z > -0.5 {
@@ -38,7 +38,7 @@ pub(crate) fn frame(axis: Unit<Vector3<f64>>) -> Matrix3<f64> {
     Matrix3::from_columns(&[first, second, z])
 }
 
-/// The axis and the angle (0 to π) of the turn between two poses that say all of their orientation.
+/// The axis and the angle (0 to π) of the turn between two poses with full orientations.
 pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>, f64)> {
     let quaternion = |pose: &Pose| {
         Some(UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(

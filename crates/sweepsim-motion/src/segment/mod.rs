@@ -16,18 +16,18 @@ pub(crate) use rates::spins;
 use forms::value;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-/// A rigid motion for `t` in `[0, 1]`: the tip on a polynomial or rational curve, the orientation a rational matrix.
+/// A rigid motion for `t` in `[0, 1]`: the tip follows a polynomial or rational curve, the orientation is a rational matrix.
 ///
-/// The most common and cheapest kind [is an arc](Segment::is_arc): the tip on a straight line, the axis on a great circle as one
+/// The most common and cheapest kind [is an arc](Segment::is_arc): the tip moves on a straight line, the axis on a great circle as one
 /// rational arc of at most 90°.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     tips: [Vector3<f64>; 2],
-    /// Homogeneous `ŵ A(t)`: one matrix per Bernstein coefficient in `t`; one alone when the axis stands still.
+    /// Homogeneous `ŵ A(t)`: one matrix per Bernstein coefficient in `t`; only one if the axis is constant.
     turns: Vec<Matrix3<f64>>,
     weights: Vec<f64>,
     kind: Kind,
-    /// `tan(θ/4)` of the turn whose even pace the time follows; 0 where the time is `t`.
+    /// `tan(θ/4)` of the turn whose constant speed defines the time; 0 if the time is `t`.
     clock: f64,
 }
 
@@ -43,7 +43,7 @@ pub(super) enum Kind {
 pub(crate) struct SegmentCurve {
     /// Numerators of the tip.
     pub points: Vec<Vector3<f64>>,
-    /// As many weights; none for a polynomial.
+    /// The same number of weights; none for a polynomial.
     pub point_weights: Vec<f64>,
     /// Coefficients of `σ Ω`,
     pub spins: Vec<Vector3<f64>>,
@@ -82,7 +82,7 @@ impl Segment {
         }
     }
 
-    /// A general motion: as many turns as weights, all positive; at least two points.
+    /// A general motion: as many turns as weights, with all weights positive; at least two points.
     pub(crate) fn curve(turns: Vec<Matrix3<f64>>, weights: Vec<f64>, curve: SegmentCurve) -> Self {
         let last = curve.points.len() - 1;
         let weight = |i: usize| curve.point_weights.get(i).copied().unwrap_or(1.0);
@@ -95,14 +95,14 @@ impl Segment {
         }
     }
 
-    /// The same motion, whose time follows the even turn by an angle with this `tan(θ/4)`.
+    /// The same motion, with time defined by the turn at constant speed by an angle with this `tan(θ/4)`.
     pub(crate) fn with_clock(self, clock: f64) -> Self {
         Self { clock, ..self }
     }
 
     /// The same motion of a tool that is first turned about its own axis, so that it begins as `before` ends.
     ///
-    /// So a tool without symmetry can follow poses that give only its axis: it does not spin about the axis.
+    /// This lets a tool without symmetry follow poses that give only its axis, without spinning about the axis.
     #[must_use]
     pub fn after(mut self, before: &Self) -> Self {
         let between = self.start().transpose() * before.end();
@@ -119,7 +119,7 @@ impl Segment {
         self
     }
 
-    /// Whether it is of the simplest kind: the tip on a straight line at constant speed, and a rotation about one axis or none.
+    /// Whether it is of the simplest kind: the tip moves on a straight line at constant speed, with a rotation about at most one axis.
     #[must_use]
     pub fn is_arc(&self) -> bool {
         matches!(self.kind, Kind::Arc(_))
@@ -149,7 +149,7 @@ impl Segment {
     }
 
     /// The same motion with its tip displaced: by the first vector at the start, by the second at the end, and in between by `(1 − σ)`
-    /// of the one and `σ` of the other, where `σ(t)` grows from 0 to 1.
+    /// times the first and `σ` times the second, where `σ(t)` grows from 0 to 1.
     #[must_use]
     pub fn displaced<P: Into<[f64; 3]>>(mut self, by: [P; 2]) -> Self {
         let by = by.map(|by| Vector3::from(by.into()));
@@ -187,7 +187,7 @@ impl Segment {
         moved
     }
 
-    /// Bernstein coefficients in `t` of `ŵ A(t)`, tool coordinates to space: three for an arc, or one when the axis stands still.
+    /// Bernstein coefficients in `t` of `ŵ A(t)`, tool coordinates to space: three for an arc, or one if the axis is constant.
     #[must_use]
     pub fn turns(&self) -> &[Matrix3<f64>] {
         &self.turns
@@ -199,7 +199,7 @@ impl Segment {
         &self.weights
     }
 
-    /// Of an [arc](Self::is_arc), `κ k`: the angular velocity times the weight, in space. Of other motions, see [`twist`](Self::twist).
+    /// For an [arc](Self::is_arc), `κ k`: the angular velocity times the weight, in space. For other motions, see [`twist`](Self::twist).
     #[must_use]
     pub fn spin(&self) -> [f64; 3] {
         match &self.kind {
@@ -208,7 +208,7 @@ impl Segment {
         }
     }
 
-    /// The displacement of the tip; of an [arc](Self::is_arc), `b′`: its velocity.
+    /// The displacement of the tip; for an [arc](Self::is_arc), also its velocity `b′`.
     #[must_use]
     pub fn travel(&self) -> [f64; 3] {
         self.travel_vector().into()
@@ -231,7 +231,7 @@ impl Segment {
         self.turns[last] / self.weights[last]
     }
 
-    /// `A` and `b` at `t`. Outside `[0, 1]` the motion is extrapolated, and need not exist.
+    /// `A` and `b` at `t`. Outside `[0, 1]` the motion is extrapolated, which may fail to exist.
     #[must_use]
     pub fn at(&self, t: f64) -> (Matrix3<f64>, [f64; 3]) {
         let (points, weights) = self.points();

@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use sweepsim_spline::kernel;
 
 impl Segment {
-    /// Numerators of `b′`, and as many positive denominators.
+    /// Numerators of `b′`, and the same number of positive denominators.
     #[must_use]
     pub fn tip_rate(&self) -> (Vec<Vector3<f64>>, Vec<f64>) {
         match &self.kind {
@@ -19,7 +19,7 @@ impl Segment {
         }
     }
 
-    /// Numerators of `A′`, and as many positive denominators.
+    /// Numerators of `A′`, and the same number of positive denominators.
     #[must_use]
     pub fn turn_rate(&self) -> (Vec<Matrix3<f64>>, Vec<f64>) {
         let (turns, weights) = (&self.turns, &self.weights);
@@ -32,7 +32,7 @@ impl Segment {
     }
 
     /// The velocity in the tool's frame: Bernstein coefficients of `Ω` and of `Aᵀ b′`, both times a common positive factor.
-    /// The first has a single coefficient where it is constant; otherwise both have the same degree.
+    /// The first has a single coefficient if it is constant; otherwise both have the same degree.
     ///
     /// With a surface normal `N` and its moment `M`, `⟨Ω, M⟩ + ⟨Aᵀ b′, N⟩` is the envelope function times that factor.
     #[must_use]
@@ -59,7 +59,7 @@ impl Segment {
         (raised(&spin, degree), raised(&travel, degree))
     }
 
-    /// At one end, in space: the angular velocity and the velocity of the tip, both times a common positive factor.
+    /// The angular velocity and the velocity of the tip at one end, in space, both times a common positive factor.
     #[must_use]
     pub fn velocity(&self, end: SegmentEnd) -> [[f64; 3]; 2] {
         if let Kind::Arc(spin) = &self.kind {

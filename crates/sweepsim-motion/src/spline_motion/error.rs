@@ -4,7 +4,7 @@ use crate::pose::PoseError;
 use sweepsim_spline::SplineError;
 use thiserror::Error;
 
-/// Why splines do not describe a rigid motion.
+/// Why a spline motion is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -33,9 +33,9 @@ pub enum MotionError {
     /// The two splines have different domains.
     #[error("the orientation runs over [{}, {}] and the tip over [{}, {}]: expected the same", .orientation.0, .orientation.1, .tip.0, .tip.1)]
     Domains {
-        /// That of the orientation.
+        /// The domain of the orientation.
         orientation: (f64, f64),
-        /// That of the tip.
+        /// The domain of the tip.
         tip: (f64, f64),
     },
     /// A spline cannot be split into its pieces.
@@ -78,10 +78,10 @@ pub enum MotionError {
         at: f64,
         /// A bound of the norm of `AᵀA − 1` there.
         deviation: f64,
-        /// What was allowed.
+        /// The tolerance.
         tolerance: f64,
     },
-    /// The matrix mirrors.
+    /// The matrix is a reflection.
     #[error("the orientation is a reflection, not a rotation: its determinant is negative")]
     Mirrored,
     /// The motion jumps at a knot.
@@ -89,10 +89,10 @@ pub enum MotionError {
     Jump {
         /// The knot.
         at: f64,
-        /// How far.
+        /// The size of the jump.
         gap: f64,
     },
-    /// The orientation at a knot does not make a pose.
+    /// The orientation at a knot does not give a valid pose.
     #[error("at {at}: {source}")]
     Pose {
         /// The knot.

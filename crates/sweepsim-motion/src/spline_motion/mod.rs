@@ -13,7 +13,7 @@ use sweepsim_spline::{BSpline, RationalSpline};
 
 /// A rigid motion `A(t) F + b(t)` given by B-splines, split at their knots.
 ///
-/// Invariants: no piece's orientation deviates from a rotation by more than the tolerance it was made with, all weights are
+/// Invariants: no piece's orientation deviates from a rotation by more than the given tolerance, all weights are
 /// positive, and pieces join.
 ///
 /// ```
@@ -21,7 +21,7 @@ use sweepsim_spline::{BSpline, RationalSpline};
 /// use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 ///
 /// let knots = || KnotVector::new(2, vec![0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0]);
-/// // Quaternions (w, x, y, z) of any length: here a tilt about x that comes and goes.
+/// // Quaternions (w, x, y, z) of any length: here a tilt about x that increases and decreases again.
 /// let turn = BSpline::new(vec![knots()?], 4, [[1.0, 0.0, 0.0, 0.0], [1.0, 0.2, 0.0, 0.0], [1.0, 0.2, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]].concat())?;
 /// let points = [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [10.0, 10.0, 0.0], [20.0, 10.0, 0.0]].concat();
 /// let tip = RationalSpline::new(vec![knots()?], 3, &points, &[1.0; 4])?;
@@ -35,13 +35,13 @@ pub struct SplineMotion {
     ranges: Vec<(f64, f64)>,
 }
 
-/// How often a piece is halved to bring its weights, or the bound of its deviation, to order.
+/// How often a piece is halved to make its weights positive, or to bring the bound on its deviation below the tolerance.
 const HALVINGS: usize = 12;
-/// Pieces join when the gap is less than this part of the size of the coordinates.
+/// Pieces join if the gap is less than this fraction of the size of the coordinates.
 const JOINED: f64 = 1e-12;
 
 impl SplineMotion {
-    /// The motion with the orientation of the quaternion `orientation(t) = (w, x, y, z)`, of any nonzero length, and the tip `tip(t)`.
+    /// The motion with the orientation given by the quaternion `orientation(t) = (w, x, y, z)`, of any nonzero length, and the tip `tip(t)`.
     ///
     /// A nonzero quaternion always gives a rotation. A linear curve between two unit quaternions is the
     /// SLERP of [`Segment`].
@@ -150,7 +150,7 @@ impl SplineMotion {
         (0..=self.segments.len()).map(pose).collect()
     }
 
-    /// The pieces between knots: each a motion for its own `t` from 0 to 1, and the parameters it belongs to.
+    /// The pieces between knots: each a motion over its own `t` from 0 to 1, with the parameters that it covers.
     pub fn segments(&self) -> impl Iterator<Item = (&Segment, (f64, f64))> {
         self.segments.iter().zip(self.ranges.iter().copied())
     }
@@ -159,7 +159,7 @@ impl SplineMotion {
         &self.segments[index]
     }
 
-    /// A bound of the coordinates of the tip.
+    /// A bound on the coordinates of the tip.
     pub(crate) fn size(&self) -> f64 {
         let of = |segment: &Segment| {
             let (points, weights) = segment.points();
@@ -172,7 +172,7 @@ impl SplineMotion {
         self.segments.iter().map(of).fold(0.0, f64::max)
     }
 
-    /// The same motion moved rigidly: turned by `turn` about the origin, then shifted.
+    /// The same motion moved rigidly: rotated by `turn` about the origin, then shifted.
     ///
     /// # Errors
     /// [`MotionError::NoRotation`] or [`MotionError::Mirrored`] if `turn` is not a rotation to within 1e-12.
