@@ -10,7 +10,7 @@
 //!
 //! | read | for |
 //! | --- | --- |
-//! | `points/` | the tests of a box, and why they suffice |
+//! | `points/` | the tests applied to a box, and why they suffice |
 //! | `coefficients/` | the layout of coefficients, and their rounding errors |
 //! | `docs/algorithms/solvers.md` | theorems, sources, measurements, limitations |
 
@@ -43,7 +43,7 @@ pub use sweepsim_spline::{
     SplineError,
 };
 
-/// The README's example is tested.
+/// Tests the README's example.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -20,7 +20,7 @@ pub enum Fold {
 
 /// A sharp edge `C(r) = position / weight` on `[0, 1]` between the faces A and B; `C_r ×` (direction from A to B) points out.
 ///
-/// Invariants: finite forms in one variable, of degree at most 7; positive weights; normals of both faces that are normal to the curve.
+/// Invariants: finite forms in one variable, of degree at most 7; positive weights; normals of both faces that are perpendicular to the curve.
 #[derive(Clone, Debug)]
 pub struct Edge {
     pub(super) position: [Bernstein; 3],

@@ -1,4 +1,4 @@
-//! What a cell's coefficients say of its equations: ranges, affine enclosures, derivatives, values.
+//! What a cell's coefficients tell about its equations: ranges, affine enclosures, derivatives, values.
 
 use super::layout::{Affine, Cell, Layout, MAX_DEGREE, Slopes};
 use super::models::{AffineForm, Doubt, Jet, Range, Value};
@@ -20,7 +20,7 @@ impl Layout {
             cell.scale[e] += tensor::greater(l.abs(), h.abs());
         }
         for e in 0..self.rows() {
-            // Sums of a few parts: a rounding each.
+            // Sums of a few parts: one rounding each.
             let pad = cell.noise[e] + self.remainder[e] + 4.0 * EPSILON * cell.scale[e];
             lo[e] -= pad;
             hi[e] += pad;
@@ -49,7 +49,7 @@ impl Layout {
         (lo, hi)
     }
 
-    /// The mean of each derivative over the cell (not rigorous; what uses it bounds the rest).
+    /// The mean of each derivative over the cell (not rigorous; its users bound the rest).
     pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
         let rows = self.mean_row_slopes(c);
         let Some(tape) = &self.tape else { return rows };
@@ -80,7 +80,7 @@ impl Layout {
         slope
     }
 
-    /// An affine enclosure of each equation, with the given slopes unless equations are combined of leaves.
+    /// An affine enclosure of each equation, with the given slopes unless equations are combined from leaves.
     pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
         let Some(tape) = &self.tape else {
             return self.affine_rows(cell, slope);
@@ -208,7 +208,7 @@ impl Layout {
         (value, jacobian)
     }
 
-    /// What [`evaluate`](Self::evaluate)'s values can be wrong by, for `s` within `[0,1]ⁿ`.
+    /// A bound on the error of the values of [`evaluate`](Self::evaluate), for `s` in `[0,1]ⁿ`.
     pub(crate) fn value_error(&self, cell: &Cell, equation: usize) -> f64 {
         let steps = (4 * self.degrees + 8 * self.n + 8) as f64;
         let own = |row: usize| cell.noise[row] + self.remainder[row] + EPSILON * steps * cell.scale[row];
@@ -235,7 +235,7 @@ impl Layout {
         window: &mut (f64, f64),
     ) {
         if self.tape.is_some() {
-            // Hulls of leaves do not make hulls of products.
+            // Hulls of leaves do not combine to hulls of products.
             return;
         }
         let (mut low, mut high) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);

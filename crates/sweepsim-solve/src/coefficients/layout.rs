@@ -1,12 +1,12 @@
-//! Where the coefficients of a system lie, and what can be read off them: ranges, slopes, affine enclosures, values, each
-//! with its rounding.
+//! The layout of a system's coefficients, and what can be read off them: ranges, slopes, affine enclosures and values, each
+//! with its rounding error.
 //!
 //! An equation is a sum of *parts* in disjoint sets of variables, each a flat tensor. Bounds of such a sum are sums of bounds
 //! and lose nothing, because the parts vary independently; `p(x) + q(y)` of degree 6 needs 14 coefficients, not 49.
 //!
 //! Errors come in two kinds. *Noise* bounds the difference of each equation's coefficients from those of a polynomial: a
 //! derivative then errs by at most `2 d · noise`. The *remainder* bounds the difference of the polynomial from the function that it
-//! stands for, and of its derivatives from that function's; it does not change under subdivision (but derivatives scale).
+//! represents, and of their derivatives; it does not change under subdivision (but derivatives scale).
 
 use super::models::Range;
 use super::tape::Tape;
@@ -22,14 +22,14 @@ pub const MAX_DEGREE: usize = 63;
 pub(crate) struct Axis {
     pub variable: usize,
     pub degree: usize,
-    /// Coefficients between neighbours along this axis.
+    /// The stride between neighbours along this axis, in coefficients.
     pub inner: usize,
 }
 
 /// One summand of an equation (or of a leaf of one).
 #[derive(Clone, Debug)]
 pub(crate) struct Summand {
-    /// The row that it belongs to: an equation, or where equations are combined from leaves, a leaf.
+    /// The row that it belongs to: an equation or, if equations are combined from leaves, a leaf.
     pub equation: usize,
     pub offset: usize,
     pub len: usize,
@@ -59,7 +59,7 @@ pub(crate) struct Layout {
     /// Equations.
     pub m: usize,
     pub parts: Vec<Summand>,
-    /// Coefficients in all.
+    /// The total number of coefficients.
     pub len: usize,
     /// Value remainder of each equation.
     pub remainder: Row,
@@ -67,12 +67,12 @@ pub(crate) struct Layout {
     pub slope_remainder: Row,
     /// Largest degree sum of an equation: for the rounding of values.
     pub degrees: usize,
-    /// The first coefficients, and their noise.
+    /// The original coefficients, and their noise.
     pub first: Vec<f64>,
     pub first_noise: Row,
-    /// What each equation was multiplied by: a power of two.
+    /// The factor by which each equation was multiplied: a power of two.
     pub factor: Row,
-    /// How rows make equations; absent where each row is one.
+    /// How rows are combined into equations; `None` if each row is an equation.
     pub tape: Option<Tape>,
 }
 
@@ -105,12 +105,12 @@ pub(crate) struct Slopes {
 }
 
 impl Layout {
-    /// Equations, or leaves of which these are combined: what has coefficients, noise, remainder.
+    /// The number of rows: equations, or the leaves that they combine. Each has coefficients, noise and a remainder.
     pub(crate) fn rows(&self) -> usize {
         self.tape.as_ref().map_or(self.m, |p| p.leaves)
     }
 
-    /// A cell that holds the first coefficients.
+    /// A cell with the original coefficients.
     pub(crate) fn root(&self) -> Cell {
         let mut cell = Cell {
             lo: [0.0; MAX_UNKNOWNS],
@@ -123,7 +123,7 @@ impl Layout {
         cell
     }
 
-    /// Whether some row's coefficients are mostly noise, and might be less so if computed anew.
+    /// Whether some row's coefficients are mostly noise, and recomputing them might help.
     pub(crate) fn noisy(&self, cell: &Cell, totals: &(Row, Row), share: f64) -> bool {
         (0..self.rows()).any(|e| {
             let size = match self.tape {
@@ -146,7 +146,7 @@ impl Layout {
         }
     }
 
-    /// A bound of an equation's size on the cell (if it is finite).
+    /// A bound on an equation's size on the cell (if it is finite).
     pub(crate) fn size(&self, cell: &Cell, equation: usize) -> f64 {
         match &self.tape {
             Some(tape) => tape
@@ -159,7 +159,7 @@ impl Layout {
         }
     }
 
-    /// Whether an equation has a variable.
+    /// Whether an equation depends on a variable.
     pub(crate) fn depends(&self, equation: usize, variable: usize) -> bool {
         let has = |row: usize| {
             let mut own = self.parts.iter().filter(|p| p.equation == row);

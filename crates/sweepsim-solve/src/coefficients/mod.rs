@@ -1,4 +1,4 @@
-//! The coefficients of a system: how they lie, how boxes are cut, and what can be read off them.
+//! The coefficients of a system: their layout, how boxes are cut, and what can be read off them.
 
 mod enclose;
 mod layout;

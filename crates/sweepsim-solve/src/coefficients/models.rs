@@ -31,7 +31,7 @@ impl Range {
         self.lo.abs().max(self.hi.abs())
     }
 
-    /// The least absolute value; 0 if it may vanish.
+    /// The smallest absolute value; 0 if it may vanish.
     fn least(self) -> f64 {
         self.lo.max(-self.hi).max(0.0)
     }
@@ -121,7 +121,7 @@ pub(crate) struct AffineForm {
 }
 
 impl AffineForm {
-    /// How far the affine part goes from its constant, rounded up.
+    /// How far the affine part deviates from its constant, rounded up.
     fn reach(&self) -> f64 {
         0.5 * self.slope.iter().map(|s| s.abs()).sum::<f64>() * (1.0 + 16.0 * EPSILON)
     }
@@ -236,7 +236,7 @@ impl Model for Value {
     }
 }
 
-/// A range, and by how much computed values in it may be wrong.
+/// A range, and the error of computed values in it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Doubt {
     pub range: Range,
@@ -266,7 +266,7 @@ impl Model for Doubt {
         let error = a * other.error + b * self.error + self.error * other.error;
         Self {
             range,
-            // Not a number where an unbounded factor meets 0.
+            // NaN where an unbounded factor meets 0.
             error: if error.is_finite() {
                 error * (1.0 + 8.0 * EPSILON) + EPSILON * range.magnitude() + f64::MIN_POSITIVE
             } else {

@@ -1,4 +1,4 @@
-//! Cells on a stack of numbers, and the cheapest questions about them.
+//! Cells on a stack of numbers, and the cheapest tests of them.
 
 use super::layout::{Cell, Layout};
 use crate::numbers::Row;

@@ -1,4 +1,4 @@
-//! Restricting, splitting and refreshing the coefficients of a cell, and taking those of a face.
+//! Restricting, splitting and recomputing the coefficients of a cell, and extracting those of a face.
 
 use super::layout::{Axis, Cell, Layout, Summand};
 use super::tensor;
@@ -13,7 +13,7 @@ impl Layout {
         let (old_lo, old_hi) = (cell.lo[variable], cell.hi[variable]);
         let upper_first = lo - old_lo <= old_hi - lo;
         let width = old_hi - old_lo;
-        // Two cuts, each as computed shares (s, t) of the exact sides.
+        // Two cuts, each with computed weights (s, t) of the exact sides.
         let (upper, lower) = if upper_first {
             let rest = old_hi - lo;
             (
@@ -85,13 +85,13 @@ impl Layout {
         cell.lo[variable] = at;
     }
 
-    /// Computes the cell's coefficients anew from the first ones, in twice the precision. Cells may leave the domain a little: restriction to
-    /// `[−a, 1 + b]` makes errors of degree `d` at most `((1 + 2a)(1 + 2b))ᵈ` times as large.
+    /// Recomputes the cell's coefficients from the original ones, in double-double precision. Cells may extend slightly beyond the domain: restriction to
+    /// `[−a, 1 + b]` magnifies errors of degree `d` by at most `((1 + 2a)(1 + 2b))ᵈ`.
     ///
-    /// Parts of one equation may be large where their sum is small: constants move to the first part, so that what is rounded is small.
+    /// Parts of one equation may be large where their sum is small: constants move to the first part, so that the rounded numbers are small.
     pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
         let mut carried = [Double::default(); MAX_UNKNOWNS];
-        // Last parts first: the first part of each equation takes what the others give away.
+        // Last parts first: the first part of each equation absorbs the constants of the others.
         for (number, part) in self.parts.iter().enumerate().rev() {
             let e = part.equation;
             buffer.clear();
@@ -127,14 +127,14 @@ impl Layout {
         for part in &self.parts {
             let e = part.equation;
             let steps: usize = part.axes.iter().map(|a| a.degree).sum();
-            // Coefficients are normalised to at most 2 at first; the rounding to single precision is local.
+            // Coefficients are initially normalised to at most 2; the rounding to single precision is local.
             cell.noise[e] += 2f64.powi(-94) * (steps + 4) as f64 * growth + EPSILON * cell.scale[e];
         }
     }
 
     /// The equations on the face `variable = lo` (or `hi`) of the cell, as a layout in the other variables over that face.
     ///
-    /// Coefficients are taken over as they are, but for a power of two.
+    /// Coefficients are copied unchanged, except for a power of two.
     pub(crate) fn face(&self, cell: &Cell, variable: usize, upper: bool) -> Layout {
         let others = |j: usize| if j < variable { j } else { j - 1 };
         let mut face = Layout {

@@ -1,7 +1,7 @@
 //! Equations that combine forms by sums, products and quotients which are never expanded.
 //!
-//! Only the forms (*leaves*) are subdivided. What is asked of an equation over a cell (its range, its affine enclosure, its
-//! derivatives, its value and that value's error) is computed for each leaf and combined by the arithmetic of such models: intervals,
+//! Only the forms (*leaves*) are subdivided. Properties of an equation over a cell (its range, its affine enclosure, its
+//! derivatives, its value and that value's error) are computed for each leaf and combined by the arithmetic of such models: intervals,
 //! affine arithmetic (Comba and Stolfi 1993), and the rules of differentiation over intervals. Degrees do not grow, a factor keeps its
 //! sharp bounds, and a quotient needs no common denominator. A quotient's model is unbounded where its divisor may vanish.
 
@@ -18,18 +18,18 @@ pub(crate) enum Step {
     Divide,
 }
 
-/// How leaves make up equations.
+/// How leaves are combined into equations.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tape {
-    /// One list an equation.
+    /// One list per equation.
     pub equations: Vec<Vec<Step>>,
-    /// Leaves in all: the rows of the layout.
+    /// The number of leaves: the rows of the layout.
     pub leaves: usize,
-    /// What each leaf's normalised value is to be multiplied by: a power of two.
+    /// The factor for each leaf's normalised value: a power of two.
     pub scale: Row,
 }
 
-/// What is known of a function over a cell.
+/// A model of a function over a cell.
 pub(crate) trait Model: Copy {
     fn constant(value: f64) -> Self;
     fn add(self, other: Self) -> Self;
@@ -49,7 +49,7 @@ impl Tape {
             let value = match *step {
                 Step::Leaf(row) => {
                     top += 1;
-                    // A power of two: exact, barring underflow, which the models' roundings have no room for and need none.
+                    // A power of two: exact except for underflow, which is negligible beside the models' roundings.
                     leaf(row).multiply(M::constant(self.scale[row]))
                 }
                 Step::Constant(value) => {

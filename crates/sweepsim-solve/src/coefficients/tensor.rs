@@ -10,19 +10,19 @@ use sweepsim_spline::kernel::accumulate;
 /// Lanes of the reductions.
 const LANES: usize = 8;
 
-/// The smaller; for numbers without NaN one instruction.
+/// The smaller number; a single instruction, for numbers other than NaN.
 #[inline(always)]
 pub(crate) fn lesser(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
-/// The greater; see [`lesser`].
+/// The greater number; see [`lesser`].
 #[inline(always)]
 pub(crate) fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// Least and greatest of the numbers, starting from `(lo, hi)`.
+/// Minimum and maximum of the numbers, starting from `(lo, hi)`.
 #[inline]
 pub(crate) fn range_from(values: &[f64], lo: f64, hi: f64) -> (f64, f64) {
     let (mut lo, mut hi) = (lo, hi);
@@ -51,13 +51,13 @@ pub(crate) fn range_from(values: &[f64], lo: f64, hi: f64) -> (f64, f64) {
     (lo, hi)
 }
 
-/// Least and greatest of the numbers.
+/// Minimum and maximum of the numbers.
 #[inline]
 pub(crate) fn range(values: &[f64]) -> (f64, f64) {
     range_from(values, f64::INFINITY, f64::NEG_INFINITY)
 }
 
-/// Least and greatest coefficient of each slab along an axis.
+/// Minimum and maximum coefficient of each slab along an axis.
 pub(crate) fn envelope(c: &[f64], degree: usize, inner: usize, low: &mut [f64], high: &mut [f64]) {
     let low = &mut low[..=degree];
     let high = &mut high[..=degree];
@@ -79,7 +79,7 @@ pub(crate) fn envelope(c: &[f64], degree: usize, inner: usize, low: &mut [f64], 
     }
 }
 
-/// Least and greatest difference of neighbours along an axis (times the degree: the derivative's coefficients).
+/// Minimum and maximum difference of neighbours along an axis (times the degree: the derivative's coefficients).
 pub(crate) fn slopes(c: &[f64], degree: usize, inner: usize) -> (f64, f64) {
     if degree == 0 {
         return (0.0, 0.0);

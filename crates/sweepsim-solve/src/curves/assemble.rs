@@ -1,11 +1,11 @@
-//! From pieces in cells to arcs, loops and singular points.
+//! Assembles pieces in cells into arcs, loops and singular points.
 
 use super::subdivide::{OpenCell, Search};
 use super::trace::Vertex;
 use super::{Curve, CurveEnd, CurvePoint, Curves, Singular};
 use crate::numbers::{MAX_UNKNOWNS, Row};
 
-/// Open cells near one another, with a box around them.
+/// Open cells close to one another, with a box around them.
 struct Cluster {
     members: Vec<usize>,
     lo: Row,
@@ -51,8 +51,8 @@ impl Search<'_> {
     /// Joins pieces at shared crossings.
     pub(super) fn assemble(self, skin: f64) -> Curves {
         let n = self.system.layout.n;
-        // Open cells that are near one another, measured by the size of what is united already, are one cluster: around a singular
-        // point some cells in between are settled. Each cluster has the crossings that only one of its cells has.
+        // Open cells that are close, relative to the size of the cluster so far, form one cluster, since some cells around a singular
+        // point are settled. Each cluster has the crossings that belong to only one of its cells.
         let mut clusters: Vec<Cluster> = (0..self.open.len()).map(|o| Cluster::of(&self.open, o, n)).collect();
         while let Some((a, b)) = near_pair(&clusters, n) {
             let other = clusters.remove(b);
@@ -124,7 +124,7 @@ impl Search<'_> {
                     _ => break,
                 }
             }
-            // Two pieces that share both ends close as well.
+            // Two pieces that share both ends also form a loop.
             let ends = [
                 self.pieces[chain[0]].ends[0],
                 self.pieces[chain[chain.len() - 1]].ends[1],
@@ -170,7 +170,7 @@ impl Search<'_> {
         }
     }
 
-    /// Whether no vertex of the chain, and no middle of its segments, lies in the region itself.
+    /// Whether no vertex of the chain and no midpoint of its segments lies in the region itself.
     fn only_in_skin(&self, chain: &[usize]) -> bool {
         let n = self.system.layout.n;
         let region = &self.system.region;

@@ -6,11 +6,11 @@ use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
 use crate::{CancelOnly, Monitor};
 use std::time::Instant;
 
-/// Skins that are tried, in parts of the domain's sides.
+/// Skins to try, relative to the domain's sides.
 const SKINS: [f64; 4] = [0.0, 1.0e-7, 2.3e-6, 4.1e-5];
 
 impl Search<'_> {
-    /// The root cell, its crossings, and the skin that it took.
+    /// The root cell, its crossings, and the skin that it needed.
     pub(super) fn boundary(&mut self, monitor: &dyn Monitor) -> (Cell, Vec<usize>, f64) {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -19,7 +19,7 @@ impl Search<'_> {
             let mut root = self.system.root();
             if skin > 0.0 {
                 for j in 0..n {
-                    // Each face by another amount: no edge through the same point.
+                    // Each face moves by a different amount, so that no edge passes through the same point.
                     let (below, above) = (1.0 + 0.113 * j as f64, 1.271 + 0.171 * j as f64);
                     let (lo, hi) = (root.lo[j] - skin * below, root.hi[j] + skin * above);
                     layout.restrict(&mut root, j, lo, hi);
@@ -42,7 +42,7 @@ impl Search<'_> {
         (self.system.root(), Vec::new(), 0.0)
     }
 
-    /// Adds the crossings of a face of the cell; `false`, with what is open, if some could not be certified or lie on the face's edge.
+    /// Adds the crossings of a face of the cell; `false`, with the open boxes, if some could not be certified or lie on the face's edge.
     pub(super) fn cross(
         &mut self,
         cell: &Cell,
@@ -55,9 +55,9 @@ impl Search<'_> {
         let n = self.system.layout.n;
         let face = self.system.on_face(cell, axis, upper);
         self.points.options.time = self.deadline.map(|d| d.saturating_duration_since(Instant::now()));
-        // Searches on faces have no boxes that the monitor should see.
+        // The monitor does not see the boxes of searches on faces.
         self.points.run(&face, &CancelOnly(monitor));
-        // Boxes of faces count, else searches that find nothing certain on any face would have no end.
+        // Boxes of faces count towards the budget; otherwise searches that certify nothing on any face would never end.
         self.statistics.faces += self.points.statistics.boxes;
         let at = if upper { cell.hi[axis] } else { cell.lo[axis] };
         let place = |s: &Row, outward: f64| -> Row {

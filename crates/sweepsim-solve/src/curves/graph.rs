@@ -1,4 +1,4 @@
-//! Cells in which the curve is a graph over one variable, and the tube that it runs in.
+//! Cells in which the curve is a graph over one variable, and the tube that contains it.
 
 use crate::coefficients::{Cell, Layout, Slopes};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, inverse};
@@ -13,7 +13,7 @@ pub(crate) struct Graph {
     pub sign: i8,
 }
 
-/// The columns of a matrix but one, as a square matrix.
+/// All columns of a matrix except one, as a square matrix.
 pub(crate) fn without(matrix: &Square, column: usize, m: usize) -> Square {
     let mut out = ZERO;
     for e in 0..m {
@@ -24,7 +24,7 @@ pub(crate) fn without(matrix: &Square, column: usize, m: usize) -> Square {
     out
 }
 
-/// The determinant of the columns but one.
+/// The determinant of all columns except one.
 pub(crate) fn minor(matrix: &Square, column: usize, m: usize) -> f64 {
     let mut a = without(matrix, column, m);
     let mut determinant = 1.0;
@@ -54,7 +54,7 @@ pub(crate) fn minor(matrix: &Square, column: usize, m: usize) -> f64 {
     determinant
 }
 
-/// Proves that the cell's curve is a graph over a variable, if it can; and whether the curve misses the cell altogether.
+/// Tries to prove that the cell's curve is a graph over a variable, or that it misses the cell altogether.
 pub(crate) fn graph(
     layout: &Layout,
     cell: &Cell,
@@ -89,13 +89,13 @@ pub(crate) fn graph(
     Some((graph, misses))
 }
 
-/// What the curve in a cell lies in: each other variable is `centre + slope z ± half`, `z ∈ [−½, ½]` along the graph's variable, in sides of
+/// The tube that contains the curve in a cell: each other variable is `centre + slope z ± half`, `z ∈ [−½, ½]` along the graph's variable, in sides of
 /// the cell from its centre.
 pub(crate) struct Tube {
     pub centre: Row,
     pub slope: Row,
     pub half: Row,
-    /// The share of `half` that coefficients' errors are to blame for: no subdivision makes it smaller.
+    /// The part of `half` that is due to errors of the coefficients: subdivision does not reduce it.
     pub noise: Row,
 }
 

@@ -3,16 +3,16 @@
 //! A cell is settled when, for some variable `x_k`, the equations with `x_k` fixed have at most one solution in it: with `J_k` the
 //! Jacobian with respect to the other variables and `K ≈ J_k⁻¹`, when `‖I − K J_k‖∞ < 1` over the cell. Then the curve in the cell
 //! is a graph over a part of the `x_k` axis: there is no loop, its pieces follow one another in `x_k`, and their ends are the curve's
-//! crossings of the cell's faces. Sorted by `x_k`, the crossings are first end, second end, first end, … : nothing is joined by distance.
+//! crossings of the cell's faces. Sorted by `x_k`, the crossings are first end, second end, first end, and so on: nothing is joined by distance.
 //!
 //! Crossings are 0-D solutions on faces, each certified simple, hence transversal. The face between two cells is searched **once**, when
-//! it is made by a split; both cells get the same points. A split avoids all known crossings, and is moved where the search on it leaves
-//! something open (a tangency, a singular point on it).
+//! a split creates it; both cells get the same points. A split avoids all known crossings, and is moved if the search on it leaves
+//! boxes open (at a tangency, or at a singular point on it).
 //!
-//! Where the curve is tangent to the region's own boundary, or passes through an edge or corner of it, the region is made larger by a skin
-//! (see [`Curves::skin`]); pieces that lie in the skin only are dropped.
+//! Where the curve is tangent to the region's own boundary, or passes through one of its edges or corners, the region is enlarged by a skin
+//! (see [`Curves::skin`]); pieces that lie only in the skin are dropped.
 //!
-//! Cells at the smallest size stay open: singular points (nodes, cusps, isolated points), with their branches: the crossings of their outside.
+//! Cells at the smallest size stay open. They are singular points (nodes, cusps, isolated points), whose branches are the crossings of their outer faces.
 
 mod assemble;
 mod faces;
@@ -48,7 +48,7 @@ pub enum CurveEnd {
     Singular(usize),
 }
 
-/// One component of the curve without its singular points, as a polyline within the tolerance.
+/// A component of the curve without its singular points, as a polyline within the tolerance.
 ///
 /// Its direction is that of the wedge product of the equations' gradients (`∇f × ∇g` for two equations in three unknowns, `(f_y, −f_x)` for
 /// one in two).
@@ -93,7 +93,7 @@ pub struct Curves {
     pub singular: Vec<Singular>,
     /// The fraction of the domain by which the region was enlarged because the curve touches its boundary. Usually 0.
     pub skin: f64,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SolveStatistics,
 }
 
@@ -129,14 +129,14 @@ impl Curves {
 pub struct CurveSolver {
     /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a cell counts as singular; 1e-9 by default here.
     pub options: SolveOptions,
-    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; besides what the rounding
-    /// errors (and stated errors) of the coefficients move the curve by.
+    /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; plus the amount by which rounding
+    /// errors (and stated errors) of the coefficients move the curve.
     pub tolerance: f64,
     points: PointSolver,
 }
 
 impl CurveSolver {
-    /// A solver with the default limits and this tolerance of the polylines.
+    /// Creates a solver with the default limits and this tolerance for the polylines.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         let options = SolveOptions {
@@ -146,7 +146,7 @@ impl CurveSolver {
         Self::with_options(tolerance, options)
     }
 
-    /// A solver with these limits.
+    /// Sets the limits.
     #[must_use]
     pub fn with_options(tolerance: f64, options: SolveOptions) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! The search: crossings of faces, cells that are graphs, splits that avoid what is known.
+//! The search: crossings of faces, cells that are graphs, splits that avoid known crossings.
 
 use super::graph::{graph, minor};
 use super::trace::{Tracer, Vertex};
@@ -35,12 +35,12 @@ pub(super) struct OpenCell {
 
 /// Where cells are cut, in order of preference.
 const CUTS: [f64; 9] = [CUT, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
-/// No side shrinks below this part at once.
+/// No side shrinks below this fraction at once.
 const SHRINK: f64 = 1.0 / 32.0;
-/// A cut keeps so far, in sides of the cell, from known crossings, if it can.
+/// The preferred distance of a cut from known crossings, relative to the side of the cell.
 const CLEAR: f64 = 0.01;
 
-/// Whether a search on a face was ended from outside: other cuts would fare no better.
+/// Whether a search on a face was stopped by a limit or by the monitor, so that other cuts would fare no better.
 pub(super) fn stopped(stuck: &[OpenCell]) -> Option<Cause> {
     let causes = stuck.iter().map(|open| open.cause);
     causes.into_iter().find(|c| matches!(c, Cause::Cancelled | Cause::Time))
@@ -60,7 +60,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The search. After each cell, `hand` may take what pieces there are.
+    /// The search. After each cell, `hand` may take the pieces found so far.
     pub(super) fn run(
         &mut self,
         root: Cell,
@@ -135,7 +135,7 @@ impl Search<'_> {
     }
 
     /// Shrinks the cell to the part where, by the equations' projections, the curve is; `false` if that is not worth it, `None` if the curve
-    /// misses the cell. With some slack: the curve does not meet the new faces, so the crossings stay what they are.
+    /// misses the cell. Slack ensures that the curve does not meet the new faces, so the crossings stay the same.
     fn shrink(&mut self, cell: &mut Cell, crossings: &[usize]) -> Option<bool> {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -145,7 +145,7 @@ impl Search<'_> {
         for j in 0..n {
             layout.project(cell, &self.ranges, &totals, j, &mut window[j]);
             if window[j].0 > window[j].1 {
-                // With crossings this cannot be, but for their enclosures' width.
+                // With crossings this cannot happen, except for the width of their enclosures.
                 return if crossings.is_empty() { None } else { Some(false) };
             }
         }
@@ -193,7 +193,7 @@ impl Search<'_> {
         let slopes = layout.slopes(cell);
         let mut tried = [false; MAX_UNKNOWNS];
         for _ in 0..n {
-            // The variable along which the mean tangent is longest, of those not tried.
+            // Of the variables not yet tried, the one along which the mean tangent is longest.
             let mut best: Option<(f64, usize)> = None;
             for k in (0..n).filter(|k| !tried[*k]) {
                 let size = minor(&mean, k, m).abs();
@@ -271,7 +271,7 @@ impl Search<'_> {
         Err(if weight[best] > 0.0 { best } else { widest })
     }
 
-    /// Splits the cell (the upper part stays in it) and says which crossings go where; `None`, having left it open, if it cannot be split.
+    /// Splits the cell (the upper part stays in it) and distributes the crossings; if it cannot be split, leaves it open and returns `None`.
     fn split(
         &mut self,
         cell: &mut Cell,

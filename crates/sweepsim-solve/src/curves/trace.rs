@@ -1,8 +1,8 @@
-//! Polylines within a given distance of a certified piece of curve. Geometry only: what is connected to what is known before.
+//! Polylines within a given distance of a certified piece of curve. This is geometry only: the connectivity is already known.
 //!
 //! Over a part of the cell between two points of the curve, the affine enclosures say that each other variable is an affine function of
 //! the graph's variable, up to `half`. Both ends lie in that tube, so the chord does, and the curve is within `2 half` of it.
-//! Where that is more than the tolerance, the part is halved at a point of the curve. What errors of the coefficients add to `half` is not counted:
+//! Where that is more than the tolerance, the part is halved at a point of the curve. The part of `half` due to errors of the coefficients is not counted:
 //! near singular points it may exceed any tolerance, and halving does not help.
 
 use super::CurvePoint;
@@ -20,9 +20,9 @@ pub(crate) struct Vertex {
     pub tangent: Row,
 }
 
-/// Halvings above which a piece is given up.
+/// The maximum number of halvings before a piece is given up.
 const DEPTH: usize = 40;
-/// With the tube thicker than so many tolerances, the part is halved rather than looked at again.
+/// If the tube is thicker than this many tolerances, the part is halved without another attempt.
 const HOPELESS: f64 = 16.0;
 
 pub(crate) struct Tracer<'a> {
@@ -96,7 +96,7 @@ impl<'a> Tracer<'a> {
         self.halve(cell, parts, graph, [middle, ends[1]], depth + 1, out)
     }
 
-    /// Restricts the part to between two values of the graph's variable and to the tube there, and says whether the tube is thin enough.
+    /// Restricts the part to an interval of the graph's variable and to the tube there; returns whether the tube is thin enough.
     fn within_tolerance(&self, part: &mut Cell, over: usize, from: f64, to: f64) -> bool {
         let layout = &self.system.layout;
         let n = layout.n;
@@ -146,7 +146,7 @@ impl<'a> Tracer<'a> {
         false
     }
 
-    /// The curve's point halfway in the graph's variable.
+    /// The point of the curve at the midpoint of the graph's variable.
     fn between(&mut self, cell: &Cell, graph: &Graph, ends: &[Row; 2]) -> Option<Row> {
         let layout = &self.system.layout;
         let (n, m, over) = (layout.n, layout.m, graph.over);
@@ -181,7 +181,7 @@ impl<'a> Tracer<'a> {
         (before < 1e-6).then_some(x)
     }
 
-    /// The point with its tangent: towards growing values of the graph's variable.
+    /// The point with its tangent, towards increasing values of the graph's variable.
     fn vertex(&mut self, cell: &Cell, graph: &Graph, point: &Row) -> Vertex {
         let layout = &self.system.layout;
         let (n, m) = (layout.n, layout.m);

@@ -1,8 +1,8 @@
-//! Numbers of twice the precision, as unevaluated sums, for restricting a polynomial to a small box from its first
-//! coefficients: what a hundred subdivisions have rounded away is there again.
+//! Double-double numbers (unevaluated sums of two `f64`), for restricting a polynomial to a small box from its original
+//! coefficients: this recovers what a hundred subdivisions have rounded away.
 //!
 //! Dekker's and Knuth's error-free transforms; products by Veltkamp's splitting, so that results do not depend on the processor.
-//! An operation errs by at most `2⁻¹⁰⁰` relative to the operands (barring underflow), which the callers' bounds use with room.
+//! The error of an operation is at most `2⁻¹⁰⁰` relative to the operands (barring underflow), well within the callers' bounds.
 
 /// `hi + lo`, `|lo|` at most half a unit in the last place of `hi`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,7 +66,7 @@ impl Double {
     }
 }
 
-/// Restricts along one axis to `[lo, hi]`, which lies in `[0, 1]` or leaves it a little, in place.
+/// Restricts along one axis to `[lo, hi]`, in place. The interval lies in `[0, 1]` or extends slightly beyond it.
 pub(crate) fn restrict(c: &mut [Double], degree: usize, inner: usize, lo: f64, hi: f64) {
     if degree == 0 {
         return;

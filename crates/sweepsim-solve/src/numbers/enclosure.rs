@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// Two numbers that bound nothing: reversed, or not numbers.
+/// Two numbers that do not form an enclosure: reversed, or NaN.
 ///
 /// ```
 /// use sweepsim_solve::{Enclosure, EnclosureError};
@@ -18,7 +18,7 @@ pub struct EnclosureError {
     pub hi: f64,
 }
 
-/// All numbers from a lower to an upper bound, which may be infinite. Never empty, and its bounds are numbers.
+/// All numbers from a lower to an upper bound, which may be infinite. Never empty, and its bounds are not NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     lo: f64,
@@ -68,7 +68,7 @@ impl Enclosure {
         }
     }
 
-    /// What lies in both; `None` if nothing does.
+    /// The intersection; `None` if it is empty.
     #[must_use]
     #[inline]
     pub fn intersection(self, other: Self) -> Option<Self> {

@@ -1,5 +1,5 @@
-//! Small dense matrices in fixed arrays: inverses for preconditioning. Nothing here needs to be rigorous: what is done with
-//! an inverse always bounds `I − K A` for the `K` at hand.
+//! Small dense matrices in fixed arrays: inverses for preconditioning. Nothing here needs to be rigorous, because users of
+//! an inverse `K` always bound `I − K A`.
 
 use crate::numbers::SINGULAR;
 
@@ -45,7 +45,7 @@ pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
             a[i][j] *= rows[i];
         }
     }
-    // Gauss and Jordan, the inverse built beside.
+    // Gauss–Jordan elimination, which builds the inverse alongside.
     let mut k = ZERO;
     for i in 0..n {
         k[i][i] = 1.0;
@@ -98,11 +98,11 @@ pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
     Some((k, sign))
 }
 
-/// As [`inverse`], for two rows and columns: most faces and graphs have two unknowns.
+/// As [`inverse`], for two rows and columns, since most faces and graphs have two unknowns.
 fn inverse_of_two(matrix: &Square) -> Option<(Square, i8)> {
     let [a, b] = [matrix[0][0], matrix[0][1]];
     let [c, d] = [matrix[1][0], matrix[1][1]];
-    // Scaled as in general: columns first, rows then.
+    // Scaled as in the general case: columns first, then rows.
     let (p, q) = (1.0 / a.abs().max(c.abs()), 1.0 / b.abs().max(d.abs()));
     let (r, s) = (
         1.0 / (a * p).abs().max((b * q).abs()),
@@ -163,7 +163,7 @@ mod tests {
             for k in 0..4 {
                 a[k / 2][k % 2] = entries[number / 7usize.pow(k as u32) % 7];
             }
-            // A third row and column of its own take the general way.
+            // A third, independent row and column make it take the general path.
             a[2][2] = 1.0;
             let (two, three) = (inverse(&a, 2), inverse(&a, 3));
             assert_eq!(two.map(|(_, sign)| sign), three.map(|(_, sign)| sign), "{a:?}");

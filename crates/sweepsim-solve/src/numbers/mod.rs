@@ -1,4 +1,4 @@
-//! Enclosures, numbers of twice the precision, small matrices.
+//! Enclosures, double-double numbers, small matrices.
 
 pub(crate) mod double;
 mod enclosure;
@@ -12,10 +12,10 @@ pub(crate) use matrix::{Row, Square, ZERO, apply, inverse};
 /// `2⁻⁵²`: twice the unit roundoff.
 pub(crate) const EPSILON: f64 = f64::EPSILON;
 
-/// Boxes are split here, in parts of their sides: off the middle, where roots of made-up systems like to lie, and those of symmetric
-/// ones. A root on the face between two boxes costs a certificate in each.
+/// Where boxes are split, as a fraction of their sides: off the middle, where the roots of made-up and of symmetric systems tend to
+/// lie. A root on the face between two boxes costs a certificate in each.
 pub const CUT: f64 = 0.492;
 
-/// A matrix whose rows and columns are scaled to 1 counts as singular where a pivot, or its determinant, is no larger. Its inverse has lost
-/// all but `EPSILON / SINGULAR`, two parts in a hundred thousand, which is what a preconditioner needs.
+/// A matrix whose rows and columns are scaled to 1 counts as singular if a pivot, or its determinant, is no larger than this. Its inverse is then
+/// accurate only to `EPSILON / SINGULAR`, two parts in a hundred thousand, which is enough for a preconditioner.
 pub(crate) const SINGULAR: f64 = 1e-11;

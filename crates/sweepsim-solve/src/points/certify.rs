@@ -1,4 +1,4 @@
-//! The certificate of a root: a box that holds exactly one, and how near to a point it is.
+//! The certificate of a root: a box that holds exactly one root, and a bound on its distance from a point.
 
 use crate::coefficients::{Affine, Cell, Layout};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
@@ -78,7 +78,7 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
         }
         contraction = contraction.max(row);
     }
-    // Newton's method inside the cell; the last point's error is bounded whatever it is.
+    // Newton's method inside the cell; the error of its last point is bounded in any case.
     let mut s = [0.0; MAX_UNKNOWNS];
     for j in 0..n {
         s[j] = 0.5 + centre[j];
@@ -134,7 +134,7 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
     if !useful {
         return None;
     }
-    // Error ≤ direct + rest · error, entry by entry: from the bound for all, a few rounds to one for each.
+    // Error ≤ direct + rest · error, entry by entry: a few iterations turn the common bound into one for each entry.
     let mut errors = [all; MAX_UNKNOWNS];
     for _ in 0..60 {
         let mut better = direct;

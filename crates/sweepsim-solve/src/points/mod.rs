@@ -1,11 +1,11 @@
 //! 0-D: all solutions of `n` equations in `n` unknowns.
 //!
-//! For each box, the cheapest test first:
+//! For each box, the cheapest tests come first:
 //!
 //! 1. *Sign*: an equation whose coefficients (with their rounding bound) have one sign excludes the box.
 //! 2. *Linear*: with the mean Jacobian `A`, each equation is `constant + A z + rest`, `|rest| ≤ r`, over the box (`z` from its
 //!    centre). With `K ≈ A⁻¹`, every root lies in `N = (I − K A) Z − K constant ± |K| r`. If `N` misses the box, it has none.
-//! 3. *Certificate*: if `N` is small, take a box `C` around it (also beyond the box's faces). If `‖I − K J(C)‖∞ < 1`, the map is
+//! 3. *Certificate*: if `N` is small, take a box `C` around it (which may extend beyond the box's faces). If `‖I − K J(C)‖∞ < 1`, the map is
 //!    injective on `C`; if `N(C) ⊂ C`, the map `z ↦ z − K f(z)` takes `C` into itself, so by Brouwer there is a root. Newton's method
 //!    finds it, and the same `K` bounds its error. All roots of the box lie in `C`: the box is settled.
 //! 4. *Projection*: where the convex hull of an equation's coefficient ranges along an axis meets 0 (Sherbrooke, Patrikalakis 1993).
@@ -41,7 +41,7 @@ pub enum RootLocation {
 pub struct Root {
     /// The root, to machine precision.
     pub point: Vec<f64>,
-    /// Holds the root.
+    /// A box that contains the root.
     pub enclosure: Vec<Enclosure>,
     /// A box with no other root. It may extend beyond the domain.
     pub unique_in: Vec<Enclosure>,
@@ -59,6 +59,6 @@ pub struct Points {
     pub roots: Vec<Root>,
     /// Boxes that could not be resolved.
     pub unresolved: Vec<UnresolvedBox>,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SolveStatistics,
 }

@@ -1,5 +1,5 @@
-//! The 0-D search on several threads. What is found depends neither on their number nor on who finishes first: the search goes breadth
-//! first until there are [`PARTS`] boxes, which are searched apart, and their results are joined in the boxes' order.
+//! The 0-D search on several threads. The result depends neither on their number nor on which finishes first: the search goes breadth
+//! first until there are [`PARTS`] boxes, which are searched independently, and their results are joined in the order of the boxes.
 
 use super::{PointSolver, Points};
 use crate::coefficients::{Cell, pop};
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Boxes that are searched apart: many more than threads, since they differ in cost.
+/// The number of boxes that are searched independently: many more than threads, since they differ in cost.
 const PARTS: usize = 128;
 
 impl PointSolver {

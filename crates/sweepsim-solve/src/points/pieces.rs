@@ -1,10 +1,10 @@
-//! Systems of splines: one Bernstein system a polynomial piece, solved apart, with roots on the planes between pieces counted once.
+//! Systems of splines: one Bernstein system per polynomial piece, solved separately, with roots on the planes between pieces counted once.
 //!
-//! Pieces meet where knots are: a spline may have kinks there, and solvers need derivatives. Near such a plane each piece's polynomial has a
-//! root of its own, which may or may not lie where that polynomial holds. So they are judged together, over a box `H` around their
+//! Pieces meet where knots are: a spline may have kinks there, and solvers need derivatives. Near such a plane, each piece's polynomial has its
+//! own root, which may or may not lie where that polynomial is valid. So these roots are judged together, over a box `H` around their
 //! enclosures: with `J` the hull of all touching pieces' Jacobians over `H` and `K ≈ J⁻¹`, if `‖I − K J‖∞ < 1` then `x ↦ x − K f(x)` contracts on `H`
 //! whichever pieces a segment crosses (for a continuous `f`, the mean of Jacobians along it lies in the hull); if it maps `H` into
-//! itself, `H` holds exactly one root of the spline. What cannot be settled so stays open.
+//! itself, `H` holds exactly one root of the spline. Whatever this cannot settle stays open.
 
 use super::treat::BEYOND;
 use super::{PointSolver, Points, Root, RootLocation};
@@ -12,7 +12,7 @@ use crate::numbers::{MAX_UNKNOWNS, Row, Square, ZERO, inverse};
 use crate::search::{Cause, SolveError, UnresolvedBox};
 use crate::{Enclosure, Monitor, Pieces, System};
 
-/// Roots next to planes between pieces are judged over boxes of at least this part of the domain.
+/// Roots next to planes between pieces are judged over boxes of at least this fraction of the domain.
 const NEAR: f64 = 1e-9;
 
 impl PointSolver {
@@ -116,7 +116,7 @@ fn touches(system: &System, hull: &[Enclosure]) -> bool {
         .all(|(s, h)| s.lo() <= h.hi() && h.lo() <= s.hi())
 }
 
-/// A box some times as wide, and wide enough for slopes to mean something.
+/// A box several times as wide, and wide enough for meaningful slopes.
 fn inflated(hull: &[Enclosure], domain: &[Enclosure]) -> Vec<Enclosure> {
     let wider = |(h, d): (&Enclosure, &Enclosure)| {
         let pad = 16.0 * h.radius() + NEAR * (d.hi() - d.lo());
@@ -130,7 +130,7 @@ fn one_root(systems: &[&System], bounds: &[Enclosure]) -> Option<(Vec<f64>, Vec<
     let n = bounds.len();
     let (mut lo, mut hi) = (ZERO, ZERO);
     let middle: Vec<f64> = bounds.iter().map(|b| b.mid()).collect();
-    // The values in the middle by every piece: a continuous spline's differ by no more than its slopes allow.
+    // The values of every piece at the centre; for a continuous spline, they differ by no more than its slopes allow.
     let (mut least, mut most) = ([f64::INFINITY; MAX_UNKNOWNS], [f64::NEG_INFINITY; MAX_UNKNOWNS]);
     for (number, system) in systems.iter().enumerate() {
         let (l, h) = system.jacobian_over(bounds)?;
@@ -227,7 +227,7 @@ impl System {
         let mut widths: Row = [1.0; MAX_UNKNOWNS];
         for (j, (b, d)) in bounds.iter().zip(self.domain()).enumerate() {
             let width = d.hi() - d.lo();
-            // A box of at least some roundings, so that it can be restricted to.
+            // A box of at least a few roundings, so that restriction to it is possible.
             let pad = 64.0 * f64::EPSILON * (1.0 + (b.lo().abs().max(b.hi().abs())) / width);
             let (lo, hi) = ((b.lo() - d.lo()) / width - pad, (b.hi() - d.lo()) / width + pad);
             if !(lo > -BEYOND && hi < 1.0 + BEYOND && lo < hi) {

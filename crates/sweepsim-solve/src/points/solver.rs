@@ -1,4 +1,4 @@
-//! The 0-D solver: its search, and what follows it.
+//! The 0-D solver: its search, and the postprocessing.
 
 use super::certify::Found;
 use super::{Points, Root, RootLocation};
@@ -42,7 +42,7 @@ pub struct PointSolver {
 }
 
 impl PointSolver {
-    /// A solver with these limits.
+    /// Creates a solver with these limits.
     #[must_use]
     pub fn new(options: SolveOptions) -> Self {
         Self {
@@ -78,7 +78,7 @@ impl PointSolver {
         Ok(())
     }
 
-    /// What was found, in the domain's coordinates.
+    /// The results, in the domain's coordinates.
     pub(crate) fn points(&mut self, system: &System) -> Points {
         let n = system.layout.n;
         self.found.sort_by(|a, b| {
@@ -105,7 +105,7 @@ impl PointSolver {
         }
     }
 
-    /// The search and what follows it, with the results in inner coordinates: in `found` and `open`.
+    /// The search and its postprocessing, with the results in inner coordinates in `found` and `open`.
     pub(crate) fn run(&mut self, system: &System, monitor: &dyn Monitor) {
         self.restart();
         let root = system.root();
@@ -113,7 +113,7 @@ impl PointSolver {
         self.finish(system.layout.n);
     }
 
-    /// Forgets what was found.
+    /// Clears the results.
     pub(crate) fn restart(&mut self) {
         self.statistics = SolveStatistics::default();
         self.found.clear();
@@ -123,7 +123,7 @@ impl PointSolver {
         self.failures = 0;
     }
 
-    /// Counts roots once, and unites open boxes.
+    /// Removes duplicate roots, and merges open boxes.
     pub(crate) fn finish(&mut self, n: usize) {
         self.identify(n);
         // An open box inside a box where a found root is the only one holds nothing else.
@@ -155,7 +155,7 @@ impl PointSolver {
             }
             let fate = self.visit(system, depth);
             if monitor.visits() {
-                // Where the cell was split, `cell` is the upper part by now and `lower` the other.
+                // If the cell was split, `cell` is now the upper part and `lower` the other.
                 let lo = if fate == Fate::Split {
                     &self.lower.lo
                 } else {
@@ -185,7 +185,7 @@ impl PointSolver {
         });
     }
 
-    /// Drops roots that were found from several boxes: only one whose enclosure leaves its box can have been.
+    /// Drops roots that were found from several boxes. Only a root whose enclosure leaves its box can be such a duplicate.
     fn identify(&mut self, n: usize) {
         let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
         let mut kept: Vec<Found> = Vec::with_capacity(self.found.len());

@@ -11,26 +11,26 @@ use crate::search::{Cause, Fate};
 /// about `8 h` on the box and `24 h²` on the box three times as wide as `N`. After a failure it must have shrunk by [`AGAIN`].
 const TRY: f64 = 0.2;
 const AGAIN: f64 = 0.6;
-/// The least half width of the box `C`, in sides of the box.
+/// The smallest half width of the box `C`, relative to the sides of the box.
 const LEAST: f64 = 1.0 / 16.0;
-/// How far beyond the domain a certificate may reach, in its sides: the bounds of separated forms hold so far.
+/// How far beyond the domain a certificate may reach, relative to its sides: the bounds of separated forms hold this far.
 pub(crate) const BEYOND: f64 = 1.0 / 64.0;
-/// A reduction to more than this part of each side is not worth its cost.
+/// A reduction to more than this fraction of each side is not worth its cost.
 const WORTH: f64 = 0.75;
-/// No side shrinks below this part in one reduction, nor below [`THIN`] of the widest.
+/// No side shrinks below this fraction in one reduction, nor below [`THIN`] times the widest.
 const SHRINK: f64 = 1.0 / 64.0;
 const THIN: f64 = 1e-8;
-/// The least side, in those of the domain: some units in the last place.
+/// The smallest side, relative to those of the domain: a few units in the last place.
 const LEAST_SIDE: f64 = 4e-15;
-/// Noise above this part of an equation's size makes its coefficients worth computing anew.
+/// If noise exceeds this fraction of an equation's size, its coefficients are worth recomputing.
 const NOISY: f64 = 1.5e-8;
-/// Where an equation vanishes up to noise because a side that it depends on is below this part of another, the other is split all the same: the cell may
+/// If an equation vanishes up to noise because a side that it depends on is below this fraction of another side, the other is still split: the cell may
 /// hold several simple roots.
 const SQUEEZED: f64 = 1.0 / 64.0;
-/// Before a cell stays open, certificates are tried on boxes of so many times its width, each so many times as wide as the one before.
+/// Before a cell stays open, certificates are tried on boxes this many times as wide, each this many times as wide as the previous one.
 const WIDER: f64 = 16.0;
 const WIDER_TRIES: u32 = 6;
-/// Where so many cells were tried in vain, the rest is not: a continuum of solutions.
+/// After this many cells were tried in vain, the rest are not tried: there is a continuum of solutions.
 const WIDER_FAILURES: u32 = 64;
 
 #[expect(clippy::large_enum_variant, reason = "made once an attempt, and taken apart at once")]
@@ -133,7 +133,7 @@ impl PointSolver {
         Fate::Split
     }
 
-    /// Shrinks the cell to the window (in its sides) where that is worth it.
+    /// Shrinks the cell to the window (relative to its sides) if that is worth the cost.
     fn reduce(&mut self, layout: &Layout, window: &mut [(f64, f64); MAX_UNKNOWNS]) -> bool {
         let n = layout.n;
         if !window[..n].iter().any(|w| w.1 - w.0 < WORTH) {
@@ -237,7 +237,7 @@ impl PointSolver {
     }
 
     /// The last resort for a cell that is about to stay open: a certificate on a larger box around it. Reductions may have made the
-    /// cell so small that noise hides its slopes, though the root is simple.
+    /// cell so small that noise hides its slopes, even though the root is simple.
     fn settle_or_leave(&mut self, system: &System, cause: Cause) -> Fate {
         let layout = &system.layout;
         let n = layout.n;

@@ -9,21 +9,21 @@ pub enum SolveError {
     /// The number of equations is wrong.
     #[error("{equations} equations in {variables} variables; this solver needs {expected}")]
     Equations {
-        /// Of the system.
+        /// The number in the system.
         equations: usize,
-        /// Of the system.
+        /// The number in the system.
         variables: usize,
-        /// What this solver needs for this number of variables.
+        /// The number that this solver needs for this number of variables.
         expected: usize,
     },
     /// The number of variables is wrong.
     #[error("{variables} variables; this solver takes {least} to {most}")]
     Variables {
-        /// Of the system.
+        /// The number in the system.
         variables: usize,
-        /// The fewest.
+        /// The smallest number allowed.
         least: usize,
-        /// The most.
+        /// The largest number allowed.
         most: usize,
     },
     /// [`SolveOptions::smallest`](super::SolveOptions::smallest) is not between 1e-14 and 1, or a tolerance is not positive.

@@ -17,7 +17,7 @@ pub struct SolveOptions {
     pub smallest: f64,
     /// The maximum number of boxes.
     pub boxes: u64,
-    /// The maximum number of splits above a box.
+    /// The maximum depth: the number of splits above a box.
     pub depth: u32,
     /// The maximum number of boxes that may stay unresolved before the search stops, so that a continuum of solutions does not flood it.
     pub unresolved: usize,
@@ -74,7 +74,7 @@ impl SolveOptions {
     }
 }
 
-/// What became of a box.
+/// The outcome for a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fate {
@@ -86,7 +86,7 @@ pub enum Fate {
     Projection,
     /// It holds one certified solution, or one certified piece of a curve or surface.
     Certified,
-    /// The only solution that it could hold lies outside.
+    /// Its only candidate for a solution lies outside.
     Elsewhere,
     /// It was split.
     Split,
@@ -137,7 +137,7 @@ impl std::fmt::Display for Cause {
 pub struct UnresolvedBox {
     /// The box. Adjacent boxes with the same cause are merged.
     pub bounds: Vec<Enclosure>,
-    /// Why.
+    /// Why it stays unresolved.
     pub cause: Cause,
     /// The number of merged boxes.
     pub boxes: usize,
@@ -171,7 +171,7 @@ pub struct SolveStatistics {
     pub attempts: u64,
     /// Recomputations from the original coefficients in double-double precision.
     pub refreshed: u64,
-    /// The most splits above a box.
+    /// The largest number of splits above a box.
     pub depth: u32,
 }
 
@@ -220,7 +220,7 @@ impl Watch {
         }
     }
 
-    /// Why to stop before the next box, if at all.
+    /// The reason to stop before the next box, if any.
     pub(crate) fn stop(
         &mut self,
         options: &SolveOptions,
@@ -237,7 +237,7 @@ impl Watch {
         if monitor.cancelled() {
             return Some(Cause::Cancelled);
         }
-        // Asking the clock is not as cheap.
+        // Reading the clock is more expensive.
         self.ticks += 1;
         let late = self.ticks.is_multiple_of(32) && self.deadline.is_some_and(|d| Instant::now() >= d);
         late.then_some(Cause::Time)

@@ -1,4 +1,4 @@
-//! What all searches share: limits, counts, monitors, and what stays open.
+//! Code shared by all searches: limits, counts, monitors, and open boxes.
 
 mod error;
 mod limits;

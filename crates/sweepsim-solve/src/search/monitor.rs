@@ -1,17 +1,17 @@
-//! How a caller watches a search, and how it cancels one.
+//! How callers watch and cancel a search.
 
 use super::Fate;
 use crate::Enclosure;
 
 /// Watches a search: progress, cancellation, pictures. `()` watches nothing.
 ///
-/// A search may run on several threads, so a monitor is shared: it keeps what it counts in atomics or behind a lock.
+/// A search may run on several threads, so a monitor is shared: it keeps its state in atomics or behind a lock.
 ///
 /// ```
 /// use std::sync::atomic::{AtomicU64, Ordering};
 /// use sweepsim_solve::Monitor;
 ///
-/// /// Cancels after a number of questions.
+/// /// Cancels after a number of calls.
 /// struct Patience(AtomicU64);
 ///
 /// impl Monitor for Patience {
@@ -26,8 +26,8 @@ pub trait Monitor: Sync {
         let _ = (done, total);
     }
 
-    /// Whether to stop. Called before every box, and now and then in long loops, so it should be cheap, such as loading an atomic. Once it has returned `true` it
-    /// must keep doing so.
+    /// Whether to stop. Called before every box, and now and then in long loops, so it should be cheap, such as loading an atomic. Once it has returned `true`, it
+    /// must continue to do so.
     fn cancelled(&self) -> bool {
         false
     }

@@ -13,7 +13,7 @@ pub(crate) struct Open {
     pub boxes: usize,
 }
 
-/// Unites boxes of one cause that touch, or nearly so.
+/// Merges boxes with the same cause that touch, or nearly so.
 pub(crate) fn unite(open: &mut Vec<Open>, n: usize) {
     let near = |a: &Open, b: &Open| {
         a.cause == b.cause

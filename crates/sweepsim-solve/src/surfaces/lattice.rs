@@ -10,7 +10,7 @@ pub(crate) struct PlaneLattice<'a> {
     pub system: &'a System,
     pub lo: [f64; 3],
     pub hi: [f64; 3],
-    /// The first coefficients, for values anywhere.
+    /// The original coefficients, for values anywhere.
     pub first: Cell,
 }
 
@@ -26,7 +26,7 @@ impl<'a> PlaneLattice<'a> {
         }
     }
 
-    /// Where a lattice plane is, in the domain's inner coordinates: nearly even, the ends exact.
+    /// The position of a lattice plane, in the domain's inner coordinates: nearly evenly spaced, with exact ends.
     pub(crate) fn place(&self, axis: usize, at: u32) -> f64 {
         if at == 0 {
             return self.lo[axis];

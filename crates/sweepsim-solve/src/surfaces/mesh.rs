@@ -1,4 +1,4 @@
-//! From an octree of plain boxes to triangles: crossings on edges, arcs on faces, disks in boxes; and the check that there are no others.
+//! Triangulates an octree of plain boxes: crossings on edges, arcs on faces, disks in boxes; and checks that there are no others.
 
 use super::lattice::PlaneLattice;
 use super::octree::{FINEST, OctreeNode, State};
@@ -19,13 +19,13 @@ pub(crate) struct Mesher<'a> {
     buffer: Vec<f64>,
 }
 
-/// Vertices, and the numbers of each triangle's.
+/// Vertices, and the vertex numbers of each triangle.
 type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
 /// The two axes along a face, in the order that makes (first, second, normal) right-handed.
 const ALONG: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// What the faces around a leaf say.
+/// The configuration of the faces around a leaf.
 enum Cycle {
     /// No crossing.
     Empty,
@@ -46,7 +46,7 @@ impl<'a> Mesher<'a> {
         }
     }
 
-    /// Plain leaves whose surroundings are not as they must be; `None` if cancelled.
+    /// Plain leaves whose neighbourhood violates the conditions; `None` if cancelled.
     pub(crate) fn check(&mut self) -> Option<Vec<usize>> {
         let mut bad = Vec::new();
         for (number, node) in self.nodes.iter().enumerate() {
@@ -63,7 +63,7 @@ impl<'a> Mesher<'a> {
         Some(bad)
     }
 
-    /// All triangles, with `most` vertices at most; else why there are none. The octree must have passed the check.
+    /// All triangles, with at most `most` vertices; otherwise the cause of failure. The octree must have passed the check.
     pub(crate) fn mesh(&mut self, most: usize) -> Result<Triangles, Cause> {
         let nodes = self.nodes;
         let mut vertices: Vec<[f64; 3]> = Vec::new();
@@ -150,7 +150,7 @@ impl<'a> Mesher<'a> {
                     let across = self.leaf(at);
                     if across.is_some_and(|a| a.side() < length) {
                         if across.is_some_and(|a| matches!(a.state, State::Open(_))) {
-                            // An open box says nothing about the face's parts: be as small as it.
+                            // An open box tells nothing about the parts of the face: split down to its size.
                             return Cycle::Bad;
                         }
                         let half = length / 2;
@@ -197,7 +197,7 @@ impl<'a> Mesher<'a> {
         }
     }
 
-    /// The arc on a face, directed; an error if there is more than one, or a sign is not certain.
+    /// The directed arc on a face; an error if there is more than one, or a sign is uncertain.
     fn arc(&mut self, corner: [u32; 3], normal: usize, upper: bool, length: u32) -> Result<Option<(Edge, Edge)>, ()> {
         let [first, second] = ALONG[normal];
         // Once around, counter-clockwise seen along the normal's tip; from outside that is right for the upper face only.
@@ -243,7 +243,7 @@ impl<'a> Mesher<'a> {
         }
     }
 
-    /// Whether a leaf beside the edge is smaller than it.
+    /// Whether a leaf beside the edge is smaller than the edge.
     fn finer_beside(&self, start: [u32; 3], axis: usize, length: u32) -> bool {
         let [first, second] = ALONG[axis];
         let mut at = start.map(|x| 2 * i64::from(x));
@@ -260,7 +260,7 @@ impl<'a> Mesher<'a> {
         })
     }
 
-    /// The equation's zero on an edge with ends of different sign.
+    /// The equation's zero on an edge whose ends have different signs.
     fn crossing(&mut self, edge: &Edge) -> Row {
         let (start, axis, length) = *edge;
         let axis = usize::from(axis);
@@ -297,7 +297,7 @@ impl<'a> Mesher<'a> {
         x
     }
 
-    /// A point of the surface amid the crossings: Newton's method along the gradient, within the cell; else their mean.
+    /// A point of the surface between the crossings, by Newton's method along the gradient within the cell; if that fails, their mean.
     fn centre(&mut self, cell: &Cell, corners: &[(u32, Row)]) -> Row {
         let layout = &self.grid.system.layout;
         let mut mean = [0.0; MAX_UNKNOWNS];

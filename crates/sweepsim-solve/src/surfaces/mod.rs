@@ -2,18 +2,18 @@
 //!
 //! An octree of boxes. A leaf that the surface may meet is *plain* when
 //!
-//! - on each of its edges, the equation has no zero or one derivative sign: at most one crossing;
-//! - on each of its faces, no zero or one sign of a derivative along the face: the face's curve is a graph, without loops;
-//! - in the box, one sign of some derivative: the surface in it is a graph over a domain of the plane of the other two variables.
+//! - on each of its edges, the equation has no zero, or its derivative has one sign: there is at most one crossing;
+//! - on each of its faces, the equation has no zero, or a derivative along the face has one sign: the face's curve is a graph, without loops;
+//! - in the box, some derivative has one sign: the surface in it is a graph over a domain in the plane of the other two variables.
 //!
-//! A face between boxes of different size belongs to the smaller one, an edge to its smallest neighbour. When each such face has no crossing
-//! on its boundary or two (so its curve is nothing, or one arc between them), and the arcs around each leaf form no cycle or one (so the
-//! surface in it is nothing, or a graph over a domain with one boundary curve: a disk), then vertices on edges, arcs on faces and disks in
-//! boxes are a cell decomposition of the surface. The mesh has the same one: triangulated disks whose boundaries are the same arcs' chords.
-//! So it is homeomorphic to the surface, and isotopic to it box by box. Leaves that fail are split. (Plantinga and Vegter 2004 pose a condition on
+//! A face between boxes of different size belongs to the smaller one, an edge to its smallest neighbour. If each such face has either no crossing
+//! on its boundary or two (so its curve is empty, or one arc between them), and the arcs around each leaf form at most one cycle (so the
+//! surface in it is empty, or a graph over a domain with one boundary curve: a disk), then vertices on edges, arcs on faces and disks in
+//! boxes form a cell decomposition of the surface. The mesh has the same decomposition: triangulated disks bounded by the chords of the same arcs.
+//! So it is homeomorphic to the surface, and isotopic to it box by box. Leaves that fail are split. (Plantinga and Vegter 2004 impose a condition on
 //! gradients instead, and need a balanced octree.)
 //!
-//! The octree's planes are a little off the even ones, so that symmetric surfaces do not touch them.
+//! The octree's planes are not quite evenly spaced, so that symmetric surfaces do not touch them.
 
 mod lattice;
 mod mesh;
@@ -30,22 +30,22 @@ use octree::{FINEST, OctreeNode, Search, State};
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Surface {
-    /// Points; those on edges of the subdivision lie on the surface up to rounding, those inside its boxes as well where Newton's method
-    /// got there.
+    /// Points. Those on edges of the subdivision lie on the surface up to rounding, as do those inside its boxes wherever Newton's method
+    /// converged.
     pub vertices: Vec<[f64; 3]>,
     /// Triangles, counter-clockwise seen from where the equation is positive.
     pub triangles: Vec<[u32; 3]>,
-    /// The boxes, disjoint but for their faces, in which the surface was found to be a graph (or nothing): with
-    /// [`unresolved`](Self::unresolved) they hold all of it.
+    /// The boxes, disjoint except for their faces, in which the surface was found to be a graph (or empty). Together with
+    /// [`unresolved`](Self::unresolved), they contain all of it.
     pub boxes: Vec<[Enclosure; 3]>,
-    /// Boxes where the surface may be singular, or could not be settled. Outside of these the mesh is all there is.
+    /// Boxes where the surface may be singular, or could not be settled. Outside of these, the mesh is complete.
     pub unresolved: Vec<UnresolvedBox>,
-    /// What the search did.
+    /// Statistics of the search.
     pub statistics: SolveStatistics,
 }
 
 impl Surface {
-    /// Vertices less edges plus triangles.
+    /// The number of vertices, minus edges, plus triangles.
     #[must_use]
     pub fn euler_characteristic(&self) -> i64 {
         let mut edges: Vec<(u32, u32)> = self.sides().map(|(a, b)| (a.min(b), a.max(b))).collect();
@@ -54,7 +54,7 @@ impl Surface {
         self.vertices.len() as i64 - edges.len() as i64 + self.triangles.len() as i64
     }
 
-    /// Directed edges that no neighbouring triangle uses the other way: the mesh's boundary.
+    /// Directed edges that no neighbouring triangle uses in the opposite direction: the mesh's boundary.
     #[must_use]
     pub fn boundary(&self) -> Vec<(u32, u32)> {
         let mut sides: Vec<(u32, u32)> = self.sides().collect();
@@ -104,14 +104,14 @@ impl Surface {
 /// ```
 #[derive(Debug)]
 pub struct SurfaceSolver {
-    /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a box counts as singular; 2⁻¹⁸ by default here, 2⁻²⁰ at least.
+    /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a box counts as singular; 2⁻¹⁸ by default here, and at least 2⁻²⁰.
     pub options: SolveOptions,
     /// In each box, mesh and surface lie in a slab of at most this thickness, in the domain's units.
     pub tolerance: f64,
 }
 
 impl SurfaceSolver {
-    /// A solver with the default limits and this tolerance of the mesh.
+    /// Creates a solver with the default limits and this tolerance for the mesh.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         let options = SolveOptions {
@@ -122,7 +122,7 @@ impl SurfaceSolver {
         Self::with_options(tolerance, options)
     }
 
-    /// A solver with these limits.
+    /// Sets the limits.
     #[must_use]
     pub fn with_options(tolerance: f64, options: SolveOptions) -> Self {
         Self { options, tolerance }
@@ -133,12 +133,12 @@ impl SurfaceSolver {
     /// # Errors
     ///
     /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
-    /// [`SolveError::Smallest`] for an impossible size or tolerance.
+    /// [`SolveError::Smallest`] for an invalid size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
         self.solve_within(system, monitor, u32::MAX as usize)
     }
 
-    /// The same with this many vertices at most.
+    /// As [`solve`](Self::solve), with at most this many vertices.
     fn solve_within(&self, system: &System, monitor: &dyn Monitor, most: usize) -> Result<Surface, SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);
         if n != 3 {
@@ -227,7 +227,7 @@ impl SurfaceSolver {
         if open.len() <= 2_000 {
             unite(&mut open, 3);
         } else {
-            // A continuum of open boxes: one around them all.
+            // A continuum of open boxes: return one around all of them.
             let (mut all, cause) = (open[0], open[0].cause);
             for o in &open {
                 for j in 0..3 {

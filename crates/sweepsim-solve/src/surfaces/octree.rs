@@ -10,7 +10,7 @@ use crate::{Monitor, System};
 /// The finest level: lattice coordinates go up to `2^FINEST`.
 pub(crate) const FINEST: u32 = 20;
 
-/// What a leaf is.
+/// The state of a node.
 #[derive(Debug)]
 pub(crate) enum State {
     /// It has children, the first of eight at this number.
@@ -54,7 +54,7 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Decides a new leaf; splits it as long as need be.
+    /// Decides a new leaf, splitting it as often as needed.
     pub(super) fn treat(&mut self, first: usize, monitor: &dyn Monitor) {
         let mut stack = vec![first];
         while let Some(number) = stack.pop() {

@@ -25,7 +25,7 @@ pub(super) fn plain(layout: &Layout, cell: &Cell) -> bool {
     true
 }
 
-/// Whether a face has a signed derivative or no zero, and so its edges.
+/// Whether a face, and each of its edges, has a derivative of one sign or no zero.
 fn plain_part(face: &Layout, fixed: [bool; 2]) -> bool {
     let mut cell = face.root();
     if fixed == [true; 2] {

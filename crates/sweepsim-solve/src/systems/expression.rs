@@ -202,7 +202,7 @@ impl Rows {
             }
         }
         if given.remainder != 0.0 || given.slope_remainder != 0.0 {
-            // What the whole differs by: a form that is zero but for that.
+            // The error of the whole, as a form that is zero except for that error.
             let rest = Equation::sum(vec![Bernstein::constant(layout.n, 0.0)])
                 .with_remainder(given.remainder, given.slope_remainder);
             self.collect(layout, equation, &rest, steps)?;
@@ -211,7 +211,7 @@ impl Rows {
         Ok(())
     }
 
-    /// Hands the tape over, if there is one. Whether some form is only known on the domain.
+    /// Returns the tape, if there is one, and whether some form is known only on the domain.
     pub(crate) fn finish(self, layout: &mut Layout) -> bool {
         let usable = self.combined;
         if usable {

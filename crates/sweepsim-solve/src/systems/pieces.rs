@@ -5,7 +5,7 @@ use crate::Enclosure;
 use sweepsim_spline::{BSpline, RationalSpline, SplineError};
 use thiserror::Error;
 
-/// Why splines do not make a system.
+/// Why a system of splines is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PiecesError {
@@ -23,17 +23,17 @@ pub enum PiecesError {
         expected: usize,
     },
     /// Splines differ in their domain.
-    #[error("spline {spline} has another domain in variable {variable}")]
+    #[error("spline {spline} has a different domain in variable {variable}")]
     Domain {
         /// The spline's number.
         spline: usize,
         /// The variable.
         variable: usize,
     },
-    /// A piece could not be taken.
+    /// A piece could not be extracted.
     #[error(transparent)]
     Spline(#[from] SplineError),
-    /// A piece makes no system.
+    /// A piece does not form a valid system.
     #[error(transparent)]
     System(#[from] SystemError),
 }
@@ -130,7 +130,7 @@ impl Pieces {
         })
     }
 
-    /// The systems, one a piece.
+    /// The systems, one per piece.
     #[must_use]
     pub fn systems(&self) -> &[System] {
         &self.systems

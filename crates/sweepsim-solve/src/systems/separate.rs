@@ -62,7 +62,7 @@ pub(crate) fn add(layout: &mut Layout, row: usize, equation: usize, given: &Equa
         noise += scaled(term.error());
         degrees += term.degrees().iter().sum::<usize>();
         let separated = separate(term.degrees(), coefficients);
-        // The residual is one of coefficients; a little beyond the domain, at most (1 + 1/32)^(degrees) as much.
+        // The residual is one of coefficients; slightly beyond the domain it is at most (1 + 1/32)^(degrees) times as large.
         let top = term.degrees().iter().copied().max().unwrap_or(0) as f64;
         let all: usize = term.degrees().iter().sum();
         let residual = separated.residual * (1.0f64 + 1.0 / 32.0).powi(all as i32);
@@ -159,7 +159,7 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
     let mut residual = 0.0;
     let mut degrees = degrees.to_vec();
     let mut c = coefficients;
-    // Variables that change nothing.
+    // Variables that have no effect.
     for j in 0..n {
         if degrees[j] == 0 {
             continue;
@@ -223,7 +223,7 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
     let mut worst: f64 = 0.0;
     let mut size: f64 = 0.0;
     for (i, x) in c.iter().enumerate() {
-        // In twice the precision: where nothing was rounded, the residual is next to 0.
+        // In double-double precision: if nothing was rounded, the residual is almost 0.
         let mut sum = Double::new(-x);
         for (own, block) in &blocks {
             let (mut at, mut step) = (0, 1);
@@ -244,7 +244,7 @@ fn separate(degrees: &[usize], coefficients: Vec<f64>) -> Separated {
             residual,
         };
     }
-    // The sums above round too, a little.
+    // The sums above also round a little.
     residual += worst * (1.0 + 1e-12) + 2f64.powi(-98) * blocks.len() as f64 * size;
     Separated { blocks, residual }
 }

@@ -11,7 +11,7 @@ use thiserror::Error;
 /// The maximum number of coefficients of a system.
 pub const MAX_SYSTEM: usize = 1 << 24;
 
-/// One equation `f = 0`: a sum of Bernstein forms, with a bound of how much the sum differs from `f`.
+/// One equation `f = 0`: a sum of Bernstein forms, with a bound on how much the sum differs from `f`.
 ///
 /// Every form has as many variables as the system, on `[0,1]ⁿ` (the system's domain maps to it). A form's own
 /// [`error`](Bernstein::error) counts as an error of its coefficients.
@@ -46,7 +46,7 @@ impl Equation {
         self
     }
 
-    /// The zeros of a rational function's component are those of its numerator, for its weight is positive.
+    /// The zeros of a component of a rational function are those of its numerator, since its weight is positive.
     #[must_use]
     pub fn component(rational: &RationalBernstein, component: usize) -> Option<Self> {
         rational.numerators().get(component).cloned().map(Self::from)
@@ -163,9 +163,9 @@ pub enum SystemError {
 pub struct System {
     pub(crate) layout: Layout,
     pub(crate) domain: SmallVec<[Enclosure; 4]>,
-    /// What is searched, in coordinates in which the domain is `[0,1]ⁿ`.
+    /// The region to search, in coordinates in which the domain is `[0,1]ⁿ`.
     pub(crate) region: (Row, Row),
-    /// Some equation is only known on the domain.
+    /// Whether some equation is known only on the domain.
     bounded: bool,
 }
 
@@ -313,7 +313,7 @@ impl System {
         let place = |(j, (o, side)): (usize, (Enclosure, &Enclosure))| {
             let width = side.hi() - side.lo();
             let (l, h) = (side.lo() + lo[j] * width, side.lo() + hi[j] * width);
-            // Where the box is as narrow as its rounding, nothing is left but its middle.
+            // If the box is as narrow as its rounding error, only its midpoint is left.
             Enclosure::new(2.0 * l - o.lo(), 2.0 * h - o.hi())
                 .unwrap_or_else(|_| Enclosure::hull(0.5 * (l + h), 0.5 * (l + h)))
         };
@@ -325,7 +325,7 @@ impl System {
         self.domain[variable].hi() - self.domain[variable].lo()
     }
 
-    /// Whether nothing is known beyond the domain.
+    /// Whether nothing is known outside the domain.
     pub(crate) fn bounded(&self) -> bool {
         self.bounded
     }
