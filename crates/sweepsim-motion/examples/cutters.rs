@@ -1,4 +1,4 @@
-//! Tools by name, with what their boundaries are made of.
+//! Lists tools with the patches and edges of their boundaries.
 
 use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Tool};
 

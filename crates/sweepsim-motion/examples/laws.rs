@@ -1,4 +1,4 @@
-//! How far the laws of motion lead a tool apart between the same two poses.
+//! How much the motion of a tool between the same two poses differs between laws.
 
 use sweepsim_motion::{Law, Path, Pose, RotaryTable};
 
@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let parts = path.segments(0, reach, deviation);
         let quarter = 0.25 * parts.len() as f64;
         let part = &parts[quarter as usize];
-        // The parameter whose time it is, by bisection: time grows with the parameter.
+        // The parameter whose time it is, by bisection: time increases with the parameter.
         let (mut low, mut high) = (0.0, 1.0);
         while high - low > 1e-15 {
             let middle = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-//! Values and derivatives by contraction: one basis (or derivative of it) a variable, the slowest variable first.
+//! Values and derivatives by contraction: one basis (or its derivative) per variable, the slowest variable first.
 
 use crate::kernel::accumulate;
 use smallvec::SmallVec;
@@ -61,7 +61,7 @@ impl Derivatives {
         self.dimension
     }
 
-    /// Every derivative that no degree makes 0, with its orders, the value first.
+    /// Every derivative that is not 0 because of a degree, with its orders, the value first.
     pub fn iter(&self) -> impl Iterator<Item = (&[usize], &[f64])> {
         self.indices
             .iter()
@@ -127,7 +127,7 @@ impl Derivatives {
         result
     }
 
-    /// Puts maps to R together: the derivatives of each as one component.
+    /// Combines maps to R: the derivatives of each form one component.
     pub(crate) fn stack(parts: &[Self]) -> Self {
         let Some(first) = parts.first() else {
             return Self {
@@ -160,7 +160,7 @@ impl Derivatives {
     }
 }
 
-/// By total order, then the first variable's order falling.
+/// By total order, then by decreasing order in the first variable.
 fn sort(indices: &mut [SmallVec<[usize; 4]>]) {
     indices.sort_by(|a, b| (a.iter().sum::<usize>(), b).cmp(&(b.iter().sum::<usize>(), a)));
 }

@@ -30,7 +30,7 @@
 //! | one piece, on `[0,1]ⁿ` | [`Bernstein`] (to R), [`BernsteinMap`] (to Rᵐ) | [`RationalBernstein`] |
 //! | many pieces, on any box | [`BSpline`] over [`KnotVector`]s | [`RationalSpline`] |
 //!
-//! Curves, surfaces, volumes are the same type with one, two, three variables. In every grid of coefficients the first
+//! Curves, surfaces and volumes are the same type with one, two and three variables. In every grid of coefficients the first
 //! variable runs fastest (and, in [`BSpline`], the components of a control point before it).
 //!
 //! # Guarantees
@@ -40,7 +40,7 @@
 //!   `docs/error-bounds.md` of this crate; the tests compare every operation with exact rational arithmetic.
 //! - **No panics**, whatever the numbers. Operations on [`Bernstein`] are total: overflow, or a result too large to store, gives a form
 //!   with an infinite error. Other operations return errors that say which knot, weight, axis or size was wrong.
-//!   (The slice functions of [`kernel`] say where they need slices of a certain length.)
+//!   (The slice functions of [`kernel`] document where they need slices of a certain length.)
 //! - **No hidden tolerances.** Where one is needed, it is an argument; where the question is *exact or not*, the error bounds decide.
 //!
 //! # More
@@ -67,7 +67,7 @@ pub use jets::Derivatives;
 pub use knots::{KnotError, KnotKind, KnotVector};
 pub use spline::{BSpline, RationalPiece, RationalSpline, SplineError, SplinePiece};
 
-/// The README's example compiles and holds.
+/// Tests the README's example.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! The arithmetic of error bounds: unit roundoff, Higham's `γ`, and sums that err upwards.
+//! The arithmetic of error bounds: unit roundoff, Higham's `γ`, and sums rounded upwards.
 //!
 //! Every bound in this crate is a sum and product of a few non-negative numbers. Computed in `f64` such an expression
 //! with at most `m` operations is at least `(1 − u)^m` times its exact value, so one multiplication by `1 + 2⁻⁴⁸`
@@ -7,7 +7,7 @@
 /// The unit roundoff `u = 2⁻⁵³`: `fl(a ∘ b) = (a ∘ b)(1 + δ)`, `|δ| ≤ u`, unless the result underflows.
 pub(crate) const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// What an operation whose result underflows may lose beyond `u` relative; generous (the truth is `2⁻¹⁰⁷⁵`).
+/// The error of an operation whose result underflows, beyond the relative error `u`; generous (the exact bound is `2⁻¹⁰⁷⁵`).
 pub(crate) const UNDERFLOW: f64 = f64::MIN_POSITIVE;
 
 /// `γ_n = n u / (1 − n u)`: the relative error of `n` roundings in a row, rounded up; infinite when `n u ≥ 1/2`.

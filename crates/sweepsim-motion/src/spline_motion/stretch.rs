@@ -1,13 +1,13 @@
-//! Both curves of a motion between two parameters, and what orientation they make.
+//! Both curves of a motion between two parameters, and the resulting orientation.
 
 use super::MotionError;
 use crate::segment::{product, spins, wronskian};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_spline::{BSpline, BernsteinMap, RationalSpline, SplinePiece};
 
-/// Highest degree of a matrix and of the tip: that of the envelope function, up to four times as high, must still be evaluated well.
+/// Highest degree of a matrix and of the tip: the envelope function, with up to four times that degree, must still be evaluated accurately.
 const MOST: usize = 8;
-/// Highest degree of a quaternion, whose matrix has twice as high a one.
+/// Highest degree of a quaternion; its matrix has twice that degree.
 const MOST_QUATERNION: usize = 6;
 
 /// Homogeneous coefficients of both curves between two parameters.
@@ -60,7 +60,7 @@ impl MotionStretch {
     }
 }
 
-/// `Â`, `ŵ` and the angular velocity of a stretch; none when it is to be halved first.
+/// `Â`, `ŵ` and the angular velocity of a stretch; `None` if it must be halved first.
 pub(super) type StretchTurning = Option<(Vec<Matrix3<f64>>, Vec<f64>, Vec<Vector3<f64>>)>;
 
 /// `|q|² R(q)`.
@@ -80,7 +80,7 @@ fn matrix(p: &[f64; 4], q: &[f64; 4]) -> Matrix3<f64> {
     )
 }
 
-/// From quaternions: rotations whatever the numbers, and the angular velocity in the lowest degree.
+/// From quaternions, which always give rotations; the angular velocity has the lowest degree.
 pub(super) fn of_quaternions(stretch: &MotionStretch) -> Result<StretchTurning, MotionError> {
     let count = stretch.turn.components()[0].coefficients().len();
     let quaternions: Vec<[f64; 4]> = (0..count)
@@ -116,7 +116,7 @@ pub(super) fn of_quaternions(stretch: &MotionStretch) -> Result<StretchTurning, 
     Ok(Some((turns, weights, spins)))
 }
 
-/// A bound of the norm of `AᵀA − 1`, from the Bernstein coefficients of `ÂᵀÂ − ŵ² I` and of `ŵ²`.
+/// A bound on the norm of `AᵀA − 1`, from the Bernstein coefficients of `ÂᵀÂ − ŵ² I` and of `ŵ²`.
 fn deviation(turns: &[Matrix3<f64>], weights: &[f64]) -> f64 {
     let squares = product(weights, weights, |a, b| a * b);
     let products = product(turns, turns, |a, b| a.tr_mul(b));

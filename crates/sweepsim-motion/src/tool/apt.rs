@@ -1,11 +1,11 @@
 //! The seven-parameter cutter of APT as a profile.
 //!
-//! `d` diameter: twice the radius where bottom line and side line meet; `r` radius of the corner; `e`, `f` place of the corner's centre:
+//! `d` diameter: twice the radius where bottom line and side line meet; `r` radius of the corner; `e`, `f` position of the corner's centre,
 //! from the axis and above the tip; `a` angle of the bottom line above the horizontal; `b` angle of the side line outwards from the
 //! axis' direction; `h` height. Angles in degrees.
 //!
-//! The outline runs from the tip along the bottom line to the corner, round it, and along the side line to the height. Where the corner's
-//! circle touches a line, it is left or joined there; where it cuts the line (barrels, lenses), at the farther of the two points.
+//! The outline runs from the tip along the bottom line to the corner, around it, and along the side line to the height. If the corner's
+//! circle touches a line, the outline passes between them at that point; if it cuts the line (barrels, lenses), at the farther of the two points.
 
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 use thiserror::Error;
@@ -37,7 +37,7 @@ pub struct Apt {
     pub h: f64,
 }
 
-/// Why parameters are no cutter.
+/// Why a cutter's parameters are invalid.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum AptError {
@@ -78,7 +78,7 @@ pub enum AptWarning {
     },
 }
 
-/// A circle that misses a line by no more than this part of the cutter's size touches it: parameters have few digits.
+/// A circle that misses a line by at most this fraction of the cutter's size counts as touching it, since parameters have few digits.
 const TOUCHES: f64 = 1e-6;
 
 impl Apt {
@@ -159,7 +159,7 @@ struct Circle {
 }
 
 impl Circle {
-    /// The point where the line touches the circle, or the farther one where it cuts; and its distance from the centre.
+    /// The point where the line touches the circle, or the farther one if it cuts the circle; and the line's distance from the centre.
     fn farther(&self, line: &Line) -> Option<([f64; 2], f64)> {
         let to = [self.centre[0] - line.from[0], self.centre[1] - line.from[1]];
         let [dx, dy] = line.direction;
@@ -177,7 +177,7 @@ impl Circle {
     }
 }
 
-/// Segments one after another, without those that have no length.
+/// The segments in order, without those of length zero.
 struct Outline {
     at: [f64; 2],
     segments: Vec<ProfileSegment>,
@@ -193,7 +193,7 @@ impl Outline {
         far
     }
 
-    /// A radius that is 0 but for rounding is 0.
+    /// Sets a radius that is 0 up to rounding to 0.
     fn clean(&self, to: [f64; 2]) -> [f64; 2] {
         if to[0].abs() <= self.smallest { [0.0, to[1]] } else { to }
     }

@@ -25,7 +25,7 @@ fn arc(to: [f64; 2], centre: [f64; 2]) -> ProfileSegment {
     }
 }
 
-/// Where the circle about `small`, of radius `radius`, touches the one about `large` from inside.
+/// Where the circle about `small` of radius `radius` touches the one about `large` from inside.
 fn touch(small: [f64; 2], radius: f64, large: [f64; 2]) -> [f64; 2] {
     let [dx, dy] = [small[0] - large[0], small[1] - large[1]];
     let scale = radius / dx.hypot(dy);
@@ -40,7 +40,7 @@ impl Tool {
     /// An oval form cutter (tangential barrel): a ball, a flank that is tangent to it, and a shank that is tangent to the flank.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank` and `length` is above the flank.
+    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank` and `length` reaches above the flank.
     pub fn oval(measures: Oval) -> Result<Self, ProfileError> {
         let Oval {
             radius,
@@ -60,7 +60,7 @@ impl Tool {
     /// A taper form cutter (conical barrel): as [`oval`](Self::oval), but the flank still leans outwards where it reaches the shank.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank · cos(angle)`, `0 ≤ angle < 90`, and `length` is above the flank.
+    /// [`ProfileError::Measure`] unless `0 < tip < radius < flank · cos(angle)`, `0 ≤ angle < 90`, and `length` reaches above the flank.
     pub fn taper(measures: Taper) -> Result<Self, ProfileError> {
         let Taper {
             radius,
@@ -92,8 +92,8 @@ impl Tool {
         ])
     }
 
-    /// A barrel cutter: a flat bottom, a flank that is an arc, widest in the middle of its height, and a shank above it that is as thick as the flank
-    /// leaves it. The rim between the bottom and the flank is sharp, or an arc that is tangent to both.
+    /// A barrel cutter: a flat bottom, a flank that is an arc, widest in the middle of its height, and a shank above it with the radius of the flank's
+    /// top. The rim between the bottom and the flank is sharp, or an arc that is tangent to both.
     ///
     /// # Errors
     /// [`ProfileError::Measure`] unless all are positive (`corner` may be 0), the arc is less than half a circle and leaves a bottom, `corner` is below half the height and
@@ -145,7 +145,7 @@ impl Tool {
     /// A lens cutter: a bottom that is part of a ball, and a shank. The rim between them is sharp, or an arc that is tangent to both.
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless `0 < radius < bottom`, `0 ≤ corner < radius`, and `length` is above the rim.
+    /// [`ProfileError::Measure`] unless `0 < radius < bottom`, `0 ≤ corner < radius`, and `length` reaches above the rim.
     pub fn lens(measures: Lens) -> Result<Self, ProfileError> {
         let Lens {
             radius,

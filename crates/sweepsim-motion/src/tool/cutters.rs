@@ -3,7 +3,7 @@
 use super::{Dovetail, Lollipop, Tool};
 use crate::profile::{Profile, ProfileError, ProfileSegment, Turn};
 
-/// A measure that must be good and finite.
+/// Checks a measure, which must also be finite.
 pub(crate) fn check(what: &'static str, value: f64, good: bool, expected: &'static str) -> Result<(), ProfileError> {
     if good && value.is_finite() {
         Ok(())
@@ -118,7 +118,7 @@ impl Tool {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no thicker than the flanks leave it.
+    /// [`ProfileError::Measure`] unless all are positive, `angle` below 90, `length` above `height`, and the neck no thicker than the flanks at their top.
     pub fn dovetail(measures: Dovetail) -> Result<Self, ProfileError> {
         let Dovetail {
             radius,

@@ -20,7 +20,7 @@ pub struct Dovetail {
     pub angle: f64,
     /// Height of the flanks.
     pub height: f64,
-    /// Radius of the neck: no more than the flanks leave at their top.
+    /// Radius of the neck: at most that of the flanks at their top.
     pub neck: f64,
     /// From the tip to the top.
     pub length: f64,
@@ -31,7 +31,7 @@ pub struct Dovetail {
 pub struct Barrel {
     /// Radius in the middle of the flank, where it is widest.
     pub radius: f64,
-    /// Radius of the arc that the flank is.
+    /// Radius of the flank's arc.
     pub flank: f64,
     /// Height of the flank.
     pub height: f64,
@@ -61,7 +61,7 @@ pub struct Oval {
     pub radius: f64,
     /// Radius of the ball.
     pub tip: f64,
-    /// Radius of the arc that the flank is.
+    /// Radius of the flank's arc.
     pub flank: f64,
     /// From the tip to the top.
     pub length: f64,
@@ -74,7 +74,7 @@ pub struct Taper {
     pub radius: f64,
     /// Radius of the ball.
     pub tip: f64,
-    /// Radius of the arc that the flank is.
+    /// Radius of the flank's arc.
     pub flank: f64,
     /// By how much the flank leans outwards where it reaches the shank, in degrees.
     pub angle: f64,

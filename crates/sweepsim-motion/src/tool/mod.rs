@@ -47,11 +47,11 @@ impl Tool {
     /// A tool of any shape: the solid that `patches` enclose, in any order.
     ///
     /// Every part of a side of a patch must join part of exactly one other side (of another patch, or of the same one at a seam), within
-    /// `tolerance`. One side may join several, with a different parametrisation. Sides that are points are poles. Where the normals differ along a joint
+    /// `tolerance`. One side may join several, with a different parametrisation. Sides that are points are poles. If the normals differ along a joint,
     /// there is a sharp edge.
     ///
     /// # Errors
-    /// [`ToolError`]: an open boundary, patches that face different ways, more than two sides along one curve, a boundary that is inside out.
+    /// [`ToolError`]: an open boundary, patches that face in different directions, more than two sides along one curve, a boundary that is inside out.
     ///
     /// ```
     /// use sweepsim_motion::{Patch, Tool};

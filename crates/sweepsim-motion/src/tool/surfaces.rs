@@ -6,7 +6,7 @@ use sweepsim_spline::{Bernstein, RationalSpline};
 /// The pieces between knots of B-spline surfaces, as patches.
 ///
 /// # Errors
-/// [`ToolError`]: not surfaces in space, or a piece that is no patch.
+/// [`ToolError`]: not surfaces in space, or a piece that is not a valid patch.
 pub(super) fn patches(surfaces: &[RationalSpline]) -> Result<Vec<Patch>, ToolError> {
     let mut patches = Vec::new();
     for (surface, spline) in surfaces.iter().enumerate() {

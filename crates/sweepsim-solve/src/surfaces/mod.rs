@@ -122,7 +122,7 @@ impl SurfaceSolver {
         Self::with_options(tolerance, options)
     }
 
-    /// Sets the limits.
+    /// Creates a solver with this tolerance and these limits.
     #[must_use]
     pub fn with_options(tolerance: f64, options: SolveOptions) -> Self {
         Self { options, tolerance }

@@ -46,7 +46,7 @@ impl Bernstein {
     /// The product, of degree the sum of the degrees.
     ///
     /// Cost: the product of the two numbers of coefficients. Error: `A ε_b + B ε_a + ε_a ε_b + γ_N A B`, `A` and `B` the
-    /// [magnitudes](Self::magnitude), `N` the length of the longest sum and a few.
+    /// [magnitudes](Self::magnitude), `N` a little more than the length of the longest sum.
     #[must_use]
     pub fn mul(&self, other: &Self) -> Self {
         let degrees: Degrees = common(self, other, usize::saturating_add);
@@ -86,7 +86,7 @@ impl Bernstein {
 
     /// The product of functions of *separate* variables: `(f ⊗ g)(x, y) = f(x) g(y)`, this form's variables first.
     ///
-    /// Cost: one multiplication a coefficient. Error: one rounding. No detour over more variables and a product.
+    /// Cost: one multiplication per coefficient. Error: one rounding. Cheaper than adding variables and multiplying.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -143,7 +143,7 @@ impl Bernstein {
 
     /// The same function with the degree in `axis` higher by `by`.
     ///
-    /// An axis beyond the variables adds variables. Cost: `by` passes. Error: four roundings a pass.
+    /// An axis beyond the variables adds variables. Cost: `by` passes. Error: four roundings per pass.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -195,7 +195,7 @@ impl Bernstein {
         Self::computed(degrees, coefficients, up(self.error + rounding))
     }
 
-    /// The same function with at least `degrees`; too few degrees are filled up with the form's own.
+    /// The same function with at least `degrees`; missing entries are taken from the form's own degrees.
     #[must_use]
     pub fn elevated_to(&self, degrees: &[usize]) -> Self {
         let mut form = self.clone();

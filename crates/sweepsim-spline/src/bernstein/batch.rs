@@ -1,4 +1,4 @@
-//! Values and gradients at many points: several points abreast in the lanes of a vector, one coefficient for all of them.
+//! Values and gradients at many points: several points side by side in the lanes of a vector share each coefficient.
 //!
 //! The first (fastest) variable is contracted first: that leaves the least for the others. Every stage keeps, beside the
 //! value, one array for each variable already contracted by its slope.
@@ -6,9 +6,9 @@
 use super::Bernstein;
 use smallvec::SmallVec;
 
-/// How many points go abreast.
+/// The number of points processed side by side.
 ///
-/// Eight: with two numbers a register that is what it takes to hide the latency of an addition.
+/// Eight: with two numbers per register, this is enough to hide the latency of an addition.
 const LANES: usize = 8;
 
 type Lane = [f64; LANES];
@@ -19,7 +19,7 @@ const ZERO: Lane = [0.0; LANES];
 impl Bernstein {
     /// The values at many points: `points` has `variables()` coordinates per point, `values` room for one number each.
     ///
-    /// As many points are done as both have; their number is returned. Of a form in no variables there is one point for
+    /// Evaluates as many points as both slices have room for, and returns their number. For a form in no variables, there is one point for
     /// each place in `values`.
     ///
     /// ```

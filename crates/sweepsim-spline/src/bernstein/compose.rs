@@ -7,7 +7,7 @@ use crate::rounding::{UNDERFLOW, gamma, magnitude, up};
 impl Bernstein {
     /// The affine function `constant + Σ slopes[i] x_i`, of degree 1 in the variables with a slope other than 0.
     ///
-    /// Not finite numbers give a form of which nothing is known, as do more than [`MAX_VARIABLES`] slopes.
+    /// Numbers that are not finite give a form with an infinite error, as do more than [`MAX_VARIABLES`] slopes.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -19,7 +19,7 @@ impl Bernstein {
         Self::linear_with_error(constant, slopes, 0.0)
     }
 
-    /// [`linear`](Self::linear), constant and slopes each known to within so many units of relative error.
+    /// As [`linear`](Self::linear), with constant and slopes each known to within this relative error.
     pub(crate) fn linear_with_error(constant: f64, slopes: &[f64], relative: f64) -> Self {
         let degrees: Vec<usize> = slopes.iter().map(|&s| usize::from(s != 0.0)).collect();
         if slopes.len() > MAX_VARIABLES || degrees.iter().sum::<usize>() > 28 {
@@ -43,12 +43,12 @@ impl Bernstein {
         Self::computed(degrees, coefficients, if size == 0.0 { 0.0 } else { error })
     }
 
-    /// `f(g₀(y), g₁(y), …)`: this form of the forms `inner`, one for each variable, in their variables `y`.
+    /// `f(g₀(y), g₁(y), …)`: this form composed with the forms `inner`, one for each variable, in their variables `y`.
     ///
     /// With `inner` of degree 1 that is composition with an affine map; with forms of one variable, with a curve. The
     /// `g`s need not stay in `[0,1]`: the polynomial is extrapolated. Degree in `y_k`: `Σ_i deg_i(f) · deg_k(g_i)`.
     ///
-    /// Cost: about one product of forms a coefficient of `f`. Error: that of the sums and products.
+    /// Cost: about one product of forms per coefficient of `f`. Error: that of the sums and products.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -107,7 +107,7 @@ impl Bernstein {
 
     /// The form with variable `axis` replaced by `g`, a form in the *other* variables (in their order): one variable fewer.
     ///
-    /// Cheaper and more exact than [`compose`](Self::compose) with identities for the others.
+    /// Cheaper and more accurate than [`compose`](Self::compose) with identities for the others.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -138,7 +138,7 @@ impl Bernstein {
 
     /// The form on the hyperplane `Σ normal[i] x_i = offset`, as a function of the variables other than `axis`.
     ///
-    /// These run over their `[0,1]` whether or not `x_axis` then lies in its own.
+    /// These range over `[0,1]` whether or not `x_axis` then lies in its own interval.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

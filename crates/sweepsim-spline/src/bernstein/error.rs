@@ -2,7 +2,7 @@
 
 use super::{MAX_COEFFICIENTS, MAX_DEGREE, MAX_VARIABLES};
 
-/// Why coefficients do not make a Bernstein form, or an operation cannot be applied to a form.
+/// Why a Bernstein form is invalid, or an operation cannot be applied to it.
 ///
 /// ```
 /// use sweepsim_spline::{Bernstein, BernsteinError};
@@ -27,7 +27,7 @@ pub enum BernsteinError {
     /// A coefficient is infinite or not a number.
     #[error("coefficient {index} is not finite")]
     NotFinite {
-        /// Its place in the list.
+        /// Its index in the list.
         index: usize,
     },
     /// More than [`MAX_COEFFICIENTS`] coefficients or [`MAX_VARIABLES`] variables, or a degree above [`MAX_DEGREE`].
@@ -36,15 +36,15 @@ pub enum BernsteinError {
     /// An error bound is negative or not a number.
     #[error("the error bound is negative or not a number")]
     ErrorBound,
-    /// A list of axes has not one entry for each variable, names one twice, or one that is not there.
-    #[error("axis list entry {index} is missing, double, or not below {variables}")]
+    /// A list of axes does not have one entry for each variable, repeats one, or contains one that does not exist.
+    #[error("axis list entry {index} is missing, repeated, or not below {variables}")]
     Axes {
         /// The first entry at fault.
         index: usize,
         /// The number of variables.
         variables: usize,
     },
-    /// An operation takes one form for each variable or component, and got another number of them.
+    /// An operation takes one form for each variable or component, but got a different number.
     #[error("{found} forms given where {expected} are needed")]
     FormCount {
         /// How many are needed.
@@ -52,7 +52,7 @@ pub enum BernsteinError {
         /// How many were given.
         found: usize,
     },
-    /// A point has not one coordinate for each variable.
+    /// A point does not have one coordinate for each variable.
     #[error("the point has {found} coordinates: expected {expected}")]
     Coordinates {
         /// The number of variables.
@@ -60,7 +60,7 @@ pub enum BernsteinError {
         /// The number of coordinates.
         found: usize,
     },
-    /// A coordinate of a point is outside `[0, 1]`, or not a number.
+    /// A coordinate of a point is outside `[0, 1]`, or NaN.
     #[error("coordinate {axis} of the point is outside [0, 1]")]
     Outside {
         /// The variable.

@@ -13,7 +13,7 @@ use smallvec::SmallVec;
 impl Bernstein {
     /// The value at `point`, one coordinate per variable; further coordinates are ignored.
     ///
-    /// A coordinate that is missing counts as NaN, as does the value then. Outside `[0,1]ⁿ` the polynomial is extrapolated.
+    /// A missing coordinate counts as NaN, and makes the value NaN. Outside `[0,1]ⁿ` the polynomial is extrapolated.
     pub fn evaluate(&self, point: &[f64]) -> f64 {
         let mut values = Buffer::from_slice(&self.coefficients);
         for axis in (0..self.variables()).rev() {
@@ -70,7 +70,7 @@ impl Bernstein {
         let mut roundings = 0;
         for (axis, &degree) in self.degrees.iter().enumerate() {
             let x = point.get(axis).copied().unwrap_or(f64::NAN);
-            // 3 a step of the recurrence, one product, and a sum of degree + 1 terms.
+            // 3 per step of the recurrence, one product, and a sum of degree + 1 terms.
             if degree > 0 {
                 growth *= up((1.0 - x).abs() + x.abs())
                     .powi(degree.min(i32::MAX as usize) as i32)
@@ -95,8 +95,8 @@ impl Bernstein {
     /// Bounds on the errors of a gradient at `point`, one per variable as far as `errors` has room.
     ///
     /// The slope by a variable of degree `d` is a sum over differences of basis functions, whose absolute values sum to
-    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few roundings more. Where
-    /// the coefficients are large and their differences small, [`derivative`](Self::derivative) first is more exact.
+    /// `2d` times those of the basis: so the bound is `2d` times that of the value with a few more roundings. Where
+    /// the coefficients are large and their differences small, taking the [`derivative`](Self::derivative) first is more accurate.
     pub fn gradient_errors(&self, point: &[f64], errors: &mut [f64]) {
         let error = self.evaluation_error(point);
         for (bound, &degree) in errors.iter_mut().zip(&self.degrees) {
@@ -109,7 +109,7 @@ impl Bernstein {
         }
     }
 
-    /// Value and gradient at `point`; `gradient` gets one entry a variable, as far as it has room.
+    /// Value and gradient at `point`; `gradient` gets one entry per variable, as far as it has room.
     pub fn evaluate_gradient(&self, point: &[f64], gradient: &mut [f64]) -> f64 {
         let coordinate = |axis: usize| point.get(axis).copied().unwrap_or(f64::NAN);
         // `values` is the form with the variables above `axis` contracted, `slopes[k]` the same of its k-th derivative.
@@ -133,7 +133,7 @@ impl Bernstein {
         values[0]
     }
 
-    /// All partial derivatives at `point` up to the total `order`; a coordinate that is missing counts as NaN.
+    /// All partial derivatives at `point` up to the total `order`; a missing coordinate counts as NaN.
     pub fn derivatives(&self, point: &[f64], order: usize) -> Derivatives {
         let tables: Vec<Vec<Buffer>> = self
             .degrees

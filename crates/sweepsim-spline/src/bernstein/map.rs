@@ -1,4 +1,4 @@
-//! Vector-valued Bernstein forms: one scalar form a component, each of its own degrees.
+//! Vector-valued Bernstein forms: one scalar form per component, each with its own degrees.
 
 use super::evaluate::check_point;
 use crate::bernstein::{Bernstein, BernsteinError};
@@ -7,7 +7,7 @@ use crate::jets::Derivatives;
 
 /// A polynomial map `[0,1]ⁿ → Rᵐ`: `m` Bernstein forms.
 ///
-/// Components may differ in their degrees: nothing is elevated that need not be. A component with fewer variables does not
+/// Components may differ in their degrees, which are elevated only when needed. A component with fewer variables does not
 /// depend on the others, as for [`Bernstein`] itself; nothing panics.
 ///
 /// ```
@@ -63,7 +63,7 @@ impl BernsteinMap {
         &self.components
     }
 
-    /// The components, given away.
+    /// The components, by value.
     pub fn into_components(self) -> Vec<Bernstein> {
         self.components
     }
@@ -105,7 +105,7 @@ impl BernsteinMap {
         Derivatives::stack(&parts)
     }
 
-    /// The matrix of first derivatives at `point`: one row a component, one column a variable.
+    /// The matrix of first derivatives at `point`: one row per component, one column per variable.
     pub fn jacobian(&self, point: &[f64]) -> nalgebra::DMatrix<f64> {
         let n = self.variables();
         let mut matrix = nalgebra::DMatrix::zeros(self.dimension(), n);
@@ -285,7 +285,7 @@ impl BernsteinMap {
         self.map(|c| c.integral(axis))
     }
 
-    /// The map after an affine map of its values: `A f + b`, `rows[i]` a row of `A` and the entry of `b`.
+    /// The map followed by an affine map: `A f + b`, where `rows[i]` holds a row of `A` and the entry of `b`.
     ///
     /// # Errors
     ///
@@ -311,7 +311,7 @@ impl BernsteinMap {
         Ok(Self::new(components))
     }
 
-    /// The map of a map: every component [composed](Bernstein::compose) with the components of `inner`.
+    /// The composition of maps: every component [composed](Bernstein::compose) with the components of `inner`.
     ///
     /// # Errors
     ///

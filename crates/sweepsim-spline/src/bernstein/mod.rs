@@ -23,16 +23,16 @@ use smallvec::SmallVec;
 /// The degrees of a form, one per variable.
 pub(crate) type Degrees = SmallVec<[usize; 4]>;
 
-/// The most coefficients a form may have: 2²⁸, two gibibytes.
+/// The maximum number of coefficients of a form: 2²⁸, two gibibytes.
 pub const MAX_COEFFICIENTS: usize = 1 << 28;
 
-/// The most variables a form may have.
+/// The maximum number of variables of a form.
 pub const MAX_VARIABLES: usize = 32;
 
 /// The highest degree in one variable: up to here every binomial coefficient and its inverse is a normal `f64`.
 pub const MAX_DEGREE: usize = 1000;
 
-/// A scalar polynomial in `n` variables on `[0,1]ⁿ`, by its coefficients in the tensor-product Bernstein basis.
+/// A scalar polynomial in `n` variables on `[0,1]ⁿ`, given by its coefficients in the tensor-product Bernstein basis.
 ///
 /// With degrees `d₀, …, dₙ₋₁` the form is `Σ c[i₀,…,iₙ₋₁] · B(d₀,i₀)(x₀) ⋯ B(dₙ₋₁,iₙ₋₁)(xₙ₋₁)`,
 /// `B(d,i)(x) = C(d,i) xⁱ (1−x)ᵈ⁻ⁱ`. The first variable runs fastest: `c[i₀,i₁,i₂]` is at `i₀ + (d₀+1)(i₁ + (d₁+1) i₂)`.
@@ -143,7 +143,7 @@ impl Bernstein {
         }
     }
 
-    /// The form whose coefficients at `[i₀, …]` is `coefficient(&[i₀, …])`, first index fastest.
+    /// The form whose coefficient at `[i₀, …]` is `coefficient(&[i₀, …])`, first index fastest.
     ///
     /// # Errors
     ///
@@ -165,7 +165,7 @@ impl Bernstein {
         Self::new(degrees, coefficients)
     }
 
-    /// A result: right in size; the error turns infinite if a coefficient is not finite.
+    /// A result of the right size; the error becomes infinite if a coefficient is not finite.
     pub(crate) fn computed(degrees: Degrees, coefficients: Vec<f64>, error: f64) -> Self {
         let known = magnitude(&coefficients) < f64::INFINITY && !error.is_nan();
         Self {
@@ -175,7 +175,7 @@ impl Bernstein {
         }
     }
 
-    /// The form of which nothing is known: the result of an operation that overflows or would be too large.
+    /// The form with an infinite error: the result of an operation that overflows or would be too large.
     pub(crate) fn unknown(variables: usize) -> Self {
         Self {
             degrees: SmallVec::from_elem(0, variables),
@@ -204,7 +204,7 @@ impl Bernstein {
         &self.coefficients
     }
 
-    /// The coefficients, given away.
+    /// The coefficients, by value.
     pub fn into_coefficients(self) -> Vec<f64> {
         self.coefficients
     }
@@ -268,7 +268,7 @@ impl Bernstein {
         ((lo - self.error).next_down(), (hi + self.error).next_up())
     }
 
-    /// Whether the form has certainly no zero on `[0,1]ⁿ`.
+    /// Whether the form certainly has no zero on `[0,1]ⁿ`.
     pub fn excludes_zero(&self) -> bool {
         let (lo, hi) = self.enclosure();
         lo > 0.0 || hi < 0.0
@@ -282,7 +282,7 @@ impl Bernstein {
     }
 }
 
-/// The smallest and largest of `values`, NaN left out.
+/// The smallest and largest of `values`, ignoring NaN.
 pub(crate) fn range(values: &[f64]) -> (f64, f64) {
     const LANES: usize = 8;
     let mut lo = [f64::INFINITY; LANES];

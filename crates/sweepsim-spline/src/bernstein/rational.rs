@@ -1,4 +1,4 @@
-//! Rational Bernstein maps, and circular arcs as the first of them.
+//! Rational Bernstein maps, and circular arcs as their most important case.
 
 use super::evaluate::check_point;
 use crate::bernstein::BernsteinMap;
@@ -18,14 +18,14 @@ pub struct RationalBernstein {
     weight: Bernstein,
 }
 
-/// Why forms do not make a rational map.
+/// Why a rational map is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RationalError {
     /// A coefficient of the weight is not certainly positive.
     #[error("weight {index} is {weight}, not positive")]
     Weight {
-        /// Its place among the coefficients.
+        /// Its index among the coefficients.
         index: usize,
         /// Its value.
         weight: f64,
@@ -35,10 +35,10 @@ pub enum RationalError {
     Arc {
         /// Where the arc starts, in radians.
         start: f64,
-        /// By how much it turns, in radians.
+        /// The angle of the turn, in radians.
         sweep: f64,
     },
-    /// The forms themselves.
+    /// A form is invalid.
     #[error(transparent)]
     Form(#[from] BernsteinError),
 }
@@ -267,7 +267,7 @@ impl RationalBernstein {
         Ok(self.evaluate(parameters))
     }
 
-    /// The point at `parameters`, one coordinate a numerator.
+    /// The point at `parameters`, one coordinate per numerator.
     pub fn evaluate(&self, parameters: &[f64]) -> Vec<f64> {
         let weight = self.weight.evaluate(parameters);
         self.numerators

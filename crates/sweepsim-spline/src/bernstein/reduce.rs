@@ -1,4 +1,4 @@
-//! Degree reduction, where it is exact, and the test whether it is.
+//! Exact degree reduction, and the test whether it is possible.
 
 use super::{Bernstein, Degrees};
 use crate::kernel::along;
@@ -10,10 +10,10 @@ impl Bernstein {
     /// Solves `b_k = (k/d) c_{k−1} + (1 − k/d) c_k` for `c`, the lower half from below and the upper half from above, so
     /// that an error grows only linearly with `d`; then elevates `c` again and compares with `b`. They differ by no more
     /// than the error bounds if the exact form is of the lower degree: then `c` with its bound is that form.
-    /// The other way round, an error bound of 0 or of rounding size makes acceptance mean *of lower degree up to
+    /// Conversely, an error bound of 0 or of rounding size makes acceptance mean *of lower degree up to
     /// rounding*, and the result's [`error`](Self::error) covers what was left out.
     ///
-    /// `None` too where the degree is 0 already, or nothing is known of the form.
+    /// Also `None` if the degree is already 0, or the error is infinite.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;

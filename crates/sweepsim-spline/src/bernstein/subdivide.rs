@@ -37,7 +37,7 @@ impl Bernstein {
 
     /// Splits in place: the form becomes its part on `x_axis ≥ at`, and `left` its part on `x_axis ≤ at`.
     ///
-    /// As [`split`](Self::split), but without an allocation where `left` has held as many coefficients before.
+    /// As [`split`](Self::split), but without an allocation if `left` has held as many coefficients before.
     ///
     /// ```
     /// use sweepsim_spline::Bernstein;
@@ -169,7 +169,7 @@ impl Bernstein {
         kernel::keep_upper(&mut self.coefficients, view.len - 1, view.inner, s, t);
     }
 
-    /// The error after `degree` steps `s a + t b`, each with so many relative roundings in its terms.
+    /// The error after `degree` steps `s a + t b`, each with this many relative roundings in its terms.
     ///
     /// A step takes magnitude `m` and error `e` to `G m (1 + r u)` and `G e + r u G m`, `G = |s| + |t|` (1 inside, up to
     /// rounding); so after `d` steps the error is at most `Gᵈ (e + ((1 + r u)ᵈ − 1) m)`.

@@ -10,7 +10,7 @@ use crate::rounding::{UNDERFLOW, gamma, up};
 use crate::spline::{BSpline, SplineError};
 
 /// A circular cone of directions: all vectors `v` whose angle with [`axis`](Self::axis) is at most [`angle`](Self::angle),
-/// less than a right angle. The zero vector is in it only as its tip.
+/// which is less than a right angle. The zero vector belongs to it only as its tip.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cone {
@@ -34,7 +34,7 @@ impl Cone {
         up(self.tangent.atan()).min(std::f64::consts::FRAC_PI_2)
     }
 
-    /// Whether every vector of one cone makes a right angle with no vector of the other, and an acute one with all:
+    /// Whether every vector of one cone makes an acute angle with every vector of the other:
     /// the angle between the axes and both half angles together stay below a right angle.
     ///
     /// Cones of different dimensions never do.
@@ -110,7 +110,7 @@ fn norm(vector: &[f64]) -> f64 {
 }
 
 impl BernsteinMap {
-    /// A cone that holds every value on `[0,1]ⁿ`; `None` if the coefficients do not lie in one of less than a half space.
+    /// A cone that contains every value on `[0,1]ⁿ`; `None` if the coefficients lie in no cone narrower than a half-space.
     ///
     /// If there is one, the map is nowhere 0.
     ///
@@ -145,7 +145,7 @@ impl BernsteinMap {
         Ok(self.derivative(0).cross(&self.derivative(1))?.cone())
     }
 
-    /// Whether the map is certainly nowhere 0 on `[0,1]ⁿ`: one component is not, or all values lie in a cone.
+    /// Whether the map is certainly nowhere 0 on `[0,1]ⁿ`: one component is nowhere 0, or all values lie in a cone.
     pub fn excludes_zero(&self) -> bool {
         self.components().iter().any(Bernstein::excludes_zero) || self.cone().is_some()
     }

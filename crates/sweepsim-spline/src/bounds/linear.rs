@@ -22,16 +22,16 @@ pub struct LinearBound {
     pub constant: f64,
     /// The slopes of `ℓ`, one per variable.
     pub slopes: Vec<f64>,
-    /// The least that `f − ℓ` can be.
+    /// The lower bound of `f − ℓ`.
     pub lower: f64,
-    /// The most that `f − ℓ` can be.
+    /// The upper bound of `f − ℓ`.
     pub upper: f64,
 }
 
 impl Bernstein {
     /// The linear bounding functions with the mean slopes of the form.
     ///
-    /// `lower` and `upper` cover every rounding; they are infinite for a form of which nothing is known.
+    /// `lower` and `upper` cover every rounding; they are infinite for a form with an infinite error.
     pub fn linear_bound(&self) -> LinearBound {
         let n = self.variables();
         let slopes: Vec<f64> = (0..n).map(|axis| self.derivative(axis).mean().0).collect();

@@ -44,7 +44,7 @@ impl Bernstein {
 
     /// A range that holds every value on `[0,1]ⁿ`, from the coefficients with every degree above 0 elevated by `by`.
     ///
-    /// Converges as `1/by`: subdivision is the better way but for small `by`.
+    /// Converges as `1/by`, so subdivision is better except for small `by`.
     pub fn elevated_enclosure(&self, by: usize) -> (f64, f64) {
         let (lo, hi) = self.enclosure();
         let degrees: Vec<usize> = self
@@ -77,7 +77,7 @@ impl Bernstein {
         best.0
     }
 
-    /// An interval of `x_axis` outside of which the form has no zero on `[0,1]ⁿ`; `None` if it has none at all.
+    /// An interval of `x_axis` outside which the form has no zero on `[0,1]ⁿ`; `None` if it has none at all.
     ///
     /// The convex hull of the points `(i/d, c)`, `c` running over the coefficients with index `i` in that variable, cut with
     /// the axis (Sherbrooke and Patrikalakis: projected polyhedra); rounded outwards.

@@ -1,7 +1,7 @@
 //! Interpolation and least squares, axis by axis.
 //!
-//! On a grid of sites the tensor-product problem is one small linear system a variable, with many right-hand sides.
-//! The systems are solved as dense ones (pivoted LU, Householder QR): cubic in the number of coefficients a variable.
+//! On a grid of sites, the tensor-product problem is one small linear system per variable, with many right-hand sides.
+//! The systems are solved as dense ones (pivoted LU, Householder QR), at a cost cubic in the number of coefficients per variable.
 
 use crate::kernel::along;
 use crate::knots::KnotVector;
@@ -38,7 +38,7 @@ impl BSpline {
     ///
     /// [`Count`](SplineError::Count), [`CoefficientCount`](SplineError::CoefficientCount), [`NotFinite`](SplineError::NotFinite);
     /// [`Singular`](SplineError::Singular) if a variable's sites do not determine the spline: some basis function has none
-    /// in the inside of its support (Schoenberg and Whitney).
+    /// in the interior of its support (Schoenberg and Whitney).
     pub fn interpolate(
         knots: Vec<KnotVector>,
         sites: &[Vec<f64>],
@@ -158,7 +158,7 @@ impl BSpline {
         Ok(fit)
     }
 
-    /// The curve of `degree` through `points` in their order, over `[0,1]`: parameters by the chords' lengths, knots by
+    /// The curve of `degree` through `points` in their order, over `[0,1]`: parameters by chord length, knots by
     /// averaging.
     ///
     /// # Errors
@@ -252,12 +252,12 @@ fn for_each_site(sites: &[Vec<f64>], mut call: impl FnMut(usize, &[f64])) {
     }
 }
 
-/// Whether a triangular factor's diagonal says that the system is singular to working precision.
+/// Whether a triangular factor's diagonal shows that the system is singular to working precision.
 fn is_singular(least: f64, most: f64) -> bool {
     least.is_nan() || least <= 1e-13 * most
 }
 
-/// The most entries of a collocation matrix: half a gibibyte.
+/// The maximum number of entries of a collocation matrix: half a gibibyte.
 const MAX_ENTRIES: usize = 1 << 26;
 
 /// Solves for the coefficients along one axis; `None` if they are not determined.

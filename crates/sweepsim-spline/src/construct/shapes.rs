@@ -72,7 +72,7 @@ impl BSpline {
         )
     }
 
-    /// The ruled spline between two: a new last variable over `[0,1]` that goes straight from `self` to `other`.
+    /// The ruled spline between two splines: a new last variable over `[0,1]` runs straight from `self` to `other`.
     ///
     /// # Errors
     ///
@@ -89,7 +89,7 @@ impl BSpline {
         Ok(Self::computed(all, self.dimension(), coefficients, error))
     }
 
-    /// The spline moved along `vector`: a new last variable over `[0,1]`.
+    /// The spline extruded along `vector`: a new last variable over `[0,1]`.
     ///
     /// ```
     /// use sweepsim_spline::BSpline;
@@ -153,7 +153,7 @@ fn arc_coefficients(start: f64, sweep: f64) -> Result<(KnotVector, Vec<[f64; 3]>
     Ok((knots, coefficients))
 }
 
-/// How far sine, cosine and angle of [`arc_coefficients`] may be off in each: a few units in the last place of the angle.
+/// The error of sine, cosine and angle in [`arc_coefficients`]: a few units in the last place of the angle.
 const ARC_ERROR: f64 = 64.0 * UNIT;
 
 impl RationalSpline {
@@ -174,7 +174,7 @@ impl RationalSpline {
     /// # Errors
     ///
     /// [`Degenerate`](SplineError::Degenerate) for angles that are not finite, 0, or more than a turn;
-    /// [`Dimension`](SplineError::Dimension) if `a` or `b` has not as many coordinates as the center; as [`BSpline::new`].
+    /// [`Dimension`](SplineError::Dimension) if `a` or `b` does not have as many coordinates as the center; as [`BSpline::new`].
     pub fn arc(center: &[f64], a: &[f64], b: &[f64], start: f64, sweep: f64) -> Result<Self, SplineError> {
         for other in [a, b] {
             if other.len() != center.len() {
@@ -207,7 +207,7 @@ impl RationalSpline {
         Self::arc(&center, &[radius, 0.0], &[0.0, radius], 0.0, std::f64::consts::TAU)
     }
 
-    /// The spline turned about a line in space by `sweep` radians: a new last variable, as of [`arc`](Self::arc).
+    /// The spline revolved about a line in space by `sweep` radians: a new last variable, as for [`arc`](Self::arc).
     ///
     /// A curve becomes a surface of revolution, a surface a solid.
     ///
@@ -263,9 +263,9 @@ impl RationalSpline {
         Self::from_homogeneous(BSpline::computed(all, 4, coefficients, error))
     }
 
-    /// The ruled spline between two: a new last variable over `[0,1]`, straight in homogeneous coordinates.
+    /// The ruled spline between two splines: a new last variable over `[0,1]`, straight in homogeneous coordinates.
     ///
-    /// With equal weights it goes straight and evenly from `self` to `other`.
+    /// With equal weights, it runs at constant speed from `self` to `other`.
     ///
     /// # Errors
     ///
@@ -274,7 +274,7 @@ impl RationalSpline {
         Self::from_homogeneous(self.homogeneous().ruled(other.homogeneous())?)
     }
 
-    /// The spline moved along `vector`: a new last variable over `[0,1]`.
+    /// The spline extruded along `vector`: a new last variable over `[0,1]`.
     ///
     /// # Errors
     ///

@@ -1,11 +1,11 @@
 //! The arithmetic of Bernstein coefficients on slices, which all forms in this workspace share.
 //!
 //! Nothing here allocates, checks a domain, or tracks a rounding error. [`Bernstein`](crate::Bernstein) does
-//! all of that on top of these functions; use them directly where a form lives in memory of your own and time matters.
+//! all of that on top of these functions; use them directly where a form lives in your own memory and speed matters.
 //!
 //! # Tensors
 //!
-//! Coefficients of a form in several variables stand in one slice, the first variable fastest. Along one variable such a slice is
+//! Coefficients of a form in several variables are stored in one slice, the first variable fastest. Along one variable such a slice is
 //! `outer × (degree + 1) × inner` numbers, `inner` of them contiguous: `inner` is 1 for the first variable, and the number of coefficients
 //! of all variables before it for the others. An operation along a variable combines whole rows of `inner` numbers, which compilers turn into
 //! vector instructions. Several tensors of the same degrees, one after another, count as one; a vector-valued form whose components run fastest has

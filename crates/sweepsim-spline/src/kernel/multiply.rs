@@ -7,7 +7,7 @@
 use super::{accumulate, binomials};
 use smallvec::SmallVec;
 
-/// The degree in a variable: 0 in those that there are not.
+/// The degree in a variable; 0 for variables that do not exist.
 pub(crate) fn degree_of(degrees: &[usize], axis: usize) -> usize {
     degrees.get(axis).copied().unwrap_or(0)
 }

@@ -2,14 +2,14 @@
 
 use super::{keep_lower, keep_upper};
 
-/// One more than the highest degree of which there are tables of weights.
+/// One more than the highest degree with tables of weights.
 const MOST: usize = 32;
 
 /// The coefficients of forms of these degrees, one after the other in `source`, over the rectangle from `lower` to `upper` (which may reach beyond
 /// `[0, 1]²`), again on `[0, 1]²`, into `out`.
 ///
-/// They are values of the forms' blossoms at the rectangle's sides. The weights of those are the same for all forms, and are computed once: that is less
-/// work than two cuts a side as soon as there are several forms. Nothing is divided.
+/// They are values of the forms' blossoms at the rectangle's sides. Their weights are the same for all forms and are computed once, which is less
+/// work than two cuts per side as soon as there are several forms. There are no divisions.
 pub fn restrict_rectangle(source: &[f64], degrees: [usize; 2], lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) {
     let [p, q] = degrees;
     if p.max(q) >= MOST {

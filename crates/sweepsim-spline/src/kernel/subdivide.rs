@@ -5,7 +5,7 @@ trait Blend: Copy {
     fn of(self, a: f64, b: f64) -> f64;
 }
 
-/// `s a + t b`, where `s + t = 1`: for the part of a side whose shares were computed apart.
+/// `s a + t b`, where `s + t = 1`: for a part of a side whose weights were computed separately.
 #[derive(Clone, Copy)]
 struct Shares(f64, f64);
 
@@ -16,7 +16,7 @@ impl Blend for Shares {
     }
 }
 
-/// `a + t (b − a)`: what is constant stays so to the bit.
+/// `a + t (b − a)`: constants stay exact.
 #[derive(Clone, Copy)]
 struct Towards(f64);
 
@@ -27,7 +27,7 @@ impl Blend for Towards {
     }
 }
 
-/// Every number of `target` becomes that between it and its neighbour in `next`.
+/// Replaces every number of `target` by the one between it and its neighbour in `next`.
 #[inline(always)]
 fn blend(target: &mut [f64], next: &[f64], step: impl Blend) {
     for (a, &b) in target.iter_mut().zip(next) {
@@ -51,7 +51,7 @@ pub fn split(upper: &mut [f64], lower: &mut [f64], degree: usize, inner: usize, 
     split_by(upper, lower, degree, inner, Shares(s, t));
 }
 
-/// As [`split`] at `t`, by steps `a + t (b − a)`: parts of a constant are that constant to the bit.
+/// As [`split`] at `t`, by steps `a + t (b − a)`: parts of a constant are exactly that constant.
 ///
 /// ```
 /// use sweepsim_spline::kernel::{split, split_at};
@@ -115,7 +115,7 @@ fn split_lines(upper: &mut [f64], lower: &mut [f64], len: usize, step: impl Blen
     }
 }
 
-/// [`split_lines`] of a length known to the compiler: four lines abreast, in registers.
+/// [`split_lines`] of a length known to the compiler: four lines side by side, in registers.
 fn split_short_lines<const N: usize>(upper: &mut [f64], lower: &mut [f64], by: impl Blend) {
     const ABREAST: usize = 4;
     let mut uppers = upper.chunks_exact_mut(N * ABREAST);

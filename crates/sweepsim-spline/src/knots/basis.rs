@@ -1,4 +1,4 @@
-//! The basis functions of a knot vector: values, derivatives, and how they grow outside of their span.
+//! The basis functions of a knot vector: values, derivatives, and their growth outside their span.
 
 use super::KnotVector;
 use smallvec::SmallVec;

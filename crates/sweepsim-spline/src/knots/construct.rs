@@ -90,8 +90,8 @@ impl KnotVector {
         Self::open(degree, &breakpoints)
     }
 
-    /// The periodic knot vector over one period, `breakpoints[0]` to the last breakpoint, repeated `degree` knots to
-    /// either side. Splines on it have as many different coefficients as there are breakpoints less one.
+    /// The periodic knot vector over one period, `breakpoints[0]` to the last breakpoint, repeated by `degree` knots on
+    /// either side. Splines on it have one fewer different coefficients than there are breakpoints.
     ///
     /// # Errors
     ///

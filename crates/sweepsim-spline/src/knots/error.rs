@@ -2,7 +2,7 @@
 
 use crate::bernstein::{MAX_COEFFICIENTS, MAX_DEGREE};
 
-/// Why numbers do not make a knot vector.
+/// Why a knot vector is invalid.
 ///
 /// ```
 /// use sweepsim_spline::{KnotError, KnotVector};
@@ -21,25 +21,25 @@ pub enum KnotError {
     TooFew {
         /// Twice the order.
         needed: usize,
-        /// How many there are.
+        /// The number given.
         found: usize,
     },
     /// A knot is infinite or not a number.
     #[error("knot {index} is not finite")]
     NotFinite {
-        /// Its place.
+        /// Its index.
         index: usize,
     },
     /// A knot is below the one before.
     #[error("knot {index} is below the one before it")]
     Descending {
-        /// Its place.
+        /// Its index.
         index: usize,
     },
     /// A knot occurs more often than the order.
     #[error("knot {index} occurs more than {most} times")]
     Multiplicity {
-        /// The place of the first occurrence too many.
+        /// The index of the first excess occurrence.
         index: usize,
         /// The order.
         most: usize,

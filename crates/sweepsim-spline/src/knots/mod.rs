@@ -9,7 +9,7 @@ mod error;
 
 pub use error::KnotError;
 
-/// A checked knot vector with its degree: sorted, finite, no knot more often than degree + 1, a domain that is not empty.
+/// A checked knot vector with its degree: sorted and finite, with no knot repeated more than degree + 1 times and a nonempty domain.
 ///
 /// ```
 /// use sweepsim_spline::{KnotKind, KnotVector};
@@ -32,7 +32,7 @@ pub struct KnotVector {
     knots: Vec<f64>,
 }
 
-/// How a knot vector ends.
+/// The kind of ends of a knot vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum KnotKind {
@@ -65,14 +65,14 @@ impl KnotVector {
         (self.knots[self.degree], self.knots[self.count()])
     }
 
-    /// How the ends are.
+    /// The kind of its ends.
     pub fn kind(&self) -> KnotKind {
         let (start, end) = self.domain();
         if self.knots[0] == start && self.knots[self.knots.len() - 1] == end {
             return KnotKind::Open;
         }
         let (period, spans) = (end - start, self.count() - self.degree);
-        // Knots a period on were rounded once or twice when made.
+        // Knots one period further on were rounded once or twice when computed.
         let slack = 4.0
             * f64::EPSILON
             * self.knots[0]
@@ -89,7 +89,7 @@ impl KnotVector {
         self.knots.partition_point(|&t| t <= value) - self.knots.partition_point(|&t| t < value)
     }
 
-    /// The different knots of the domain, its ends included: between neighbours splines are polynomials.
+    /// The distinct knots of the domain, including its ends; between neighbours, splines are polynomials.
     pub fn breakpoints(&self) -> Vec<f64> {
         let mut breakpoints = self.knots[self.degree..=self.count()].to_vec();
         breakpoints.dedup();
@@ -142,7 +142,7 @@ impl KnotVector {
         if wrapped >= end { start } else { wrapped }
     }
 
-    /// Knots that are known to be fine.
+    /// Creates a knot vector from knots known to be valid.
     pub(crate) fn from_parts(degree: usize, knots: Vec<f64>) -> Self {
         Self { degree, knots }
     }

@@ -1,4 +1,4 @@
-//! Parts of the domain, more and fewer variables, and other parameters.
+//! Parts of the domain, more and fewer variables, and reparametrisation.
 
 use super::rows::{self, Row};
 use super::{BSpline, Knots, SplineError};
@@ -83,7 +83,7 @@ impl BSpline {
         Ok(part)
     }
 
-    /// Puts two splines together that share a face: `self` on the lower side in variable `axis`, `other` on the upper.
+    /// Joins two splines that share a face: `self` on the lower side in variable `axis`, `other` on the upper.
     ///
     /// At the seam the knot has multiplicity degree if the faces agree within their error bounds, degree + 1 (a jump)
     /// otherwise; [`remove_knot`](Self::remove_knot) lowers it where the spline is smoother.
@@ -207,7 +207,7 @@ impl BSpline {
     /// The spline as a function of more variables: a new variable `axis` with the domain of `knots`, on which it does not
     /// depend. Exact.
     ///
-    /// To be cheap the new variable is best of degree 0.
+    /// This is cheapest if the new variable has degree 0.
     ///
     /// # Errors
     ///
@@ -233,12 +233,12 @@ impl BSpline {
         Ok(Self::computed(all, self.dimension, coefficients, self.error))
     }
 
-    /// The variables in another order: variable `i` of the result is variable `axes[i]`. Exact.
+    /// Permutes the variables: variable `i` of the result is variable `axes[i]`. Exact.
     ///
     /// # Errors
     ///
     /// [`Count`](SplineError::Count) unless there is one entry a variable; [`Axis`](SplineError::Axis) for an entry that is
-    /// double or not there.
+    /// repeated or out of range.
     pub fn permute(&self, axes: &[usize]) -> Result<Self, SplineError> {
         let n = self.variables();
         if axes.len() != n {
@@ -278,7 +278,7 @@ impl BSpline {
         Ok(Self::computed(knots, self.dimension, coefficients, self.error))
     }
 
-    /// The spline run through backwards in variable `axis`, on the same domain: `x ↦ start + end − x`.
+    /// The spline reversed in variable `axis`, on the same domain: `x ↦ start + end − x`.
     ///
     /// The coefficients are exact; the new knots are rounded and count as exact from then on.
     ///

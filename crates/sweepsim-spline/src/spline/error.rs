@@ -3,7 +3,7 @@
 use crate::bernstein::{BernsteinError, MAX_COEFFICIENTS, MAX_VARIABLES};
 use crate::knots::KnotError;
 
-/// Why numbers do not make a spline, or an operation cannot be applied to a spline.
+/// Why a spline is invalid, or an operation cannot be applied to it.
 ///
 /// ```
 /// use sweepsim_spline::{BSpline, KnotVector, SplineError};
@@ -21,7 +21,7 @@ use crate::knots::KnotError;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SplineError {
-    /// Numbers are not a knot vector.
+    /// A knot vector is invalid.
     #[error("variable {axis}: {error}")]
     Knots {
         /// The variable.
@@ -40,13 +40,13 @@ pub enum SplineError {
     /// A number is infinite or not a number.
     #[error("number {index} is not finite")]
     NotFinite {
-        /// Its place in the list.
+        /// Its index in the list.
         index: usize,
     },
     /// A weight is not certainly positive.
     #[error("weight {index} is {weight}, not positive")]
     Weight {
-        /// Its place among the weights.
+        /// Its index among the weights.
         index: usize,
         /// Its value.
         weight: f64,
@@ -60,17 +60,17 @@ pub enum SplineError {
     /// A wrong number of components.
     #[error("{found} components where {expected} are needed")]
     Dimension {
-        /// How many are needed.
+        /// The number needed.
         expected: usize,
-        /// How many there are.
+        /// The number given.
         found: usize,
     },
     /// A wrong number of variables, splines or points.
     #[error("{found} given where {expected} are needed")]
     Count {
-        /// How many are needed.
+        /// The number needed.
         expected: usize,
-        /// How many there are.
+        /// The number given.
         found: usize,
     },
     /// There is no such variable.
@@ -78,7 +78,7 @@ pub enum SplineError {
     Axis {
         /// The variable asked for.
         axis: usize,
-        /// How many there are.
+        /// The number given.
         variables: usize,
     },
     /// Two splines are defined on different boxes.
@@ -98,7 +98,7 @@ pub enum SplineError {
     /// A function does not have the continuity or the degree that the result would have.
     #[error("the function is not smooth enough, or its degree is too high: off by {deviation:e}")]
     NotExact {
-        /// How far the result would be off, at most.
+        /// A bound on the error that the result would have.
         deviation: f64,
     },
     /// A direction, axis or radius of length zero, or an angle that is not allowed.
@@ -107,7 +107,7 @@ pub enum SplineError {
         /// Which argument.
         what: &'static str,
     },
-    /// A system of equations has no or no single solution.
+    /// A system of equations has no unique solution.
     #[error("the points do not determine the spline in variable {axis}")]
     Singular {
         /// The variable.

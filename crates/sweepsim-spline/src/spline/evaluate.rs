@@ -26,7 +26,7 @@ impl BSpline {
     /// # Errors
     ///
     /// [`Count`](SplineError::Count) unless there is one coordinate for each variable; [`Outside`](SplineError::Outside) for one that is outside the domain (of
-    /// periodic knots, outside of the period that is stored) or NaN.
+    /// periodic knots, outside the stored period) or NaN.
     pub fn try_evaluate(&self, point: &[f64]) -> Result<Vec<f64>, SplineError> {
         let (expected, found) = (self.variables(), point.len());
         if found != expected {
@@ -107,7 +107,7 @@ impl BSpline {
         jets::derivatives(local, self.dimension, &tables, order)
     }
 
-    /// The matrix of first derivatives at `point`: one row a component, one column a variable.
+    /// The matrix of first derivatives at `point`: one row per component, one column per variable.
     pub fn jacobian(&self, point: &[f64]) -> nalgebra::DMatrix<f64> {
         let (mut value, mut slopes) = (vec![0.0; self.dimension], vec![0.0; self.dimension * self.variables()]);
         self.evaluate_jacobian_into(point, &mut value, &mut slopes);
@@ -197,7 +197,7 @@ impl BSpline {
 
     /// The values at many points: `points` has `variables()` coordinates per point, `values` room for `dimension()` numbers each.
     ///
-    /// As many points are done as both have; their number is returned. Of a spline in no variables, as many as there is room.
+    /// Evaluates as many points as both slices have room for, and returns their number. For a spline in no variables, as many as there is room for.
     pub fn evaluate_batch(&self, points: &[f64], values: &mut [f64]) -> usize {
         let count = self.batch_size(points).min(values.len() / self.dimension);
         for (k, value) in values.chunks_exact_mut(self.dimension).take(count).enumerate() {
@@ -277,7 +277,7 @@ impl BSpline {
     }
 }
 
-/// What one evaluation leaves to the next.
+/// Memory reused from one evaluation to the next.
 #[derive(Default)]
 struct Work {
     starts: SmallVec<[usize; 64]>,

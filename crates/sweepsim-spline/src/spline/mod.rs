@@ -28,14 +28,14 @@ pub(crate) type Knots = SmallVec<[KnotVector; 3]>;
 
 /// A tensor-product B-spline, a piecewise polynomial map from a box in `Rⁿ` to `Rᵐ`: curve, surface, volume and beyond.
 ///
-/// One [`KnotVector`] a variable, and a grid of control points of [`dimension`](Self::dimension) `m` numbers each.
+/// One [`KnotVector`] per variable, and a grid of control points of [`dimension`](Self::dimension) `m` numbers each.
 /// The first variable runs fastest among the points, the components fastest of all: component `k` of point `(i₀, i₁)` is at
 /// `k + m (i₀ + n₀ i₁)`.
 ///
 /// # Guarantees
 ///
-/// - **Evaluation is total.** Outside the domain the polynomials at its border are extrapolated; a coordinate that is missing
-///   counts as NaN. Operations that need something of their arguments return a [`SplineError`] that says what was wrong.
+/// - **Evaluation is total.** Outside the domain the polynomials at its border are extrapolated; a missing coordinate
+///   counts as NaN. Operations with requirements on their arguments return a [`SplineError`] that says what was wrong.
 /// - **Every operation carries its rounding error**, as for [`Bernstein`](crate::Bernstein): [`error`](Self::error) bounds
 ///   for every coefficient the distance from what exact arithmetic would have given.
 ///
@@ -64,9 +64,9 @@ pub struct BSpline {
 }
 
 impl BSpline {
-    /// The spline with these knots (one vector a variable) and coefficients.
+    /// The spline with these knots (one vector per variable) and coefficients.
     ///
-    /// No knot vectors at all make a constant.
+    /// Without knot vectors, it is a constant.
     ///
     /// # Errors
     ///
@@ -126,7 +126,7 @@ impl BSpline {
     }
 
     /// The periodic spline over one period of periodic `knots` (see [`KnotVector::periodic`]) in every variable:
-    /// `coefficients` are the different ones, as many a variable as spans of one period, and are wrapped around.
+    /// `coefficients` are the distinct ones, one per span of a period in each variable, and are wrapped around.
     ///
     /// A variable whose knots are not periodic takes its coefficients as they are.
     ///
@@ -191,7 +191,7 @@ impl BSpline {
         self.knots.get(axis).map_or(0, KnotVector::degree)
     }
 
-    /// The domain: one interval a variable.
+    /// The domain: one interval per variable.
     pub fn domain(&self) -> Vec<(f64, f64)> {
         self.knots.iter().map(KnotVector::domain).collect()
     }

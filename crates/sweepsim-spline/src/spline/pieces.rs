@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 /// One polynomial piece of a spline: its box, and the polynomial on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplinePiece {
-    /// The box, one interval a variable.
+    /// The box, one interval per variable.
     pub ranges: Vec<(f64, f64)>,
     /// The map, on `[0,1]ⁿ`: `0` and `1` are the ends of the intervals.
     pub map: BernsteinMap,
@@ -66,7 +66,7 @@ impl PieceTensor {
         magnitude(&self.data)
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn cells(&self) -> usize {
         self.breakpoints.iter().map(|b| b.len() - 1).product()
     }
@@ -108,7 +108,7 @@ impl PieceTensor {
         places
     }
 
-    /// The spline on `knots` that has these pieces, if it is so smooth as they say: see [`rows::join`].
+    /// The spline on `knots` that has these pieces, if they join as smoothly as the knots require: see [`rows::join`].
     pub fn join(self, knots: Knots) -> Result<BSpline, SplineError> {
         let mut lengths: SmallVec<[usize; 4]> = self.lengths().collect();
         let (mut data, mut error) = (self.data, self.error);
@@ -196,8 +196,8 @@ impl BSpline {
     /// # Errors
     ///
     /// [`Count`](SplineError::Count) unless there is one piece for each box between the breakpoints;
-    /// [`Dimension`](SplineError::Dimension); [`NotExact`](SplineError::NotExact) if the pieces do not meet so smoothly as
-    /// the knots say, or are of a higher degree.
+    /// [`Dimension`](SplineError::Dimension); [`NotExact`](SplineError::NotExact) if the pieces do not meet as smoothly as
+    /// the knots require, or have a higher degree.
     pub fn from_pieces(knots: Vec<KnotVector>, pieces: &[BernsteinMap]) -> Result<Self, SplineError> {
         let dimension = pieces.first().map_or(0, BernsteinMap::dimension);
         super::coefficient_count(&knots, dimension)?;
@@ -238,7 +238,7 @@ impl BSpline {
         Ok(spline)
     }
 
-    /// Compares a result, turned back, with what it was made from; adds the difference to its error bound if that
+    /// Compares a result, converted back, with its input; adds the difference to its error bound if it
     /// may be rounding.
     pub(crate) fn accept(
         &mut self,

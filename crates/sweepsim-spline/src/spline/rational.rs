@@ -10,7 +10,7 @@ use crate::spline::{BSpline, SplineError};
 /// A rational tensor-product B-spline, a map from a box in `Rⁿ` to `Rᵐ`: the quotient of a B-spline and a positive weight.
 ///
 /// Kept in homogeneous form, a [`BSpline`] with `m + 1` components `(w x₁, …, w xₘ, w)`; every weight coefficient is
-/// positive beyond its error bound. What does not change the function (knots, degrees, domain) is that of [`BSpline`].
+/// positive beyond its error bound. Operations that do not change the function (knots, degrees, domain) are those of [`BSpline`].
 ///
 /// ```
 /// use sweepsim_spline::RationalSpline;
@@ -32,7 +32,7 @@ pub struct RationalSpline {
 /// One piece of a rational spline: its box, and the rational map on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RationalPiece {
-    /// The box, one interval a variable.
+    /// The box, one interval per variable.
     pub ranges: Vec<(f64, f64)>,
     /// The map, on `[0,1]ⁿ`.
     pub map: RationalBernstein,
@@ -105,7 +105,7 @@ impl RationalSpline {
         &self.homogeneous
     }
 
-    /// The homogeneous spline, given away.
+    /// The homogeneous spline, by value.
     pub fn into_homogeneous(self) -> BSpline {
         self.homogeneous
     }
@@ -125,7 +125,7 @@ impl RationalSpline {
         self.homogeneous.knots()
     }
 
-    /// The domain: one interval a variable.
+    /// The domain: one interval per variable.
     pub fn domain(&self) -> Vec<(f64, f64)> {
         self.homogeneous.domain()
     }
@@ -198,7 +198,7 @@ impl RationalSpline {
         self.homogeneous.derivatives(parameters, order).quotient()
     }
 
-    /// The matrix of first derivatives: one row a coordinate, one column a variable.
+    /// The matrix of first derivatives: one row per coordinate, one column per variable.
     pub fn jacobian(&self, parameters: &[f64]) -> nalgebra::DMatrix<f64> {
         let (m, n) = (self.dimension(), self.variables());
         let (mut value, mut slopes) = (vec![0.0; m + 1], vec![0.0; (m + 1) * n]);
@@ -252,11 +252,11 @@ impl RationalSpline {
         Self::from_homogeneous(BSpline::from_bernstein(&BernsteinMap::new(components), ranges)?)
     }
 
-    /// The numerators and the weight as splines of their own.
+    /// The numerators and the weight as separate splines.
     ///
     /// # Errors
     ///
-    /// None in fact: the dimension is at least 1.
+    /// Never, since the dimension is at least 1.
     pub fn fraction(&self) -> Result<(BSpline, BSpline), SplineError> {
         let m = self.dimension();
         let pick = |k: usize| ((0..=m).map(|i| f64::from(u8::from(i == k))).collect::<Vec<_>>(), 0.0);

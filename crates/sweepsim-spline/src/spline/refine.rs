@@ -10,8 +10,8 @@ use crate::rounding::up;
 impl BSpline {
     /// The same spline with the knot `value` inserted `times` times in variable `axis` (Boehm's algorithm).
     ///
-    /// Up to multiplicity degree + 1, at which the spline falls apart there. Only convex combinations: the error grows by
-    /// rounding alone.
+    /// Up to multiplicity degree + 1, at which the spline splits there. Only convex combinations are used, so the error grows
+    /// only by rounding.
     ///
     /// # Errors
     ///
@@ -53,12 +53,12 @@ impl BSpline {
         Ok(self.with_rows(axis, &rows, finer))
     }
 
-    /// The same spline with one occurrence of the inner knot `value` less in variable `axis`.
+    /// The same spline with one occurrence of the inner knot `value` removed in variable `axis`.
     ///
     /// # Errors
     ///
-    /// [`NotExact`](SplineError::NotExact) if the spline is certainly not so smooth there, with a bound on how far off the
-    /// result would be; [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) if `value` is no inner knot.
+    /// [`NotExact`](SplineError::NotExact) if the spline is certainly not that smooth there, with a bound on the error of the
+    /// result; [`Axis`](SplineError::Axis); [`Outside`](SplineError::Outside) if `value` is not an inner knot.
     pub fn remove_knot(&self, axis: usize, value: f64) -> Result<Self, SplineError> {
         let (mut result, again) = self.without_knot(axis, value)?;
         result.accept(&self.coefficients, self.error, &again.coefficients, again.error)?;
@@ -110,7 +110,7 @@ impl BSpline {
 
     /// The same spline with the degree in variable `axis` higher by `by`. The ends become open.
     ///
-    /// By way of the Bernstein pieces; every knot is there `by` times more.
+    /// Uses the Bernstein pieces; the multiplicity of every knot increases by `by`.
     ///
     /// # Errors
     ///
@@ -132,12 +132,12 @@ impl BSpline {
         self.on_knots(axis, target)
     }
 
-    /// The same spline with the degree in variable `axis` lower by one, every knot there once less. The ends become open.
+    /// The same spline with the degree in variable `axis` and the multiplicity of every knot there lower by one. The ends become open.
     ///
     /// # Errors
     ///
-    /// [`NotExact`](SplineError::NotExact) if the spline certainly is not of that degree or not so smooth, with a bound on
-    /// how far off the result would be (infinite for degree 0); [`Axis`](SplineError::Axis).
+    /// [`NotExact`](SplineError::NotExact) if the spline certainly is not of that degree or not that smooth, with a bound on
+    /// the error of the result (infinite for degree 0); [`Axis`](SplineError::Axis).
     pub fn reduce(&self, axis: usize) -> Result<Self, SplineError> {
         self.check_axis(axis)?;
         let vector = &self.knots[axis];
@@ -156,7 +156,7 @@ impl BSpline {
         Ok(result)
     }
 
-    /// The same spline with open ends in variable `axis`: knots beyond the domain are gone.
+    /// The same spline with open ends in variable `axis`: knots beyond the domain are removed.
     ///
     /// # Errors
     ///

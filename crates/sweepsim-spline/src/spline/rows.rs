@@ -1,9 +1,9 @@
-//! Linear maps along one axis, and how exact they are.
+//! Linear maps along one axis, and their accuracy.
 //!
 //! Knot insertion, degree elevation, the way to Bernstein pieces and back: each makes every new coefficient a short linear
 //! combination of old ones. The combinations are found by running the algorithm (Boehm's insertion, de Casteljau's blossom,
-//! elevation) on *rows* instead of on control points, starting from unit rows, and are then applied once, whatever the
-//! axis. A row carries what is needed to bound the error of the result; the proof is in `docs/error-bounds.md`.
+//! elevation) on *rows* instead of on control points, starting from unit rows, and are then applied once, along any
+//! axis. A row carries the data needed to bound the error of the result; the proof is in `docs/error-bounds.md`.
 
 use crate::kernel::{Along, accumulate};
 use crate::knots::KnotVector;
