@@ -23,25 +23,25 @@ struct Arguments {
 enum Command {
     /// Writes the generated jobs and paths under fixtures/.
     Generate {
-        /// Only say which are stale, and fail if any is.
+        /// Only list stale files, and fail if there are any.
         #[arg(long)]
         check: bool,
     },
     /// Runs the fixture jobs and compares with the stored dexels; fails if they differ.
     Regress {
-        /// Names of jobs; all if none.
+        /// The names of jobs [default: all].
         jobs: Vec<String>,
     },
-    /// Runs the fixture jobs, prints how they differ from the stored dexels, and stores what they give.
+    /// Runs the fixture jobs, prints how they differ from the stored dexels, and stores the new ones.
     Bless {
-        /// Names of jobs; all if none.
+        /// The names of jobs [default: all].
         jobs: Vec<String>,
     },
-    /// Measures, in a release build, and prints beside published figures.
+    /// Runs benchmarks in a release build, and prints the results beside published figures.
     Bench {
         /// What to measure.
         table: Table,
-        /// Of instructions: only work whose name contains this.
+        /// For instructions: only work whose name contains this.
         filter: Option<String>,
     },
     /// Does one piece of work of `bench instructions`.
@@ -50,11 +50,11 @@ enum Command {
         /// Its name.
         name: String,
     },
-    /// Runs the whole brute-force suite, of which the gate runs a sample: takes half an hour and more.
+    /// Runs the whole brute-force suite, of which the gate runs a sample: takes half an hour or more.
     BruteForce {
         /// Only tests whose names contain this.
         filter: Option<String>,
-        /// How many times the drawn cases are drawn.
+        /// The factor for the number of random cases.
         #[arg(long, default_value_t = 1)]
         times: u32,
     },
@@ -63,12 +63,12 @@ enum Command {
         /// Only tests whose names contain this.
         filter: Option<String>,
     },
-    /// Compiles and runs the first example of every README as a package of its own that depends on that crate alone.
+    /// Compiles and runs the first example of every README as a separate package that depends on that crate alone.
     Standalone {
-        /// Names of crates; all if none.
+        /// The names of crates [default: all].
         crates: Vec<String>,
     },
-    /// Runs what must pass before a change is integrated: .ci/run.
+    /// Runs .ci/run, which must pass before a change is integrated.
     Ci,
 }
 
@@ -82,7 +82,7 @@ enum Table {
     Instructions,
 }
 
-/// The same command by a release build: measurements of any other would mislead.
+/// Runs the same command in a release build; measurements of any other would be misleading.
 fn in_release() -> Result<bool, String> {
     let status = std::process::Command::new(env!("CARGO"))
         .args(["run", "--quiet", "--release", "--package", "xtask", "--"])

@@ -101,7 +101,7 @@ fn check(path: &Path, totals: &mut BTreeMap<String, Totals>, mode: Mode) -> Resu
         Some(text) => {
             let stored = Fixture::parse(&text).map_err(|error| about(&file, error))?;
             let compared = found.differences(&stored, totals.get(&name));
-            // Another grid is a difference like others.
+            // A different grid is a difference like any other.
             compared.unwrap_or_else(|error| vec![error])
         }
         None => vec!["nothing is stored yet".to_owned()],
@@ -125,15 +125,15 @@ fn print_some(what: &str, lines: &[String]) {
     }
 }
 
-/// What a job gave.
+/// The result of a job.
 struct Outcome {
     found: Stored,
     tolerance: f64,
-    /// Dexels that are not certain.
+    /// Uncertified dexels.
     unresolved: Vec<String>,
 }
 
-/// Sweeps the paths of a job one after the other, and takes what they sweep out of the stock.
+/// Sweeps the paths of a job one after the other, and removes the swept volumes from the stock.
 fn run_job(path: &Path) -> Result<Outcome, String> {
     let job = Job::read(path).map_err(|error| error.to_string())?;
     let stock = job.stock.dexels(&job.grid).map_err(|error| about(path, error))?;

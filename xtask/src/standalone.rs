@@ -1,5 +1,5 @@
-//! `cargo xtask standalone`: what a stranger does first. The first example of every library's README, as a package of its own outside the
-//! workspace that depends on that one crate, is compiled and run.
+//! `cargo xtask standalone`: compiles and runs the first example of every library's README, as a newcomer would: in a separate package outside the
+//! workspace that depends on that one crate.
 
 use crate::workspace;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub fn run(only: &[String]) -> Result<bool, String> {
     if let Some(unknown) = only.iter().find(|name| !names.contains(name)) {
         return Err(format!("there is no crate crates/{unknown}"));
     }
-    // Outside of the workspace, but built where its dependencies are compiled already.
+    // Outside the workspace, but built where its dependencies are already compiled.
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace::root().join("target"), Into::into);
     let target = std::path::absolute(target).map_err(about("target"))?.join("standalone");
     let lock = workspace::root().join("Cargo.lock");
@@ -83,7 +83,7 @@ fn first_example(readme: &str) -> Option<String> {
     (!block.is_empty()).then(|| block.join("\n"))
 }
 
-/// A program of an example, which may be only what stands in `main`.
+/// The program of an example, which may consist of only the body of `main`.
 fn program(example: &str) -> String {
     if example.contains("fn main") {
         return example.to_owned() + "\n";

@@ -1,16 +1,16 @@
-//! The stored dexels of `fixtures/dexels`: little text that pins down large results (`fixtures/dexels/README.md` has the format).
+//! The stored dexels of `fixtures/dexels`: small texts that pin down large results (`fixtures/dexels/README.md` has the format).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::Fixture;
 
-/// Every so many dexels, in both directions, is stored with its intervals,
+/// The step, in both directions, between dexels that are stored with their intervals.
 const STRIDE: usize = 4;
-/// beginning here: away from the edges of the grid.
+/// The first stored dexel in each direction, away from the edges of the grid.
 const FIRST: usize = 2;
 
-/// What a job gives, as far as it is stored.
+/// The stored part of a job's result.
 pub struct Stored {
     /// Some of its dexels.
     pub sample: Dexels,
@@ -28,7 +28,7 @@ pub struct Totals {
 }
 
 impl Stored {
-    /// What is to be stored of a result.
+    /// The part of a result to store.
     ///
     /// # Errors
     /// A grid of fewer than three dexels in a direction has none to store.
@@ -60,7 +60,7 @@ impl Stored {
         })
     }
 
-    /// Where these differ from what is stored, a line of text each.
+    /// The differences from the stored dexels, one line of text each.
     ///
     /// # Errors
     /// The two are on different grids.
@@ -103,7 +103,7 @@ impl std::fmt::Display for Totals {
     }
 }
 
-/// The text of `totals.txt`: a job a line, with the number of intervals and the volume.
+/// The text of `totals.txt`: one job per line, with the number of intervals and the volume.
 pub fn write_totals(all: &BTreeMap<String, Totals>) -> String {
     let mut text = String::new();
     for (job, totals) in all {
@@ -115,7 +115,7 @@ pub fn write_totals(all: &BTreeMap<String, Totals>) -> String {
 /// Reads it.
 ///
 /// # Errors
-/// The line that makes no sense.
+/// The first line that cannot be parsed.
 pub fn read_totals(text: &str) -> Result<BTreeMap<String, Totals>, String> {
     let line = |line: &str| {
         let mut words = line.split(' ');

@@ -6,7 +6,7 @@ use std::process::Command;
 /// Tests whose name contains this need the shared data.
 const DATA: &str = "shared_data";
 
-/// The whole brute-force suite, with `times` as many drawn cases.
+/// The whole brute-force suite, with `times` as many random cases.
 pub fn brute_force(filter: Option<&str>, times: u32) -> Result<bool, String> {
     let mut command = tests(&["-p", "sweepsim-tests", "--test", "it"]);
     command.env("SWEEPSIM_BRUTE_FORCE", times.max(1).to_string());
@@ -18,7 +18,7 @@ pub fn brute_force(filter: Option<&str>, times: u32) -> Result<bool, String> {
     run(without_data(command))
 }
 
-/// Every test that is ignored in the gate, but for those of brute force: large models, many cases.
+/// Every test that is ignored in the gate, except for brute force: large models, many cases.
 pub fn slow(filter: Option<&str>) -> Result<bool, String> {
     let mut command = tests(&["--workspace", "--lib", "--bins", "--tests"]);
     command.args(["--", "--ignored", "--skip", "brute_force"]);

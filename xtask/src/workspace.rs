@@ -1,9 +1,9 @@
-//! Where things are in the workspace.
+//! Paths in the workspace.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// The folder of the workspace: cargo tells where this package is; without cargo, the current folder.
+/// The root of the workspace, from cargo's path of this package; without cargo, the current folder.
 pub fn root() -> PathBuf {
     env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from("."), |folder| PathBuf::from(folder).join(".."))
 }

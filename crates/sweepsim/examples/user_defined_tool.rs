@@ -1,4 +1,4 @@
-//! A tool from one's own B-spline patches: a cutter with the section of a rounded square, turned a quarter on its way.
+//! A tool from user-defined B-spline patches: a cutter with a rounded square section, rotated by a quarter turn along its path.
 
 use sweepsim::dexel::Grid;
 use sweepsim::motion::{Path, Pose, Tool};

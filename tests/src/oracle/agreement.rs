@@ -85,7 +85,7 @@ mod tests {
     use crate::oracle::{Motion, Outline, Sampling, swept_line};
     use sweepsim_motion::{Pose, Tool};
 
-    /// A judge who never says no is none: every kind of wrong answer must be caught.
+    /// A judge that never rejects is useless: every kind of wrong answer must be caught.
     #[test]
     fn wrong_answers_are_caught_and_films_are_not() {
         let outline = Outline::new(Tool::flat(2.0, 10.0).unwrap().profile().expect("a solid of revolution"));

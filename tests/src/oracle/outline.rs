@@ -133,7 +133,7 @@ impl Outline {
     }
 }
 
-/// A spline becomes so many chords: of a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/4096)²/8`.
+/// The number of chords for a spline: for a curve of length `L` and curvature at most `κ` run through evenly, they are within `κ (L/4096)²/8`.
 const CHORDS: usize = 4096;
 
 /// The point of a spline at a part of its domain, by de Boor's algorithm.
@@ -178,7 +178,7 @@ fn split_arc(centre: Vector2<f64>, from: Vector2<f64>, to: Vector2<f64>, pieces:
     if sweep <= 0.0 {
         sweep += TAU;
     }
-    // The tops and bottoms strictly inside; what is within rounding of an end needs no piece of its own.
+    // The tops and bottoms strictly inside; those within rounding of an end need no separate piece.
     let first = ((start - FRAC_PI_2) / PI).floor() as i32;
     let mut at = from;
     let mut angle = start;

@@ -59,7 +59,7 @@ pub struct Sampling {
 }
 
 impl Sampling {
-    /// So many samples of each arc, however long.
+    /// The number of samples of each arc, however long it is.
     #[must_use]
     pub fn number(least: usize) -> Self {
         let step = f64::INFINITY;
@@ -201,7 +201,7 @@ impl Sampler<'_> {
             // both ends of a step dips by an eighth of its second difference, which shows two samples away.
             let further = value(k.checked_sub(2)).max(value(Some(k + 2)));
             let gain = left.max(right).max(further) - values[k];
-            // The end of one arc and the start of the next are the same pose, but for rounding.
+            // The end of one arc and the start of the next are the same pose up to rounding.
             let lowest = values[k] <= left + 1e-12 && values[k] <= right + 1e-12;
             let hopeful = lowest && values[k] - gain < best - 1e-10;
             if k != least && !hopeful {

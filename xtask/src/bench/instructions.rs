@@ -12,12 +12,12 @@ const JOBS: [&str; 2] = ["quickstart", "motions"];
 const CELLS: usize = 200;
 const METHODS: [Method; 4] = [Method::Charts, Method::Planes, Method::Lines, Method::Surface];
 
-/// Counts the instructions of every piece of work by valgrind's callgrind, each in a process of its own.
+/// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process.
 ///
 /// `filter`: only pieces of work whose names contain it.
 pub fn instructions(filter: Option<&str>) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
-    // What a process costs that does nothing.
+    // The cost of a process that does nothing.
     let nothing = count(&own, "nothing")?;
     println!("{:<28} {:>12}", "work, one thread", "Mio. instr.");
     for name in names() {

@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: measures, and prints beside what the paper reports.
+//! `cargo xtask bench`: runs benchmarks, and prints the results beside the paper's.
 
 mod instructions;
 mod programs;
@@ -10,16 +10,16 @@ pub use table1::table1;
 
 use std::time::{Duration, Instant};
 
-/// Each measurement is repeated until so much time has passed; the shortest run counts.
+/// Each measurement is repeated until this much time has passed; the shortest run counts.
 const AT_LEAST: Duration = Duration::from_millis(400);
 
-/// Does some work on so many threads.
+/// Runs some work on this many threads.
 fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     Ok(pool.map_err(|error| error.to_string())?.install(work))
 }
 
-/// The shortest of several runs: of two at least, for the first one has its memory yet to get.
+/// The shortest of several runs, at least two, since the first one has yet to allocate its memory.
 fn shortest(run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
     let begin = Instant::now();
     let (mut best, mut runs) = (f64::INFINITY, 0);

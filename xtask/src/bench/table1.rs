@@ -16,7 +16,7 @@ pub struct Cutter {
     tool: Tool,
 }
 
-/// An entry of the table, but for the method.
+/// An entry of the table, except for the method.
 pub struct Entry<'a> {
     tool: &'a Tool,
     path: Path,
@@ -24,7 +24,7 @@ pub struct Entry<'a> {
 }
 
 impl Cutter {
-    /// This tool along Sweep1 (0) or Sweep2 (1), on so many cells each way.
+    /// This tool along Sweep1 (0) or Sweep2 (1), on this many cells in each direction.
     pub fn entry(&self, which: usize, cells: usize) -> Result<Entry<'_>, String> {
         let path = path(which)?;
         let (min, max) = bounds(&path, self.radius, LENGTH);

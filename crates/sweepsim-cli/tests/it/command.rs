@@ -127,7 +127,7 @@ fn the_methods_agree() {
     }
 }
 
-/// A motion of B-splines in the job or in a file of its own, by every command that sweeps.
+/// A motion along B-splines, in the job or in a separate file, with every command that sweeps.
 #[test]
 fn motions_of_splines_are_simulated_swept_and_cut() {
     let motion = "tip: Curve(degree: 2, points: [(10, -4, 3), (6, 5, 2), (10, 14, 3)]), \

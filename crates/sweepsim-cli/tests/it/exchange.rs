@@ -53,7 +53,7 @@ fn dexels_go_around_all_formats() {
 fn meshes_go_around_all_formats() {
     let workdir = simulated();
     let mut before = "out/part.dexels".to_owned();
-    // The surface is that of the dexels, but for what it rounds off at edges.
+    // The surface is that of the dexels, except for rounded edges.
     let volume = read_dexels_file(&workdir.path(&before), None).unwrap().volume();
     let near = |found: f64| (found - volume).abs() < 0.01 * volume;
     for name in ["m.ply", "m.vtp", "m.3mf", "m.glb", "m.stl", "n.ply"] {

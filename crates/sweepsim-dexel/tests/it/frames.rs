@@ -1,4 +1,4 @@
-//! Dexels in frames of their own see the same world.
+//! Dexels in different frames see the same world.
 
 use proptest::prelude::*;
 use sweepsim_dexel::{Frame, Grid, Stock, TriangleSoup, compare_with_mesh};

@@ -277,7 +277,7 @@ fn a_reversed_move_goes_through_the_same_placements() {
         let (turn, tip) = segment.at(t);
         (turn.column(2).into_owned(), tip)
     };
-    // The drift of a reversed arc is turned with its end; both deviate from the law, which is the same only where there is none.
+    // The drift of a reversed arc is turned with its end; both deviate from the law, and they agree only where there is no drift.
     for (k, segment) in there.iter().enumerate() {
         let (axis, _) = placed(segment, 0.3);
         let (other, _) = placed(&back[back.len() - 1 - k], 0.7);

@@ -370,7 +370,7 @@ impl Reader {
         Ok(ends)
     }
 
-    /// The new tool continues from the current position, on a path of its own.
+    /// The new tool continues from the current position, on a separate path.
     fn change_tool(&mut self, tool: Option<u32>) {
         if tool.is_some() && tool != self.state.tool {
             self.state.tool = tool;

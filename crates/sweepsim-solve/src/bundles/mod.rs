@@ -1,4 +1,4 @@
-//! Bundles: the points of many systems that differ in their right-hand sides, each with a certificate of its own.
+//! Bundles: the points of many systems that differ in their right-hand sides, each with its own certificate.
 //!
 //! In `n` unknowns, `pᵢ / w = qᵢ` for some polynomials `pᵢ` over a positive weight `w`, and further polynomials are zero. Each target
 //! `q` defines a system, `F(z) = (p − q w, …) = 0`. The systems share their coefficients, so one subdivision serves all of them: a box keeps

@@ -80,7 +80,7 @@ impl BSpline {
         Ok(BernsteinMap::new(components.collect::<Result<_, _>>()?))
     }
 
-    /// One component as a spline of its own.
+    /// One component as a separate spline.
     ///
     /// # Errors
     ///

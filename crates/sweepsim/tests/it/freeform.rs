@@ -1,4 +1,4 @@
-//! Tools of any shape: patches of one's own, with and without symmetry.
+//! Tools of any shape: user-defined patches, with and without symmetry.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! A tool whose patches join several to one, or at another pace, cuts what the same tool without such joints cuts.
+//! A tool whose patches join several to one, or with a different parametrisation, cuts the same as that tool without such joints.
 
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::Grid;

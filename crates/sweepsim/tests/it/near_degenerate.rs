@@ -1,5 +1,5 @@
 //! What almost degenerate input costs: in boxes of the subdivision, which no clock disturbs. It may cost three times its generic
-//! neighbour, whatever the distance from degeneracy, but for the exceptions that are named.
+//! neighbour, whatever the distance from degeneracy, with the exceptions listed here.
 //!
 //! `cargo test -p sweepsim --release --test near_degenerate -- --nocapture` prints the table of the docs.
 
@@ -25,7 +25,7 @@ fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
 }
 
-/// An axis `angle` away from z, in a direction that is none of the grid's.
+/// An axis `angle` away from z, in a direction not aligned with the grid.
 fn leaning(angle: f64) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
     [0.6_f64.cos() * s, 0.6_f64.sin() * s, c]

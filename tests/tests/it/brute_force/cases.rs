@@ -16,7 +16,7 @@ pub struct Cutter {
     pub radius: f64,
 }
 
-/// What is swept, and the lines along which it is looked at.
+/// A sweep, and the lines along which it is checked.
 #[derive(Clone)]
 pub struct Case {
     pub cutter: Cutter,

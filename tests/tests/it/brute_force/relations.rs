@@ -52,7 +52,7 @@ fn related(relate: impl Fn(&Named) -> Option<Path> + Sync, least: usize) {
 
 fn moves(path: &Path) -> Option<Vec<Move>> {
     let moves: Vec<Move> = (0..path.moves()).map(|k| path.way(k)).collect();
-    // A motion of one's own has no moves.
+    // A user-defined motion has no moves.
     (path.poses()[0].side().is_none()).then_some(moves)
 }
 

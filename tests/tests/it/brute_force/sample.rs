@@ -2,7 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Set by `cargo xtask brute-force`: everything is run, with so many times the drawn cases.
+/// Set by `cargo xtask brute-force`: everything is run, with this many times the random cases.
 const EVERYTHING: &str = "SWEEPSIM_BRUTE_FORCE";
 /// Another sample.
 const SEED: &str = "SWEEPSIM_SEED";

@@ -201,7 +201,7 @@ impl Polynomial {
         })
     }
 
-    /// The expression's polynomial; `None` if it is none.
+    /// The expression's polynomial; `None` if it is not a polynomial.
     pub fn of(expression: &Expression, n: usize) -> Option<Self> {
         Some(match expression {
             Expression::Number(x) => Self::constant(x.clone(), n),

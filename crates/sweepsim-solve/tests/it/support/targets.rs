@@ -2,7 +2,7 @@
 
 use sweepsim_solve::{ChartTarget, Enclosure, Preimage, Sink, Targets, UnresolvedTarget};
 
-/// Targets, each a row of its own.
+/// Targets, each in its own row.
 pub struct List<const N: usize>(pub Vec<[f64; N]>);
 
 impl<const N: usize> Targets<N> for List<N> {
