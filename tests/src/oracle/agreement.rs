@@ -1,8 +1,8 @@
-//! Whether intervals found by somebody else are the swept set of a line.
+//! Whether given intervals are the swept set of a line.
 //!
 //! Equal in number and ends: the same. Otherwise the two sets differ on some stretches, and the signed distance decides each:
-//! an answer is *wrong* where it calls a point tool that is farther than the tolerance outside, or air what is deeper than the tolerance inside.
-//! What lies within the tolerance of the boundary may be called either (a *film*): a line in a wall, a wall so steep that a shift of the line
+//! an answer is *wrong* if it calls a point tool that is farther outside than the tolerance, or air if it is deeper inside than the tolerance.
+//! Points within the tolerance of the boundary may be called either (a *film*): a line in a wall, a wall so steep that a shift of the line
 //! within the tolerance moves its end far, a gap about to close.
 
 use super::depth::Depth;
@@ -10,7 +10,7 @@ use super::union::SweptLine;
 
 /// The judge's own error: the minimum over time is resolved to better than this.
 const JUDGE: f64 = 1e-8;
-/// Points asked on a stretch where the two sets differ.
+/// The number of points tested on a stretch where the two sets differ.
 const PROBES: usize = 9;
 
 /// A point at which an answer is wrong beyond the tolerance.
@@ -22,7 +22,7 @@ pub struct Disagreement {
     pub distance: f64,
 }
 
-/// What the oracle says of an answer.
+/// The oracle's verdict on an answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// Equal in number, and in ends within the tolerance.
@@ -38,7 +38,7 @@ pub enum Verdict {
 /// Judges `found`, the intervals of the line through `(x, y)`, which may be off by `tolerance` in space.
 #[must_use]
 pub fn compare(found: &[[f64; 2]], line: &SweptLine, depth: &Depth<'_>, [x, y]: [f64; 2], tolerance: f64) -> Verdict {
-    // An end that the sampling knows no better than this has to be judged by its distance.
+    // An end that the sampling does not resolve better than this must be judged by its distance.
     let near = |z: f64, end: f64, error: f64| error <= tolerance && (z - end).abs() <= tolerance + error;
     let same = found.len() == line.spans.len()
         && found.iter().zip(&line.spans).all(|(interval, span)| {

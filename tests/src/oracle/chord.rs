@@ -2,7 +2,7 @@
 //!
 //! From the tip the line is `r + s e_z`. Then `ζ = r·o + s o_z` is linear in `s`, and `ρ² = |r × o + s e_z × o|²` quadratic: a piece of the
 //! outline gives a polynomial in `s` (a plane 1, a cylinder, cone or sphere 2, a torus 4), all of whose roots are *candidates*.
-//! Which of the stretches between neighbouring candidates are tool is asked at their midpoints, so that tangencies, double roots and
+//! Stretches between neighbouring candidates are classified at their midpoints, so that tangencies, double roots and
 //! roots on the wrong nappe of a cone do no harm.
 
 use super::motion::Placement;

@@ -1,4 +1,4 @@
-//! `inspect`: reports what is in a file.
+//! `inspect`: describes the content of a file.
 
 use crate::session::words::{self, count, counted, measure, point};
 use crate::session::{Failure, Kind, Lines, soup, tool_in_words};
@@ -10,7 +10,7 @@ use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read
 use sweepsim_motion::Pose;
 use sweepsim_nc::{Note, Program, ReadOptions, read_file};
 
-/// Prints what is in a file.
+/// Prints a description of a file.
 pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
     let mut text = Lines::default();
     match Kind::of(file)? {

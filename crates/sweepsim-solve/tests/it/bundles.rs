@@ -1,4 +1,4 @@
-//! Bundles against the solver of single systems, target by target; roots on faces between boxes; what is not isolated is named.
+//! Bundles against the solver of single systems, target by target; roots on faces between boxes; solutions that are not isolated are reported.
 
 use crate::support;
 
@@ -7,7 +7,7 @@ use support::targets::{Answer, List};
 use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Enclosure, PointSolver, Preimage, Sample, System};
 use sweepsim_spline::Bernstein;
 
-/// A rational map by its forms: numerators over a weight, then forms that shall be zero.
+/// A rational map by its forms: numerators over a weight, then forms that must be zero.
 struct Forms<const N: usize> {
     numerators: Vec<Bernstein>,
     weight: Bernstein,

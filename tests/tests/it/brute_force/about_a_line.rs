@@ -1,4 +1,4 @@
-//! A level tool whose tip goes round a dexel line, exactly or almost: the line stays at one height of the tool all along, where it grazes it.
+//! A level tool whose tip goes around a dexel line, exactly or almost: the line keeps grazing the tool at the same height.
 
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};
 use crate::brute_force::named_motions::pose;

@@ -1,4 +1,4 @@
-//! Tools, moves and grids to draw from.
+//! Tools, moves and grids for random cases.
 
 use nalgebra::{Rotation3, Unit, Vector3};
 use proptest::prelude::*;

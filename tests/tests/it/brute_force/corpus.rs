@@ -15,7 +15,7 @@ type Placement = ([f64; 3], [f64; 3]);
 
 const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// Differences that are almost none.
+/// Tiny differences.
 const SMALL: [f64; 6] = [1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15];
 
 fn profile(segments: Vec<ProfileSegment>) -> Tool {
@@ -327,7 +327,7 @@ fn the_papers_boundary_operator_errs_where_a_move_overlaps_itself() {
     }
 }
 
-/// On the named sweeps, whose moves do not overlap themselves so, it is right once it has its last interval back.
+/// On the named sweeps, whose moves do not overlap themselves in this way, it is right once its last interval is restored.
 #[test]
 fn the_papers_boundary_operator_is_right_where_moves_do_not_overlap_themselves() {
     let differs = |(name, case): &(String, Case)| -> Option<String> {

@@ -1,5 +1,5 @@
 //! The everyday moves that are degenerate for an envelope: a whole patch grazes, the volume closes at the joint of two faces, the tool
-//! rests, or almost does. Grids with lines in the walls and through the axis belong to it.
+//! rests, or almost does. This includes grids with lines in the walls and through the axis.
 
 use crate::brute_force::cases::{Case, any_tool, any_window, axis, flat, pose, tip, turned};
 use crate::brute_force::judge::{Tally, for_all, judge};
@@ -182,7 +182,7 @@ fn hardly_turning_in_place() {
 
 #[test]
 fn hardly_tilted_axes() {
-    // A vertical tool that is not quite: 1e-4 … 1e-10, moved level, sloping or along itself.
+    // A tool that is not quite vertical, by 1e-4 … 1e-10, moved level, sloping or along itself.
     let direction = prop_oneof![
         Just([1.0, 0.0, 0.0]),
         Just([0.6, 0.8, 0.0]),

@@ -1,4 +1,4 @@
-//! Motions of B-splines as a job names them, judged by brute force that evaluates the same numbers by de Boor's algorithm.
+//! Motions along B-splines from a job, judged by brute force that evaluates the same splines by de Boor's algorithm.
 
 use crate::brute_force::corpus::tools;
 use crate::brute_force::judge::{judge_sweep, same_sweeps, swept_along};

@@ -1,4 +1,4 @@
-//! Has every dexel of a sweep judged.
+//! Judges every dexel of a sweep by brute force.
 
 use crate::brute_force::cases::Case;
 use crate::brute_force::sample::times;
@@ -13,10 +13,10 @@ use sweepsim_tests::oracle::{Depth, Motion, Outline, Sampling, Span, SweptLine, 
 
 /// The default tolerance of a sweep.
 pub const TOLERANCE: f64 = 1e-6;
-/// Instants a move at which the oracle begins.
+/// The oracle's initial number of instants per move.
 const DENSITY: usize = 300;
 
-/// What was seen, so that a test can tell that it tested something.
+/// Counts of the cases seen, so that a test can check that it tested something.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tally {
     /// Lines judged, and those that the tool touches.
@@ -24,7 +24,7 @@ pub struct Tally {
     pub covered: usize,
     /// Lines with more than one interval.
     pub split: usize,
-    /// Lines that differ within the tolerance of the boundary only.
+    /// Lines that differ only within the tolerance of the boundary.
     pub film: usize,
     /// Lines where the distance shows that the sweep is right and the sampling was not.
     pub better: usize,
@@ -48,7 +48,7 @@ impl Tally {
     }
 }
 
-/// Draws `cases` cases (times what `cargo xtask brute-force` asks for) and checks each.
+/// Draws `cases` random cases (times the factor of `cargo xtask brute-force`) and checks each.
 pub fn for_all(
     cases: u32,
     strategy: impl Strategy<Value = Case>,
@@ -191,7 +191,7 @@ fn judge_line(
     Ok(tally)
 }
 
-/// Judges what the ends of one line carry: the source of each, and the normals of those on chosen lines.
+/// Judges the data of the ends of one line: the source of each, and the normals of those on chosen lines.
 fn judge_ends(
     intervals: &[Interval],
     depth: &Depth<'_>,
@@ -254,7 +254,7 @@ fn judge_source(end: &End, depth: &Depth<'_>, motion: &Motion, [x, y]: [f64; 2])
     Ok(())
 }
 
-/// Two sweeps of what is the same volume must agree within both their tolerances; `case` says which volume.
+/// Two sweeps of the same volume must agree within both their tolerances; `case` says which volume.
 pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Result<Tally, String> {
     let profile = case.cutter.tool.profile().expect("a solid of revolution");
     same_sweeps(profile, &Motion::new(&case.poses), grid, one, other)

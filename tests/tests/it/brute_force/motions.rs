@@ -1,4 +1,4 @@
-//! Sweeps along the motions beyond SLERP, judged by brute force, which knows them as functions of time in sines and cosines.
+//! Sweeps along the motions beyond SLERP, judged by brute force, which evaluates them as sines and cosines of time.
 
 use crate::brute_force::corpus::{lean, tools};
 use crate::brute_force::judge::{Tally, judge_sweep, same_sweeps, swept_along};
@@ -17,7 +17,7 @@ fn judged(name: &str, tool: &Tool, named: &Named, grid: &Grid, all: bool) -> Res
     let profile = tool.profile().expect("a solid of revolution");
     let charts = swept_along(tool, &named.path, grid, Method::Charts).map_err(told)?;
     let tally = judge_sweep(&charts, profile, &named.motion, grid, Method::Charts).map_err(told)?;
-    // All methods for some tools, for these take long where the degree in time is high.
+    // All methods only for some tools, since they take long where the degree in time is high.
     let methods: &[Method] = if all {
         &[Method::Lines, Method::Planes, Method::Surface]
     } else {
@@ -138,7 +138,7 @@ fn a_spline_motion_of_an_exact_slerp_gives_the_same_dexels() {
     }
 }
 
-/// Going round three times sweeps what going round once does.
+/// Going around three times sweeps the same as going around once.
 #[test]
 fn more_turns_sweep_the_same() {
     let (_, tool) = &tools()[0];

@@ -1,5 +1,5 @@
 //! Named sweeps along the motions beyond SLERP: constant speed, rotary axes, arcs and helices of the tip, user-defined motions.
-//! All are judged by brute force, which knows them as functions of time in sines and cosines.
+//! All are judged by brute force, which evaluates them as sines and cosines of time.
 
 use crate::brute_force::corpus::lean;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -11,7 +11,7 @@ use sweepsim_tests::oracle::{Motion, Place, Placement};
 
 pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
-/// A path, and the same as the oracle knows it.
+/// A path, and the same in the oracle's form.
 pub struct Named {
     pub name: String,
     pub path: Path,
@@ -243,7 +243,7 @@ pub fn motions() -> Vec<Named> {
             UP,
             1,
         ),
-        // The tool turns about a point of itself above its tip: its flank goes back while its tip goes forth.
+        // The tool turns about one of its own points above its tip: its flank moves back while its tip moves forward.
         arc(
             "swallowtail on an arc",
             pose([-1.0, 0.0, 0.0], lean(40.0, 180.0)),

@@ -1,5 +1,5 @@
-//! Random tools, outlines of splines among them, along random motions of every kind: all methods agree, and what must not change the volume
-//! does not.
+//! Random tools, outlines of splines among them, along random motions of every kind: all methods agree, and transformations that must not
+//! change the volume do not.
 //!
 //! `cargo xtask brute-force random` draws many more.
 
@@ -111,7 +111,7 @@ impl Drawn {
     }
 }
 
-/// A tool, a motion and a grid, and numbers for what is done with them.
+/// A tool, a motion and a grid, and the parameters of the test.
 #[derive(Clone)]
 struct Case {
     cutter: Cutter,
@@ -154,7 +154,7 @@ fn moves() -> impl Strategy<Value = Drawn> {
             let course = arc.map_or(Course::Straight, |(centre, normal, angle)| {
                 Course::Arc(TipArc::new(centre, normal, angle).expect("an arc"))
             });
-            // An arc ends where it ends: what is missing there goes another way backwards.
+            // The difference at the end of an arc takes a different course when reversed.
             let poses = match course {
                 Course::Straight => poses,
                 Course::Arc(arc) => vec![poses[0], pose(on(&arc, from), table.axis(b))],
@@ -313,7 +313,7 @@ fn back(
     volume
 }
 
-/// What a tool sweeps is what its parts sweep together.
+/// A tool sweeps the union of what its parts sweep.
 fn union((tools, case): &([Tool; 3], Case)) -> Result<Tally, String> {
     let path = case.drawn.path();
     let [whole, body, neck] = [0, 1, 2].map(|k| swept_along(&tools[k], &path, &case.grid, Method::Charts));

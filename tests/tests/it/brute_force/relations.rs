@@ -1,4 +1,4 @@
-//! Motions beyond SLERP: what must not change the volume, and volumes that are known in closed form.
+//! Motions beyond SLERP: transformations that must not change the volume, and volumes known in closed form.
 
 use crate::brute_force::corpus::tools;
 use crate::brute_force::judge::{Tally, same_sweeps, swept_along};
@@ -11,7 +11,7 @@ use sweepsim_dexel::Grid;
 use sweepsim_motion::{Course, Law, Lollipop, Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool, Turn, Turning};
 use sweepsim_tests::oracle::Motion;
 
-/// Checks all named motions that `relate` makes another path of, with two tools.
+/// Checks all named motions that `relate` turns into another path, with two tools.
 fn related(relate: impl Fn(&Named) -> Option<Path> + Sync, least: usize) {
     let tools: Vec<_> = tools()
         .into_iter()
@@ -171,7 +171,7 @@ fn a_right_angle_about_z_turns_the_volume() {
     assert!(checked >= 20, "{checked}");
 }
 
-/// What a lollipop sweeps is what its ball and its neck sweep together.
+/// A lollipop sweeps the union of what its ball and its neck sweep.
 #[test]
 fn a_union_of_tools_sweeps_the_union() {
     let (radius, neck, length) = (2.0, 0.7, 9.0);
@@ -243,13 +243,13 @@ fn volumes_of_simple_sweeps_are_those_of_the_closed_forms() {
             let outline = 2.0 * way.xy().norm() + 2.0 * PI * (radius + length * axis.xy().norm());
             let error = (2.0 * outline / a.min(b) + 4.0) * a * b * length;
             assert!((found - expected).abs() < error, "{name}: {found} {expected} {error}");
-            // And what that bound leaves of sense: well below a hundredth in fact.
+            // The bound must also be meaningful: in fact it is well below a hundredth.
             assert!((found / expected - 1.0).abs() < 5e-3, "{name}: {found} {expected}");
         }
     }
 }
 
-/// A tool of revolution that goes round its own centre line, or turns about its tip, leaves a solid of revolution: known by its radius.
+/// A tool of revolution that goes around its own centre line, or turns about its tip, leaves a solid of revolution: known by its radius.
 #[test]
 fn a_level_circle_leaves_a_disk() {
     let (radius, round) = (2.0, 1.3);

@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Set by `cargo xtask brute-force`: everything is run, with this many times the random cases.
 const EVERYTHING: &str = "SWEEPSIM_BRUTE_FORCE";
-/// Another sample.
+/// Selects another sample.
 const SEED: &str = "SWEEPSIM_SEED";
 
 fn number(variable: &str) -> Option<u64> {
@@ -15,7 +15,7 @@ fn number(variable: &str) -> Option<u64> {
     )
 }
 
-/// How often the drawn cases of a test are drawn.
+/// The factor for the number of random cases of a test.
 pub fn times() -> u32 {
     number(EVERYTHING).map_or(1, |times| u32::try_from(times).expect("a reasonable number").max(1))
 }

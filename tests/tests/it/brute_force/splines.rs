@@ -1,4 +1,4 @@
-//! Motions of B-splines: as the solver takes them, and as brute force knows them, which evaluates the numbers by de Boor's algorithm.
+//! Motions along B-splines: in the solver's form, and for brute force, which evaluates the splines by de Boor's algorithm.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use std::sync::Arc;
@@ -57,7 +57,7 @@ impl Splines {
         breaks
     }
 
-    /// As brute force knows it.
+    /// In the form of brute force.
     pub fn motion(&self) -> Motion {
         let place = |pair: &[f64]| {
             let (from, to, splines) = (pair[0], pair[1], self.clone());
@@ -77,7 +77,7 @@ impl Splines {
         Motion::of_functions(self.breaks().windows(2).map(place).collect())
     }
 
-    /// As the solver takes it.
+    /// In the form of the solver.
     pub fn solved(&self) -> SplineMotion {
         let knots = |list: &[f64], points: usize| {
             KnotVector::new(list.len() - points - 1, list.to_vec()).expect("knots of a curve")
@@ -92,7 +92,7 @@ impl Splines {
         Path::along(self.solved())
     }
 
-    /// The other way.
+    /// The reverse motion.
     pub fn reversed(&self) -> Self {
         let mut back = self.clone();
         let ends = self.tip_knots[0] + self.tip_knots[self.tip_knots.len() - 1];
