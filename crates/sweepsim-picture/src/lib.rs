@@ -2,7 +2,7 @@
 //!
 //! A [`Mesh`] stands on a plane under a soft sky, with a large lamp to the viewer's left. Faces that tools cut
 //! are bronze, faces of the stock steel; or each vertex has a value, and a colour map and a [`legend`] show it. [Sections](CuttingPlane)
-//! cut the part open. The same mesh gives the same bytes at any number of threads.
+//! cut the part open. The same mesh gives the same bytes for any number of threads.
 //!
 //! ```
 //! use sweepsim_picture::{Axis, Drawing, Mesh, CuttingPlane, View};

@@ -29,7 +29,7 @@ pub(super) struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     /// Coefficients of the boxes on the stack, one box after another.
     pub coefficients: Vec<f64>,
     pub scratch: &'a mut Vec<f64>,
-    /// Targets that boxes on the stack are left with.
+    /// The remaining targets of the boxes on the stack.
     pub lines: Vec<ChartTarget<N>>,
     pub straddlers: Vec<Straddler<N, M::Seen>>,
 }

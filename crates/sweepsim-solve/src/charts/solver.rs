@@ -38,7 +38,7 @@ impl<C: Clone> ChartSolver<C> {
 
     /// Finds, for every target, all its preimages in the box `root`.
     ///
-    /// Each preimage is reported to `sink` once; boxes that may hold unreported ones are reported as unresolved.
+    /// Each preimage is reported to `sink` once. Boxes that may hold unreported preimages are reported as unresolved.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,

@@ -28,7 +28,7 @@ pub(crate) struct WorkShare {
     pub columns: [usize; 2],
 }
 
-/// A way to find the preimages of dexel lines under the maps of the envelope: every one exactly once, or the line is reported as unresolved.
+/// A method of finding the preimages of dexel lines under the maps of the envelope: each exactly once, or the line is reported as unresolved.
 pub(crate) trait CrossingMethod<'a>: Sized + Sync {
     /// The method's data for a chunk of the path, computed once for all its lines.
     fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self;

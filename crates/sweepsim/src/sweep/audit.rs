@@ -13,7 +13,7 @@ use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Oper
 use sweepsim_solve::Cause;
 
 impl SweepJob<'_> {
-    /// Counts the crossings of a chunk to intervals, repairs what does not add up, and unites the intervals with the volume.
+    /// Counts the crossings of a chunk into intervals, repairs lines that do not add up, and unites the intervals with the volume.
     pub fn count(
         &self,
         chunk: &[PathPart],
