@@ -1,8 +1,8 @@
-//! The format of a text, by its first line that tells.
+//! Detects the format of a text from its first distinctive line.
 
 use crate::gcode;
 
-/// What a text is. Lines count from 1.
+/// The format of a text. Lines count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Content {
     Gcode,
@@ -61,9 +61,9 @@ const APT: [&str; 32] = [
 ];
 /// those that can stand without.
 const APT_ALONE: [&str; 4] = ["PARTNO", "PPRINT", "MACHIN", "FINI"];
-/// The most lines that tell nothing, such as titles, before the one that does.
+/// The maximum number of indistinctive lines, such as titles, before the distinctive one.
 const MOST_OTHER: usize = 5;
-/// Words of Siemens's controls, which the reader of G-code knows to refuse by name.
+/// Words of Siemens controls, which the G-code reader rejects by name.
 const SIEMENS: [&str; 9] = [
     "DEF",
     "PROC",

@@ -1,4 +1,4 @@
-//! What can be wrong with a program, and where.
+//! What is wrong with a program, and where.
 
 use std::fmt;
 use std::io;
@@ -82,7 +82,7 @@ pub enum NcProblem {
         /// What it must be.
         expected: String,
     },
-    /// Something that is understood but not supported.
+    /// Something that is recognised but not supported.
     #[error("{what} not supported yet: {instead}")]
     Unsupported {
         /// What, with its verb: "canned cycles are".
@@ -120,7 +120,7 @@ impl NcProblem {
 
 /// A program that cannot be read: what is wrong, in which file, and where, as far as each is known.
 ///
-/// It is the first problem; [`further`](Self::further) lists what else is wrong with the program, as far as that can be told.
+/// This is the first problem; [`further`](Self::further) lists the others, as far as they can be determined.
 ///
 /// Its `Display` is one line: `file:line:column: what is wrong, and what was expected`.
 #[derive(Debug)]
@@ -180,13 +180,13 @@ impl NcError {
 
     /// The other problems of the program, by line: each once, where it first occurs, and at most a hundred.
     ///
-    /// Only the reader of G-code goes on after a problem. What depends on a position that a problem has made unknown is not judged.
+    /// Only the G-code reader continues after a problem. It does not check anything that depends on a position made unknown by a problem.
     #[must_use]
     pub fn further(&self) -> &[NcError] {
         &self.0.further
     }
 
-    /// Takes the other problems out of this one.
+    /// Removes the other problems from this one.
     #[must_use]
     pub fn take_further(&mut self) -> Vec<NcError> {
         std::mem::take(&mut self.0.further)

@@ -10,15 +10,15 @@ use crate::{gcode, table};
 
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
-/// What these files can be, for messages.
+/// The supported formats, for messages.
 const EXPECTED: &str = "G-code, or a table of poses with the columns x,y,z,i,j,k";
-/// What to do with formats that are only recognised.
+/// The advice for formats that are only recognised.
 const INSTEAD: &str = "expected G-code from a post-processor, or its poses as a table with the columns x,y,z,i,j,k";
 
 /// Reads a program from a file: G-code or a table of poses.
 ///
-/// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; what the usual extensions of
-/// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) name is read as such if the content does not tell. APT, CLSF and Heidenhain's
+/// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
+/// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) are read as G-code if the content is not distinctive. APT, CLSF and Heidenhain's
 /// Klartext are recognised but not read yet.
 ///
 /// # Errors
@@ -56,7 +56,7 @@ fn read_bytes(bytes: &[u8], extension: Option<&str>, options: &ReadOptions) -> R
             NcProblem::unsupported("programs in Heidenhain's Klartext are", INSTEAD),
             line,
         ),
-        // The reader of G-code says what is wrong with the line.
+        // The G-code reader reports what is wrong with the line.
         _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => gcode::read(&text, options),
         Content::Numbers { line } => {
             let found = "rows of numbers without a header";

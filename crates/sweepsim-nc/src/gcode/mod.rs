@@ -16,9 +16,9 @@
 //! - If a feed move comes before X, Y and Z are all known, the unknown ones are taken as 0.
 //! - Unknown words and codes are ignored if they cannot move the tool.
 //!
-//! - `G92` before the first move says where the tool is, in the part's frame. Without its shift (`G92.1`, `G92.2`) only the machine knows
-//!   where absolute coordinates are: they are then errors.
-//! - `K` in a helix of `G17` (`J` in `G18`, `I` in `G19`) must agree with its end, as its pitch or its rise.
+//! - `G92` before the first move gives the tool's position in the part's frame. Without its shift (`G92.1`, `G92.2`), only the machine knows
+//!   where absolute coordinates are, so they are errors.
+//! - `K` in a helix of `G17` (`J` in `G18`, `I` in `G19`) must agree with its end, as pitch or as rise.
 //!
 //! Anything that could move the tool in a way that is not supported (splines, cycles, cutter compensation, rotated frames, subroutines,
 //! variables) is an error with its position.
