@@ -14,6 +14,9 @@ use nalgebra::Vector2;
 use piece::crosses;
 use self_contact::Outline;
 
+/// How far a profile may cross the axis, in parts of its size: some thousand roundings, as of arcs that end on the axis.
+const ROUNDING: f64 = 1e-12;
+
 /// The direction of an arc, seen with `ρ` to the right and `ζ` up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
@@ -106,7 +109,7 @@ impl Profile {
             let inner = (number > 0 || piece.at(0.5).x <= 0.0, number + 1 < pieces.len());
             let rho = piece.smallest_rho();
             let touches = (inner.0 && number > 0 && piece.from.x <= 0.0) || (inner.1 && piece.to.x <= 0.0);
-            if rho < -1e-12 * scale || touches || piece.at(0.5).x <= 0.0 {
+            if rho < -ROUNDING * scale || touches || piece.at(0.5).x <= 0.0 {
                 return Err(ProfileError::AcrossAxis { segment, rho });
             }
         }

@@ -39,6 +39,14 @@ const LEAST: f64 = 1e-100;
 /// The distances of an arc's two ends from its centre may differ by this fraction of the radius.
 const ARC_SLACK: f64 = 1e-6;
 
+/// Points this close, in parts of the profile's size or of a segment's parameter, count as one: far above rounding, far below what a profile means.
+const NEAR: f64 = 1e-9;
+/// Lines with a smaller sine between them are parallel: rounding alone would move their intersection by more than [`NEAR`].
+const PARALLEL: f64 = 1e-12;
+/// Around a tangent joint, intersections this close to it, in parts of the shorter piece, are the joint itself: a double intersection is resolved
+/// only to the square root of the rounding error.
+const AT_JOINT: f64 = 1e-4;
+
 impl OutlinePiece {
     /// Adds the pieces of a segment.
     pub(super) fn add(
@@ -228,19 +236,19 @@ impl OutlinePiece {
 
 /// Whether two lines or arcs have a point in common (other than the one where `consecutive` ones join).
 pub(super) fn crosses(a: &OutlinePiece, b: &OutlinePiece, consecutive: bool, scale: f64) -> bool {
-    let near = 1e-9 * scale;
+    let near = NEAR * scale;
     let on = |piece: &OutlinePiece, p: Vector2<f64>| -> bool {
         match piece.arc() {
             None => {
                 let d = piece.to - piece.from;
                 let s = (p - piece.from).dot(&d) / d.norm_squared();
-                (-1e-9..=1.0 + 1e-9).contains(&s)
+                (-NEAR..=1.0 + NEAR).contains(&s)
             }
             Some(arc) => {
                 let d = p - arc.centre;
                 let s = OutlinePiece::arc_parameter(&arc, d.y.atan2(d.x));
                 let full = TAU / arc.sweep.abs();
-                s <= 1.0 + 1e-9 || s >= full - 1e-9
+                s <= 1.0 + NEAR || s >= full - NEAR
             }
         }
     };
@@ -249,7 +257,7 @@ pub(super) fn crosses(a: &OutlinePiece, b: &OutlinePiece, consecutive: bool, sca
         (None, None) => {
             let (d, e) = (a.to - a.from, b.to - b.from);
             let det = d.perp(&e);
-            if det.abs() > 1e-12 * d.norm() * e.norm() {
+            if det.abs() > PARALLEL * d.norm() * e.norm() {
                 meets.push(a.from + d * ((b.from - a.from).perp(&e) / det));
             } else if (b.from - a.from).perp(&d).abs() <= near * d.norm() {
                 // Collinear segments that overlap have an end of one inside the other.
@@ -289,8 +297,7 @@ pub(super) fn crosses(a: &OutlinePiece, b: &OutlinePiece, consecutive: bool, sca
             }
         }
     }
-    // At a tangent joint, the double intersection is resolved only to the square root of the rounding error.
     meets
         .into_iter()
-        .any(|p| on(a, p) && on(b, p) && !(consecutive && (p - a.to).norm() <= 1e-4 * a.length().min(b.length())))
+        .any(|p| on(a, p) && on(b, p) && !(consecutive && (p - a.to).norm() <= AT_JOINT * a.length().min(b.length())))
 }

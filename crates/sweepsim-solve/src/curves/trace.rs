@@ -22,6 +22,23 @@ pub(crate) struct Vertex {
 
 /// The maximum number of halvings before a piece is given up.
 const DEPTH: usize = 40;
+/// The maximum number of Newton steps from the middle of a chord.
+const STEPS: usize = 60;
+
+// Limits in fractions of a cell's side. They follow from rounding, not from the tolerance.
+
+/// Intervals shorter than this are not restricted to: their coefficients would be rounding errors.
+const SHORTEST: f64 = 1e-13;
+/// Windows narrower than this are kept as they are, since one axis far shorter than the others spoils the certificate.
+const NARROWEST: f64 = 1e-6;
+/// Newton's method has converged when a step is this short.
+const CONVERGED: f64 = 1e-15;
+/// Below this, a step that is not at least four times shorter than the one before is rounding.
+const STALLED: f64 = 1e-10;
+/// How far outside the cell the point may be found, which holds exactly one.
+const BESIDE: f64 = 1e-9;
+/// If the last step but one was longer than this, the method has not converged.
+const DIVERGED: f64 = 1e-6;
 /// If the tube is thicker than this many tolerances, the part is halved without another attempt.
 const HOPELESS: f64 = 16.0;
 
@@ -100,7 +117,7 @@ impl<'a> Tracer<'a> {
     fn within_tolerance(&self, part: &mut Cell, over: usize, from: f64, to: f64) -> bool {
         let layout = &self.system.layout;
         let n = layout.n;
-        if to - from > 1e-13 * (part.hi[over] - part.lo[over]) && from >= part.lo[over] && to <= part.hi[over] {
+        if to - from > SHORTEST * (part.hi[over] - part.lo[over]) && from >= part.lo[over] && to <= part.hi[over] {
             layout.restrict(part, over, from, to);
         }
         for _ in 0..4 {
@@ -135,7 +152,7 @@ impl<'a> Tracer<'a> {
             for j in (0..n).filter(|j| *j != over) {
                 let (lo, hi) = windows[j];
                 let side = part.hi[j] - part.lo[j];
-                if hi - lo > 1e-6 * side && hi - lo < 0.9 * side {
+                if hi - lo > NARROWEST * side && hi - lo < 0.9 * side {
                     layout.restrict(part, j, lo, hi);
                 }
             }
@@ -156,7 +173,7 @@ impl<'a> Tracer<'a> {
             s[j] = (0.5 * (ends[0][j] + ends[1][j]) - cell.lo[j]) / side(j);
         }
         let mut before = f64::INFINITY;
-        for _ in 0..60 {
+        for _ in 0..STEPS {
             let (value, jacobian) = layout.evaluate(&cell.c, &s, &mut self.buffer);
             let newton = inverse(&without(&jacobian, over, m), m).map_or(graph.inverse, |(k, _)| k);
             let step = apply(&newton, &value, m);
@@ -166,19 +183,19 @@ impl<'a> Tracer<'a> {
                 s[j] = (s[j] - step[i]).clamp(-0.1, 1.1);
                 size = size.max(step[i].abs());
             }
-            if size <= 1e-15 || (size < 1e-10 && size >= 0.25 * before) {
+            if size <= CONVERGED || (size < STALLED && size >= 0.25 * before) {
                 break;
             }
             before = size;
         }
         let mut x = [0.0; MAX_UNKNOWNS];
         for j in 0..n {
-            if !(-1e-9..=1.0 + 1e-9).contains(&s[j]) {
+            if !(-BESIDE..=1.0 + BESIDE).contains(&s[j]) {
                 return None;
             }
             x[j] = cell.lo[j] + s[j] * side(j);
         }
-        (before < 1e-6).then_some(x)
+        (before < DIVERGED).then_some(x)
     }
 
     /// The point with its tangent, towards increasing values of the graph's variable.

@@ -3,6 +3,9 @@
 use nalgebra::{Const, DimMin, Matrix2, ToTypenum};
 use sweepsim_solve::Enclosure;
 
+/// A bound of the rounding of an entry of `K J`, in parts of `|K| |J|`: some forty roundings for at most three unknowns.
+const INVERSE: f64 = 1e-14;
+
 /// The equations without that of `Y`: row 0 is `X`, row 2 is `g`.
 pub(super) fn rows<const N: usize>() -> impl Iterator<Item = usize> {
     (0..N).filter(|r| *r != 1)
@@ -58,6 +61,6 @@ where
         return false;
     };
     let size = inverse.abs();
-    let rest = (Square::<N>::identity() - inverse * middle).abs() + size * radius + size * middle.abs() * 1e-14;
+    let rest = (Square::<N>::identity() - inverse * middle).abs() + size * radius + size * middle.abs() * INVERSE;
     (0..N).all(|i| rest.row(i).sum() < 1.0)
 }

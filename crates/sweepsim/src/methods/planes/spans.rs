@@ -11,6 +11,22 @@ pub(super) const DEPTH: u32 = 44;
 /// The maximum number of Newton steps.
 const STEPS: usize = 24;
 
+// Limits in parameters of [0, 1]. They follow from rounding, not from the tolerance.
+
+/// How far outside its box a crossing may be found. The box holds exactly one, so the limit only has to exceed what the last step of
+/// Newton's method leaves: about the square of a step of at most 1e-5.
+const BESIDE: f64 = 1e-9;
+/// A span shorter than this is not halved: its middle would be within a few dozen roundings of its ends.
+const SHORTEST: f64 = 1e-14;
+/// Newton's method has converged when a step is this short: a few roundings of a parameter.
+const CONVERGED: f64 = 1e-15;
+/// Below this, a step that is not at least four times shorter than the one before is rounding.
+const STALLED: f64 = 1e-11;
+/// Rounding of a sum of `N` products of preconditioned entries near 1.
+const SUMS: f64 = 1e-14;
+/// Rounds the spread of a row upwards: its sums have fewer than a thousand roundings.
+const OUTWARDS: f64 = 1.0 + 1e-12;
+
 /// A point of a curve, and its position along the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Vertex<const N: usize> {
@@ -151,7 +167,7 @@ where
             }
             if step.amax() <= self.accept {
                 // The box holds one point of the span with this Y: if Newton's method found it, it is in the box.
-                let inside = (0..N).all(|k| next[k] >= within[k].lo() - 1e-9 && next[k] <= within[k].hi() + 1e-9);
+                let inside = (0..N).all(|k| next[k] >= within[k].lo() - BESIDE && next[k] <= within[k].hi() + BESIDE);
                 let found = Preimage {
                     target,
                     x: next,
@@ -181,7 +197,7 @@ where
             .filter(|k| minor_is_definite(jacobian, *k))
             .max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
         let at = 0.5 * (p.x[over] + q.x[over]);
-        if !(length(over) > 1e-14) {
+        if !(length(over) > SHORTEST) {
             return None;
         }
         let middle = self.on_curve(p, q, over, at, within)?;
@@ -221,7 +237,7 @@ where
                 x[k] = (x[k] - step[n]).clamp(within[k].lo(), within[k].hi());
             }
             let size = step.amax();
-            if size <= 1e-15 || (size <= 1e-11 && size >= 0.25 * before) {
+            if size <= CONVERGED || (size <= STALLED && size >= 0.25 * before) {
                 return Some(self.vertex(x));
             }
             before = size;
@@ -255,14 +271,17 @@ where
                 reach += factor.abs() * rounding[r];
                 for (j, side) in jacobian[r].iter().enumerate() {
                     row[j] += factor * side.mid();
-                    spread[j] += factor.abs() * side.radius() * (1.0 + 1e-12);
+                    spread[j] += factor.abs() * side.radius() * OUTWARDS;
                 }
             }
             for j in 0..N {
                 let unit = if j == k { 1.0 } else { 0.0 };
-                reach += ((row[j] - unit).abs() + spread[j] + 1e-14) * part[j].radius();
+                reach += ((row[j] - unit).abs() + spread[j] + SUMS) * part[j].radius();
             }
-            let (lo, hi) = (centre[k] + shift - reach - 1e-15, centre[k] + shift + reach + 1e-15);
+            let (lo, hi) = (
+                centre[k] + shift - reach - CONVERGED,
+                centre[k] + shift + reach + CONVERGED,
+            );
             if let Some(cut) = part[k].intersection(Enclosure::hull(lo, hi))
                 && cut.lo() < cut.hi()
             {
