@@ -50,7 +50,7 @@ enum Command {
         /// Its name.
         name: String,
     },
-    /// Runs the whole brute-force suite, of which the gate runs a sample: takes half an hour or more.
+    /// Runs the whole brute-force suite, of which the gate runs a sample: takes five minutes and more on two cores.
     BruteForce {
         /// Only tests whose names contain this.
         filter: Option<String>,
