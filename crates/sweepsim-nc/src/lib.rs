@@ -23,19 +23,18 @@
 //! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
 
 mod content;
-mod error;
 pub mod gcode;
 mod machine;
-mod numbers;
-mod program;
+mod model;
 mod read;
-mod read_options;
 pub mod table;
+mod text;
 
-pub use error::{NcError, NcProblem, TextPosition};
 pub use machine::Machine;
-pub use numbers::shortest;
-pub use program::{Note, Program, ProgramPose};
+pub use model::event::{Coolant, Event, EventKind, Spindle};
+pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
+pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use read::read_file;
-pub use read_options::{AxisLaw, ReadOptions};
 pub use sweepsim_motion::RotaryTable;
+pub use text::error::{NcError, NcProblem, TextPosition};
+pub use text::numbers::shortest;

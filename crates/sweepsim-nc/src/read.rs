@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use crate::content::Content;
-use crate::error::{NcError, NcProblem, TextPosition};
-use crate::program::Program;
-use crate::read_options::ReadOptions;
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::{gcode, table};
 
 /// Millimetres per inch.

@@ -5,9 +5,9 @@ use std::io::Write;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use sweepsim_motion::{Move, Pose};
 
-use crate::error::{NcError, NcProblem, TextPosition};
-use crate::numbers::shortest;
-use crate::program::{Program, ProgramPose};
+use crate::model::program::{FeedMode, Program, ProgramPose};
+use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::numbers::shortest;
 
 /// All columns; the first six are required.
 const COLUMNS: [&str; 9] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "tool"];
@@ -203,6 +203,8 @@ impl Row<'_> {
             joined: last.is_some_and(|last| last.tool == tool),
             tool,
             feed,
+            feed_mode: FeedMode::default(),
+            call: None,
             way: Move::default(),
         })
     }

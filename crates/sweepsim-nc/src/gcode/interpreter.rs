@@ -9,9 +9,9 @@ use super::lexer::{self, Located, Word};
 use super::offsets::Offsets;
 use super::state::State;
 use super::title;
-use crate::error::{NcError, NcProblem, TextPosition};
-use crate::program::Program;
-use crate::read_options::ReadOptions;
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::error::NcProblem;
+use crate::text::error::NcProblem;
 
 /// A letter and its number.
 #[derive(Clone, Debug, PartialEq)]

@@ -33,9 +33,9 @@ mod state;
 mod title;
 mod turns;
 
-use crate::error::NcError;
-use crate::program::Program;
-use crate::read_options::ReadOptions;
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::NcError;
 
 /// Reads a program.
 ///

@@ -4,7 +4,7 @@ use super::arc::CircularArc;
 use super::codes::{Code, MotionMode};
 use super::interpreter::{Reader, Values};
 use super::state::MoveEnd;
-use crate::error::NcProblem;
+use crate::text::error::NcProblem;
 
 /// Millimetres per inch.
 const INCH: f64 = 25.4;

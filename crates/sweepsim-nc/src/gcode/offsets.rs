@@ -3,7 +3,7 @@
 //! A work offset that the program sets itself (`G10 L2`) is applied. One that it does not set is taken as the part's frame; it must then
 //! be the only one in use, since only the machine knows the distance between two of them.
 
-use crate::error::NcProblem;
+use crate::text::error::NcProblem;
 
 fn describe(frame: Option<usize>) -> String {
     match frame {

@@ -5,10 +5,10 @@
 use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
 
 use super::turns;
-use crate::error::NcProblem;
 use crate::machine::Machine;
-use crate::program::{NoteList, Program, ProgramPose};
-use crate::read_options::{AxisLaw, ReadOptions};
+use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
+use crate::model::read_options::{AxisLaw, ReadOptions};
+use crate::text::error::NcProblem;
 
 /// The most poses of one program: bounds the memory that a file of a few bytes can demand.
 const MOST_POSES: usize = 20_000_000;
@@ -66,13 +66,13 @@ impl State {
 
     pub fn finish(self) -> Program {
         Program {
-            files: Vec::new(),
             poses: self.poses,
             machine: Machine {
                 table: self.table,
                 tip_control: self.tip_control_given,
             },
             notes: self.notes.finish(),
+            ..Program::default()
         }
     }
 
@@ -245,6 +245,8 @@ impl State {
                 joined: self.joined,
                 tool: self.tool,
                 feed: if rapid { None } else { self.feed },
+                feed_mode: FeedMode::default(),
+                call: None,
                 way,
             });
         }

@@ -1,5 +1,7 @@
 //! How programs are read.
 
+use std::collections::BTreeMap;
+
 use crate::machine::Machine;
 
 /// How to read a program.
@@ -12,7 +14,7 @@ use crate::machine::Machine;
 /// options.machine = Machine::with_table(RotaryTable::Ac).tip_control(true);
 /// options.exact_arcs = true;
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReadOptions {
     /// How far chords may be from an arc, in millimetres.
@@ -25,6 +27,16 @@ pub struct ReadOptions {
     pub law: AxisLaw,
     /// Keeps arcs and helices instead of dividing them into chords. The axis then turns at constant speed along them.
     pub exact_arcs: bool,
+    /// The control that the program is written for. `None`: as the text says.
+    pub controller: Option<Controller>,
+    /// Whether to go on after problems, and to list what was left out as notes instead of rejecting the program.
+    pub lenient: bool,
+    /// Whether blocks that begin with `/` are skipped.
+    pub block_delete: bool,
+    /// The control's table of tool lengths and diameters, by number: what `H` and `D` mean.
+    pub tool_offsets: BTreeMap<u32, ToolOffset>,
+    /// Where the tool's tip is when the program starts, in millimetres in the frame of the first work offset, if that is known.
+    pub start: Option<[f64; 3]>,
 }
 
 impl Default for ReadOptions {
@@ -36,6 +48,11 @@ impl Default for ReadOptions {
             machine: Machine::default(),
             law: AxisLaw::Slerp,
             exact_arcs: false,
+            controller: None,
+            lenient: false,
+            block_delete: false,
+            tool_offsets: BTreeMap::new(),
+            start: None,
         }
     }
 }
@@ -51,4 +68,31 @@ pub enum AxisLaw {
     ConstantSpeed,
     /// As the machine turns under tip control: both rotary axes at constant speed.
     Rotary,
+}
+
+/// A control, with its dialect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Controller {
+    /// LinuxCNC, and others that follow RS-274/NGC.
+    LinuxCnc,
+    /// Fanuc, and others that follow it.
+    Fanuc,
+    /// Haas.
+    Haas,
+    /// Siemens Sinumerik 840D.
+    Siemens,
+    /// Heidenhain's Klartext.
+    Heidenhain,
+    /// Grbl and TinyG.
+    Grbl,
+}
+
+/// A row of a control's tool table.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToolOffset {
+    /// The tool's length from the spindle's nose, in millimetres.
+    pub length: f64,
+    /// The tool's diameter, in millimetres.
+    pub diameter: f64,
 }

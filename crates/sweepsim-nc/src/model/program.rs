@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use sweepsim_motion::{Move, Pose};
 
 use crate::machine::Machine;
+use crate::model::event::Event;
 
 /// A pose of a program, and the move that ends there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +27,10 @@ pub struct ProgramPose {
     pub tool: Option<u32>,
     /// The feed of this move as the program gives it; `None` for rapids, and before the first feed.
     pub feed: Option<f64>,
+    /// What the feed counts.
+    pub feed_mode: FeedMode,
+    /// The call, cycle or loop that made this move: an index of [`Program::calls`]. `None` for moves of the main program.
+    pub call: Option<u32>,
     /// How the tool moves here from the previous pose.
     pub way: Move,
 }
@@ -42,8 +47,65 @@ impl ProgramPose {
             joined: true,
             tool: None,
             feed: None,
+            feed_mode: FeedMode::default(),
+            call: None,
             way: Move::default(),
         }
+    }
+}
+
+/// What the feed of a move counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FeedMode {
+    /// Units of length per minute (`G94`).
+    #[default]
+    PerMinute,
+    /// Units of length per revolution of the spindle (`G95`).
+    PerRevolution,
+    /// Moves per minute: 1 over the duration of the move in minutes (`G93`).
+    InverseTime,
+}
+
+/// The unit of length of a program's words.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Units {
+    /// Millimetres.
+    #[default]
+    Mm,
+    /// Inches.
+    Inch,
+}
+
+impl Units {
+    /// Millimetres per unit.
+    #[must_use]
+    pub fn in_mm(self) -> f64 {
+        match self {
+            Self::Mm => 1.0,
+            Self::Inch => 25.4,
+        }
+    }
+}
+
+/// Where a subprogram, a loop or a cycle was called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Call {
+    /// The file of the calling block: an index of [`Program::files`].
+    pub file: usize,
+    /// The line of the calling block, from 1.
+    pub line: usize,
+    /// The call within which this one was made: an index of [`Program::calls`].
+    pub parent: Option<u32>,
+}
+
+impl Call {
+    /// A call on a line of a file.
+    #[must_use]
+    pub fn new(file: usize, line: usize, parent: Option<u32>) -> Self {
+        Self { file, line, parent }
     }
 }
 
@@ -78,8 +140,16 @@ impl std::fmt::Display for Note {
 pub struct Program {
     /// The files that were read, the main program first; empty if the program came as text.
     pub files: Vec<PathBuf>,
+    /// The name or title that the program gives itself.
+    pub title: Option<String>,
+    /// The units of the program's words at its first move. Poses are in millimetres whatever they are; feeds are as written.
+    pub units: Units,
     /// The poses in order; consecutive ones differ where they are joined.
     pub poses: Vec<ProgramPose>,
+    /// The calls of subprograms, loops and cycles that made moves or events, each before those within it.
+    pub calls: Vec<Call>,
+    /// Everything else that the program does, in order.
+    pub events: Vec<Event>,
     /// The machine, as given or as implied by the program's words.
     pub machine: Machine,
     /// What was ignored or assumed: one note of each kind, sorted by line.
@@ -90,6 +160,12 @@ impl Program {
     /// The stretches of joined poses.
     pub fn sections(&self) -> impl Iterator<Item = &[ProgramPose]> {
         self.poses.chunk_by(|_, next| next.joined)
+    }
+
+    /// The calls that led to a pose or an event, the innermost first.
+    pub fn calls_of(&self, call: Option<u32>) -> impl Iterator<Item = &Call> {
+        let at = |index: Option<u32>| index.and_then(|index| self.calls.get(index as usize));
+        std::iter::successors(at(call), move |call| at(call.parent))
     }
 
     /// The file that a pose comes from, if the program was read from files.

@@ -1,0 +1,5 @@
+//! What reading a program takes and gives.
+
+pub(crate) mod event;
+pub(crate) mod program;
+pub(crate) mod read_options;

@@ -1,0 +1,4 @@
+//! Problems with their place in a text, and numbers as text.
+
+pub(crate) mod error;
+pub(crate) mod numbers;
