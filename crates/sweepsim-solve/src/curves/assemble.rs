@@ -36,15 +36,22 @@ impl Cluster {
     }
 }
 
-/// Two clusters whose boxes meet.
-fn near_pair(clusters: &[Cluster], n: usize) -> Option<(usize, usize)> {
+/// Unites clusters until no two of their boxes meet. Each union takes one pass over the clusters so far, so that thousands of cells take
+/// milliseconds.
+fn unite_near(cells: impl Iterator<Item = Cluster>, n: usize) -> Vec<Cluster> {
     let meet = |a: &Cluster, b: &Cluster| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
-    for b in 1..clusters.len() {
-        if let Some(a) = (0..b).find(|a| meet(&clusters[*a], &clusters[b])) {
-            return Some((a, b));
+    let mut clusters: Vec<Cluster> = Vec::new();
+    for mut next in cells {
+        while let Some(near) = clusters.iter().position(|c| meet(c, &next)) {
+            next.unite(clusters.swap_remove(near), n);
         }
+        clusters.push(next);
     }
-    None
+    for cluster in &mut clusters {
+        cluster.members.sort_unstable();
+    }
+    clusters.sort_by_key(|c| c.members[0]);
+    clusters
 }
 
 impl Search<'_> {
@@ -53,19 +60,16 @@ impl Search<'_> {
         let n = self.system.layout.n;
         // Open cells that are close, relative to the size of the cluster so far, form one cluster, since some cells around a singular
         // point are settled. Each cluster has the crossings that belong to only one of its cells.
-        let mut clusters: Vec<Cluster> = (0..self.open.len()).map(|o| Cluster::of(&self.open, o, n)).collect();
-        while let Some((a, b)) = near_pair(&clusters, n) {
-            let other = clusters.remove(b);
-            clusters[a].unite(other, n);
-        }
+        let clusters = unite_near((0..self.open.len()).map(|o| Cluster::of(&self.open, o, n)), n);
         let mut at_group: Vec<Option<usize>> = vec![None; self.crossings.len()];
         let mut singular = Vec::new();
         for (number, cluster) in clusters.iter().enumerate() {
             let members: Vec<&OpenCell> = cluster.members.iter().map(|o| &self.open[*o]).collect();
-            for c in members.iter().flat_map(|o| &o.crossings) {
-                let once = members.iter().filter(|o| o.crossings.contains(c)).count() == 1;
-                if once {
-                    at_group[*c] = Some(number);
+            let mut all: Vec<usize> = members.iter().flat_map(|o| o.crossings.iter().copied()).collect();
+            all.sort_unstable();
+            for same in all.chunk_by(|a, b| a == b) {
+                if same.len() == 1 {
+                    at_group[same[0]] = Some(number);
                 }
             }
             singular.push(Singular {

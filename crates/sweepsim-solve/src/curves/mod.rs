@@ -128,6 +128,7 @@ impl Curves {
 #[derive(Debug)]
 pub struct CurveSolver {
     /// Limits. [`smallest`](SolveOptions::smallest) is the size at which a cell counts as singular; 1e-9 by default here.
+    /// [`vertices`](SolveOptions::vertices) is 2²⁰ by default here; [`for_each_piece`](Self::for_each_piece) counts only those of one piece.
     pub options: SolveOptions,
     /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; plus the amount by which rounding
     /// errors (and stated errors) of the coefficients move the curve.
@@ -141,6 +142,7 @@ impl CurveSolver {
     pub fn new(tolerance: f64) -> Self {
         let options = SolveOptions {
             smallest: 1e-9,
+            vertices: 1 << 20,
             ..SolveOptions::default()
         };
         Self::with_options(tolerance, options)
@@ -205,7 +207,7 @@ impl CurveSolver {
             system,
             options: self.options.clone(),
             points: &mut self.points,
-            tracer: Tracer::new(system, self.tolerance, monitor),
+            tracer: Tracer::new(system, self.tolerance, &self.options, monitor),
             crossings: Vec::new(),
             pieces: Vec::new(),
             open: Vec::new(),
@@ -267,6 +269,7 @@ impl CurveSolver {
         let (root, first, skin) = search.boundary(monitor);
         search.run(root, first, monitor, &mut |tracer, pieces| {
             for piece in pieces.drain(..) {
+                tracer.room += piece.vertices.len();
                 visit(CurvePiece {
                     ends: piece.ends,
                     points: piece.vertices.iter().map(|v| tracer.outer(v)).collect(),

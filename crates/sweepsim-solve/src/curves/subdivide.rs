@@ -66,7 +66,7 @@ impl Search<'_> {
         root: Cell,
         first: Vec<usize>,
         monitor: &dyn Monitor,
-        hand: &mut dyn FnMut(&Tracer<'_>, &mut Vec<GraphPiece>),
+        hand: &mut dyn FnMut(&mut Tracer<'_>, &mut Vec<GraphPiece>),
     ) {
         let layout = &self.system.layout;
         let mut watch = Watch::new(&self.options);
@@ -78,7 +78,9 @@ impl Search<'_> {
         while let Some((depth, crossings)) = frames.pop() {
             pop(&mut stack, &mut cell, layout);
             let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
-            if let Some(cause) = stop {
+            // A cell takes long enough to look at the clock before each.
+            let late = watch.late().then_some(Cause::Time);
+            if let Some(cause) = stop.or(late).or(self.tracer.stopped) {
                 self.leave(&cell, crossings, cause);
                 while let Some((_, crossings)) = frames.pop() {
                     pop(&mut stack, &mut cell, layout);
@@ -91,6 +93,11 @@ impl Search<'_> {
             let (lo, hi) = (cell.lo, cell.hi);
             let fate = match self.settle(&mut cell, &crossings) {
                 Ok(fate) => fate,
+                Err(_) if self.tracer.stopped.is_some() => {
+                    let cause = self.tracer.stopped.unwrap_or(Cause::Time);
+                    self.leave(&cell, crossings, cause);
+                    Fate::Unresolved
+                }
                 Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, monitor) {
                     Some((below, above)) => {
                         push(&mut stack, &cell, layout);
@@ -103,7 +110,7 @@ impl Search<'_> {
                 },
             };
             self.statistics.count(fate);
-            hand(&self.tracer, &mut self.pieces);
+            hand(&mut self.tracer, &mut self.pieces);
             if monitor.visits() {
                 monitor.visit(&self.system.outward(&lo, &hi), depth, fate);
             }
@@ -123,7 +130,7 @@ impl Search<'_> {
     fn settle(&mut self, cell: &mut Cell, crossings: &[usize]) -> Result<Fate, usize> {
         loop {
             let result = self.judge(cell, crossings);
-            if result.is_ok() {
+            if result.is_ok() || self.tracer.stopped.is_some() {
                 return result;
             }
             match self.shrink(cell, crossings) {
@@ -240,6 +247,7 @@ impl Search<'_> {
                         }
                         traced.push(GraphPiece { ends, vertices });
                     }
+                    None if self.tracer.stopped.is_some() => return Err(over),
                     None => break,
                 }
             }
@@ -247,6 +255,7 @@ impl Search<'_> {
                 self.pieces.append(&mut traced);
                 return Ok(Fate::Certified);
             }
+            self.tracer.room += traced.iter().map(|t| t.vertices.len()).sum::<usize>();
         }
         // Split where the derivatives vary most, relative to the equations' slopes.
         let mut weight = [0.0; MAX_UNKNOWNS];

@@ -11,6 +11,7 @@ use super::subdivide::FaceCrossing;
 use crate::coefficients::Cell;
 use crate::numbers::double::Double;
 use crate::numbers::{MAX_UNKNOWNS, Row, apply, inverse};
+use crate::search::{Cause, SolveOptions, Watch};
 use crate::{Monitor, System};
 
 /// A vertex in inner coordinates, with the tangent (unit length in the domain's).
@@ -46,17 +47,25 @@ pub(crate) struct Tracer<'a> {
     system: &'a System,
     tolerance: f64,
     monitor: &'a dyn Monitor,
+    watch: Watch,
+    /// How many vertices may still be stored.
+    pub(super) room: usize,
+    /// Why tracing stopped for good, if it has.
+    pub(super) stopped: Option<Cause>,
     buffer: Vec<f64>,
     doubles: Vec<Double>,
     parts: Vec<Cell>,
 }
 
 impl<'a> Tracer<'a> {
-    pub(crate) fn new(system: &'a System, tolerance: f64, monitor: &'a dyn Monitor) -> Self {
+    pub(crate) fn new(system: &'a System, tolerance: f64, options: &SolveOptions, monitor: &'a dyn Monitor) -> Self {
         Self {
             system,
             tolerance,
             monitor,
+            watch: Watch::new(options),
+            room: options.vertices,
+            stopped: None,
             buffer: Vec::new(),
             doubles: Vec::new(),
             parts: Vec::new(),
@@ -82,10 +91,12 @@ impl<'a> Tracer<'a> {
             &mut vertices,
         );
         self.parts = parts;
-        done.map(|()| vertices)
+        done?;
+        self.room = self.room.saturating_sub(vertices.len());
+        Some(vertices)
     }
 
-    /// Adds the vertices after the first end; `None` if that fails or the search is cancelled. The part of the cell in which the curve between the
+    /// Adds the vertices after the first end; `None` if that fails or tracing [stops](Self::stopped). The part of the cell in which the curve between the
     /// ends lies is `parts[depth]`, computed from the previous one.
     fn halve(
         &mut self,
@@ -96,7 +107,16 @@ impl<'a> Tracer<'a> {
         depth: usize,
         out: &mut Vec<Vertex>,
     ) -> Option<()> {
-        if self.monitor.cancelled() {
+        self.stopped = if self.monitor.cancelled() {
+            Some(Cause::Cancelled)
+        } else if self.watch.late() {
+            Some(Cause::Time)
+        } else if out.len() >= self.room {
+            Some(Cause::Vertices)
+        } else {
+            None
+        };
+        if self.stopped.is_some() {
             return None;
         }
         let close = {

@@ -21,6 +21,8 @@ pub struct SolveOptions {
     pub depth: u32,
     /// The maximum number of boxes that may stay unresolved before the search stops, so that a continuum of solutions does not flood it.
     pub unresolved: usize,
+    /// The maximum number of vertices of polylines and meshes. 2²⁴ by default.
+    pub vertices: usize,
     /// The maximum time. With this limit results depend on the speed of the machine; with the others they do not.
     pub time: Option<Duration>,
 }
@@ -32,6 +34,7 @@ impl Default for SolveOptions {
             boxes: 2_000_000,
             depth: 2_000,
             unresolved: 512,
+            vertices: 1 << 24,
             time: None,
         }
     }
@@ -63,6 +66,13 @@ impl SolveOptions {
     #[must_use]
     pub const fn unresolved(mut self, unresolved: usize) -> Self {
         self.unresolved = unresolved;
+        self
+    }
+
+    /// Sets [`vertices`](Self::vertices).
+    #[must_use]
+    pub const fn vertices(mut self, vertices: usize) -> Self {
+        self.vertices = vertices;
         self
     }
 
@@ -110,7 +120,7 @@ pub enum Cause {
     Flood,
     /// [`SolveOptions::time`] is used up.
     Time,
-    /// A mesh would have more vertices than can be numbered with 32 bits.
+    /// Polylines or a mesh would have more vertices than [`SolveOptions::vertices`], or than can be numbered with 32 bits.
     Vertices,
     /// The [`Monitor`] asked to stop.
     Cancelled,
@@ -125,7 +135,7 @@ impl std::fmt::Display for Cause {
             Self::Depth => "maximum depth reached",
             Self::Flood => "too many unresolved boxes",
             Self::Time => "time used up",
-            Self::Vertices => "more vertices than can be numbered with 32 bits",
+            Self::Vertices => "budget of vertices used up",
             Self::Cancelled => "cancelled",
         })
     }
@@ -220,6 +230,11 @@ impl Watch {
         }
     }
 
+    /// Whether the time is used up.
+    pub(crate) fn late(&self) -> bool {
+        self.deadline.is_some_and(|d| Instant::now() >= d)
+    }
+
     /// The reason to stop before the next box, if any.
     pub(crate) fn stop(
         &mut self,
@@ -239,7 +254,6 @@ impl Watch {
         }
         // Reading the clock is more expensive.
         self.ticks += 1;
-        let late = self.ticks.is_multiple_of(32) && self.deadline.is_some_and(|d| Instant::now() >= d);
-        late.then_some(Cause::Time)
+        (self.ticks.is_multiple_of(32) && self.late()).then_some(Cause::Time)
     }
 }

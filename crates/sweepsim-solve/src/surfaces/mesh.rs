@@ -5,7 +5,7 @@ use super::octree::{FINEST, OctreeNode, State};
 use crate::Monitor;
 use crate::coefficients::Cell;
 use crate::numbers::{MAX_UNKNOWNS, Row};
-use crate::search::Cause;
+use crate::search::{Cause, Watch};
 use std::collections::BTreeMap;
 
 /// An edge of the finest neighbour: where it starts, its axis, its length.
@@ -14,6 +14,7 @@ type Edge = ([u32; 3], u8, u32);
 pub(crate) struct Mesher<'a> {
     grid: &'a PlaneLattice<'a>,
     nodes: &'a [OctreeNode],
+    watch: &'a Watch,
     monitor: &'a dyn Monitor,
     signs: BTreeMap<[u32; 3], i8>,
     buffer: Vec<f64>,
@@ -36,31 +37,45 @@ enum Cycle {
 }
 
 impl<'a> Mesher<'a> {
-    pub(crate) fn new(grid: &'a PlaneLattice<'a>, nodes: &'a [OctreeNode], monitor: &'a dyn Monitor) -> Self {
+    pub(crate) fn new(
+        grid: &'a PlaneLattice<'a>,
+        nodes: &'a [OctreeNode],
+        watch: &'a Watch,
+        monitor: &'a dyn Monitor,
+    ) -> Self {
         Self {
             grid,
             nodes,
+            watch,
             monitor,
             signs: BTreeMap::new(),
             buffer: Vec::new(),
         }
     }
 
-    /// Plain leaves whose neighbourhood violates the conditions; `None` if cancelled.
-    pub(crate) fn check(&mut self) -> Option<Vec<usize>> {
+    /// The reason to stop before the next leaf, if any.
+    fn stop(&self, number: usize) -> Option<Cause> {
+        if self.monitor.cancelled() {
+            return Some(Cause::Cancelled);
+        }
+        (number.is_multiple_of(16) && self.watch.late()).then_some(Cause::Time)
+    }
+
+    /// Plain leaves whose neighbourhood violates the conditions, or why the check was stopped.
+    pub(crate) fn check(&mut self) -> Result<Vec<usize>, Cause> {
         let mut bad = Vec::new();
         for (number, node) in self.nodes.iter().enumerate() {
             if !matches!(node.state, State::Plain(_)) {
                 continue;
             }
-            if self.monitor.cancelled() {
-                return None;
+            if let Some(cause) = self.stop(number) {
+                return Err(cause);
             }
             if matches!(self.cycle(node), Cycle::Bad) {
                 bad.push(number);
             }
         }
-        Some(bad)
+        Ok(bad)
     }
 
     /// All triangles, with at most `most` vertices; otherwise the cause of failure. The octree must have passed the check.
@@ -69,10 +84,10 @@ impl<'a> Mesher<'a> {
         let mut vertices: Vec<[f64; 3]> = Vec::new();
         let mut triangles = Vec::new();
         let mut known: BTreeMap<Edge, (u32, Row)> = BTreeMap::new();
-        for node in nodes {
+        for (number, node) in nodes.iter().enumerate() {
             let State::Plain(cell) = &node.state else { continue };
-            if self.monitor.cancelled() {
-                return Err(Cause::Cancelled);
+            if let Some(cause) = self.stop(number) {
+                return Err(cause);
             }
             let Cycle::One(cycle) = self.cycle(node) else { continue };
             // At most one vertex on each edge of the cycle and one in the middle.

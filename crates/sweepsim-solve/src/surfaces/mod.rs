@@ -20,7 +20,7 @@ mod mesh;
 mod octree;
 mod plain;
 
-use crate::search::{Cause, Open, SolveError, SolveOptions, SolveStatistics, UnresolvedBox, Watch, open_box, unite};
+use crate::search::{Open, SolveError, SolveOptions, SolveStatistics, UnresolvedBox, Watch, open_box, unite};
 use crate::{Enclosure, Monitor, System};
 use lattice::PlaneLattice;
 use mesh::Mesher;
@@ -135,7 +135,7 @@ impl SurfaceSolver {
     /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
     /// [`SolveError::Smallest`] for an invalid size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
-        self.solve_within(system, monitor, u32::MAX as usize)
+        self.solve_within(system, monitor, self.options.vertices.min(u32::MAX as usize))
     }
 
     /// As [`solve`](Self::solve), with at most this many vertices.
@@ -183,18 +183,18 @@ impl SurfaceSolver {
         search.treat(0, monitor);
         let mut mesh = None;
         while search.stopped.is_none() && mesh.is_none() {
-            let mut mesher = Mesher::new(&search.grid, &search.nodes, monitor);
+            let mut mesher = Mesher::new(&search.grid, &search.nodes, &search.watch, monitor);
             match mesher.check() {
-                Some(failures) if failures.is_empty() => match mesher.mesh(most) {
+                Ok(failures) if failures.is_empty() => match mesher.mesh(most) {
                     Ok(triangles) => mesh = Some(triangles),
                     Err(cause) => search.stopped = Some(cause),
                 },
-                Some(failures) => {
+                Ok(failures) => {
                     for node in failures {
                         search.split(node, monitor);
                     }
                 }
-                None => search.stopped = Some(Cause::Cancelled),
+                Err(cause) => search.stopped = Some(cause),
             }
         }
         if let Some(cause) = search.stopped {
@@ -251,6 +251,7 @@ impl SurfaceSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::search::Cause;
     use sweepsim_spline::Bernstein;
 
     #[test]

@@ -1,6 +1,7 @@
 //! Integration tests of `sweepsim-solve`, in one binary: it links once.
 
 mod bad_input;
+mod budgets;
 mod bundles;
 mod curves;
 mod expressions;

@@ -1,0 +1,126 @@
+//! Budgets of time and vertices: kept in every loop, with what was found until then.
+
+use std::time::{Duration, Instant};
+use sweepsim_solve::{Bernstein, Cause, CurveSolver, Enclosure, SolveOptions, SurfaceSolver, System};
+
+/// `Σ (xⱼ − 1/2)² − 0.4²` on the unit box.
+fn ball(n: usize) -> System {
+    let form = (0..n).fold(Bernstein::constant(n, -0.16), |sum, j| {
+        let x = Bernstein::variable(n, j).sub(&Bernstein::constant(n, 0.5));
+        sum.add(&x.mul(&x))
+    });
+    System::new(&vec![Enclosure::UNIT; n], [form]).unwrap()
+}
+
+/// A fifth more than the budget, and 50 ms for a machine that does other work as well.
+fn in_time(start: Instant, budget: Duration) {
+    let took = start.elapsed();
+    assert!(
+        took <= budget * 6 / 5 + Duration::from_millis(50),
+        "{took:?} of {budget:?}"
+    );
+}
+
+fn with_time(base: &SolveOptions, budget: Duration) -> SolveOptions {
+    base.clone().time(Some(budget))
+}
+
+#[test]
+fn curve_tracing_ends_with_its_time() {
+    let system = ball(2);
+    let budget = Duration::from_millis(200);
+    // Far more vertices than this time and the default number of vertices suffice for.
+    let tolerance = 1e-14;
+    let options = with_time(&CurveSolver::new(tolerance).options, budget).vertices(usize::MAX);
+    let start = Instant::now();
+    let curves = CurveSolver::with_options(tolerance, options)
+        .solve(&system, &())
+        .unwrap();
+    in_time(start, budget);
+    assert!(curves.singular.iter().any(|s| s.cause == Cause::Time));
+}
+
+#[test]
+fn many_open_cells_are_assembled_in_time() {
+    // An equation that vanishes along a line with multiplicity 2 never settles: the time ends the search with many cells open.
+    let x = Bernstein::variable(3, 0).sub(&Bernstein::constant(3, 0.3));
+    let y = Bernstein::variable(3, 1).sub(&Bernstein::constant(3, 0.3));
+    let system = System::new(&[Enclosure::UNIT; 3], [x.mul(&x), y.mul(&y)]).unwrap();
+    let budget = Duration::from_millis(200);
+    let mut options = with_time(&CurveSolver::new(1e-3).options, budget);
+    options.unresolved = usize::MAX;
+    let start = Instant::now();
+    let curves = CurveSolver::with_options(1e-3, options).solve(&system, &()).unwrap();
+    in_time(start, budget);
+    assert!(!curves.singular.is_empty());
+}
+
+#[test]
+fn curves_have_no_more_vertices_than_allowed() {
+    let system = ball(2);
+    let mut solver = CurveSolver::new(1e-9);
+    let all: usize = solver
+        .solve(&system, &())
+        .unwrap()
+        .curves
+        .iter()
+        .map(|c| c.points.len())
+        .sum();
+    assert!(all > 4_000, "{all}");
+    for vertices in [0, 1, 10, 1_000] {
+        let options = solver.options.clone().vertices(vertices);
+        let curves = CurveSolver::with_options(1e-9, options).solve(&system, &()).unwrap();
+        let some: usize = curves.curves.iter().map(|c| c.points.len()).sum();
+        assert!(some <= vertices, "{some} of {vertices}");
+        assert!(curves.singular.iter().any(|s| s.cause == Cause::Vertices));
+        // What is not traced is covered.
+        for k in 0..90 {
+            let angle = f64::from(k) * std::f64::consts::TAU / 90.0;
+            let p = [0.5 + 0.4 * angle.cos(), 0.5 + 0.4 * angle.sin()];
+            let open = curves
+                .singular
+                .iter()
+                .any(|s| s.bounds.iter().zip(p).all(|(b, x)| b.contains(x)));
+            let near = |q: &sweepsim_solve::CurvePoint| (q.point[0] - p[0]).hypot(q.point[1] - p[1]) < 1e-3;
+            assert!(
+                open || curves.curves.iter().any(|c| c.points.iter().any(near)),
+                "{vertices}: {p:?}"
+            );
+        }
+    }
+    let exactly = solver.options.clone().vertices(all + 64);
+    let whole = CurveSolver::with_options(1e-9, exactly).solve(&system, &()).unwrap();
+    assert_eq!((whole.loops().count(), whole.singular.len()), (1, 0));
+}
+
+#[test]
+fn surfaces_end_with_their_time_and_vertices() {
+    let system = ball(3);
+    let budget = Duration::from_millis(300);
+    let options = with_time(&SurfaceSolver::new(1e-9).options, budget);
+    let start = Instant::now();
+    let surface = SurfaceSolver::with_options(1e-9, options).solve(&system, &()).unwrap();
+    in_time(start, budget);
+    assert!(surface.unresolved.iter().any(|u| u.cause == Cause::Time));
+
+    let options = SurfaceSolver::new(0.01).options.vertices(100);
+    let surface = SurfaceSolver::with_options(0.01, options).solve(&system, &()).unwrap();
+    assert!(surface.vertices.len() <= 100 && surface.unresolved.iter().any(|u| u.cause == Cause::Vertices));
+}
+
+/// A mesh in the making: most of the time goes into checking neighbours and placing vertices, not into boxes.
+#[test]
+fn meshing_ends_with_the_time() {
+    let system = ball(3);
+    let start = Instant::now();
+    let mesh = SurfaceSolver::new(2e-3).solve(&system, &()).unwrap();
+    let whole = start.elapsed();
+    assert!(mesh.unresolved.is_empty());
+    for share in [0.3, 0.5, 0.7, 0.85, 0.95] {
+        let budget = whole.mul_f64(share);
+        let options = with_time(&SurfaceSolver::new(2e-3).options, budget);
+        let start = Instant::now();
+        let _ = SurfaceSolver::with_options(2e-3, options).solve(&system, &()).unwrap();
+        in_time(start, budget);
+    }
+}
