@@ -3,11 +3,13 @@
 pub(crate) mod double;
 mod enclosure;
 mod matrix;
+mod place;
 
 pub(crate) use double::Double;
 pub use enclosure::{Enclosure, EnclosureError};
 pub use matrix::MAX_UNKNOWNS;
 pub(crate) use matrix::{Row, Square, ZERO, apply, inverse};
+pub(crate) use place::Place;
 
 /// `2⁻⁵²`: twice the unit roundoff.
 pub(crate) const EPSILON: f64 = f64::EPSILON;

@@ -18,6 +18,7 @@ mod certify;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod pieces;
+mod represent;
 mod solver;
 mod treat;
 
@@ -43,7 +44,7 @@ pub struct Root {
     pub point: Vec<f64>,
     /// A box that contains the root.
     pub enclosure: Vec<Enclosure>,
-    /// A box with no other root. It may extend beyond the domain.
+    /// A box with no other root; it holds the enclosure. It may extend beyond the domain.
     pub unique_in: Vec<Enclosure>,
     /// The sign of `det ∂f/∂x` at the root (and wherever the root is unique).
     pub orientation: i8,

@@ -73,7 +73,7 @@ impl PointSolver {
             self.open.extend(part.open);
             self.statistics.merge(&part.statistics);
         }
-        self.finish(layout.n);
+        self.finish(system);
         Ok(self.points(system))
     }
 }

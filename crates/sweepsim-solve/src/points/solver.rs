@@ -1,7 +1,7 @@
 //! The 0-D solver: its search, and the postprocessing.
 
+use super::Points;
 use super::certify::Found;
-use super::{Points, Root, RootLocation};
 use crate::coefficients::{Cell, pop, push};
 use crate::numbers::{Double, Row};
 use crate::search::{Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, open_box, unite};
@@ -87,19 +87,9 @@ impl PointSolver {
                 .find(|o| o.is_ne())
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        let root = |f: &Found| Root {
-            point: system.outer_point(&f.point),
-            enclosure: system.outward(&f.lo, &f.hi),
-            unique_in: system.inward(&f.unique_lo, &f.unique_hi),
-            orientation: f.orientation,
-            location: if f.boundary {
-                RootLocation::Boundary
-            } else {
-                RootLocation::Inside
-            },
-        };
+        let roots = self.represent(system);
         Points {
-            roots: self.found.iter().map(root).collect(),
+            roots,
             unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
             statistics: self.statistics,
         }
@@ -110,7 +100,7 @@ impl PointSolver {
         self.restart();
         let root = system.root();
         self.search(system, &root, 0, monitor);
-        self.finish(system.layout.n);
+        self.finish(system);
     }
 
     /// Clears the results.
@@ -124,8 +114,9 @@ impl PointSolver {
     }
 
     /// Removes duplicate roots, and merges open boxes.
-    pub(crate) fn finish(&mut self, n: usize) {
-        self.identify(n);
+    pub(crate) fn finish(&mut self, system: &System) {
+        let n = system.layout.n;
+        self.identify(system);
         // An open box inside a box where a found root is the only one holds nothing else.
         let found = &self.found;
         self.open.retain(|o| {
@@ -186,11 +177,12 @@ impl PointSolver {
     }
 
     /// Drops roots that were found from several boxes. Only a root whose enclosure leaves its box can be such a duplicate.
-    fn identify(&mut self, n: usize) {
+    fn identify(&mut self, system: &System) {
+        let n = system.layout.n;
         let touches = |a: &Found, b: &Found| (0..n).all(|j| a.lo[j] <= b.hi[j] && b.lo[j] <= a.hi[j]);
         let mut kept: Vec<Found> = Vec::with_capacity(self.found.len());
         let mut straddling: Vec<usize> = Vec::new();
-        for next in self.found.drain(..) {
+        for next in std::mem::take(&mut self.found) {
             let same = if next.straddles {
                 kept.iter().position(|k| touches(k, &next))
             } else {
@@ -204,9 +196,11 @@ impl PointSolver {
                 continue;
             };
             let first = &mut kept[same];
-            let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
-                || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n);
             first.boundary |= next.boundary;
+            let first = *first;
+            let one = inside(&next.lo, &next.hi, &first.unique_lo, &first.unique_hi, n)
+                || inside(&first.lo, &first.hi, &next.unique_lo, &next.unique_hi, n)
+                || self.only_one(system, &first, &next);
             if !one {
                 // Two enclosures that meet, neither within the other's box: one root or two.
                 self.open.push(Open {

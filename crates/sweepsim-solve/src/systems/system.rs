@@ -3,7 +3,7 @@
 use super::expression::{Expression, Rows};
 use crate::Enclosure;
 use crate::coefficients::{Cell, Layout};
-use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Place, Row};
 use smallvec::SmallVec;
 use sweepsim_spline::{Bernstein, RationalBernstein};
 use thiserror::Error;
@@ -285,39 +285,20 @@ impl System {
 
     /// An inner box in the domain's coordinates, rounded outwards.
     pub(crate) fn outward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
-        self.domain
-            .iter()
-            .enumerate()
-            .map(|(j, side)| {
-                let width = side.hi() - side.lo();
-                let pad =
-                    4.0 * EPSILON * (side.lo().abs().max(side.hi().abs()) + width * (lo[j].abs().max(hi[j].abs())));
-                let end = |s: f64| {
-                    if s == 0.0 {
-                        (side.lo(), 0.0)
-                    } else if s == 1.0 {
-                        (side.hi(), 0.0)
-                    } else {
-                        (side.lo() + s * width, pad)
-                    }
-                };
-                let ((l, lp), (h, hp)) = (end(lo[j]), end(hi[j]));
-                Enclosure::hull(l - lp, h + hp)
-            })
-            .collect()
+        let bounds = |(j, side): (usize, &Enclosure)| {
+            let place = Place::new(*side);
+            Enclosure::hull(place.below(lo[j]), place.above(hi[j]))
+        };
+        self.domain.iter().enumerate().map(bounds).collect()
     }
 
-    /// An inner box in the domain's coordinates, rounded inwards.
-    pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
-        let outer = self.outward(lo, hi);
-        let place = |(j, (o, side)): (usize, (Enclosure, &Enclosure))| {
-            let width = side.hi() - side.lo();
-            let (l, h) = (side.lo() + lo[j] * width, side.lo() + hi[j] * width);
-            // If the box is as narrow as its rounding error, only its midpoint is left.
-            Enclosure::new(2.0 * l - o.lo(), 2.0 * h - o.hi())
-                .unwrap_or_else(|_| Enclosure::hull(0.5 * (l + h), 0.5 * (l + h)))
+    /// An inner box in the domain's coordinates, rounded inwards; `None` if no numbers are left on some side.
+    pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Option<Vec<Enclosure>> {
+        let bounds = |(j, side): (usize, &Enclosure)| {
+            let place = Place::new(*side);
+            Enclosure::new(place.above(lo[j]), place.below(hi[j])).ok()
         };
-        outer.into_iter().zip(&self.domain).enumerate().map(place).collect()
+        self.domain.iter().enumerate().map(bounds).collect()
     }
 
     /// Length of a side of the domain.

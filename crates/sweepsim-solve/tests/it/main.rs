@@ -14,6 +14,7 @@ mod misuse;
 mod monitors;
 mod parallel;
 mod pieces;
+mod places;
 mod planted;
 mod support;
 mod surfaces;
