@@ -23,14 +23,19 @@
 //! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
 
 mod content;
+mod drive;
 pub mod gcode;
-mod machine;
+mod machines;
 mod model;
 mod read;
 pub mod table;
 mod text;
 
-pub use machine::Machine;
+pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, check, post};
+pub use machines::{
+    Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
+    Solutions, WorkFrame,
+};
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};

@@ -5,7 +5,7 @@
 use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
 
 use super::turns;
-use crate::machine::Machine;
+use crate::machines::Machine;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::{AxisLaw, ReadOptions};
 use crate::text::error::NcProblem;
@@ -38,8 +38,8 @@ pub(crate) struct State {
     pub notes: NoteList,
     table: Option<RotaryTable>,
     table_given: bool,
-    /// Whether tip control is on from the start.
-    tip_control_given: bool,
+    /// As given.
+    machine: Machine,
     poses: Vec<ProgramPose>,
     /// Whether the tool moves to the next pose from the last one.
     joined: bool,
@@ -57,7 +57,7 @@ impl State {
             notes: NoteList::default(),
             table: options.machine.table,
             table_given: options.machine.table.is_some(),
-            tip_control_given: options.machine.tip_control,
+            machine: options.machine.clone(),
             poses: Vec::new(),
             joined: false,
             law: options.law,
@@ -69,7 +69,7 @@ impl State {
             poses: self.poses,
             machine: Machine {
                 table: self.table,
-                tip_control: self.tip_control_given,
+                ..self.machine
             },
             notes: self.notes.finish(),
             ..Program::default()

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sweepsim_motion::{Move, Pose};
 
-use crate::machine::Machine;
+use crate::machines::{Machine, Position};
 use crate::model::event::Event;
 
 /// A pose of a program, and the move that ends there.
@@ -146,6 +146,8 @@ pub struct Program {
     pub units: Units,
     /// The poses in order; consecutive ones differ where they are joined.
     pub poses: Vec<ProgramPose>,
+    /// The positions of the machine's axes at each pose, if its kinematics are known; else empty.
+    pub positions: Vec<Position>,
     /// The calls of subprograms, loops and cycles that made moves or events, each before those within it.
     pub calls: Vec<Call>,
     /// Everything else that the program does, in order.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::machine::Machine;
+use crate::machines::Machine;
 
 /// How to read a program.
 ///

@@ -2,6 +2,7 @@
 
 mod contents;
 mod harmless;
+mod kinematics;
 mod machines;
 mod programs;
 mod tables;

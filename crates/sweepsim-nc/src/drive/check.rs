@@ -1,0 +1,158 @@
+//! Axes of a machine beyond their limits, or faster than they can.
+
+use crate::machines::{Kinematics, Position, ReachError};
+use crate::model::program::{FeedMode, Program, ProgramPose};
+
+/// Something that a machine cannot do.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AxisFinding {
+    /// The index of the pose at the end of the move.
+    pub pose: usize,
+    /// The file: an index of [`Program::files`].
+    pub file: usize,
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong.
+    pub fault: AxisFault,
+}
+
+/// What an axis would have to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum AxisFault {
+    /// It would be beyond its limits.
+    Limit {
+        /// Its letter.
+        letter: char,
+        /// In machine coordinates of the spindle's nose in millimetres, or in degrees.
+        value: f64,
+        /// The limits.
+        limits: [f64; 2],
+    },
+    /// It would have to be faster than it can be: the machine slows the move down.
+    Speed {
+        /// Its letter.
+        letter: char,
+        /// The speed that the feed asks for, in mm or degrees per minute.
+        needed: f64,
+        /// Its largest speed.
+        largest: f64,
+    },
+    /// The rotary axes cannot turn the tool there.
+    Direction {
+        /// The axis of the pose.
+        axis: [f64; 3],
+        /// How near they come, in degrees.
+        degrees: f64,
+    },
+}
+
+impl std::fmt::Display for AxisFinding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "line {}: ", self.line)?;
+        match self.fault {
+            AxisFault::Limit {
+                letter,
+                value,
+                limits: [least, largest],
+            } => {
+                write!(f, "{letter} is {value}, outside of its limits {least} to {largest}")
+            }
+            AxisFault::Speed {
+                letter,
+                needed,
+                largest,
+            } => {
+                write!(
+                    f,
+                    "{letter} would need a speed of {needed:.1} per minute, but has at most {largest}"
+                )
+            }
+            AxisFault::Direction {
+                axis: [i, j, k],
+                degrees,
+            } => {
+                write!(
+                    f,
+                    "the tool cannot be turned to ({i}, {j}, {k}): the axes come within {degrees} degrees"
+                )
+            }
+        }
+    }
+}
+
+/// Checks the moves of a program on a machine: limits of all axes at the end of each move (between two positions all axes stay between
+/// theirs), and their speeds at the programmed feed.
+///
+/// Positions are those that the program was read with; if it was read without a machine, those that a control would choose.
+#[must_use]
+pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
+    let mut findings = Vec::new();
+    let mut last: Option<(Position, &ProgramPose)> = None;
+    let given = program.positions.len() == program.poses.len();
+    for (index, pose) in program.poses.iter().enumerate() {
+        let length = machine.tool_length(pose.tool);
+        let mut found = |fault| {
+            findings.push(AxisFinding {
+                pose: index,
+                file: pose.file,
+                line: pose.line,
+                fault,
+            });
+        };
+        let near = last.map_or_else(|| machine.start(length), |(position, _)| position);
+        let position = if given {
+            program.positions[index]
+        } else {
+            match machine.nearest(&pose.pose, length, &near) {
+                Ok(position) => position,
+                Err(ReachError::Direction { axis, degrees }) => {
+                    found(AxisFault::Direction { axis, degrees });
+                    continue;
+                }
+                Err(ReachError::Limit { letter, value, limits }) => {
+                    found(AxisFault::Limit { letter, value, limits });
+                    continue;
+                }
+            }
+        };
+        if given {
+            for (letter, value, limits) in machine.beyond(&position, length) {
+                found(AxisFault::Limit { letter, value, limits });
+            }
+        }
+        if let (true, Some((from, before))) = (pose.joined, last)
+            && let Some(minutes) = minutes(before, pose, &from, &position)
+        {
+            for (letter, largest, moved) in machine.speeds(&from, &position) {
+                let needed = moved / minutes;
+                if needed > largest * (1.0 + 1e-9) {
+                    found(AxisFault::Speed {
+                        letter,
+                        needed,
+                        largest,
+                    });
+                }
+            }
+        }
+        last = Some((position, pose));
+    }
+    findings
+}
+
+/// How long a feed move takes, if that is known. Feeds are of the tip along its way; of a turn in place, in degrees.
+fn minutes(before: &ProgramPose, pose: &ProgramPose, from: &Position, to: &Position) -> Option<f64> {
+    let feed = pose.feed.filter(|feed| !pose.rapid && *feed > 0.0)?;
+    match pose.feed_mode {
+        FeedMode::InverseTime => Some(1.0 / feed),
+        FeedMode::PerMinute => {
+            let square = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            let way = square(before.pose.tip(), pose.pose.tip()).sqrt();
+            let turn = square(from.abc, to.abc).sqrt();
+            let length = if way > 0.0 { way } else { turn };
+            (length > 0.0).then_some(length / feed)
+        }
+        FeedMode::PerRevolution => None,
+    }
+}

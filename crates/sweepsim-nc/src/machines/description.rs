@@ -1,0 +1,168 @@
+//! What a machine is made of, as `machine.ron` says it.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// A machine, as written in `machine.ron`: lengths in millimetres, angles in degrees, from the part to the tool.
+///
+/// Positive coordinates and angles move the tool relative to the part, whichever of them the axis carries: a table's `C` about `(0, 0, 1)` turns
+/// the part clockwise, seen from above, for a positive angle, as ISO 841 has it. Where the part turns the other way, the axis is `(0, 0, -1)`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Machine")]
+pub struct MachineDescription {
+    /// Its name, for messages.
+    pub name: String,
+    /// The rotary axes that carry the part, beginning at the part.
+    #[serde(default)]
+    pub table: Vec<RotaryAxis>,
+    /// The linear axes. Those that are missing move along the coordinate axis of their letter, without limits.
+    #[serde(default)]
+    pub linear: Vec<LinearAxis>,
+    /// The rotary axes that carry the tool, ending at the tool.
+    #[serde(default)]
+    pub head: Vec<RotaryAxis>,
+    /// The zero point of programs in machine coordinates, with all rotary axes at 0: where the work offset (`G54`) is.
+    #[serde(default)]
+    pub part_zero: [f64; 3],
+    /// The length of a tool from the spindle's nose to its tip, unless `tool_lengths` has it.
+    #[serde(default)]
+    pub tool_length: f64,
+    /// The lengths of tools by number.
+    #[serde(default)]
+    pub tool_lengths: BTreeMap<u32, f64>,
+    /// How rapid moves are made.
+    #[serde(default)]
+    pub rapid: Rapid,
+    /// Whether programs are under tip control from the start.
+    #[serde(default)]
+    pub tip_control: bool,
+}
+
+/// A linear axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LinearAxis {
+    /// X, Y or Z.
+    pub letter: char,
+    /// The direction in which positive coordinates move the tool relative to the part; without it that of the letter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub direction: Option<[f64; 3]>,
+    /// The least and the largest coordinate of the spindle's nose, in machine coordinates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<[f64; 2]>,
+    /// The largest speed, in mm/min.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// The largest acceleration, in mm/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<f64>,
+    /// Where it stands at the start, in machine coordinates.
+    #[serde(default)]
+    pub start: f64,
+}
+
+/// A rotary axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RotaryAxis {
+    /// A, B or C.
+    pub letter: char,
+    /// The direction about which positive angles turn the tool relative to the part, right-handed: of any length.
+    pub axis: [f64; 3],
+    /// A point of the axis with all rotary axes at 0. In the table in machine coordinates, in the head from the spindle's nose.
+    #[serde(default)]
+    pub pivot: [f64; 3],
+    /// The least and the largest angle, in degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<[f64; 2]>,
+    /// The largest speed, in degrees per minute.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed: Option<f64>,
+    /// The largest acceleration, in degrees/s².
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<f64>,
+    /// Where it stands at the start, in degrees.
+    #[serde(default)]
+    pub start: f64,
+}
+
+impl LinearAxis {
+    /// The axis of a letter, without limits.
+    #[must_use]
+    pub fn new(letter: char) -> Self {
+        Self {
+            letter,
+            direction: None,
+            limits: None,
+            speed: None,
+            acceleration: None,
+            start: 0.0,
+        }
+    }
+}
+
+impl RotaryAxis {
+    /// An axis through `pivot`, without limits.
+    #[must_use]
+    pub fn new(letter: char, axis: [f64; 3], pivot: [f64; 3]) -> Self {
+        Self {
+            letter,
+            axis,
+            pivot,
+            limits: None,
+            speed: None,
+            acceleration: None,
+            start: 0.0,
+        }
+    }
+
+    /// The same with limits in degrees.
+    #[must_use]
+    pub fn within(self, least: f64, largest: f64) -> Self {
+        Self {
+            limits: Some([least, largest]),
+            ..self
+        }
+    }
+}
+
+/// How rapid moves are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum Rapid {
+    /// All axes arrive together.
+    #[default]
+    Straight,
+    /// Each axis moves at its largest speed, so that they arrive one after the other.
+    DogLeg,
+}
+
+/// A position of all axes, in a program's coordinates: where the tip would be in the part's frame if the rotary axes were at 0, in
+/// millimetres, and the angles of the rotary axes in degrees. Letters that the machine has no axis for are 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Position {
+    /// X, Y, Z.
+    pub xyz: [f64; 3],
+    /// A, B, C.
+    pub abc: [f64; 3],
+}
+
+impl Position {
+    /// A position.
+    #[must_use]
+    pub fn new(xyz: [f64; 3], abc: [f64; 3]) -> Self {
+        Self { xyz, abc }
+    }
+
+    /// The position at `s` from 0 (here) to 1 (there), all axes at constant speed.
+    #[must_use]
+    pub fn towards(&self, other: &Self, s: f64) -> Self {
+        let mix =
+            |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| if s == 1.0 { b[k] } else { a[k] + s * (b[k] - a[k]) });
+        Self {
+            xyz: mix(self.xyz, other.xyz),
+            abc: mix(self.abc, other.abc),
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! From positions of the axes to poses of the tool.
+
+use nalgebra::{Matrix3, Unit, Vector3};
+use sweepsim_motion::{Pose, PoseError};
+
+use super::description::{LinearAxis, MachineDescription, Position, Rapid, RotaryAxis};
+use super::error::MachineError;
+use super::rotaries::{Rotaries, rotation};
+
+/// A machine's chain of axes from the part to the tool.
+///
+/// With all rotary axes at 0, a program's X, Y and Z are the tip in the part's frame. Otherwise the table's axes turn the part about their
+/// pivots, and the head's turn the tool about theirs:
+///
+/// `tip = T₁ T₂ (D (x, y, z) + H₁ H₂ 0)`
+///
+/// where `T` and `H` turn about the pivots of table and head (the latter seen from the tip of a tool of the given length), from the part to
+/// the tool, and `D` has the directions of the linear axes as columns.
+///
+/// ```
+/// use sweepsim_nc::{Kinematics, MachineDescription, Position, RotaryAxis};
+/// // A trunnion: C turns on A, 50 mm below the part's zero.
+/// let mut machine = MachineDescription { name: "trunnion".into(), ..Default::default() };
+/// machine.table.push(RotaryAxis::new('C', [0.0, 0.0, 1.0], [0.0; 3]));
+/// machine.table.push(RotaryAxis::new('A', [1.0, 0.0, 0.0], [0.0, 0.0, -50.0]));
+/// let machine = Kinematics::new(machine)?;
+/// let pose = machine.pose(&Position::new([0.0, 0.0, 0.0], [90.0, 0.0, 0.0]), 0.0)?;
+/// assert_eq!((pose.tip(), pose.axis()), ([0.0, -50.0, -50.0], [0.0, -1.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kinematics {
+    description: MachineDescription,
+    linear: [LinearAxis; 3],
+    /// From the part to the linear axes, and from there to the tool.
+    table: Vec<Joint>,
+    head: Vec<Joint>,
+    rotaries: Rotaries,
+    /// From X, Y, Z to directions in space, and back.
+    directions: Matrix3<f64>,
+    inverse_directions: Matrix3<f64>,
+}
+
+/// A rotary axis, ready for use.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Joint {
+    /// The index of its letter among A, B, C.
+    pub letter: usize,
+    pub axis: Unit<Vector3<f64>>,
+    /// In the table from the program's zero; in the head from the spindle's nose.
+    pub pivot: Vector3<f64>,
+}
+
+impl Joint {
+    /// The turn of a point about a pivot that is `raised` along the tool's axis.
+    pub fn turn(&self, point: Vector3<f64>, abc: [f64; 3], raised: f64) -> Vector3<f64> {
+        let pivot = self.pivot + Vector3::z() * raised;
+        rotation(&self.axis, abc[self.letter]) * (point - pivot) + pivot
+    }
+}
+
+fn check(what: impl Fn() -> String, found: f64, good: bool, expected: &'static str) -> Result<(), MachineError> {
+    if good {
+        return Ok(());
+    }
+    Err(MachineError::Value {
+        what: what(),
+        found: found.to_string(),
+        expected,
+    })
+}
+
+fn direction(what: impl Fn() -> String, vector: [f64; 3]) -> Result<Unit<Vector3<f64>>, MachineError> {
+    let largest = vector
+        .iter()
+        .fold(0.0_f64, |m, c| if c.is_nan() { f64::NAN } else { m.max(c.abs()) });
+    if !(largest > 0.0 && largest.is_finite()) {
+        return Err(MachineError::Value {
+            what: what(),
+            found: format!("({}, {}, {})", vector[0], vector[1], vector[2]),
+            expected: "a direction",
+        });
+    }
+    Ok(Unit::new_normalize(Vector3::from(vector) / largest))
+}
+
+/// The numbers that both kinds of axes have.
+fn check_axis(letter: char, limits: Option<[f64; 2]>, rates: [Option<f64>; 2], start: f64) -> Result<(), MachineError> {
+    if let Some([least, largest]) = limits {
+        let ordered = least < largest && least.is_finite() && largest.is_finite();
+        if !ordered {
+            return Err(MachineError::Value {
+                what: format!("the limits of {letter}"),
+                found: format!("({least}, {largest})"),
+                expected: "two numbers, the lower one first",
+            });
+        }
+    }
+    for (rate, name) in rates.into_iter().zip(["speed", "acceleration"]) {
+        if let Some(rate) = rate {
+            let good = rate > 0.0 && rate.is_finite();
+            check(|| format!("the {name} of {letter}"), rate, good, "a positive number")?;
+        }
+    }
+    check(
+        || format!("the start of {letter}"),
+        start,
+        start.is_finite(),
+        "a number",
+    )
+}
+
+impl Kinematics {
+    /// The chain of a machine.
+    ///
+    /// # Errors
+    /// [`MachineError`]: letters, directions, limits or numbers that make no machine.
+    pub fn new(description: MachineDescription) -> Result<Self, MachineError> {
+        let mut seen: Vec<char> = Vec::new();
+        let mut once = |letter: char| {
+            if seen.contains(&letter) {
+                return Err(MachineError::Twice(letter));
+            }
+            seen.push(letter);
+            Ok(())
+        };
+        let mut linear = ['X', 'Y', 'Z'].map(LinearAxis::new);
+        let mut directions = Matrix3::identity();
+        for axis in &description.linear {
+            let Some(k) = ['X', 'Y', 'Z'].iter().position(|letter| *letter == axis.letter) else {
+                return Err(MachineError::Letter {
+                    letter: axis.letter,
+                    kind: "linear",
+                    expected: "X, Y or Z",
+                });
+            };
+            once(axis.letter)?;
+            check_axis(axis.letter, axis.limits, [axis.speed, axis.acceleration], axis.start)?;
+            if let Some(vector) = axis.direction {
+                let unit = direction(|| format!("the direction of {}", axis.letter), vector)?;
+                directions.set_column(k, &unit);
+            }
+            linear[k] = axis.clone();
+        }
+        let inverse_directions = directions
+            .try_inverse()
+            .filter(|_| directions.determinant().abs() > 1e-6)
+            .ok_or(MachineError::Flat)?;
+        let all = || description.table.iter().chain(&description.head);
+        if all().count() > 2 {
+            return Err(MachineError::TooMany(all().count()));
+        }
+        let mut joint = |axis: &RotaryAxis, zero: Vector3<f64>| {
+            let Some(letter) = ['A', 'B', 'C'].iter().position(|letter| *letter == axis.letter) else {
+                return Err(MachineError::Letter {
+                    letter: axis.letter,
+                    kind: "rotary",
+                    expected: "A, B or C",
+                });
+            };
+            once(axis.letter)?;
+            check_axis(axis.letter, axis.limits, [axis.speed, axis.acceleration], axis.start)?;
+            for coordinate in axis.pivot {
+                let what = || format!("the pivot of {}", axis.letter);
+                check(what, coordinate, coordinate.is_finite(), "three numbers")?;
+            }
+            Ok(Joint {
+                letter,
+                axis: direction(|| format!("the axis of {}", axis.letter), axis.axis)?,
+                pivot: Vector3::from(axis.pivot) - zero,
+            })
+        };
+        for coordinate in description.part_zero {
+            check(
+                || "part_zero".into(),
+                coordinate,
+                coordinate.is_finite(),
+                "three numbers",
+            )?;
+        }
+        let zero = Vector3::from(description.part_zero);
+        let table: Vec<Joint> = description
+            .table
+            .iter()
+            .map(|axis| joint(axis, zero))
+            .collect::<Result<_, _>>()?;
+        let head: Vec<Joint> = description
+            .head
+            .iter()
+            .map(|axis| joint(axis, Vector3::zeros()))
+            .collect::<Result<_, _>>()?;
+        let lengths = description
+            .tool_lengths
+            .iter()
+            .map(|(tool, length)| (format!("the length of tool {tool}"), *length));
+        for (what, length) in lengths.chain([("tool_length".to_owned(), description.tool_length)]) {
+            check(|| what.clone(), length, length.is_finite(), "a number")?;
+        }
+        let joints: Vec<&Joint> = table.iter().chain(&head).collect();
+        if let [first, second] = joints[..] {
+            let letter = |joint: &Joint| ['A', 'B', 'C'][joint.letter];
+            if first.axis.cross(&second.axis).norm() < 1e-6 {
+                return Err(MachineError::Parallel(letter(first), letter(second)));
+            }
+            if second.axis.cross(&Vector3::z()).norm() < 1e-6 {
+                return Err(MachineError::Idle(letter(second)));
+            }
+        }
+        let rotaries = Rotaries::new(joints.iter().map(|joint| (joint.letter, joint.axis)));
+        Ok(Self {
+            description,
+            linear,
+            table,
+            head,
+            rotaries,
+            directions,
+            inverse_directions,
+        })
+    }
+
+    /// What it is made of.
+    #[must_use]
+    pub fn description(&self) -> &MachineDescription {
+        &self.description
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.description.name
+    }
+
+    /// The linear axes X, Y, Z.
+    #[must_use]
+    pub fn linear(&self) -> &[LinearAxis; 3] {
+        &self.linear
+    }
+
+    /// The rotary axes from the part to the tool: those of the table, and those of the head.
+    pub fn rotary(&self) -> impl Iterator<Item = &RotaryAxis> {
+        self.description.table.iter().chain(&self.description.head)
+    }
+
+    /// How rapid moves are made.
+    #[must_use]
+    pub fn rapid(&self) -> Rapid {
+        self.description.rapid
+    }
+
+    /// The length of a tool, in millimetres.
+    #[must_use]
+    pub fn tool_length(&self, tool: Option<u32>) -> f64 {
+        let own = tool.and_then(|tool| self.description.tool_lengths.get(&tool));
+        own.copied().unwrap_or(self.description.tool_length)
+    }
+
+    /// Where the axes stand at the start, for a tool of this length.
+    #[must_use]
+    pub fn start(&self, tool_length: f64) -> Position {
+        let mut abc = [0.0; 3];
+        for axis in self.rotary() {
+            if let Some(k) = ['A', 'B', 'C'].iter().position(|letter| *letter == axis.letter) {
+                abc[k] = axis.start;
+            }
+        }
+        let machine = Vector3::from(self.linear.clone().map(|axis| axis.start));
+        let xyz = machine - self.to_machine(tool_length);
+        Position::new(xyz.into(), abc)
+    }
+
+    /// What machine coordinates of the spindle's nose are more than a program's.
+    pub(super) fn to_machine(&self, tool_length: f64) -> Vector3<f64> {
+        self.inverse_directions * (Vector3::from(self.description.part_zero) + Vector3::z() * tool_length)
+    }
+
+    /// The pose of a tool of this length (mm) at a position of the axes, with the tool's own x.
+    ///
+    /// # Errors
+    /// [`PoseError`] if a number is not finite, or overflows.
+    pub fn pose(&self, at: &Position, tool_length: f64) -> Result<Pose, PoseError> {
+        Pose::new(self.tip(at, tool_length).into(), self.rotaries.axis(at.abc).into())
+    }
+
+    /// The direction from the tip to the holder at angles A, B, C in degrees.
+    #[must_use]
+    pub fn axis(&self, abc: [f64; 3]) -> [f64; 3] {
+        self.rotaries.axis(abc).into()
+    }
+
+    pub(crate) fn rotaries(&self) -> &Rotaries {
+        &self.rotaries
+    }
+
+    pub(crate) fn tip(&self, at: &Position, tool_length: f64) -> Vector3<f64> {
+        let head = self.head_offset(at.abc, tool_length);
+        let point = self.directions * Vector3::from(at.xyz) + head;
+        self.table
+            .iter()
+            .rev()
+            .fold(point, |point, joint| joint.turn(point, at.abc, 0.0))
+    }
+
+    /// Where the head's turns take the tip.
+    fn head_offset(&self, abc: [f64; 3], tool_length: f64) -> Vector3<f64> {
+        self.head
+            .iter()
+            .rev()
+            .fold(Vector3::zeros(), |tip, joint| joint.turn(tip, abc, tool_length))
+    }
+
+    /// X, Y, Z of a tip at given angles.
+    pub(crate) fn linear_at(&self, tip: [f64; 3], abc: [f64; 3], tool_length: f64) -> [f64; 3] {
+        let at_zero = self.table.iter().fold(Vector3::from(tip), |point, joint| {
+            rotation(&joint.axis, abc[joint.letter]).tr_mul(&(point - joint.pivot)) + joint.pivot
+        });
+        (self.inverse_directions * (at_zero - self.head_offset(abc, tool_length))).into()
+    }
+
+    /// The number of chords within `tolerance` of the tip's course while all axes move at constant speed.
+    ///
+    /// The tip is a product of turns and shifts. Going from the tool to the part, a shift adds to its speed, and a turn by `ω` about an axis
+    /// at distance `r` adds `ω r` to it, and `2 ω v + ω² r` to its acceleration, where `r` exceeds that in the middle of the move by at most
+    /// half of the way. A chord of duration `1/n` is within `a/(8 n²)`.
+    pub(crate) fn chords(&self, from: &Position, to: &Position, tool_length: f64, tolerance: f64) -> f64 {
+        let middle = from.towards(to, 0.5);
+        let (mut point, mut speed, mut acceleration) = (Vector3::zeros(), 0.0, 0.0);
+        let mut turn = |point: &mut Vector3<f64>, speed: &mut f64, joint: &Joint, raised: f64| {
+            let rate = (to.abc[joint.letter] - from.abc[joint.letter]).abs().to_radians();
+            let pivot = joint.pivot + Vector3::z() * raised;
+            let distance = joint.axis.cross(&(*point - pivot)).norm() + 0.5 * *speed;
+            acceleration += 2.0 * rate * *speed + rate * rate * distance;
+            *speed += rate * distance;
+            *point = joint.turn(*point, middle.abc, raised);
+        };
+        for joint in self.head.iter().rev() {
+            turn(&mut point, &mut speed, joint, tool_length);
+        }
+        point += self.directions * Vector3::from(middle.xyz);
+        speed += (self.directions * (Vector3::from(to.xyz) - Vector3::from(from.xyz))).norm();
+        for joint in self.table.iter().rev() {
+            turn(&mut point, &mut speed, joint, 0.0);
+        }
+        (acceleration / (8.0 * tolerance)).sqrt().ceil().max(1.0)
+    }
+}

@@ -1,0 +1,136 @@
+//! Machines: their axes, and the meaning of a program's coordinates on them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use sweepsim_motion::{RotaryTable, Turning};
+
+use super::description::MachineDescription;
+use super::error::MachineError;
+use super::kinematics::Kinematics;
+use super::ready;
+
+/// A machine, as far as it is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Machine {
+    /// The rotary axes of the table, if only their directions are known. `None` if there are none, or if they follow from the letters that a
+    /// program uses. Ignored if `kinematics` are given.
+    pub table: Option<RotaryTable>,
+    /// Whether coordinates are those of the tip in the part's frame from the start, without a code in the program (`M428`, `M128`,
+    /// `G43.4`).
+    pub tip_control: bool,
+    /// All axes with their pivots. Without them a program can turn rotary axes only under tip control.
+    pub kinematics: Option<Arc<Kinematics>>,
+}
+
+impl Machine {
+    /// A machine with two rotary axes in its table.
+    #[must_use]
+    pub fn with_table(table: RotaryTable) -> Self {
+        Self {
+            table: Some(table),
+            ..Self::default()
+        }
+    }
+
+    /// Sets whether coordinates are those of the tip from the start.
+    #[must_use]
+    pub fn tip_control(self, on: bool) -> Self {
+        Self {
+            tip_control: on,
+            ..self
+        }
+    }
+
+    /// A machine with all its axes.
+    ///
+    /// # Errors
+    /// [`MachineError`] if the description makes no machine.
+    pub fn new(description: MachineDescription) -> Result<Self, MachineError> {
+        let tip_control = description.tip_control;
+        let kinematics = Kinematics::new(description)?;
+        let table = match kinematics.rotaries().turning([0.0; 3], [0.0; 3]) {
+            Some(Turning::Rotary { table, .. }) if kinematics.rotary().count() == 2 => Some(table),
+            _ => None,
+        };
+        Ok(Self {
+            table,
+            tip_control,
+            kinematics: Some(Arc::new(kinematics)),
+        })
+    }
+
+    /// A ready machine of the commonest kinds: one of [`names`](Self::names).
+    ///
+    /// ```
+    /// use sweepsim_nc::Machine;
+    /// assert!(Machine::named("trunnion-ac").is_some());
+    /// assert!(Machine::names().contains(&"nutating-head-bc"));
+    /// assert_eq!(Machine::named("hexapod"), None);
+    /// ```
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::new(ready::named(name)?).ok()
+    }
+
+    /// The names of the ready machines.
+    #[must_use]
+    pub fn names() -> &'static [&'static str] {
+        &ready::NAMES
+    }
+
+    /// Reads a machine from text in RON: see [`MachineDescription`] and `docs/machines.md`.
+    ///
+    /// # Errors
+    /// [`MachineError`]: the text is not RON, has unknown fields, or makes no machine.
+    ///
+    /// ```
+    /// use sweepsim_nc::Machine;
+    /// let text = r#"Machine(
+    ///     name: "trunnion",
+    ///     table: [
+    ///         (letter: 'C', axis: (0, 0, 1), pivot: (0, 0, -50)),
+    ///         (letter: 'A', axis: (1, 0, 0), pivot: (0, 0, -50), limits: (-30, 120), speed: 7200),
+    ///     ],
+    ///     linear: [(letter: 'X', limits: (-300, 300), speed: 30000)],
+    ///     rapid: DogLeg,
+    /// )"#;
+    /// let machine = Machine::read(text)?;
+    /// assert!(machine.kinematics.is_some());
+    /// let error = Machine::read("Machine(name: \"x\",\n    colour: \"grey\")").unwrap_err();
+    /// assert!(error.to_string().starts_with("2:5: Unexpected field named `colour`"), "{error}");
+    /// # Ok::<(), sweepsim_nc::MachineError>(())
+    /// ```
+    pub fn read(text: &str) -> Result<Self, MachineError> {
+        let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let description = options.from_str(text).map_err(|error| MachineError::Syntax {
+            line: error.span.start.line,
+            column: error.span.start.col,
+            message: error.code.to_string(),
+        })?;
+        Self::new(description)
+    }
+
+    /// Reads a machine from a file, or takes the ready one of this name.
+    ///
+    /// # Errors
+    /// [`MachineError`]: as [`read`](Self::read), or no such file.
+    pub fn read_file(file: &Path) -> Result<Self, MachineError> {
+        if let Some(ready) = file.to_str().and_then(Self::named) {
+            return Ok(ready);
+        }
+        let text = std::fs::read_to_string(file).map_err(|error| MachineError::Read(error.to_string()))?;
+        Self::read(&text)
+    }
+
+    /// The text of `machine.ron`, if all axes are known.
+    #[must_use]
+    pub fn to_ron(&self) -> Option<String> {
+        let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let pretty = ron::ser::PrettyConfig::new().struct_names(true);
+        options
+            .to_string_pretty(self.kinematics.as_ref()?.description(), pretty)
+            .ok()
+    }
+}

@@ -1,0 +1,54 @@
+//! Ready machines: the commonest kinds, without limits that only a maker knows.
+
+use super::description::{MachineDescription, RotaryAxis};
+
+/// The names of the ready machines.
+pub(super) const NAMES: [&str; 12] = [
+    "3-axis",
+    "rotary-a",
+    "rotary-b",
+    "trunnion-ac",
+    "trunnion-bc",
+    "trunnion-ab",
+    "head-bc",
+    "head-ac",
+    "head-b-table-c",
+    "head-a-table-c",
+    "nutating-head-bc",
+    "nutating-table-bc",
+];
+
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+const Y: [f64; 3] = [0.0, 1.0, 0.0];
+const Z: [f64; 3] = [0.0, 0.0, 1.0];
+/// The axis of a nutating head or table: 45° between Y and Z.
+const NUTATING: [f64; 3] = [0.0, 1.0, 1.0];
+/// From the spindle's nose to the pivot of a head, in mm.
+const PIVOT: [f64; 3] = [0.0, 0.0, 150.0];
+
+/// The machine of a name.
+pub(super) fn named(name: &str) -> Option<MachineDescription> {
+    let name = NAMES.iter().find(|known| known.eq_ignore_ascii_case(name))?;
+    let at_zero = |letter, axis| RotaryAxis::new(letter, axis, [0.0; 3]);
+    let in_head = |letter, axis| RotaryAxis::new(letter, axis, PIVOT);
+    let (table, head) = match *name {
+        "rotary-a" => (vec![at_zero('A', X)], vec![]),
+        "rotary-b" => (vec![at_zero('B', Y)], vec![]),
+        "trunnion-ac" => (vec![at_zero('C', Z), at_zero('A', X).within(-120.0, 120.0)], vec![]),
+        "trunnion-bc" => (vec![at_zero('C', Z), at_zero('B', Y).within(-120.0, 120.0)], vec![]),
+        "trunnion-ab" => (vec![at_zero('B', Y), at_zero('A', X).within(-120.0, 120.0)], vec![]),
+        "head-bc" => (vec![], vec![in_head('C', Z), in_head('B', Y).within(-120.0, 120.0)]),
+        "head-ac" => (vec![], vec![in_head('C', Z), in_head('A', X).within(-120.0, 120.0)]),
+        "head-b-table-c" => (vec![at_zero('C', Z)], vec![in_head('B', Y).within(-120.0, 120.0)]),
+        "head-a-table-c" => (vec![at_zero('C', Z)], vec![in_head('A', X).within(-120.0, 120.0)]),
+        "nutating-head-bc" => (vec![], vec![in_head('C', Z), in_head('B', NUTATING)]),
+        "nutating-table-bc" => (vec![at_zero('C', Z), at_zero('B', NUTATING)], vec![]),
+        _ => (vec![], vec![]),
+    };
+    Some(MachineDescription {
+        name: (*name).to_owned(),
+        table,
+        head,
+        ..MachineDescription::default()
+    })
+}
