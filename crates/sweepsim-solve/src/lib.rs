@@ -35,7 +35,7 @@ pub use numbers::{CUT, Enclosure, EnclosureError, MAX_UNKNOWNS};
 pub use points::{PointSolver, Points, Root, RootLocation};
 pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOptions, SolveStatistics, UnresolvedBox};
 pub use surfaces::{Surface, SurfaceSolver};
-pub use systems::{Equation, Expression, MAX_FORMS, MAX_SYSTEM, Pieces, PiecesError, System, SystemError};
+pub use systems::{Equation, Expression, MAX_STEPS, MAX_SYSTEM, Pieces, PiecesError, System, SystemError};
 
 /// The forms and splines that systems are made of, from `sweepsim-spline`.
 pub use sweepsim_spline::{

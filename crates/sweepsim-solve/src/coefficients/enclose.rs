@@ -1,7 +1,8 @@
 //! What a cell's coefficients tell about its equations: ranges, affine enclosures, derivatives, values.
 
 use super::layout::{Affine, Cell, Layout, MAX_DEGREE, Slopes};
-use super::models::{AffineForm, Doubt, Jet, Range, Value};
+use super::models::{AffineForm, Doubt, Jet, Value};
+use super::range::Range;
 use super::summand::{evaluate_part, hull_zeros, rest_range};
 use super::tape::{Model, Tape};
 use super::tensor;
@@ -10,8 +11,20 @@ use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO};
 impl Layout {
     /// Enclosures of the equations' values; also brings the cell's `scale` up to date.
     pub(crate) fn ranges(&self, cell: &mut Cell) -> (Row, Row) {
+        if let Some(tape) = &self.tape {
+            let (mut lo, mut hi) = (vec![0.0; tape.leaves], vec![0.0; tape.leaves]);
+            self.row_ranges(cell, &mut lo, &mut hi);
+            return self.combined_ranges(tape, cell, &lo, &hi);
+        }
         let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
-        cell.scale = [0.0; MAX_UNKNOWNS];
+        self.row_ranges(cell, &mut lo, &mut hi);
+        (lo, hi)
+    }
+
+    /// The rows' ranges.
+    #[inline(always)]
+    fn row_ranges(&self, cell: &mut Cell, lo: &mut [f64], hi: &mut [f64]) {
+        cell.scale.clear();
         for part in &self.parts {
             let (l, h) = tensor::range(part.of(&cell.c));
             let e = part.equation;
@@ -25,21 +38,23 @@ impl Layout {
             lo[e] -= pad;
             hi[e] += pad;
         }
-        match &self.tape {
-            Some(tape) => self.combined_ranges(tape, cell, &(lo, hi)),
-            None => (lo, hi),
-        }
     }
 
     /// The equations' ranges by those of their leaves, and by their affine enclosures.
-    fn combined_ranges(&self, tape: &Tape, cell: &Cell, rows: &(Row, Row)) -> (Row, Row) {
+    fn combined_ranges(&self, tape: &Tape, cell: &Cell, low: &[f64], high: &[f64]) -> (Row, Row) {
         let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
         let affine = self.affine(cell, ZERO);
         for e in 0..self.m {
             let range = tape.run(e, |row| Range {
-                lo: rows.0[row],
-                hi: rows.1[row],
+                lo: low[row],
+                hi: high[row],
             });
+            if range.divided() && range.misses_zero() {
+                // No solution near the pole, or none where a function is not defined.
+                (lo[e], hi[e]) = (f64::INFINITY, f64::INFINITY);
+                continue;
+            }
+            let range = range.interval();
             let slopes: f64 = affine.slope[e].iter().map(|s| s.abs()).sum();
             let size = affine.constant[e].abs() + slopes;
             let reach = (0.5 * slopes + affine.radius[e]) * (1.0 + 16.0 * EPSILON) + 4.0 * EPSILON * size;
@@ -51,9 +66,14 @@ impl Layout {
 
     /// The mean of each derivative over the cell (not rigorous; its users bound the rest).
     pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
-        let rows = self.mean_row_slopes(c);
-        let Some(tape) = &self.tape else { return rows };
-        let mut means = [0.0; MAX_UNKNOWNS];
+        let Some(tape) = &self.tape else {
+            let mut slope = ZERO;
+            self.mean_row_slopes(c, &mut slope);
+            return slope;
+        };
+        let mut rows = vec![[0.0; MAX_UNKNOWNS]; tape.leaves];
+        self.mean_row_slopes(c, &mut rows);
+        let mut means = vec![0.0; tape.leaves];
         for part in &self.parts {
             let values = part.of(c);
             means[part.equation] += values.iter().sum::<f64>() / values.len() as f64;
@@ -69,47 +89,66 @@ impl Layout {
         slope
     }
 
-    fn mean_row_slopes(&self, c: &[f64]) -> Square {
-        let mut slope = ZERO;
+    #[inline(always)]
+    fn mean_row_slopes(&self, c: &[f64], slope: &mut [Row]) {
         for part in &self.parts {
             let values = part.of(c);
             for axis in &part.axes {
                 slope[part.equation][axis.variable] = tensor::mean_slope(values, axis.degree, axis.inner);
             }
         }
-        slope
     }
 
     /// An affine enclosure of each equation, with the given slopes unless equations are combined from leaves.
     pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
-        let Some(tape) = &self.tape else {
-            return self.affine_rows(cell, slope);
-        };
-        let rows = self.affine_rows(cell, self.mean_row_slopes(&cell.c));
         let mut affine = Affine {
             constant: [0.0; MAX_UNKNOWNS],
-            slope: ZERO,
+            slope,
             radius: [0.0; MAX_UNKNOWNS],
         };
+        let Some(tape) = &self.tape else {
+            let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+            self.affine_rows(
+                cell,
+                &affine.slope,
+                [&mut lo, &mut hi],
+                &mut affine.constant,
+                &mut affine.radius,
+            );
+            return affine;
+        };
+        let leaves = tape.leaves;
+        let mut slopes = vec![[0.0; MAX_UNKNOWNS]; leaves];
+        self.mean_row_slopes(&cell.c, &mut slopes);
+        let (mut constant, mut radius) = (vec![0.0; leaves], vec![0.0; leaves]);
+        let (mut lo, mut hi) = (vec![0.0; leaves], vec![0.0; leaves]);
+        self.affine_rows(cell, &slopes, [&mut lo, &mut hi], &mut constant, &mut radius);
         for e in 0..self.m {
             let form = tape.run(e, |r| AffineForm {
-                constant: rows.constant[r],
-                slope: rows.slope[r],
-                radius: rows.radius[r],
+                constant: constant[r],
+                slope: slopes[r],
+                radius: radius[r],
             });
             (affine.constant[e], affine.slope[e], affine.radius[e]) = (form.constant, form.slope, form.radius);
         }
         affine
     }
 
-    fn affine_rows(&self, cell: &Cell, slope: Square) -> Affine {
-        let (mut lo, mut hi) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
+    /// Affine enclosures of rows with these slopes; `lo` and `hi` are working memory, zero at first.
+    #[inline(always)]
+    fn affine_rows(
+        &self,
+        cell: &Cell,
+        slope: &[Row],
+        [lo, hi]: [&mut [f64]; 2],
+        constant: &mut [f64],
+        radius: &mut [f64],
+    ) {
         for part in &self.parts {
             let (l, h) = rest_range(part, part.of(&cell.c), &slope[part.equation]);
             lo[part.equation] += l;
             hi[part.equation] += h;
         }
-        let (mut constant, mut radius) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
         for e in 0..self.rows() {
             let slopes: f64 = slope[e][..self.n].iter().map(|s| s.abs()).sum();
             // Slopes' shares round, their sum does, and the difference.
@@ -117,16 +156,36 @@ impl Layout {
             constant[e] = 0.5 * (lo[e] + hi[e]);
             radius[e] = 0.5 * (hi[e] - lo[e]) + rounding + cell.noise[e] + self.remainder[e];
         }
-        Affine {
-            constant,
-            slope,
-            radius,
-        }
     }
 
     /// Enclosures of all derivatives over the cell.
     pub(crate) fn slopes(&self, cell: &Cell) -> Slopes {
         let (mut lo, mut hi) = (ZERO, ZERO);
+        let Some(tape) = &self.tape else {
+            self.row_slopes(cell, &mut lo, &mut hi);
+            return Slopes { lo, hi };
+        };
+        let zero = [0.0; MAX_UNKNOWNS];
+        let (mut low, mut high) = (vec![zero; tape.leaves], vec![zero; tape.leaves]);
+        self.row_slopes(cell, &mut low, &mut high);
+        for e in 0..self.m {
+            let jet = tape.run(e, |r| Jet {
+                value: self.row_range(cell, r),
+                slopes: std::array::from_fn(|j| Range {
+                    lo: low[r][j],
+                    hi: high[r][j],
+                }),
+            });
+            for j in 0..self.n {
+                (lo[e][j], hi[e][j]) = (jet.slopes[j].lo, jet.slopes[j].hi);
+            }
+        }
+        Slopes { lo, hi }
+    }
+
+    /// Enclosures of the rows' derivatives.
+    #[inline(always)]
+    fn row_slopes(&self, cell: &Cell, lo: &mut [Row], hi: &mut [Row]) {
         for part in &self.parts {
             let values = part.of(&cell.c);
             let e = part.equation;
@@ -146,23 +205,6 @@ impl Layout {
                 }
             }
         }
-        let Some(tape) = &self.tape else {
-            return Slopes { lo, hi };
-        };
-        let rows = Slopes { lo, hi };
-        for e in 0..self.m {
-            let jet = tape.run(e, |r| Jet {
-                value: self.row_range(cell, r),
-                slopes: std::array::from_fn(|j| Range {
-                    lo: rows.lo[r][j],
-                    hi: rows.hi[r][j],
-                }),
-            });
-            for j in 0..self.n {
-                (lo[e][j], hi[e][j]) = (jet.slopes[j].lo, jet.slopes[j].hi);
-            }
-        }
-        Slopes { lo, hi }
     }
 
     /// The range of one row.
@@ -186,17 +228,12 @@ impl Layout {
     pub(crate) fn evaluate(&self, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (Row, Square) {
         let mut value = [0.0; MAX_UNKNOWNS];
         let mut jacobian = ZERO;
-        for part in &self.parts {
-            let (v, gradient) = evaluate_part(part, part.of(c), s, buffer);
-            value[part.equation] += v;
-            for (axis, g) in part.axes.iter().zip(gradient) {
-                jacobian[part.equation][axis.variable] += g;
-            }
-        }
         let Some(tape) = &self.tape else {
+            self.evaluate_rows(c, s, buffer, &mut value, &mut jacobian);
             return (value, jacobian);
         };
-        let (rows, slopes) = (value, jacobian);
+        let (mut rows, mut slopes) = (vec![0.0; tape.leaves], vec![[0.0; MAX_UNKNOWNS]; tape.leaves]);
+        self.evaluate_rows(c, s, buffer, &mut rows, &mut slopes);
         for e in 0..self.m {
             let leaf = |r: usize| Value {
                 value: rows[r],
@@ -206,6 +243,17 @@ impl Layout {
             (value[e], jacobian[e]) = (whole.value, whole.gradient);
         }
         (value, jacobian)
+    }
+
+    #[inline(always)]
+    fn evaluate_rows(&self, c: &[f64], s: &Row, buffer: &mut Vec<f64>, value: &mut [f64], jacobian: &mut [Row]) {
+        for part in &self.parts {
+            let (v, gradient) = evaluate_part(part, part.of(c), s, buffer);
+            value[part.equation] += v;
+            for (axis, g) in part.axes.iter().zip(gradient) {
+                jacobian[part.equation][axis.variable] += g;
+            }
+        }
     }
 
     /// A bound on the error of the values of [`evaluate`](Self::evaluate), for `s` in `[0,1]ⁿ`.

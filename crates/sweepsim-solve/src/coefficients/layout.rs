@@ -8,10 +8,10 @@
 //! derivative then errs by at most `2 d · noise`. The *remainder* bounds the difference of the polynomial from the function that it
 //! represents, and of their derivatives; it does not change under subdivision (but derivatives scale).
 
-use super::models::Range;
+use super::range::Range;
 use super::tape::Tape;
 use super::tensor;
-use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList, Square};
 use smallvec::SmallVec;
 
 /// The highest degree in one variable.
@@ -62,16 +62,16 @@ pub(crate) struct Layout {
     /// The total number of coefficients.
     pub len: usize,
     /// Value remainder of each equation.
-    pub remainder: Row,
+    pub remainder: RowList,
     /// Remainder of each equation's derivatives with respect to coordinates in which the domain is `[0,1]ⁿ`.
-    pub slope_remainder: Row,
+    pub slope_remainder: RowList,
     /// Largest degree sum of an equation: for the rounding of values.
     pub degrees: usize,
     /// The original coefficients, and their noise.
     pub first: Vec<f64>,
-    pub first_noise: Row,
+    pub first_noise: RowList,
     /// The factor by which each equation was multiplied: a power of two.
-    pub factor: Row,
+    pub factor: RowList,
     /// How rows are combined into equations; `None` if each row is an equation.
     pub tape: Option<Tape>,
 }
@@ -83,9 +83,9 @@ pub(crate) struct Cell {
     pub lo: Row,
     pub hi: Row,
     /// Error of each equation's coefficients.
-    pub noise: Row,
+    pub noise: RowList,
     /// Bound of their sizes.
-    pub scale: Row,
+    pub scale: RowList,
     pub c: Vec<f64>,
 }
 
@@ -110,13 +110,21 @@ impl Layout {
         self.tape.as_ref().map_or(self.m, |p| p.leaves)
     }
 
+    /// Makes room for so many rows.
+    pub(crate) fn make_room(&mut self, rows: usize) {
+        self.remainder.resize(rows);
+        self.slope_remainder.resize(rows);
+        self.first_noise.resize(rows);
+        self.factor.resize(rows);
+    }
+
     /// A cell with the original coefficients.
     pub(crate) fn root(&self) -> Cell {
         let mut cell = Cell {
             lo: [0.0; MAX_UNKNOWNS],
             hi: [1.0; MAX_UNKNOWNS],
-            noise: self.first_noise,
-            scale: [0.0; MAX_UNKNOWNS],
+            noise: self.first_noise.clone(),
+            scale: RowList::filled(0.0, self.rows()),
             c: self.first.clone(),
         };
         self.ranges(&mut cell);
@@ -138,7 +146,11 @@ impl Layout {
     pub(crate) fn vanishes(&self, cell: &Cell, totals: &(Row, Row), equation: usize) -> bool {
         let size = totals.0[equation].abs().max(totals.1[equation].abs());
         match self.tape {
-            Some(_) => size.is_finite() && size <= 2.5 * self.value_error(cell, equation),
+            Some(_) => {
+                let error = self.value_error(cell, equation);
+                // Without a bound, nothing is known.
+                error.is_finite() && size <= 2.5 * error
+            }
             None => {
                 let error = cell.noise[equation] + self.remainder[equation];
                 size <= 2.5 * error + 64.0 * EPSILON * cell.scale[equation]

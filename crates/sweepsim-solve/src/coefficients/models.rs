@@ -1,74 +1,9 @@
-//! Models of a function over a cell, with their arithmetic: ranges, derivatives, affine forms, values, errors.
+//! Models of a function over a cell, with their arithmetic: derivatives, affine forms, values, errors.
 
+use super::functions::Function;
+use super::range::Range;
 use super::tape::Model;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
-
-/// An enclosure of values.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Range {
-    pub lo: f64,
-    pub hi: f64,
-}
-
-impl Range {
-    pub(crate) const WHOLE: Self = Self {
-        lo: f64::NEG_INFINITY,
-        hi: f64::INFINITY,
-    };
-
-    /// Rounded outwards by two units in the last place of either end.
-    fn outward(lo: f64, hi: f64) -> Self {
-        if !(lo.is_finite() && hi.is_finite()) {
-            return Self::WHOLE;
-        }
-        Self {
-            lo: lo - 2.0 * EPSILON * lo.abs() - f64::MIN_POSITIVE,
-            hi: hi + 2.0 * EPSILON * hi.abs() + f64::MIN_POSITIVE,
-        }
-    }
-
-    pub(crate) fn magnitude(self) -> f64 {
-        self.lo.abs().max(self.hi.abs())
-    }
-
-    /// The smallest absolute value; 0 if it may vanish.
-    fn least(self) -> f64 {
-        self.lo.max(-self.hi).max(0.0)
-    }
-}
-
-impl Model for Range {
-    fn constant(value: f64) -> Self {
-        Self { lo: value, hi: value }
-    }
-
-    fn add(self, other: Self) -> Self {
-        Self::outward(self.lo + other.lo, self.hi + other.hi)
-    }
-
-    fn multiply(self, other: Self) -> Self {
-        let ends = [
-            self.lo * other.lo,
-            self.lo * other.hi,
-            self.hi * other.lo,
-            self.hi * other.hi,
-        ];
-        if ends.iter().any(|x| !x.is_finite()) {
-            return Self::WHOLE;
-        }
-        let lo = ends.iter().fold(f64::INFINITY, |m, x| m.min(*x));
-        let hi = ends.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x));
-        Self::outward(lo, hi)
-    }
-
-    fn divide(self, other: Self) -> Self {
-        let positive = other.least() > 0.0;
-        if !positive {
-            return Self::WHOLE;
-        }
-        self.multiply(Self::outward(1.0 / other.hi, 1.0 / other.lo))
-    }
-}
 
 /// A range with those of all derivatives.
 #[derive(Clone, Copy, Debug)]
@@ -95,7 +30,7 @@ impl Model for Jet {
 
     fn multiply(mut self, other: Self) -> Self {
         for (a, b) in self.slopes.iter_mut().zip(other.slopes) {
-            *a = a.multiply(other.value).add(b.multiply(self.value));
+            *a = a.multiply(other.value).add(b.multiply(self.value)).interval();
         }
         self.value = self.value.multiply(other.value);
         self
@@ -106,8 +41,17 @@ impl Model for Jet {
         self.value = self.value.divide(other.value);
         let minus = self.value.multiply(Range::constant(-1.0));
         for (a, b) in self.slopes.iter_mut().zip(other.slopes) {
-            *a = a.add(b.multiply(minus)).divide(other.value);
+            *a = a.add(b.multiply(minus)).divide(other.value).interval();
         }
+        self
+    }
+
+    fn apply(mut self, function: Function) -> Self {
+        let slope = function.slope(self.value);
+        for a in &mut self.slopes {
+            *a = a.multiply(slope).interval();
+        }
+        self.value = function.range(self.value);
         self
     }
 }
@@ -122,7 +66,7 @@ pub(crate) struct AffineForm {
 
 impl AffineForm {
     /// How far the affine part deviates from its constant, rounded up.
-    fn reach(&self) -> f64 {
+    pub(super) fn reach(&self) -> f64 {
         0.5 * self.slope.iter().map(|s| s.abs()).sum::<f64>() * (1.0 + 16.0 * EPSILON)
     }
 
@@ -194,6 +138,41 @@ impl Model for AffineForm {
         // The secant's parts are at most 2/p; the rounding of √ counts in their difference.
         self.multiply(inverse.rounded(4.0 / p))
     }
+
+    /// Taylor's formula about the middle `m` of the argument's range, `h` being half its width: `f(x) − f(m) − α (x − m)` lies between the least and the
+    /// greatest value of `f''/2 · (x − m)²`, `α` being close to `f'(m)`. If `f` bends too much for that, its range alone.
+    fn apply(self, function: Function) -> Self {
+        let reach = (self.reach() + self.radius) * (1.0 + 8.0 * EPSILON) + f64::MIN_POSITIVE;
+        let argument = Range::outward(self.constant - reach, self.constant + reach);
+        if argument == Range::WHOLE {
+            return Self::UNKNOWN;
+        }
+        let values = function.range(argument);
+        let mut plain = Self::constant(0.5 * (values.lo + values.hi));
+        plain.radius = 0.5 * (values.hi - values.lo);
+        let plain = if values.divided() {
+            Self::UNKNOWN
+        } else {
+            plain.rounded(values.magnitude())
+        };
+        let value = function.at(self.constant);
+        let slope = function.derivative(self.constant, function.value(self.constant));
+        // The computed slope may differ from the derivative, by a little.
+        let error = function
+            .slope(Range::constant(self.constant))
+            .add(Range::constant(-slope));
+        let curvature = function.curvature(argument);
+        let half = 0.5 * reach * reach * (1.0 + 8.0 * EPSILON);
+        let (low, high) = (curvature.lo.min(0.0) * half, curvature.hi.max(0.0) * half);
+        let mut bent = Self::constant(0.5 * (value.lo + value.hi) + 0.5 * (low + high));
+        for (a, b) in bent.slope.iter_mut().zip(self.slope) {
+            *a = slope * b;
+        }
+        bent.radius =
+            0.5 * (high - low) + 0.5 * (value.hi - value.lo) + slope.abs() * self.radius + error.magnitude() * reach;
+        let bent = bent.rounded(value.magnitude() + slope.abs() * reach + low.abs() + high.abs());
+        if bent.radius < plain.radius { bent } else { plain }
+    }
 }
 
 /// A value with its gradient, without bounds.
@@ -232,6 +211,16 @@ impl Model for Value {
         for (a, b) in self.gradient.iter_mut().zip(other.gradient) {
             *a = (*a - self.value * b) / other.value;
         }
+        self
+    }
+
+    fn apply(mut self, function: Function) -> Self {
+        let value = function.value(self.value);
+        let slope = function.derivative(self.value, value);
+        for a in &mut self.gradient {
+            *a *= slope;
+        }
+        self.value = value;
         self
     }
 }
@@ -290,105 +279,25 @@ impl Model for Doubt {
             },
         }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// SplitMix64, to numbers in −1 … 1.
-    fn numbers(mut state: u64) -> impl FnMut() -> f64 {
-        move || {
-            state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-        }
-    }
-
-    fn operate<M: Model>(operation: usize, a: M, b: M) -> M {
-        match operation {
-            0 => a.add(b),
-            1 => a.multiply(b),
-            _ => a.divide(b),
-        }
-    }
-
-    #[test]
-    fn models_enclose_what_they_stand_for() {
-        let mut next = numbers(1);
-        let mut bounded = 0;
-        for case in 0..3_000 {
-            let mut form = || {
-                let mut slope = [0.0; MAX_UNKNOWNS];
-                slope[0] = next();
-                slope[1] = 0.3 * next();
-                AffineForm {
-                    constant: 3.0 * next(),
-                    slope,
-                    radius: 0.1 * next().abs(),
-                }
-            };
-            let forms = [form(), form()];
-            let operation = case % 3;
-            let result = operate(operation, forms[0], forms[1]);
-            if !result.radius.is_finite() {
-                assert_eq!(operation, 2);
-                continue;
-            }
-            bounded += 1;
-            let ranges = forms.map(|f| {
-                let reach = f.reach() + f.radius;
-                Range::outward(f.constant - reach, f.constant + reach)
-            });
-            let range = operate(operation, ranges[0], ranges[1]);
-            for _ in 0..20 {
-                let z = [0.5 * next(), 0.5 * next()];
-                let mut at = |f: &AffineForm| f.constant + f.slope[0] * z[0] + f.slope[1] * z[1] + f.radius * next();
-                let (a, b) = (at(&forms[0]), at(&forms[1]));
-                let truth = [a + b, a * b, a / b][operation];
-                let middle = result.constant + result.slope[0] * z[0] + result.slope[1] * z[1];
-                assert!((truth - middle).abs() <= result.radius, "{case}: {forms:?} {a} {b}");
-                assert!(range.lo <= truth && truth <= range.hi, "{case}");
-            }
-        }
-        assert!(bounded > 2_000, "{bounded}");
-    }
-
-    #[test]
-    fn a_quotient_with_a_divisor_that_may_vanish_is_unbounded() {
-        let one = AffineForm::constant(1.0);
-        let mut through = AffineForm::constant(0.2);
-        through.slope[0] = 1.0;
-        assert!(one.divide(through).radius.is_infinite());
-        let range = Range::constant(1.0).divide(Range { lo: -0.3, hi: 0.7 });
-        assert!(range.lo == f64::NEG_INFINITY && range.hi == f64::INFINITY);
-        let doubt = Doubt {
-            range: Range { lo: 0.1, hi: 0.2 },
-            error: 0.2,
+    /// The mean value theorem between the argument and the computed one, and the rounding of the function.
+    fn apply(self, function: Function) -> Self {
+        let range = function.range(self.range);
+        let reached = self.range.add(Range {
+            lo: -self.error,
+            hi: self.error,
+        });
+        let error = function.slope(reached).magnitude() * self.error;
+        let size = range.magnitude() + error;
+        // Powers round once for each factor.
+        let roundings = match function {
+            Function::Power(exponent) => f64::from(exponent).max(8.0),
+            _ => 8.0,
         };
-        assert!(Doubt::constant(1.0).divide(doubt).error.is_infinite());
-    }
-
-    #[test]
-    fn derivatives_follow_the_rules() {
-        let jet = |value: f64, slope: f64| {
-            let mut jet = Jet::constant(value);
-            jet.slopes[0] = Range::constant(slope);
-            jet
-        };
-        let point = |value: f64, slope: f64| {
-            let mut point = Value::constant(value);
-            point.gradient[0] = slope;
-            point
-        };
-        // f = 3, f' = 2, g = −4, g' = 5: (fg)' = 15 − 8, (f/g)' = (2·(−4) − 3·5)/16.
-        for (operation, slope) in [(0, 7.0), (1, 7.0), (2, -23.0 / 16.0)] {
-            let found = operate(operation, jet(3.0, 2.0), jet(-4.0, 5.0)).slopes[0];
-            assert!(found.lo <= slope && slope <= found.hi && found.hi - found.lo < 1e-13);
-            let value = operate(operation, point(3.0, 2.0), point(-4.0, 5.0));
-            assert!((value.gradient[0] - slope).abs() < 1e-14);
+        let error = error * (1.0 + 4.0 * EPSILON) + roundings * EPSILON * size + f64::MIN_POSITIVE;
+        Self {
+            range,
+            error: if error.is_finite() { error } else { f64::INFINITY },
         }
     }
 }

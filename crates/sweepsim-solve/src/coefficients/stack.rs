@@ -15,8 +15,8 @@ pub(crate) fn push(stack: &mut Vec<f64>, cell: &Cell, layout: &Layout) {
     let (n, m) = (layout.n, layout.rows());
     stack.extend_from_slice(&cell.lo[..n]);
     stack.extend_from_slice(&cell.hi[..n]);
-    stack.extend_from_slice(&cell.noise[..m]);
-    stack.extend_from_slice(&cell.scale[..m]);
+    cell.noise.push_to(stack, m);
+    cell.scale.push_to(stack, m);
     stack.extend_from_slice(&cell.c);
 }
 
@@ -27,8 +27,8 @@ pub(crate) fn pop(stack: &mut Vec<f64>, cell: &mut Cell, layout: &Layout) {
     let record = &stack[start..];
     cell.lo[..n].copy_from_slice(&record[..n]);
     cell.hi[..n].copy_from_slice(&record[n..2 * n]);
-    cell.noise[..m].copy_from_slice(&record[2 * n..2 * n + m]);
-    cell.scale[..m].copy_from_slice(&record[2 * n + m..2 * n + 2 * m]);
+    cell.noise.copy_from(&record[2 * n..2 * n + m]);
+    cell.scale.copy_from(&record[2 * n + m..2 * n + 2 * m]);
     cell.c.clear();
     cell.c.extend_from_slice(&record[2 * n + 2 * m..]);
     stack.truncate(start);

@@ -3,7 +3,7 @@
 use super::layout::{Axis, Cell, Layout, Summand};
 use super::tensor;
 use crate::numbers::double::{self, Double};
-use crate::numbers::{EPSILON, MAX_UNKNOWNS};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, RowList};
 use smallvec::SmallVec;
 use sweepsim_spline::kernel;
 
@@ -31,7 +31,7 @@ impl Layout {
         let growth_upper = if cut_upper { upper.0.abs() + upper.1.abs() } else { 1.0 };
         let growth_lower = if cut_lower { lower.0.abs() + lower.1.abs() } else { 1.0 };
         let passes = f64::from(u8::from(cut_upper) + u8::from(cut_lower));
-        let mut grown = [1.0; MAX_UNKNOWNS];
+        let mut grown = RowList::filled(1.0, self.rows());
         for part in &self.parts {
             let Some(axis) = part.axis(variable) else { continue };
             let c = part.of_mut(&mut cell.c);
@@ -80,7 +80,9 @@ impl Layout {
                 None => low.copy_from_slice(c),
             }
         }
-        (lower.lo, lower.hi, lower.noise, lower.scale) = (cell.lo, cell.hi, cell.noise, cell.scale);
+        (lower.lo, lower.hi) = (cell.lo, cell.hi);
+        lower.noise.clone_from(&cell.noise);
+        lower.scale.clone_from(&cell.scale);
         lower.hi[variable] = at;
         cell.lo[variable] = at;
     }
@@ -90,7 +92,7 @@ impl Layout {
     ///
     /// Parts of one equation may be large where their sum is small: constants move to the first part, so that the rounded numbers are small.
     pub(crate) fn refresh(&self, cell: &mut Cell, buffer: &mut Vec<Double>) {
-        let mut carried = [Double::default(); MAX_UNKNOWNS];
+        let mut carried: SmallVec<[Double; MAX_UNKNOWNS]> = SmallVec::from_elem(Double::default(), self.rows());
         // Last parts first: the first part of each equation absorbs the constants of the others.
         for (number, part) in self.parts.iter().enumerate().rev() {
             let e = part.equation;
@@ -122,7 +124,11 @@ impl Layout {
         } else {
             1.0
         };
-        cell.noise = self.first_noise.map(|e| e * growth);
+        cell.noise.resize(self.rows());
+        cell.scale.resize(self.rows());
+        for e in 0..self.rows() {
+            cell.noise[e] = self.first_noise[e] * growth;
+        }
         self.ranges(cell);
         for part in &self.parts {
             let e = part.equation;
@@ -144,7 +150,8 @@ impl Layout {
             tape: self.tape.clone(),
             ..Layout::default()
         };
-        let mut factor = [1.0; MAX_UNKNOWNS];
+        let mut factor = RowList::filled(1.0, self.rows());
+        face.make_room(self.rows());
         for e in 0..self.rows() {
             if cell.scale[e] > 0.0 {
                 factor[e] = 2f64.powi(-(cell.scale[e].log2().floor().clamp(-900.0, 900.0) as i32));

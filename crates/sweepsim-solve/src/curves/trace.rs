@@ -157,7 +157,9 @@ impl<'a> Tracer<'a> {
             let mut windows = [(0.0, 0.0); MAX_UNKNOWNS];
             for (place, j) in (0..n).filter(|j| *j != over).enumerate() {
                 let side = part.hi[j] - part.lo[j];
-                let error = 2.0 * (half[place] - noise[place]).max(0.0) * side * self.system.domain_width(j);
+                // In tolerances, since the square of a short distance may be too small a number.
+                let scale = side * (self.system.domain_width(j) / self.tolerance);
+                let error = 2.0 * (half[place] - noise[place]).max(0.0) * scale;
                 square += error * error;
                 let reach = 0.5 * slope[place].abs() + half[place];
                 let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
@@ -165,9 +167,8 @@ impl<'a> Tracer<'a> {
                 windows[j] = (lo, hi);
                 shrunk |= hi - lo < 0.8 * side;
             }
-            let distance = f64::sqrt(square);
-            if distance <= self.tolerance || !shrunk {
-                return distance <= self.tolerance;
+            if square <= 1.0 || !shrunk {
+                return square <= 1.0;
             }
             for j in (0..n).filter(|j| *j != over) {
                 let (lo, hi) = windows[j];
@@ -176,7 +177,7 @@ impl<'a> Tracer<'a> {
                     layout.restrict(part, j, lo, hi);
                 }
             }
-            if distance > HOPELESS * self.tolerance {
+            if square > HOPELESS * HOPELESS {
                 return false;
             }
         }
@@ -227,22 +228,25 @@ impl<'a> Tracer<'a> {
             s[j] = (point[j] - cell.lo[j]) / (cell.hi[j] - cell.lo[j]);
         }
         let (_, mut jacobian) = layout.evaluate(&cell.c, &s, &mut self.buffer);
-        // Columns with respect to the domain's units, rows of length one: any scale gives the same direction.
+        // Rows of length one: any scale gives the same direction.
         for row in jacobian.iter_mut().take(m) {
-            for j in 0..n {
-                row[j] /= (cell.hi[j] - cell.lo[j]) * self.system.domain_width(j);
-            }
             let length = row[..n].iter().fold(0.0, |l: f64, x| l.max(x.abs()));
             row.iter_mut().for_each(|x| *x /= length);
         }
         let mut tangent = [0.0; MAX_UNKNOWNS];
-        let mut square = 0.0;
+        let mut largest: f64 = 0.0;
         for j in 0..n {
             let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
-            tangent[j] = sign * minor(&jacobian, j, m);
-            square += tangent[j] * tangent[j];
+            // In the domain's units. Only at the end, since the product of all units may be too large or too small a number.
+            tangent[j] = sign * minor(&jacobian, j, m) * (cell.hi[j] - cell.lo[j]);
+            largest = largest.max(tangent[j].abs() * self.system.domain_width(j));
         }
         let forward = if tangent[graph.over] < 0.0 { -1.0 } else { 1.0 };
+        let mut square = 0.0;
+        for j in 0..n {
+            tangent[j] *= self.system.domain_width(j) / largest;
+            square += tangent[j] * tangent[j];
+        }
         let factor = forward / f64::sqrt(square);
         tangent.iter_mut().for_each(|x| *x *= factor);
         Vertex { point: *point, tangent }

@@ -216,7 +216,9 @@ impl PointSolver {
         let trial = &mut self.trial;
         trial.c.clear();
         trial.c.extend_from_slice(&cell.c);
-        (trial.lo, trial.hi, trial.noise, trial.scale) = (cell.lo, cell.hi, cell.noise, cell.scale);
+        (trial.lo, trial.hi) = (cell.lo, cell.hi);
+        trial.noise.clone_from(&cell.noise);
+        trial.scale.clone_from(&cell.scale);
         let limit = if system.bounded() { 0.0 } else { BEYOND };
         for j in 0..n {
             let side = cell.hi[j] - cell.lo[j];

@@ -322,7 +322,10 @@ impl<'a> Mesher<'a> {
             }
         }
         let domain = self.grid.domain();
-        let scale = [0, 1, 2].map(|j: usize| (domain[j].hi() - domain[j].lo()).powi(-2));
+        // Any common factor cancels.
+        let width = [0, 1, 2].map(|j: usize| domain[j].hi() - domain[j].lo());
+        let least = width[0].min(width[1]).min(width[2]);
+        let scale = width.map(|w| (least / w).powi(2));
         let mut x = mean;
         for _ in 0..20 {
             let (value, slope) = layout.evaluate(&self.grid.first.c, &x, &mut self.buffer);

@@ -168,10 +168,11 @@ impl Search<'_> {
         let layout = &self.system.layout;
         let affine = layout.affine(cell, layout.mean_slopes(&cell.c));
         let slope = &affine.slope;
+        // The gradient's length in tolerances, since in the domain's units it may be too large a number to be squared.
         let length = (0..3)
-            .map(|j| (slope[0][j] / ((cell.hi[j] - cell.lo[j]) * self.system.domain_width(j))).powi(2))
+            .map(|j| (slope[0][j] * (self.tolerance / self.system.domain_width(j)) / (cell.hi[j] - cell.lo[j])).powi(2))
             .sum::<f64>()
             .sqrt();
-        2.0 * affine.radius[0] <= self.tolerance * length
+        2.0 * affine.radius[0] <= length
     }
 }

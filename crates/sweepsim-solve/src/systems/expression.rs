@@ -3,13 +3,12 @@
 use super::separate;
 use super::{Equation, SystemError};
 use crate::coefficients::Layout;
-use crate::coefficients::{DEEPEST, Step, Tape};
-use crate::numbers::MAX_UNKNOWNS;
+use crate::coefficients::{Function, Step, Tape};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use sweepsim_spline::{Bernstein, RationalBernstein};
 
-/// The maximum number of forms in a system with expressions, counting each use.
-pub const MAX_FORMS: usize = MAX_UNKNOWNS;
+/// The maximum number of operations, numbers and forms in an equation with an [`Expression`].
+pub const MAX_STEPS: usize = 1 << 16;
 
 /// A function built from forms with `+`, `−`, `·` and `/`, for use as an [`Equation`].
 ///
@@ -34,14 +33,15 @@ pub const MAX_FORMS: usize = MAX_UNKNOWNS;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Expression {
-    steps: Vec<Item>,
+    /// Operands come before the operation, which refers to them by number. The last item is the whole.
+    items: Vec<Item>,
 }
 
-/// A step of an expression in postfix order.
 #[derive(Clone, Debug)]
 enum Item {
     Form(Box<Equation>),
-    Constant(f64),
+    /// Zero, except for bounds of a value and of a derivative.
+    Remainder(f64, f64),
     Operation(Step),
 }
 
@@ -49,9 +49,7 @@ impl Expression {
     /// A number.
     #[must_use]
     pub fn constant(value: f64) -> Self {
-        Self {
-            steps: vec![Item::Constant(value)],
-        }
+        Self::of(Item::Operation(Step::Constant(value)))
     }
 
     /// A component of a rational function: its numerator by its weight.
@@ -61,10 +59,76 @@ impl Expression {
         Some(Self::from(numerator.clone()) / Self::from(rational.weight().clone()))
     }
 
-    fn with(mut self, other: Self, operation: Step) -> Self {
-        self.steps.extend(other.steps);
-        self.steps.push(Item::Operation(operation));
+    fn of(item: Item) -> Self {
+        Self { items: vec![item] }
+    }
+
+    fn with(mut self, other: Self, operation: impl Fn(usize, usize) -> Step) -> Self {
+        let (first, by) = (self.items.len() - 1, self.items.len());
+        self.items.extend(other.items.into_iter().map(|item| match item {
+            Item::Operation(step) => Item::Operation(step.shifted(by)),
+            other => other,
+        }));
+        self.items.push(Item::Operation(operation(first, self.items.len() - 1)));
         self
+    }
+
+    fn apply(mut self, function: Function) -> Self {
+        self.items
+            .push(Item::Operation(Step::Apply(function, self.items.len() - 1)));
+        self
+    }
+
+    /// Its sine.
+    #[must_use]
+    pub fn sin(self) -> Self {
+        self.apply(Function::Sine)
+    }
+
+    /// Its cosine.
+    #[must_use]
+    pub fn cos(self) -> Self {
+        self.apply(Function::Cosine)
+    }
+
+    /// Its tangent.
+    #[must_use]
+    pub fn tan(self) -> Self {
+        self.apply(Function::Tangent)
+    }
+
+    /// Its exponential function.
+    #[must_use]
+    pub fn exp(self) -> Self {
+        self.apply(Function::Exponential)
+    }
+
+    /// Its natural logarithm. Points where it is not positive are not solutions.
+    #[must_use]
+    pub fn ln(self) -> Self {
+        self.apply(Function::Logarithm)
+    }
+
+    /// Its square root. Points where it is negative are not solutions. It has no derivative at 0, so a solution there stays unresolved.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
+        self.apply(Function::SquareRoot)
+    }
+
+    /// Its arc tangent, between −π/2 and π/2.
+    #[must_use]
+    pub fn atan(self) -> Self {
+        self.apply(Function::ArcTangent)
+    }
+
+    /// Its power, by repeated multiplication, but with sharper bounds; 1 for the exponent 0.
+    #[must_use]
+    pub fn powi(self, exponent: u32) -> Self {
+        match exponent {
+            0 => Self::constant(1.0),
+            1 => self,
+            _ => self.apply(Function::Power(exponent)),
+        }
     }
 }
 
@@ -81,10 +145,15 @@ impl From<&Bernstein> for Expression {
 }
 
 impl From<Equation> for Expression {
-    fn from(equation: Equation) -> Self {
-        Self {
-            steps: vec![Item::Form(Box::new(equation))],
+    fn from(mut equation: Equation) -> Self {
+        let Some(expression) = equation.expression.take() else {
+            return Self::of(Item::Form(Box::new(equation)));
+        };
+        if equation.remainder == 0.0 && equation.slope_remainder == 0.0 {
+            return expression;
         }
+        let rest = Item::Remainder(equation.remainder, equation.slope_remainder);
+        expression.with(Self::of(rest), Step::Add)
     }
 }
 
@@ -157,64 +226,50 @@ impl Rows {
     /// Adds an equation: a row, or one for each form of its expression.
     pub(crate) fn add(&mut self, layout: &mut Layout, equation: usize, given: &Equation) -> Result<(), SystemError> {
         let mut steps = Vec::new();
-        self.collect(layout, equation, given, &mut steps)?;
-        let (mut height, mut highest) = (0usize, 0);
-        for step in &steps {
-            match step {
-                Step::Leaf(_) | Step::Constant(_) => height += 1,
-                Step::Add | Step::Multiply | Step::Divide => height -= 1,
+        if given.expression.is_none() {
+            steps.push(self.leaf(layout, equation, given)?);
+        } else {
+            self.combined = true;
+            let expression = Expression::from(given.clone());
+            if expression.items.len() > MAX_STEPS {
+                return Err(SystemError::TooManySteps {
+                    equation,
+                    steps: expression.items.len(),
+                });
             }
-            highest = highest.max(height);
-        }
-        if highest > DEEPEST {
-            return Err(SystemError::TooManyForms { equation });
+            for item in &expression.items {
+                steps.push(match item {
+                    Item::Form(form) => self.leaf(layout, equation, form)?,
+                    Item::Remainder(value, slope) => {
+                        let zero = Equation::from(Bernstein::constant(layout.n, 0.0));
+                        self.leaf(layout, equation, &zero.with_remainder(*value, *slope))?
+                    }
+                    Item::Operation(Step::Constant(value)) if !value.is_finite() => {
+                        return Err(SystemError::NotFinite { equation });
+                    }
+                    Item::Operation(step) => *step,
+                });
+            }
         }
         self.tape.equations.push(steps);
         Ok(())
     }
 
-    fn collect(
-        &mut self,
-        layout: &mut Layout,
-        equation: usize,
-        given: &Equation,
-        steps: &mut Vec<Step>,
-    ) -> Result<(), SystemError> {
-        let Some(expression) = &given.expression else {
-            let row = self.tape.leaves;
-            if row >= MAX_FORMS {
-                return Err(SystemError::TooManyForms { equation });
-            }
-            separate::add(layout, row, equation, given)?;
-            self.bounded |= given.remainder > 0.0;
-            self.tape.leaves += 1;
-            self.tape.scale[row] = 1.0 / layout.factor[row];
-            steps.push(Step::Leaf(row));
-            return Ok(());
-        };
-        self.combined = true;
-        for item in &expression.steps {
-            match item {
-                Item::Form(form) => self.collect(layout, equation, form, steps)?,
-                Item::Constant(value) if value.is_finite() => steps.push(Step::Constant(*value)),
-                Item::Constant(_) => return Err(SystemError::NotFinite { equation }),
-                Item::Operation(operation) => steps.push(*operation),
-            }
-        }
-        if given.remainder != 0.0 || given.slope_remainder != 0.0 {
-            // The error of the whole, as a form that is zero except for that error.
-            let rest = Equation::sum(vec![Bernstein::constant(layout.n, 0.0)])
-                .with_remainder(given.remainder, given.slope_remainder);
-            self.collect(layout, equation, &rest, steps)?;
-            steps.push(Step::Add);
-        }
-        Ok(())
+    /// Adds a form as a row.
+    fn leaf(&mut self, layout: &mut Layout, equation: usize, form: &Equation) -> Result<Step, SystemError> {
+        let row = self.tape.leaves;
+        layout.make_room(row + 1);
+        self.tape.scale.resize(row + 1);
+        separate::add(layout, row, equation, form)?;
+        self.bounded |= form.remainder > 0.0;
+        self.tape.leaves += 1;
+        self.tape.scale[row] = 1.0 / layout.factor[row];
+        Ok(Step::Leaf(row))
     }
 
-    /// Returns the tape, if there is one, and whether some form is known only on the domain.
+    /// Returns whether some form is known only on the domain; the layout gets the tape, if there is one.
     pub(crate) fn finish(self, layout: &mut Layout) -> bool {
-        let usable = self.combined;
-        if usable {
+        if self.combined {
             layout.tape = Some(self.tape);
         }
         self.bounded

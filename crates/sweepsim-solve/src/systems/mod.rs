@@ -5,6 +5,6 @@ mod pieces;
 mod separate;
 mod system;
 
-pub use expression::{Expression, MAX_FORMS};
+pub use expression::{Expression, MAX_STEPS};
 pub use pieces::{Pieces, PiecesError};
 pub use system::{Equation, MAX_SYSTEM, System, SystemError};

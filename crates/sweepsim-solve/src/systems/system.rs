@@ -140,11 +140,13 @@ pub enum SystemError {
         /// The equation.
         equation: usize,
     },
-    /// An expression's forms are more than [`MAX_FORMS`](crate::MAX_FORMS) together with those of the equations before it, or it is nested too deeply.
-    #[error("equation {equation} is an expression of too many forms")]
-    TooManyForms {
+    /// An expression has more than [`MAX_STEPS`](crate::MAX_STEPS) operations, numbers and forms.
+    #[error("equation {equation} is an expression of {steps} operations, numbers and forms")]
+    TooManySteps {
         /// The equation.
         equation: usize,
+        /// Their number.
+        steps: usize,
     },
     /// A degree is above [`MAX_DEGREE`](crate::MAX_DEGREE), or there are more than [`MAX_SYSTEM`] coefficients.
     #[error("equation {equation} is too large: degree {degree}, {coefficients} coefficients in all so far")]

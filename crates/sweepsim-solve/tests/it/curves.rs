@@ -246,3 +246,52 @@ fn bad_input_is_an_error_or_open() {
     }
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
 }
+
+#[test]
+fn tangents_and_tolerances_hold_on_domains_of_any_width() {
+    // The same two curves, a circle in a plane and a tilted ellipse in space, with sides from 1e-250 to 1e200.
+    let square = |n: usize, axis: usize| {
+        let x = Bernstein::variable(n, axis).sub(&Bernstein::constant(n, 0.5));
+        x.mul(&x)
+    };
+    let circle = square(2, 0).add(&square(2, 1)).sub(&Bernstein::constant(2, 0.16));
+    let cylinder = square(3, 0).add(&square(3, 1)).sub(&Bernstein::constant(3, 0.16));
+    let plane = Bernstein::variable(3, 2)
+        .sub(&Bernstein::variable(3, 0).scale(0.5))
+        .sub(&Bernstein::constant(3, 0.25));
+    for (widths, forms) in [
+        (vec![1.0, 1.0], vec![circle.clone()]),
+        (vec![1e-200, 1e-200], vec![circle.clone()]),
+        (vec![1e-200, 1.0], vec![circle.clone()]),
+        (vec![1e-250, 1e200], vec![circle]),
+        (vec![1e-200, 1.0, 1.0], vec![cylinder.clone(), plane.clone()]),
+        (vec![1e-200, 1e-100, 1e-200], vec![cylinder.clone(), plane.clone()]),
+        (vec![1e-250, 1e-250, 1e-250], vec![cylinder, plane]),
+    ] {
+        let domain: Vec<Enclosure> = widths.iter().map(|w| Enclosure::new(0.0, *w).unwrap()).collect();
+        let system = System::new(&domain, forms).unwrap();
+        let widest = widths.iter().fold(0.0, |m: f64, w| m.max(*w));
+        let curves = CurveSolver::new(1e-3 * widest).solve(&system, &()).unwrap();
+        assert_eq!(
+            (curves.loops().count(), curves.curves.len(), curves.singular.len()),
+            (1, 1, 0),
+            "{widths:?}"
+        );
+        let points = &curves.curves[0].points;
+        for (k, p) in points.iter().enumerate() {
+            let length: f64 = p.tangent.iter().map(|x| x * x).sum();
+            assert!((length - 1.0).abs() < 1e-14, "{widths:?}: {:?}", p.tangent);
+            // Every chord's middle is within the tolerance of the curve: by angle in the plane of the circle.
+            let q = &points[(k + 1) % points.len()];
+            let middle = |j: usize| 0.5 * (p.point[j] + q.point[j]) / widths[j] - 0.5;
+            // Along the radius, or along either axis, whichever is shorter in the domain's units.
+            let (x, y) = (middle(0), middle(1));
+            let scale = 0.4 / x.hypot(y) - 1.0;
+            let along = |own: f64, other: f64| (own.abs() - (0.16 - other * other).max(0.0).sqrt()).abs();
+            let units = [widths[0] / widest, widths[1] / widest];
+            let radial = (x * scale * units[0]).hypot(y * scale * units[1]);
+            let distance = radial.min(along(x, y) * units[0]).min(along(y, x) * units[1]);
+            assert!(distance <= 1e-3, "{widths:?}: {distance}");
+        }
+    }
+}

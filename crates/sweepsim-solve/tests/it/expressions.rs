@@ -2,9 +2,10 @@
 
 use crate::support;
 
+use std::f64::consts::{FRAC_PI_4, LN_2, PI, TAU};
 use support::planted::Random;
 use sweepsim_solve::{
-    CurveSolver, Enclosure, Equation, Expression, MAX_FORMS, PointSolver, Points, SurfaceSolver, System, SystemError,
+    CurveSolver, Enclosure, Equation, Expression, MAX_STEPS, PointSolver, Points, SurfaceSolver, System, SystemError,
 };
 use sweepsim_spline::Bernstein;
 
@@ -123,7 +124,7 @@ fn poles_are_no_roots() {
     let points = solve(vec![Expression::constant(1.0) / pole() - Expression::constant(2.0)]);
     assert_eq!(points.roots.len(), 1);
     assert!(points.roots[0].enclosure[0].contains(0.8));
-    assert!(points.unresolved.iter().all(|u| u.bounds[0].radius() < 1e-9));
+    assert!(points.unresolved.is_empty());
 }
 
 #[test]
@@ -144,13 +145,15 @@ fn remainders_count_within_expressions() {
 #[test]
 fn bad_expressions_are_errors() {
     let x = || Expression::from(Bernstein::variable(1, 0));
-    let many = (0..MAX_FORMS).fold(x(), |e, _| e + x());
+    let many = (0..MAX_STEPS).fold(x(), |e, _| -e);
     let error = System::new(&unit(1), [many]).unwrap_err();
-    assert_eq!(error, SystemError::TooManyForms { equation: 0 });
-    // Too deep: 1 + (1 + (1 + …)).
-    let deep = (0..40).fold(x(), |e, _| Expression::constant(1.0) + e);
-    let error = System::new(&unit(1), [deep]).unwrap_err();
-    assert_eq!(error, SystemError::TooManyForms { equation: 0 });
+    assert_eq!(
+        error,
+        SystemError::TooManySteps {
+            equation: 0,
+            steps: 2 * MAX_STEPS + 1
+        }
+    );
     let error = System::new(&unit(1), [x() * f64::NAN]).unwrap_err();
     assert_eq!(error, SystemError::NotFinite { equation: 0 });
     let plane = Expression::from(Bernstein::variable(2, 0)) + x();
@@ -163,7 +166,105 @@ fn bad_expressions_are_errors() {
             expected: 1
         }
     );
-    // Division by zero, everywhere: open, not a panic.
+    // Division by zero, everywhere: not defined anywhere, so nowhere zero.
     let points = solve(vec![x() / Expression::constant(0.0)]);
-    assert!(points.roots.is_empty() && !points.unresolved.is_empty());
+    assert!(points.roots.is_empty() && points.unresolved.is_empty());
+}
+
+#[test]
+fn an_expression_has_as_many_forms_as_it_likes() {
+    // Σ 1/(k + x), k = 1 … 40, in either of two variables: forty forms in each equation.
+    let sum = |axis: usize| {
+        (1..=40).fold(Expression::constant(-3.5), |sum, k| {
+            let form = Bernstein::variable(2, axis).add(&Bernstein::constant(2, f64::from(k)));
+            sum + Expression::constant(1.0) / Expression::from(form)
+        })
+    };
+    let points = solve(vec![sum(0), sum(1)]);
+    assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
+    let x = points.roots[0].point[0];
+    let value: f64 = (1..=40).map(|k| 1.0 / (f64::from(k) + x)).sum();
+    assert!((value - 3.5).abs() < 1e-14 && points.roots[0].point[1] == x);
+    // A chain as deep as it is long, and a curve and a surface of ten forms.
+    let chain = (0..200).fold(Expression::from(Bernstein::variable(1, 0)), |e, _| {
+        Expression::constant(1.0) + Expression::constant(1.0) * e
+    });
+    let points = solve(vec![chain - Expression::constant(200.25)]);
+    assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
+    assert!(points.roots[0].enclosure[0].contains(0.25));
+    let ball = |n: usize| {
+        (0..10).fold(Expression::constant(-0.09), |sum, k| {
+            let x = Bernstein::variable(n, k % n).sub(&Bernstein::constant(n, 0.5));
+            let share = if k % n == k { 1.0 } else { 0.1 };
+            sum + Expression::from(x).powi(2) * share
+        })
+    };
+    let curves = CurveSolver::new(1e-3)
+        .solve(&System::new(&unit(2), [ball(2)]).unwrap(), &())
+        .unwrap();
+    assert_eq!(
+        (curves.loops().count(), curves.curves.len(), curves.singular.len()),
+        (1, 1, 0)
+    );
+    let surface = SurfaceSolver::new(0.1)
+        .solve(&System::new(&unit(3), [ball(3)]).unwrap(), &())
+        .unwrap();
+    assert_eq!(
+        (
+            surface.euler_characteristic(),
+            surface.components(),
+            surface.unresolved.len()
+        ),
+        (2, 1, 0)
+    );
+}
+
+#[test]
+fn functions_are_solved_where_they_are_defined() {
+    let x = || Expression::from(Bernstein::variable(1, 0));
+    let c = Expression::constant;
+    let third = 0.5f64.asin() / 10.0;
+    let cases: [(Expression, Vec<f64>); 8] = [
+        (
+            (x() * 10.0).sin() - c(0.5),
+            vec![third, PI / 10.0 - third, TAU / 10.0 + third, 3.0 * PI / 10.0 - third],
+        ),
+        (
+            (x() * 10.0).cos(),
+            (0..3).map(|k| (f64::from(k) + 0.5) * PI / 10.0).collect(),
+        ),
+        ((x() * 3.0).tan() - c(1.0), vec![FRAC_PI_4 / 3.0]),
+        (x().exp() - c(2.0), vec![LN_2]),
+        // Not defined on the left half.
+        ((x() - c(0.5)).ln() + c(2.0), vec![0.5 + (-2.0f64).exp()]),
+        ((x() - c(0.5)).sqrt() - c(0.25), vec![0.5625]),
+        ((x() * 3.0).atan() - c(1.0), vec![1.0f64.tan() / 3.0]),
+        ((x() - c(0.5)).powi(4) - c(1.0 / 256.0), vec![0.25, 0.75]),
+    ];
+    for (number, (expression, expected)) in cases.into_iter().enumerate() {
+        let points = solve(vec![expression]);
+        assert!(points.unresolved.is_empty(), "{number}: {:?}", points.unresolved);
+        let found: Vec<f64> = points.roots.iter().map(|r| r.point[0]).collect();
+        assert_eq!(found.len(), expected.len(), "{number}: {found:?} {expected:?}");
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a - b).abs() < 1e-14, "{number}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_certified_where_a_function_is_not_smooth() {
+    let x = || Expression::from(Bernstein::variable(1, 0));
+    // √(x − 0.3) ends at its zero.
+    let points = solve(vec![(x() - Expression::constant(0.3)).sqrt()]);
+    assert!(points.roots.is_empty() && points.unresolved.iter().any(|u| u.bounds[0].contains(0.3)));
+    // (√x)² − 0.25, defined from 0 on.
+    let shifted = (x() * 2.0 - Expression::constant(1.0)).sqrt().powi(2) - Expression::constant(0.25);
+    let points = solve(vec![shifted]);
+    assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
+    assert!(points.roots[0].enclosure[0].contains(0.625));
+    // 1/(1/x) is x except at 0, where it is not defined.
+    let one = || Expression::constant(1.0);
+    let points = solve(vec![one() / (one() / (x() - Expression::constant(0.4)))]);
+    assert!(points.roots.is_empty() && points.unresolved.iter().all(|u| u.bounds[0].contains(0.4)));
 }
