@@ -20,7 +20,7 @@ pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
 pub use segment::{Segment, SegmentEnd};
 pub use spline_motion::{MotionError, SplineMotion};
-pub use tool::{Apt, AptError, AptWarning, Barrel, Dovetail, Lens, Lollipop, Oval, Taper, Tool};
+pub use tool::{Apt, AptError, AptWarning, Barrel, BoundingCylinder, Dovetail, Lens, Lollipop, Oval, Taper, Tool};
 
 /// The README's example is tested.
 #[cfg(doctest)]

@@ -9,6 +9,9 @@ pub enum SweepError {
     /// The monitor cancelled the sweep.
     #[error("cancelled")]
     Cancelled,
+    /// Target or fixtures are on other lines than the stock.
+    #[error("the target must be on the grid of the stock, and fixtures on a grid in the same frame")]
+    Grid,
     /// The tolerance, or the chord error, is not a positive number.
     #[error("the tolerance is {0}, but must be positive")]
     Tolerance(f64),

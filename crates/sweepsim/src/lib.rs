@@ -25,6 +25,7 @@
 //! | to | see |
 //! | --- | --- |
 //! | remove material from a stock | [`simulate()`], [`simulate_tri()`] |
+//! | find the moves of a program that do harm | [`verify`](mod@verify) |
 //! | find the move that made a point of the surface | [`Simulation::source_at`] |
 //! | intersect a sweep with single lines of any direction | [`probe()`] |
 //! | section a sweep, as curves, closed loops or SVG | [`section()`], [`Section::loops`], [`Section::svg`] |
@@ -52,6 +53,7 @@ mod sections;
 mod sweep;
 mod time;
 mod tolerances;
+pub mod verify;
 
 pub use envelope::systems;
 pub use error::SweepError;

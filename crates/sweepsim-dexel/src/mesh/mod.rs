@@ -1,6 +1,7 @@
 //! Triangles, going in and coming out.
 
 mod distance;
+mod thicken;
 
 use crate::grid::Frame;
 pub use distance::{DistanceTo, Nearest};

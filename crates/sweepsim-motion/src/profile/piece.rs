@@ -151,7 +151,7 @@ impl OutlinePiece {
     }
 
     /// The same as curves, with arcs in parts of at most a quarter.
-    pub(super) fn curves(&self) -> Vec<Bezier> {
+    pub(crate) fn curves(&self) -> Vec<Bezier> {
         match &self.shape {
             Shape::Line => vec![Bezier::line(self.from, self.to)],
             Shape::Bezier(curve) => vec![curve.clone()],

@@ -7,6 +7,7 @@
 
 mod between;
 mod forms;
+mod part;
 mod rates;
 
 pub(crate) use between::{frame, rational_turn, turn_between};

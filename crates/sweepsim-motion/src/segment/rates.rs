@@ -63,7 +63,12 @@ impl Segment {
     #[must_use]
     pub fn velocity(&self, end: SegmentEnd) -> [[f64; 3]; 2] {
         if let Kind::Arc(spin) = &self.kind {
-            return [*spin, self.travel_vector()].map(Into::into);
+            // The weight is 1 at both ends of a whole arc, but not of its parts.
+            let weight = match end {
+                SegmentEnd::Start => self.weights[0],
+                SegmentEnd::Finish => self.weights[self.weights.len() - 1],
+            };
+            return [*spin / weight, self.travel_vector()].map(Into::into);
         }
         let (spins, travels) = self.twist();
         match end {

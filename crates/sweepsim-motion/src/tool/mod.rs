@@ -16,6 +16,16 @@ use crate::profile::Profile;
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
 
+/// A cylinder about the tool's axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BoundingCylinder {
+    /// Its radius.
+    pub radius: f64,
+    /// Its lowest and highest `z`, in the tool's frame.
+    pub z: [f64; 2],
+}
+
 /// A milling tool: a solid with an exact B-spline boundary. The origin is its tip; `+z` points along its axis to the holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
@@ -100,6 +110,34 @@ impl Tool {
             (0..weights.len()).map(|i| point(i).norm()).fold(0.0, f64::max)
         };
         self.patches.iter().map(control).fold(0.0, f64::max)
+    }
+
+    /// A cylinder about the axis that holds the tool. For lines and arcs of a profile it is the smallest, up to the corners of the arcs' control polygons.
+    #[must_use]
+    pub fn bounding_cylinder(&self) -> BoundingCylinder {
+        let mut bound = BoundingCylinder {
+            radius: 0.0,
+            z: [f64::INFINITY, f64::NEG_INFINITY],
+        };
+        let mut add = |rho: f64, z: f64| {
+            bound.radius = bound.radius.max(rho);
+            bound.z = [bound.z[0].min(z), bound.z[1].max(z)];
+        };
+        // Control points: their hull holds the surface, as weights are positive.
+        if let Some(profile) = &self.profile {
+            for curve in profile.pieces().iter().flat_map(|piece| piece.curves()) {
+                curve.points.iter().for_each(|point| add(point.x, point.y));
+            }
+            return bound;
+        }
+        for patch in &self.patches {
+            let weights = patch.weight().coefficients();
+            for (i, w) in weights.iter().enumerate() {
+                let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / w);
+                add(x.hypot(y), z);
+            }
+        }
+        bound
     }
 
     /// Whether the tool is symmetric about its axis.

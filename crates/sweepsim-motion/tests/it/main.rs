@@ -4,4 +4,5 @@ mod boundary;
 mod checked_boundary;
 mod misuse;
 mod motions;
+mod parts;
 mod spline_profiles;

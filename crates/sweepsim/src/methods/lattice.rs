@@ -1,5 +1,6 @@
 //! The dexel lines as targets of the charts.
 
+use crate::methods::line_mask::LineMask;
 use sweepsim_dexel::Grid;
 use sweepsim_solve::{ChartTarget, Enclosure, Targets};
 
@@ -10,6 +11,8 @@ pub(crate) struct Lattice<'a> {
     pub shift: [f64; 2],
     pub i: [usize; 2],
     pub j: [usize; 2],
+    /// The lines that are asked for; `None` if all are.
+    mask: Option<&'a LineMask>,
     /// The approximate position of the grid's first lines, and their number per unit of length.
     first: [f64; 2],
     density: [f64; 2],
@@ -24,6 +27,7 @@ impl<'a> Lattice<'a> {
             shift,
             i: [0, m - 1],
             j: [0, n - 1],
+            mask: None,
             first: [0, 1].map(|k| grid.min()[k] + 0.5 * spacing[k] + shift[k]),
             density: spacing.map(f64::recip),
         }
@@ -44,6 +48,18 @@ impl<'a> Lattice<'a> {
             i: [i, i],
             j: [j, j],
             ..Self::all(grid, shift)
+        }
+    }
+
+    /// Only the marked lines, of which there is at least one in these columns and rows.
+    pub fn masked(self, mask: Option<&'a LineMask>) -> Self {
+        let Some(marked) = mask else { return self };
+        let within = |own: [usize; 2], window: [usize; 2]| [own[0].max(window[0]), own[1].min(window[1])];
+        Self {
+            i: within(self.i, marked.window[0]),
+            j: within(self.j, marked.window[1]),
+            mask,
+            ..self
         }
     }
 
@@ -97,8 +113,10 @@ impl<'a> Lattice<'a> {
 /// The lines as targets of `(X, Y)`, or of `(X, Y, g)` with `g = 0`.
 impl<const N: usize> Targets<N> for Lattice<'_> {
     fn count(&self, range: &[Enclosure; N]) -> usize {
-        self.range(range[0], range[1])
-            .map_or(0, |[is, js]| (is.1 - is.0 + 1) * (js.1 - js.0 + 1))
+        self.range(range[0], range[1]).map_or(0, |[is, js]| match self.mask {
+            Some(mask) => mask.count(is, js),
+            None => (is.1 - is.0 + 1) * (js.1 - js.0 + 1),
+        })
     }
 
     fn visit(
@@ -119,6 +137,9 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
                 continue;
             };
             for j in wanted.0.max(js.0)..=wanted.1.min(js.1) {
+                if self.mask.is_some_and(|mask| !mask.contains(i, j)) {
+                    continue;
+                }
                 value[1] = self.coordinate(1, j);
                 let Some(number) = self.grid.index(i, j) else {
                     continue;

@@ -6,6 +6,7 @@
 pub(crate) mod charts;
 pub(crate) mod harvest;
 pub(crate) mod lattice;
+pub(crate) mod line_mask;
 pub(crate) mod lines;
 pub(crate) mod method;
 mod placement;

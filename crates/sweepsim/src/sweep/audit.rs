@@ -9,10 +9,88 @@ use crate::sweep::schedule::SweepJob;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Operation, cover};
 use sweepsim_solve::Cause;
 
+/// Swept intervals of some lines, sorted by line, and the lines that stayed unresolved.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SweptLines {
+    pub lines: Vec<(u32, Vec<Interval>)>,
+    pub unresolved: Vec<UnresolvedDexel>,
+}
+
+impl SweptLines {
+    /// Both together.
+    pub fn united(self, other: Self) -> Self {
+        let unresolved = [self.unresolved, other.unresolved].concat();
+        if self.lines.is_empty() {
+            let lines = other.lines;
+            return Self { lines, unresolved };
+        }
+        let mut all: BTreeMap<u32, Vec<Interval>> = self.lines.into_iter().collect();
+        for (line, more) in other.lines {
+            let own = all.entry(line).or_default();
+            own.extend(more);
+            if let Ok(set) = IntervalSet::from_intervals(own.iter().copied()) {
+                *own = set.pieces().to_vec();
+            }
+        }
+        Self {
+            lines: all.into_iter().collect(),
+            unresolved,
+        }
+    }
+}
+
 impl SweepJob<'_> {
+    /// The swept intervals of the lines that have any, counted, audited, and repaired where they do not add up. For few lines of a large grid, where
+    /// [`count`](Self::count) would visit all.
+    pub fn swept_lines(&self, chunk: &[PathPart]) -> Result<SweptLines, SweepError> {
+        let Harvest {
+            mut crossings,
+            mut open,
+            ..
+        } = self.harvest(chunk)?;
+        open.sort_by_key(|(line, _)| *line);
+        open.dedup_by_key(|(line, _)| *line);
+        // A stable sort: the order of crossings on a line does not depend on threads.
+        crossings.par_sort_by_key(|(line, _)| *line);
+        // A line with an open box may have no crossing at all.
+        let missing = |line: &u32| crossings.binary_search_by_key(line, |(line, _)| *line).is_err();
+        let lonely: Vec<u32> = open.iter().map(|(line, _)| *line).filter(missing).collect();
+        let solve = |line: u32, group: &[Numbered]| {
+            let certain = open.binary_search_by_key(&line, |(line, _)| *line).is_err();
+            let counted = certain.then(|| self.intervals(group).ok()).flatten();
+            let found = match counted {
+                Some(intervals) => Ok(intervals),
+                None => self.with_space(|space| self.repair(chunk, line, 1, space)),
+            };
+            (line, found)
+        };
+        let mut solved: Vec<_> = crossings
+            .par_chunk_by(|a, b| a.0 == b.0)
+            .map(|group| solve(group[0].0, group))
+            .collect();
+        solved.extend(lonely.into_iter().map(|line| solve(line, &[])));
+        solved.sort_by_key(|(line, _)| *line);
+        if self.monitor.cancelled() {
+            return Err(SweepError::Cancelled);
+        }
+        let mut swept = SweptLines::default();
+        for (line, found) in solved {
+            match found {
+                Ok(intervals) if intervals.is_empty() => {}
+                Ok(intervals) => swept.lines.push((line, intervals)),
+                Err(reason) => {
+                    let (i, j) = self.grid.place(line as usize);
+                    swept.unresolved.push(UnresolvedDexel { i, j, reason });
+                }
+            }
+        }
+        Ok(swept)
+    }
+
     /// Counts the crossings of a chunk into intervals, repairs lines that do not add up, and unites the intervals with the volume.
     pub fn count(
         &self,

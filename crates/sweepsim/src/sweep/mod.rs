@@ -13,6 +13,7 @@ mod simulate;
 mod source_at;
 mod tri;
 
+pub(crate) use audit::SweptLines;
 pub use boundary_operator::{BoundaryOperator, UnknownBoundaryOperator};
 pub use options::{Method, Options, UnknownMethod};
 pub(crate) use plan::Plan;
@@ -21,6 +22,7 @@ pub use probe::{Probe, probe};
 pub use ray::{Ray, RayError};
 pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
+pub(crate) use schedule::CHUNK;
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use source_at::SurfaceSource;
 pub use tri::{TriSimulation, simulate_tri};

@@ -6,6 +6,7 @@ use crate::error::SweepError;
 use crate::methods::charts::Charts;
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
+use crate::methods::line_mask::LineMask;
 use crate::methods::lines::Lines;
 use crate::methods::method::CrossingMethod;
 use crate::methods::planes::Planes;
@@ -24,10 +25,10 @@ use sweepsim_motion::Tool;
 use sweepsim_solve::Monitor;
 
 /// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
-pub(super) const CHUNK: usize = 256;
+pub(crate) const CHUNK: usize = 256;
 
 impl Plan {
-    pub(super) fn job<'a>(
+    pub(crate) fn job<'a>(
         &'a self,
         tool: &'a Tool,
         grid: &'a Grid,
@@ -42,11 +43,11 @@ impl Plan {
             method: options.method,
             boundary: options.boundary,
             path: options.path_number,
+            mask: None,
             size: Size {
                 spacing: grid.spacing(),
                 slack: self.tolerances.rounding(),
             },
-
             spaces: Mutex::new(Vec::new()),
             monitor,
         }
@@ -54,7 +55,7 @@ impl Plan {
 }
 
 /// What all chunks of a sweep share.
-pub(super) struct SweepJob<'a> {
+pub(crate) struct SweepJob<'a> {
     pub tool: &'a Tool,
     pub cutter: &'a Cutter,
     pub grid: &'a Grid,
@@ -62,6 +63,8 @@ pub(super) struct SweepJob<'a> {
     pub method: Method,
     pub boundary: BoundaryOperator,
     pub path: u32,
+    /// The lines that are asked for; `None` if all are.
+    pub mask: Option<&'a LineMask>,
     pub size: Size,
     /// Workspaces that are not in use.
     pub spaces: Mutex<Vec<Workspace>>,
@@ -108,7 +111,7 @@ impl SweepJob<'_> {
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
             .map(|share| {
-                let lines = Lattice::columns(self.grid, share.columns, shift);
+                let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask);
                 let search = self.search(&method, chunk, &lines);
                 let mut harvest = Harvest::default();
                 self.with_space(|space| {

@@ -12,3 +12,4 @@ mod rays;
 mod sections;
 mod spline_profiles;
 mod surfaces;
+mod verify;

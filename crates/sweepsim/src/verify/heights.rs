@@ -1,0 +1,97 @@
+//! Where there is material, coarsely: most moves are settled by it without a search.
+
+use sweepsim_dexel::Dexels;
+
+/// Lines of a block along each direction.
+const BLOCK: usize = 16;
+
+/// The lowest and the highest material of each line, and of blocks of lines. Since stock only shrinks, an old state stays an upper bound.
+#[derive(Clone, Debug)]
+pub(super) struct HeightMap {
+    cells: [usize; 2],
+    lines: Vec<[f64; 2]>,
+    blocks: Vec<[f64; 2]>,
+}
+
+const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// A box in the frame of a grid: its lowest and highest coordinate in each direction.
+pub(super) type Box3 = [[f64; 2]; 3];
+
+impl HeightMap {
+    pub fn new(dexels: &Dexels) -> Self {
+        let cells = dexels.grid().cells();
+        let mut lines = vec![EMPTY; dexels.grid().len()];
+        for (line, intervals) in dexels.iter() {
+            let mut heights = intervals.heights();
+            if let Some([lower, upper]) = heights.next() {
+                let top = heights.next_back().map_or(upper, |[_, upper]| upper);
+                lines[line] = [lower, top];
+            }
+        }
+        let mut map = Self {
+            cells,
+            lines,
+            blocks: vec![EMPTY; cells[0].div_ceil(BLOCK) * cells[1].div_ceil(BLOCK)],
+        };
+        for i in 0..cells[0] {
+            for j in 0..cells[1] {
+                let [lower, upper] = map.lines[i * cells[1] + j];
+                let at = map.block(i, j);
+                let block = &mut map.blocks[at];
+                *block = [block[0].min(lower), block[1].max(upper)];
+            }
+        }
+        map
+    }
+
+    fn block(&self, i: usize, j: usize) -> usize {
+        i / BLOCK * self.cells[1].div_ceil(BLOCK) + j / BLOCK
+    }
+
+    /// Notes the present material of a line.
+    pub fn update(&mut self, dexels: &Dexels, line: u32) {
+        let intervals = dexels.at(line as usize);
+        let ends = intervals.first().zip(intervals.last());
+        self.lines[line as usize] = ends.map_or(EMPTY, |(first, last)| [first.lower.z, last.upper.z]);
+    }
+
+    /// Refreshes the blocks that hold these columns and rows.
+    pub fn refresh(&mut self, is: [usize; 2], js: [usize; 2]) {
+        for bi in is[0] / BLOCK..=is[1] / BLOCK {
+            for bj in js[0] / BLOCK..=js[1] / BLOCK {
+                let mut all = EMPTY;
+                for i in bi * BLOCK..((bi + 1) * BLOCK).min(self.cells[0]) {
+                    for j in bj * BLOCK..((bj + 1) * BLOCK).min(self.cells[1]) {
+                        let [lower, upper] = self.lines[i * self.cells[1] + j];
+                        all = [all[0].min(lower), all[1].max(upper)];
+                    }
+                }
+                let at = self.block(bi * BLOCK, bj * BLOCK);
+                self.blocks[at] = all;
+            }
+        }
+    }
+
+    /// Calls `visit` for the lines among these columns and rows whose material reaches between the two heights, until it returns `false`. Whether it
+    /// never did.
+    pub fn visit(&self, [is, js]: [(usize, usize); 2], z: [f64; 2], visit: &mut dyn FnMut(u32) -> bool) -> bool {
+        let meets = |[lower, upper]: [f64; 2]| lower <= z[1] && upper >= z[0];
+        for bi in is.0 / BLOCK..=is.1 / BLOCK {
+            for bj in js.0 / BLOCK..=js.1 / BLOCK {
+                if !meets(self.blocks[self.block(bi * BLOCK, bj * BLOCK)]) {
+                    continue;
+                }
+                for i in is.0.max(bi * BLOCK)..=is.1.min((bi + 1) * BLOCK - 1) {
+                    for j in js.0.max(bj * BLOCK)..=js.1.min((bj + 1) * BLOCK - 1) {
+                        let line = i * self.cells[1] + j;
+                        if meets(self.lines[line]) && !visit(line as u32) {
+                            return false;
+                        }
+                    }
+                }
+            }
+        }
+        true
+    }
+}

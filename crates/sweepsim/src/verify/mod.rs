@@ -1,0 +1,28 @@
+//! Whether a program may be run: every move that does harm, in the order of the program.
+//!
+//! The stock before each move is that which the moves before it have left, so a collision is judged against the workpiece as it is at that moment, and
+//! not as it is at the end. [`verify`] removes what each run of moves sweeps and looks for
+//!
+//! | finding | what overlaps |
+//! | --- | --- |
+//! | [`Collision`](FindingKind::Collision) | a body, at some time, and the workpiece at that time |
+//! | [`Rapid`](FindingKind::Rapid), [`Spindle`](FindingKind::Spindle), [`Feed`](FindingKind::Feed) | the cutter in a move that must not cut, and the workpiece |
+//! | [`Fixture`](FindingKind::Fixture) | the cutter or a body, and a fixture |
+//! | [`Gouge`](FindingKind::Gouge) | the cutter, the workpiece, and the target farther below its surface than the limit |
+//!
+//! No such move is missed on the lines of the grid; what is narrower than their distance may hide between them.
+
+mod depth;
+mod driver;
+mod finding;
+mod heights;
+mod lines;
+mod scene;
+mod search;
+mod solid;
+mod target;
+
+pub use driver::verify;
+pub use finding::{Finding, FindingKind, MoveState};
+pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
+pub use target::{Target, TargetError};

@@ -1,0 +1,151 @@
+//! What is verified, and the result.
+
+use super::finding::{Finding, MoveState};
+use super::target::Target;
+use crate::sweep::{Options, UnresolvedDexel};
+use sweepsim_dexel::Dexels;
+use sweepsim_motion::{Assembly, Path};
+
+/// A cutter with its bodies, a path, and the state of the machine in each move.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct ToolPath<'a> {
+    /// The cutter and the bodies that move with it.
+    pub assembly: &'a Assembly,
+    /// The path.
+    pub path: &'a Path,
+    /// The state in each move; [`MoveState::FEED`] in moves beyond the end of the list.
+    pub states: &'a [MoveState],
+}
+
+impl<'a> ToolPath<'a> {
+    /// Feed moves with the spindle turning.
+    #[must_use]
+    pub fn new(assembly: &'a Assembly, path: &'a Path) -> Self {
+        Self {
+            assembly,
+            path,
+            states: &[],
+        }
+    }
+
+    /// Sets the state of the machine in each move.
+    #[must_use]
+    pub fn with_states(self, states: &'a [MoveState]) -> Self {
+        Self { states, ..self }
+    }
+
+    pub(super) fn state(&self, number: usize) -> MoveState {
+        self.states.get(number).copied().unwrap_or_default()
+    }
+}
+
+/// What the tools move in.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Scene<'a> {
+    /// The workpiece before the first move.
+    pub stock: Dexels,
+    /// What nothing must touch, on a grid of its own in the frame of the stock's grid.
+    pub fixtures: Option<&'a Dexels>,
+    /// The part that is wanted, on the stock's grid.
+    pub target: Option<&'a Target>,
+}
+
+impl<'a> Scene<'a> {
+    /// A workpiece alone.
+    #[must_use]
+    pub fn new(stock: Dexels) -> Self {
+        Self {
+            stock,
+            fixtures: None,
+            target: None,
+        }
+    }
+
+    /// With fixtures.
+    #[must_use]
+    pub fn with_fixtures(self, fixtures: &'a Dexels) -> Self {
+        let fixtures = Some(fixtures);
+        Self { fixtures, ..self }
+    }
+
+    /// With the part that is wanted.
+    #[must_use]
+    pub fn with_target(self, target: &'a Target) -> Self {
+        let target = Some(target);
+        Self { target, ..self }
+    }
+}
+
+/// Options of [`verify`].
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct VerifyOptions {
+    /// Options of the sweeps. Their method is charts, whatever is chosen here.
+    pub sweep: Options,
+    /// Whether to find what each single move removes. It takes a sweep of each.
+    pub each_move: bool,
+}
+
+impl VerifyOptions {
+    /// These options of the sweeps.
+    #[must_use]
+    pub fn new(sweep: Options) -> Self {
+        Self {
+            sweep,
+            each_move: false,
+        }
+    }
+
+    /// Also finds what each single move removes.
+    #[must_use]
+    pub fn each_move(self, wanted: bool) -> Self {
+        Self {
+            each_move: wanted,
+            ..self
+        }
+    }
+}
+
+/// What a toolpath removes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct PathRemoval {
+    /// Its volume.
+    pub volume: f64,
+}
+
+/// What a move removes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct MoveRemoval {
+    /// The toolpath.
+    pub path: usize,
+    /// The move of its path.
+    pub number: usize,
+    /// The volume; 0 for moves that remove nothing.
+    pub volume: f64,
+    /// The greatest length that it removes of any line.
+    pub depth: f64,
+}
+
+/// The result of [`verify`].
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Verification {
+    /// What remains of the stock.
+    pub remaining: Dexels,
+    /// All findings, in the order of the program.
+    pub findings: Vec<Finding>,
+    /// What each toolpath removes.
+    pub paths: Vec<PathRemoval>,
+    /// What each move removes, if [asked for](VerifyOptions::each_move).
+    pub moves: Vec<MoveRemoval>,
+    /// Dexels of sweeps that could not be certified.
+    pub unresolved: Vec<UnresolvedDexel>,
+    /// Moves, by path and number, in which a body follows its cutter so closely that it is not known whether it touches.
+    pub undecided: Vec<(usize, usize)>,
+    /// Whether the receiver of the findings ended the verification early.
+    pub stopped: bool,
+}

@@ -1,0 +1,203 @@
+//! A solid that moves along a path: the cutter, or a body that moves with it.
+
+use super::heights::{Box3, HeightMap};
+use crate::error::SweepError;
+use crate::methods::line_mask::LineMask;
+use crate::methods::workspace::Workspace;
+use crate::sweep::{CHUNK, Method, Options, Plan, SweptLines};
+use crate::time::path_parts::PathPart;
+use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{BoundingCylinder, Path, Segment, Tool};
+use sweepsim_solve::Monitor;
+
+/// A solid and its path, prepared.
+pub(super) struct MovingSolid<'a> {
+    tool: &'a Tool,
+    plan: Plan,
+    /// One box for each part of the path, which holds all that the solid sweeps there.
+    boxes: Vec<Box3>,
+    spaces: Mutex<Vec<Workspace>>,
+}
+
+/// The control values of `A q` over all `q` of a cylinder about the tool's axis, and of the tip: they hold all positions of the cylinder.
+fn swept_box(segment: &Segment, cylinder: BoundingCylinder, margin: f64) -> Box3 {
+    let (points, weights) = segment.points();
+    let turns = segment.turns().iter().zip(segment.weights());
+    let turns: Vec<Matrix3<f64>> = turns.map(|(turn, weight)| turn / *weight).collect();
+    [0, 1, 2].map(|k| {
+        let tips = points.iter().zip(&weights).map(|(point, weight)| point[k] / weight);
+        let tip = tips.fold([f64::INFINITY, f64::NEG_INFINITY], |r, x| [r[0].min(x), r[1].max(x)]);
+        let mut own = [f64::INFINITY, f64::NEG_INFINITY];
+        for turn in &turns {
+            let across = cylinder.radius * turn[(k, 0)].hypot(turn[(k, 1)]);
+            let along = cylinder.z.map(|z| z * turn[(k, 2)]);
+            own[0] = own[0].min(along[0].min(along[1]) - across);
+            own[1] = own[1].max(along[0].max(along[1]) + across);
+        }
+        [tip[0] + own[0] - margin, tip[1] + own[1] + margin]
+    })
+}
+
+/// A bound on how far any point of the solid moves.
+fn travel(segment: &Segment, reach: f64) -> f64 {
+    let (points, weights) = segment.points();
+    let tips: Vec<Vector3<f64>> = points
+        .iter()
+        .zip(&weights)
+        .map(|(point, weight)| point / *weight)
+        .collect();
+    let turns = segment.turns().iter().zip(segment.weights());
+    let turns: Vec<Matrix3<f64>> = turns.map(|(turn, weight)| turn / *weight).collect();
+    // A rational curve with positive weights meets no plane more often than its control polygon does, hence is no longer (Cauchy, Crofton).
+    let tip: f64 = tips.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let turn: f64 = turns.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    tip + reach * turn
+}
+
+impl<'a> MovingSolid<'a> {
+    /// `extent`: coordinates of the grids on which it will be swept; all of them in one frame.
+    pub fn new(tool: &'a Tool, path: &Path, grids: &[&Grid], options: &Options) -> Result<Self, SweepError> {
+        let extent = grids.iter().flat_map(|grid| grid.min().into_iter().chain(grid.max()));
+        let plan = Plan::new(tool, path, grids[0].frame(), extent, options)?;
+        let cylinder = tool.bounding_cylinder();
+        // More than all displacements together.
+        let margin = options.tolerance;
+        let boxes = plan.parts.iter().map(|part| swept_box(&part.segment, cylinder, margin));
+        Ok(Self {
+            boxes: boxes.collect(),
+            tool,
+            plan,
+            spaces: Mutex::new(Vec::new()),
+        })
+    }
+
+    /// The parts of these moves.
+    pub fn parts(&self, moves: Range<usize>) -> Range<usize> {
+        let at = |number: usize| self.plan.parts.partition_point(|part| (part.number as usize) < number);
+        at(moves.start)..at(moves.end)
+    }
+
+    pub fn slice(&self, parts: Range<usize>) -> &[PathPart] {
+        &self.plan.parts[parts]
+    }
+
+    /// The motion between two times of a move, from 0 to 1.
+    pub fn within(&self, number: usize, window: [f64; 2]) -> Vec<PathPart> {
+        let whole = self.slice(self.parts(number..number + 1));
+        let mut out = Vec::with_capacity(whole.len());
+        for (n, part) in whole.iter().enumerate() {
+            // The stored times are rounded; the parts of a move are of equal duration.
+            let share = 1.0 / whole.len() as f64;
+            let local = window.map(|time| (time / share - n as f64).clamp(0.0, 1.0));
+            let [from, to] = local.map(|time| part.segment.at_time(time).clamp(0.0, 1.0));
+            if to > from {
+                out.push(PathPart {
+                    segment: part.segment.part(from, to),
+                    number: part.number,
+                    start: ((n as f64 + from) * share) as f32,
+                    share: ((to - from) * share) as f32,
+                });
+            }
+        }
+        out
+    }
+
+    /// A bound on how far any point of the solid moves along these parts.
+    pub fn travel(&self, parts: &[PathPart]) -> f64 {
+        parts
+            .iter()
+            .map(|part| travel(&part.segment, self.plan.cutter.reach))
+            .sum()
+    }
+
+    /// The parts of these moves that come near material, in runs of consecutive ones, and the lines with that material.
+    fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, LineMask)> {
+        let mut runs: Vec<(Range<usize>, Vec<u32>)> = Vec::new();
+        for at in self.parts(moves) {
+            let Some(window) = window(grid, &self.boxes[at]) else {
+                continue;
+            };
+            let mut lines = Vec::new();
+            material.visit(window, self.boxes[at][2], &mut |line| {
+                lines.push(line);
+                true
+            });
+            if lines.is_empty() {
+                continue;
+            }
+            match runs.last_mut() {
+                Some((run, all)) if run.end == at && run.len() < CHUNK => {
+                    run.end = at + 1;
+                    all.append(&mut lines);
+                    // Neighbouring parts share most of their lines.
+                    if all.len() > 2 * grid.len() {
+                        all.sort_unstable();
+                        all.dedup();
+                    }
+                }
+                _ => runs.push((at..at + 1, lines)),
+            }
+        }
+        let masked = runs
+            .into_iter()
+            .filter_map(|(run, lines)| Some((run, LineMask::new(grid, lines)?)));
+        masked.collect()
+    }
+
+    /// What the solid sweeps of the lines whose material it comes near.
+    pub fn swept_near(
+        &self,
+        moves: Range<usize>,
+        grid: &Grid,
+        material: &HeightMap,
+        options: &Options,
+        monitor: &dyn Monitor,
+    ) -> Result<SweptLines, SweepError> {
+        let mut all = SweptLines::default();
+        for (parts, mask) in self.near(moves, grid, material) {
+            all = all.united(self.swept(self.slice(parts), grid, &mask, options, monitor)?);
+        }
+        Ok(all)
+    }
+
+    /// What the solid sweeps of the marked lines along these parts.
+    pub fn swept(
+        &self,
+        parts: &[PathPart],
+        grid: &Grid,
+        mask: &LineMask,
+        options: &Options,
+        monitor: &dyn Monitor,
+    ) -> Result<SweptLines, SweepError> {
+        // Masks are for charts.
+        let options = options.clone().method(Method::Charts);
+        let mut job = self.plan.job(self.tool, grid, &options, monitor);
+        job.mask = Some(mask);
+        let kept = std::mem::take(&mut *self.spaces.lock().unwrap_or_else(PoisonError::into_inner));
+        job.spaces = Mutex::new(kept);
+        let mut swept = SweptLines::default();
+        for chunk in parts.chunks(CHUNK) {
+            let more = job.swept_lines(chunk)?;
+            swept = swept.united(more);
+        }
+        let used = job.spaces.into_inner().unwrap_or_else(PoisonError::into_inner);
+        *self.spaces.lock().unwrap_or_else(PoisonError::into_inner) = used;
+        Ok(swept)
+    }
+}
+
+/// The columns and rows that a box covers, and one more on each side.
+fn window(grid: &Grid, solid: &Box3) -> Option<[(usize, usize); 2]> {
+    let spacing = grid.spacing();
+    let range = |k: usize| {
+        let cells = grid.cells()[k] as f64;
+        let [low, high] = solid[k].map(|x| (x - grid.min()[k]) / spacing[k] - 0.5);
+        // Not finite: everything.
+        let (low, high) = ((low - 1.0).max(0.0), (high + 1.0).min(cells - 1.0));
+        (low <= high).then_some((low as usize, high as usize))
+    };
+    Some([range(0)?, range(1)?])
+}
