@@ -16,20 +16,27 @@
 //! | format | read | write |
 //! | --- | --- | --- |
 //! | G-code (`.nc`, `.ngc`, `.tap`, `.txt`…) | [`gcode::read`] | |
+//! | APT, CLSF, NCL (`.apt`, `.cls`, `.ncl`…) | [`apt::read`] | [`write::clsf`] |
 //! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
-//! | either, by content | [`read_file`] | |
+//! | one line per move, to read | | [`write::canonical`] |
+//! | any of them, by content | [`read_file`] | |
+//! | tool libraries | [`tools::read_library`] | [`tools::to_ron`] |
 //!
 //! Nothing is silently misread: a word that could move the tool in an unknown way is an [`NcError`] with line and
 //! column, and whatever is ignored or assumed is a [`Note`]. No input makes a reader panic.
 
+pub mod apt;
 mod content;
 mod drive;
 pub mod gcode;
 mod machines;
 mod model;
 mod read;
+mod rows;
 pub mod table;
 mod text;
+pub mod tools;
+pub mod write;
 
 pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, check, post};
 pub use machines::{
@@ -39,7 +46,10 @@ pub use machines::{
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
+pub use model::stock::StockDescription;
+pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use read::read_file;
 pub use sweepsim_motion::RotaryTable;
 pub use text::error::{NcError, NcProblem, TextPosition};
 pub use text::numbers::shortest;
+pub use tools::{BuiltTool, ToolProblem};

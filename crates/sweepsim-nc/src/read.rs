@@ -6,20 +6,20 @@ use crate::content::Content;
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{NcError, NcProblem, TextPosition};
-use crate::{gcode, table};
+use crate::{apt, gcode, rows, table};
 
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
 /// The supported formats, for messages.
-const EXPECTED: &str = "G-code, or a table of poses with the columns x,y,z,i,j,k";
+const EXPECTED: &str = "G-code, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
 /// The advice for formats that are only recognised.
-const INSTEAD: &str = "expected G-code from a post-processor, or its poses as a table with the columns x,y,z,i,j,k";
+const INSTEAD: &str = "expected G-code, APT or CLSF, or its poses as a table with the columns x,y,z,i,j,k";
 
-/// Reads a program from a file: G-code or a table of poses.
+/// Reads a program from a file: G-code, APT or CLSF, or a table of poses.
 ///
 /// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
-/// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) are read as G-code if the content is not distinctive. APT, CLSF and Heidenhain's
-/// Klartext are recognised but not read yet.
+/// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) or APT (`.apt`, `.cls`, `.clsf`, `.ncl`) are read as such if the content is not
+/// distinctive. Rows of six numbers without a header are poses. Heidenhain's Klartext is recognised but not read yet.
 ///
 /// # Errors
 /// [`NcError`]: the file cannot be read, or its content is invalid, not supported or not recognised.
@@ -51,17 +51,23 @@ fn read_bytes(bytes: &[u8], extension: Option<&str>, options: &ReadOptions) -> R
     match Content::of(&text) {
         Content::Table => read_table(),
         Content::Gcode => gcode::read(&text, options),
-        Content::Apt { line } => fail(NcProblem::unsupported("APT and CLSF paths are", INSTEAD), line),
+        Content::Apt { .. } => apt::read(&text, options),
         Content::Heidenhain { line } => fail(
             NcProblem::unsupported("programs in Heidenhain's Klartext are", INSTEAD),
             line,
         ),
         // The G-code reader reports what is wrong with the line.
         _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => gcode::read(&text, options),
-        Content::Numbers { line } => {
-            let found = "rows of numbers without a header";
-            fail(NcProblem::value("the content of this path file", found, EXPECTED), line)
+        _ if matches!(extension, Some("apt" | "cls" | "clsf" | "ncl" | "cl" | "aptsource")) => {
+            apt::read(&text, options)
         }
+        Content::Numbers { line } => match rows::read(&text, if options.inch { INCH } else { 1.0 }) {
+            Some(read) => read,
+            None => {
+                let found = "rows of numbers without a header, and not six in each";
+                fail(NcProblem::value("the content of this path file", found, EXPECTED), line)
+            }
+        },
         Content::Binary | Content::Unknown => {
             let problem = NcProblem::value("the content of this path file", "not recognised", EXPECTED);
             Err(NcError::new(problem, None))

@@ -1,4 +1,4 @@
-//! Tables of poses (CSV): a header `x,y,z,i,j,k` with optional columns `rapid`, `feed` and `tool`, in any order, and one pose per row.
+//! Tables of poses (CSV): a header `x,y,z,i,j,k` with optional columns `rapid`, `feed`, `tool` and `break`, in any order, and one pose per row.
 
 use std::io::Write;
 
@@ -10,12 +10,12 @@ use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::text::numbers::shortest;
 
 /// All columns; the first six are required.
-const COLUMNS: [&str; 9] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "tool"];
+const COLUMNS: [&str; 10] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "tool", "break"];
 
 /// Reads a table. Lengths are multiplied by `unit`, in millimetres per unit of the table.
 ///
 /// The axis `i, j, k` may have any length but 0. `rapid` is `0`, `1`, `true`, `false` or empty, and describes the move that ends in its
-/// row. Where `tool` changes, the path breaks.
+/// row. Where `tool` changes, the path breaks, and where `break` is `1` or `true`: the tool does not move to that row from the one before.
 ///
 /// # Errors
 /// [`NcError`] with line and column.
@@ -172,6 +172,14 @@ impl Row<'_> {
         }
     }
 
+    fn flag(&self, k: usize) -> Result<bool, NcError> {
+        match self.field(k) {
+            None | Some("0" | "false") => Ok(false),
+            Some("1" | "true") => Ok(true),
+            Some(_) => Err(self.error(k, "0, 1, true or false")),
+        }
+    }
+
     fn pose(&self, unit: f64, last: Option<&ProgramPose>) -> Result<ProgramPose, NcError> {
         let fields = COLUMNS.len().min(self.record.len());
         if self.columns.iter().filter(|&&column| column != usize::MAX).count() < self.record.len() {
@@ -185,11 +193,7 @@ impl Row<'_> {
         let [x, y, z, i, j, k] = numbers;
         let pose = Pose::new([x * unit, y * unit, z * unit], [i, j, k])
             .map_err(|error| self.table.error(NcProblem::Pose(error), self.line, None))?;
-        let rapid = match self.field(6) {
-            None | Some("0" | "false") => false,
-            Some("1" | "true") => true,
-            Some(_) => return Err(self.error(6, "0, 1, true or false")),
-        };
+        let rapid = self.flag(6)?;
         let feed = self.field(7).map(|_| self.number(7)).transpose()?;
         let tool = match self.field(8) {
             None => None,
@@ -200,7 +204,7 @@ impl Row<'_> {
             rapid,
             file: 0,
             line: self.line,
-            joined: last.is_some_and(|last| last.tool == tool),
+            joined: !self.flag(9)? && last.is_some_and(|last| last.tool == tool),
             tool,
             feed,
             feed_mode: FeedMode::default(),
@@ -210,15 +214,18 @@ impl Row<'_> {
     }
 }
 
-/// Writes a table that [`read`] reads back, with the columns `rapid`, `feed` and `tool` if any pose has them.
+/// Writes a table that [`read`] reads back, with the columns `rapid`, `feed`, `tool` and `break` if any pose needs them.
 ///
 /// # Errors
 /// Those of the writer.
 pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<()> {
+    // A change of the tool breaks the path anyway.
+    let breaks = |index: usize| index > 0 && !poses[index].joined && poses[index].tool == poses[index - 1].tool;
     let has = [
         poses.iter().any(|pose| pose.rapid),
         poses.iter().any(|pose| pose.feed.is_some()),
         poses.iter().any(|pose| pose.tool.is_some()),
+        (0..poses.len()).any(breaks),
     ];
     let mut line: Vec<String> = COLUMNS[..6].iter().map(|&name| name.to_owned()).collect();
     line.extend(
@@ -229,7 +236,7 @@ pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<
             .map(|(&name, _)| name.to_owned()),
     );
     writeln!(writer, "{}", line.join(","))?;
-    for pose in poses {
+    for (index, pose) in poses.iter().enumerate() {
         line.clear();
         line.extend(
             pose.pose
@@ -242,6 +249,7 @@ pub fn write(poses: &[ProgramPose], writer: &mut impl Write) -> std::io::Result<
             u8::from(pose.rapid).to_string(),
             pose.feed.map_or_else(String::new, shortest),
             pose.tool.map_or_else(String::new, |tool| tool.to_string()),
+            u8::from(breaks(index)).to_string(),
         ];
         line.extend(
             optional

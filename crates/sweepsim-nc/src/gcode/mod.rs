@@ -36,6 +36,7 @@ mod turns;
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcError;
+use crate::tools::comments;
 
 /// Reads a program.
 ///
@@ -55,7 +56,11 @@ use crate::text::error::NcError;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    interpreter::read(text, options)
+    let mut program = interpreter::read(text, options)?;
+    let comments = comments::read(text, program.units.in_mm());
+    program.tools = comments.tools;
+    program.stock = comments.stock;
+    Ok(program)
 }
 
 /// Whether a line begins a subroutine or loop, or sets a variable.

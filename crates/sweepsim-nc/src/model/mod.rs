@@ -3,3 +3,5 @@
 pub(crate) mod event;
 pub(crate) mod program;
 pub(crate) mod read_options;
+pub(crate) mod stock;
+pub(crate) mod tool;

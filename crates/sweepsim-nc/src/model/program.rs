@@ -7,6 +7,8 @@ use sweepsim_motion::{Move, Pose};
 
 use crate::machines::{Machine, Position};
 use crate::model::event::Event;
+use crate::model::stock::StockDescription;
+use crate::model::tool::ToolDescription;
 
 /// A pose of a program, and the move that ends there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,6 +154,10 @@ pub struct Program {
     pub calls: Vec<Call>,
     /// Everything else that the program does, in order.
     pub events: Vec<Event>,
+    /// The tools that the program itself describes, in its statements or its comments.
+    pub tools: BTreeMap<u32, ToolDescription>,
+    /// The stock that the program itself describes.
+    pub stock: Option<StockDescription>,
     /// The machine, as given or as implied by the program's words.
     pub machine: Machine,
     /// What was ignored or assumed: one note of each kind, sorted by line.

@@ -23,24 +23,42 @@ fn gcode_and_tables_by_any_name() {
     for name in NAMES {
         let program = read(name, b"%\nO1000 (part)\nG21\nG0 X0 Y0 Z5\nG1 Z0\n").unwrap();
         assert_eq!(program.poses[1].pose.tip(), [0.0, 0.0, 0.0], "{name}");
-        let program = read(name, b"x,y,z,i,j,k\n1,2,3,0,0,1\n").unwrap();
-        assert_eq!(program.poses[0].pose.tip(), [1.0, 2.0, 3.0], "{name}");
+        for text in [
+            &b"x,y,z,i,j,k\n1,2,3,0,0,1\n"[..],
+            b"$$ by hand\nPARTNO/1\nGOTO/1,2,3\n",
+            b"\nTOOL PATH/MILL,TOOL,D10\nGOTO/1,2,3,0,0,1\n",
+        ] {
+            let program = read(name, text).unwrap();
+            assert_eq!(program.poses[0].pose.tip(), [1.0, 2.0, 3.0], "{name}");
+        }
     }
     assert!(read("a.csv", b"G0 X0 Y0 Z5\n").is_err(), "a .csv is a table");
 }
 
 #[test]
+fn rows_of_six_numbers_are_poses() {
+    let program = read("a.txt", b"\n1 2 3 0 0 1\n1;2;3;0;0;2\n4, 5, 6, 0.1, 0, 1\n").unwrap();
+    let lines: Vec<usize> = program.poses.iter().map(|pose| pose.line).collect();
+    assert_eq!(lines, [2, 4]);
+    assert!(
+        program.notes[0]
+            .message
+            .starts_with("rows of six numbers without a header")
+    );
+    assert_eq!(
+        read("a.txt", b"1 2 3 0 0 1\n1 2 3 0 0\n").unwrap_err(),
+        "a.txt:2:1: a row is \"1 2 3 0 0\", but must be six numbers, as in the first row"
+    );
+    assert_eq!(
+        read("a.txt", b"1 2 3 0 0 0\n").unwrap_err(),
+        "a.txt:1:1: the axis (0, 0, 0) has no direction"
+    );
+}
+
+#[test]
 fn what_is_recognised_but_not_read() {
-    let instead = "expected G-code from a post-processor, or its poses as a table with the columns x,y,z,i,j,k";
+    let instead = "expected G-code, APT or CLSF, or its poses as a table with the columns x,y,z,i,j,k";
     for name in NAMES {
-        assert_eq!(
-            read(name, b"$$ by hand\nPARTNO/1\nGOTO/1,2,3\n").unwrap_err(),
-            format!("{name}:1:1: APT and CLSF paths are not supported yet: {instead}")
-        );
-        assert_eq!(
-            read(name, b"\nTOOL PATH/MILL,TOOL,D10\nTLDATA/MILL,32.,5.,75.,0.,0.\n").unwrap_err(),
-            format!("{name}:2:1: APT and CLSF paths are not supported yet: {instead}")
-        );
         assert_eq!(
             read(name, b"0 BEGIN PGM 12 MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n").unwrap_err(),
             format!("{name}:1:1: programs in Heidenhain's Klartext are not supported yet: {instead}")
@@ -50,10 +68,12 @@ fn what_is_recognised_but_not_read() {
 
 #[test]
 fn what_is_not_recognised() {
-    let expected = "but must be G-code, or a table of poses with the columns x,y,z,i,j,k";
+    let expected = "but must be G-code, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
     assert_eq!(
-        read("a.txt", b"-20.1 -18.5 1.6 0 0 1\n").unwrap_err(),
-        format!("a.txt:1:1: the content of this path file is rows of numbers without a header, {expected}")
+        read("a.txt", b"-20.1 -18.5 1.6 0 0 1 7\n").unwrap_err(),
+        format!(
+            "a.txt:1:1: the content of this path file is rows of numbers without a header, and not six in each, {expected}"
+        )
     );
     for content in [&b""[..], b"dear all\n", b"\0\x01\x02", b"{\"version\": 36}"] {
         assert_eq!(

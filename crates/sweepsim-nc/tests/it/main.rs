@@ -1,8 +1,11 @@
 //! Integration tests of `sweepsim-nc`, in one binary: it links once.
 
+mod apt;
 mod contents;
 mod harmless;
 mod kinematics;
 mod machines;
 mod programs;
+mod round_trips;
 mod tables;
+mod tools;

@@ -108,3 +108,22 @@ fn moves_know_their_file() {
     let last = program.poses.last().unwrap();
     assert_eq!((program.file_of(last), last.line), (Some(file.as_path()), 2));
 }
+
+#[test]
+fn a_row_can_break_the_path() {
+    let text = "x,y,z,i,j,k,break\n0,0,0,0,0,1,1\n1,0,0,0,0,1,\n1,0,0,0,0,1,1\n2,0,0,0,0,1,0\n3,0,0,0,0,1,true\n";
+    let program = table::read(text, 1.0).unwrap();
+    let joined: Vec<bool> = program.poses.iter().map(|pose| pose.joined).collect();
+    assert_eq!(joined, [false, true, false, true, false]);
+    let mut written = Vec::new();
+    table::write(&program.poses, &mut written).unwrap();
+    assert_eq!(
+        table::read(std::str::from_utf8(&written).unwrap(), 1.0).unwrap().poses,
+        program.poses
+    );
+    let error = table::read("x,y,z,i,j,k,break\n0,0,0,0,0,1,perhaps\n", 1.0).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "2:13: break is \"perhaps\", but must be 0, 1, true or false"
+    );
+}

@@ -1,5 +1,6 @@
 //! Files that nobody here wrote: `../shared/data` beside the project. Where it is absent, these tests are listed as ignored.
 
+mod cl_files;
 mod curves;
 mod impeller;
 mod meshes;

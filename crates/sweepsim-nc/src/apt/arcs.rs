@@ -1,0 +1,150 @@
+//! Arcs: `CIRCLE` and `MOVARC` give centre and normal, the next `GOTO` the end. The turn is right-handed about the normal.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use sweepsim_motion::{ArcError, TipArc};
+
+use super::frames::{Vector, add, cross, dot, norm, sub, turned};
+
+/// An arc whose end is not known yet, in millimetres in the frame of the poses.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PendingArc {
+    pub centre: Vector,
+    /// A unit vector.
+    pub normal: Vector,
+    pub radius: Option<f64>,
+    /// The angle that `MOVARC` gives, in radians.
+    pub angle: Option<f64>,
+    /// The bytes of its statement, and its line.
+    pub bytes: Range<usize>,
+    pub line: usize,
+}
+
+/// How much the radii at both ends of an arc may differ, in mm,
+const RADIUS_SLACK: f64 = 0.0127;
+/// in proportion to the radius,
+const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
+/// and at most: as for arcs of G-code.
+const RADIUS_SLACK_LARGEST: f64 = 0.5;
+/// Ends within this distance, in mm, are the same: files have four to six decimals.
+const SAME_END: f64 = 2e-4;
+/// The most chords per arc.
+const MOST_CHORDS: f64 = 1e6;
+
+fn differs(a: f64, b: f64) -> bool {
+    let apart = (a - b).abs();
+    !(apart <= RADIUS_SLACK_LARGEST && apart <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * a.max(b)))
+}
+
+/// An arc or helix with both ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Arc {
+    pub start: Vector,
+    pub end: Vector,
+    centre: Vector,
+    normal: Vector,
+    pub angle: f64,
+}
+
+impl PendingArc {
+    fn radial(&self, point: Vector) -> Vector {
+        let from = sub(point, self.centre);
+        add(from, -dot(from, self.normal), self.normal)
+    }
+
+    /// The end of the arc as `MOVARC` gives it, without a rise.
+    pub fn own_end(&self, start: Vector) -> Option<Vector> {
+        let radial = self.radial(start);
+        let turned = turned(radial, self.normal, self.angle?);
+        Some(add(start, 1.0, sub(turned, radial)))
+    }
+
+    /// Whether a point is where the arc ends by its angle, apart from a rise.
+    pub fn ends_at(&self, start: Vector, end: Vector) -> bool {
+        self.own_end(start).is_none_or(|own| {
+            let apart = sub(own, end);
+            let across = add(apart, -dot(apart, self.normal), self.normal);
+            norm(across) <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * norm(self.radial(start)))
+        })
+    }
+
+    /// The arc from `start` to `end`.
+    pub fn to(&self, start: Vector, end: Vector) -> Result<Arc, String> {
+        let [a, b] = [start, end].map(|point| self.radial(point));
+        let (ra, rb) = (norm(a), norm(b));
+        if !(ra > 0.0 && rb > 0.0 && ra.is_finite() && rb.is_finite()) {
+            return Err(format!(
+                "the arc has no radius: its ends are {ra} and {rb} mm from its axis"
+            ));
+        }
+        if differs(ra, rb) {
+            return Err(format!(
+                "the arc has two radii: its start is {ra} mm and its end {rb} mm from its axis, expected the same"
+            ));
+        }
+        if let Some(radius) = self.radius.filter(|&radius| differs(radius, ra)) {
+            return Err(format!(
+                "the arc's radius is {radius} mm, but its start is {ra} mm from its axis"
+            ));
+        }
+        let angle = match self.angle {
+            Some(angle) => angle,
+            None if norm(sub(a, b)) <= SAME_END.min(0.1 * ra) => TAU,
+            None => {
+                let angle = dot(self.normal, cross(a, b)).atan2(dot(a, b));
+                if angle <= 0.0 { angle + TAU } else { angle }
+            }
+        };
+        Ok(Arc {
+            start,
+            end,
+            centre: self.centre,
+            normal: self.normal,
+            angle,
+        })
+    }
+}
+
+impl Arc {
+    /// The arc as a single move of the tip.
+    pub fn exact(&self) -> Result<TipArc, ArcError> {
+        TipArc::new(self.centre, self.normal, self.angle)
+    }
+
+    fn radial(&self) -> Vector {
+        let from = sub(self.start, self.centre);
+        add(from, -dot(from, self.normal), self.normal)
+    }
+
+    /// The number of chords that stay within `tolerance` (mm) of the arc.
+    pub fn chords(&self, tolerance: f64) -> Result<usize, String> {
+        let radius = norm(self.radial());
+        // A chord over 2h leaves r (1 - cos h) = 2 r sin²(h/2).
+        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
+        let chords = (self.angle.abs() / (2.0 * half)).ceil().max(1.0);
+        if chords <= MOST_CHORDS {
+            Ok(chords as usize)
+        } else {
+            Err(format!(
+                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
+            ))
+        }
+    }
+
+    /// The point at `s` in `[0, 1]`; at 0 and 1 exactly the ends. What is left between the arc and its end is added in proportion.
+    pub fn at(&self, s: f64) -> Vector {
+        if s >= 1.0 {
+            return self.end;
+        }
+        let radial = self.radial();
+        let place = |s: f64| {
+            add(
+                self.start,
+                1.0,
+                sub(turned(radial, self.normal, s * self.angle), radial),
+            )
+        };
+        add(place(s), s, sub(self.end, place(1.0)))
+    }
+}

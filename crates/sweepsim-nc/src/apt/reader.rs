@@ -1,0 +1,311 @@
+//! Executes the statements of a CL file.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use super::arcs::PendingArc;
+use super::cycles::{Cycle, CycleStatement};
+use super::frames::Frame;
+use super::loaded::LoadedTools;
+use super::nurbs::Nurbs;
+use super::statement::{Statement, Statements};
+use super::words::{IGNORED, REFUSED, ROTARY, is_geometry};
+use crate::model::event::{Event, EventKind};
+use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
+use crate::model::read_options::ReadOptions;
+use crate::model::stock::StockDescription;
+use crate::text::error::{NcError, NcProblem, TextPosition};
+
+/// The most problems after the first one.
+const MOST_FURTHER: usize = 100;
+
+/// A problem, and the bytes of the text at fault.
+pub(super) type Located = (NcProblem, Range<usize>);
+
+pub(super) struct Reader<'o> {
+    pub options: &'o ReadOptions,
+    /// Millimetres per unit.
+    pub unit: f64,
+    /// The frame of the first `MSYS`, which is that of the poses, and the one in effect.
+    pub frames: Option<[Frame; 2]>,
+    /// Where the tool is, in the frame of the poses.
+    pub tip: Option<[f64; 3]>,
+    pub axis: [f64; 3],
+    pub rapid: bool,
+    pub feed: Option<f64>,
+    pub feed_mode: FeedMode,
+    pub arc: Option<PendingArc>,
+    pub cycle: Option<Cycle>,
+    last_cycle: Option<Cycle>,
+    pub nurbs: Nurbs,
+    /// Whether the tool moves to the next pose from the last one.
+    pub joined: bool,
+    pub poses: Vec<ProgramPose>,
+    pub calls: Vec<Call>,
+    pub events: Vec<Event>,
+    pub notes: NoteList,
+    pub tools: LoadedTools,
+    pub stock: Option<StockDescription>,
+    title: Option<String>,
+    pub units: Option<Units>,
+    pub csys: Option<[f64; 12]>,
+    /// Whether coordinates are those of the part, if the file has said so.
+    pub world: Option<bool>,
+    ended: bool,
+}
+
+pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
+    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
+        let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
+        return Err(NcError::new(problem, None));
+    }
+    let mut reader = Reader {
+        options,
+        unit: 1.0,
+        frames: None,
+        tip: None,
+        axis: [0.0, 0.0, 1.0],
+        rapid: false,
+        feed: None,
+        feed_mode: FeedMode::PerMinute,
+        arc: None,
+        cycle: None,
+        last_cycle: None,
+        nurbs: Nurbs::default(),
+        joined: false,
+        poses: Vec::new(),
+        calls: Vec::new(),
+        events: Vec::new(),
+        notes: NoteList::default(),
+        tools: LoadedTools::default(),
+        stock: None,
+        title: None,
+        units: None,
+        csys: None,
+        world: None,
+        ended: false,
+    };
+    reader.default_unit(text);
+    let mut errors: Vec<NcError> = Vec::new();
+    let mut messages = HashSet::new();
+    for statement in Statements::of(text) {
+        if let Err((problem, bytes)) = reader.statement(&statement, text) {
+            reader.leave();
+            if options.lenient && !matches!(problem, NcProblem::Unsupported { ref what, .. } if what == PART_PROGRAM) {
+                reader.notes.add(statement.line, format!("left out: {problem}"));
+            } else if messages.insert(problem.to_string()) {
+                errors.push(NcError::new(problem, Some(TextPosition::of_bytes(text, bytes))));
+            }
+            reader.rapid = false;
+            reader.arc = None;
+        }
+        if reader.ended || errors.len() > MOST_FURTHER {
+            break;
+        }
+    }
+    if errors.is_empty()
+        && let Err((problem, bytes)) = reader.end_of_arc()
+    {
+        errors.push(NcError::new(problem, Some(TextPosition::of_bytes(text, bytes))));
+    }
+    if let Some(error) = NcError::all(errors) {
+        return Err(error);
+    }
+    if reader.poses.is_empty() {
+        let line = text.lines().count().max(1);
+        let problem = NcProblem::syntax("this program has no move: expected at least one GOTO");
+        return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
+    }
+    Ok(reader.finish())
+}
+
+/// What part programs are called in messages.
+const PART_PROGRAM: &str = "APT part programs, whose path follows from geometry, are";
+
+impl Reader<'_> {
+    fn finish(mut self) -> Program {
+        let tools = self.tools.finish(&mut self.notes);
+        Program {
+            title: self.title,
+            units: self.units.unwrap_or_default(),
+            poses: self.poses,
+            calls: self.calls,
+            events: self.events,
+            tools,
+            stock: self.stock,
+            machine: self.options.machine.clone(),
+            notes: self.notes.finish(),
+            ..Program::default()
+        }
+    }
+
+    /// The unit until the file says one: as its feeds suggest, or as given.
+    fn default_unit(&mut self, text: &str) {
+        let word = |statement: &Statement, words: [&str; 2]| words.iter().any(|word| statement.has(word));
+        let mut inch = self.options.inch;
+        for statement in Statements::of(text) {
+            if statement.is("UNITS") || statement.is("UNIT") {
+                break;
+            }
+            if statement.is("FEDRAT") && word(&statement, ["MMPM", "MMPR"]) {
+                self.notes
+                    .add(statement.line, "no units are given: millimetres, as in the feeds");
+                inch = false;
+                break;
+            }
+            if statement.is("FEDRAT") && word(&statement, ["IPM", "IPR"]) {
+                self.notes
+                    .add(statement.line, "no units are given: inches, as in the feeds");
+                inch = true;
+                break;
+            }
+        }
+        if inch {
+            self.unit = 25.4;
+            self.units = Some(Units::Inch);
+        }
+    }
+
+    /// Breaks the path.
+    pub fn leave(&mut self) {
+        self.joined = false;
+    }
+
+    fn statement(&mut self, statement: &Statement, text: &str) -> Result<(), Located> {
+        let line = statement.line;
+        let whole = |problem| (problem, statement.bytes.clone());
+        let is = |word: &str| statement.is(word);
+        // An arc whose end is not given by the next move ends by its angle.
+        if self.arc.is_some()
+            && !["GOTO", "FEDRAT", "PAINT", "SPINDL", "COOLNT", "PPRINT", "RAPID"]
+                .iter()
+                .any(|w| is(w))
+        {
+            self.end_of_arc()?;
+        }
+        if self.nurbs.is_open() && !is("KNOT") && !is("CNTRL") && !is("NURBS") && !is("WEIGHT") {
+            let bytes = self.nurbs.bytes();
+            self.end_of_nurbs().map_err(|problem| (problem, bytes))?;
+        }
+        if statement.comment {
+            return self.meaningful_comment(statement);
+        }
+        match statement.major.to_ascii_uppercase().as_str() {
+            "GOTO" => self.goto(statement)?,
+            "RAPID" => self.rapid = true,
+            "FEDRAT" => self.fedrat(statement),
+            "FROM" => self.from(statement)?,
+            "GODLTA" => self.godlta(statement)?,
+            "GOHOME" => {
+                self.notes.add(
+                    line,
+                    "GOHOME: the tool leaves for a place that only the machine knows; the path breaks",
+                );
+                self.tip = None;
+                self.leave();
+            }
+            "CIRCLE" => self.circle(statement)?,
+            "MOVARC" => self.movarc(statement)?,
+            "CYCLE" => {
+                self.calls.push(Call::new(0, line, None));
+                let call = (self.calls.len() - 1) as u32;
+                match CycleStatement::of(statement, self.unit, call).map_err(whole)? {
+                    CycleStatement::Off => self.cycle = None,
+                    CycleStatement::On => self.cycle = self.last_cycle.clone(),
+                    CycleStatement::Begin(cycle) => {
+                        self.cycle = Some(cycle.clone());
+                        self.last_cycle = Some(cycle);
+                        return Ok(());
+                    }
+                }
+                self.calls.pop();
+            }
+            "CUTTER" | "TLDATA" => {
+                if let Some(note) = self.tools.describe(statement, self.unit).map_err(whole)? {
+                    self.notes.add(line, note);
+                }
+            }
+            "LOAD" | "LOADTL" | "TURRET" | "TOOLNO" => self.load(statement).map_err(whole)?,
+            "SELECT" | "SELCTL" => {}
+            "UNITS" | "UNIT" => self.set_unit(statement).map_err(whole)?,
+            "MSYS" => self.msys(statement).map_err(whole)?,
+            "CSYS" | "TRNTYP" => self.frame_of_coordinates(statement).map_err(whole)?,
+            "ORIGIN" | "SETUP" => self.notes.add(
+                line,
+                format!(
+                    "{} is for the post-processor: ignored",
+                    statement.major.to_ascii_uppercase()
+                ),
+            ),
+            "CUTCOM" => {
+                if !statement.has("OFF") && !statement.has("ON") {
+                    let note =
+                        "CUTCOM: the coordinates are taken as those of the tool's axis, as CAM systems write them";
+                    self.notes.add(line, note);
+                }
+            }
+            "SPINDL" => self.spindle(statement),
+            "COOLNT" => self.coolant(statement),
+            "DELAY" | "DWELL" => {
+                if let Some(seconds) = statement.number().filter(|seconds| *seconds >= 0.0) {
+                    self.event(line, EventKind::Dwell { seconds });
+                }
+            }
+            "STOP" => self.event(line, EventKind::Stop),
+            "OPSTOP" => self.event(line, EventKind::OptionalStop),
+            "PARTNO" => self.title = self.title.take().or_else(|| Some(statement.rest.to_owned())),
+            "PPRINT" | "DISPLY" | "TPRINT" => self.event(line, EventKind::Message(statement.rest.to_owned())),
+            "INSERT" => self.insert(statement),
+            "REMARK" | "LETTER" => {}
+            "CSI_SET_FLUTE_LENGTH" => self
+                .tools
+                .flute_length(statement.number().map(|value| value * self.unit)),
+            "CSI_SET_EXTENSION_LENGTH" => self.tools.stick_out(statement.number().map(|value| value * self.unit)),
+            "NURBS" | "KNOT" | "CNTRL" | "WEIGHT" => self.nurbs.statement(statement, self.unit).map_err(whole)?,
+            "MOVNRB" => self.notes.add(
+                line,
+                "MOVNRB: the points that approximate the curve are read, not the curve",
+            ),
+            "FINI" => self.ended = true,
+            _ => self.other(statement, text)?,
+        }
+        Ok(())
+    }
+
+    /// Statements that do nothing here, or cannot be read.
+    fn other(&mut self, statement: &Statement, text: &str) -> Result<(), Located> {
+        let fail = |what: &str, instead: &str| Err((NcProblem::unsupported(what, instead), statement.bytes.clone()));
+        let major = statement.major;
+        let upper = major.to_ascii_uppercase();
+        if is_geometry(&upper, &text[statement.bytes.clone()]) {
+            return fail(
+                PART_PROGRAM,
+                "expected a CL file, as APT processors and CAM systems write it, in which GOTO gives every point",
+            );
+        }
+        if let Some((_, what)) = REFUSED.iter().find(|(word, _)| upper == *word) {
+            let nothing = upper == "TRANS" && numbers(statement).iter().all(|value| *value == 0.0);
+            if !nothing {
+                return fail(
+                    what,
+                    "the path of the tool would be unknown; expected GOTO, CIRCLE or CYCLE",
+                );
+            }
+        } else if ROTARY.contains(&upper.as_str()) {
+            if upper != "MULTAX" {
+                let note = format!("{upper}: the tool axes of GOTO say how the part is turned; ignored");
+                self.notes.add(statement.line, note);
+            }
+        } else if !IGNORED.contains(&upper.as_str()) && !upper.starts_with("CSI_") {
+            let shown: String = upper.chars().take(40).collect();
+            self.notes
+                .add(statement.line, format!("{shown} is not understood: ignored"));
+        }
+        Ok(())
+    }
+}
+
+/// The numbers of a list.
+pub(super) fn numbers(statement: &Statement) -> Vec<f64> {
+    statement.items.iter().filter_map(|item| item.number).collect()
+}
