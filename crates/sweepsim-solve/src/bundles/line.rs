@@ -2,7 +2,7 @@
 
 use super::taylor::{MARGIN, Square, Taylor};
 use crate::charts::ChartMap;
-use crate::numbers::SINGULAR;
+use crate::numbers::ILL_CONDITIONED;
 use nalgebra::SVector;
 
 /// The maximum number of Newton steps on one box.
@@ -61,7 +61,7 @@ pub(super) fn inverse<const N: usize>(m: &Square<N>) -> Option<(Square<N>, i8)> 
     }
     // A fraction of Hadamard's bound.
     let size: f64 = (0..N).map(|j| m.column(j).norm()).product();
-    let regular = determinant.abs() > SINGULAR * size && size.is_finite();
+    let regular = determinant.abs() > ILL_CONDITIONED * size && size.is_finite();
     if !regular {
         return None;
     }

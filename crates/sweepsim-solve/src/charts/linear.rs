@@ -1,7 +1,7 @@
 //! The linearisation of a map over a box, and how closely it encloses preimages.
 
 use crate::Enclosure;
-use crate::numbers::SINGULAR;
+use crate::numbers::ILL_CONDITIONED;
 use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
@@ -45,7 +45,7 @@ impl<const N: usize> Linear<N> {
         }
         let balanced = Square::<N>::from_fn(|i, j| directions[(i, j)] / rows[i]);
         let determinant = balanced.determinant();
-        if determinant.abs() <= SINGULAR || determinant.is_nan() {
+        if determinant.abs() <= ILL_CONDITIONED || determinant.is_nan() {
             return None;
         }
         let inverse = balanced.try_inverse()?;

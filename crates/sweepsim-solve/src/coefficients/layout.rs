@@ -10,7 +10,6 @@
 
 use super::range::Range;
 use super::tape::Tape;
-use super::tensor;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList, Square};
 use smallvec::SmallVec;
 
@@ -142,20 +141,9 @@ impl Layout {
         })
     }
 
-    /// Whether an equation is zero on the cell, up to noise.
-    pub(crate) fn vanishes(&self, cell: &Cell, totals: &(Row, Row), equation: usize) -> bool {
-        let size = totals.0[equation].abs().max(totals.1[equation].abs());
-        match self.tape {
-            Some(_) => {
-                let error = self.value_error(cell, equation);
-                // Without a bound, nothing is known.
-                error.is_finite() && size <= 2.5 * error
-            }
-            None => {
-                let error = cell.noise[equation] + self.remainder[equation];
-                size <= 2.5 * error + 64.0 * EPSILON * cell.scale[equation]
-            }
-        }
+    /// Whether recomputing some row's coefficients would lower their noise.
+    pub(crate) fn improvable(&self, cell: &Cell) -> bool {
+        (0..self.rows()).any(|e| cell.noise[e] > 2.0 * (self.first_noise[e] + EPSILON * cell.scale[e]))
     }
 
     /// A bound on an equation's size on the cell (if it is finite).
@@ -168,34 +156,6 @@ impl Layout {
                 })
                 .magnitude(),
             None => cell.scale[equation],
-        }
-    }
-
-    /// Whether an equation depends on a variable.
-    pub(crate) fn depends(&self, equation: usize, variable: usize) -> bool {
-        let has = |row: usize| {
-            let mut own = self.parts.iter().filter(|p| p.equation == row);
-            own.any(|p| p.axis(variable).is_some())
-        };
-        match &self.tape {
-            Some(tape) => tape.any(equation, has),
-            None => has(equation),
-        }
-    }
-
-    /// Whether an equation is zero on the whole domain, up to its noise.
-    pub(crate) fn nothing(&self, equation: usize) -> bool {
-        let zero = |row: usize| {
-            let own = self.parts.iter().filter(|p| p.equation == row);
-            let size: f64 = own
-                .map(|p| tensor::range(p.of(&self.first)))
-                .map(|(l, h)| tensor::greater(l.abs(), h.abs()))
-                .sum();
-            size <= 8.0 * (self.first_noise[row] + self.remainder[row])
-        };
-        match &self.tape {
-            Some(tape) => tape.any(equation, zero),
-            None => zero(equation),
         }
     }
 }

@@ -72,11 +72,4 @@ impl Tape {
         }
         models.pop().unwrap_or_else(|| M::constant(0.0))
     }
-
-    /// Whether the equation uses a leaf that satisfies this.
-    pub(crate) fn any(&self, equation: usize, mut test: impl FnMut(usize) -> bool) -> bool {
-        self.equations[equation]
-            .iter()
-            .any(|step| matches!(step, Step::Leaf(row) if test(*row)))
-    }
 }

@@ -20,6 +20,10 @@ pub(crate) const EPSILON: f64 = f64::EPSILON;
 /// lie. A root on the face between two boxes costs a certificate in each.
 pub const CUT: f64 = 0.492;
 
-/// A matrix whose rows and columns are scaled to 1 counts as singular if a pivot, or its determinant, is no larger than this. Its inverse is then
-/// accurate only to `EPSILON / SINGULAR`, two parts in a hundred thousand, which is enough for a preconditioner.
-pub(crate) const SINGULAR: f64 = 1e-11;
+/// A matrix whose rows and columns are scaled to 1 counts as singular if a pivot, or its determinant, is no larger than this: elimination rounds
+/// by a few units in the last place of 1, so that nothing is known of a smaller pivot. Whoever uses an inverse `K` bounds `I − K A` with its rounding.
+pub(crate) const SINGULAR: f64 = 16.0 * EPSILON;
+
+/// The same where an inverse also serves Newton steps for thousands of targets, none of which would converge with a worse one: it is accurate to
+/// `EPSILON / ILL_CONDITIONED`, two parts in a hundred thousand.
+pub(crate) const ILL_CONDITIONED: f64 = 1e-11;

@@ -15,6 +15,8 @@
 //! only root in a box `C` that contains the other, never because they are close.
 
 mod certify;
+mod drowned;
+mod flood;
 #[cfg(feature = "rayon")]
 mod parallel;
 mod pieces;

@@ -22,12 +22,17 @@ impl PointSolver {
     ///
     /// As [`solve`](Self::solve).
     pub fn solve_pieces(&mut self, pieces: &Pieces, monitor: &dyn Monitor) -> Result<Points, SolveError> {
+        for system in &pieces.systems {
+            self.check(system)?;
+        }
+        // The time is for all pieces together.
+        self.start_clock();
         let mut points = Points::default();
         // Roots that may lie on planes between pieces.
         let mut between: Vec<Root> = Vec::new();
         for (number, system) in pieces.systems.iter().enumerate() {
             monitor.advance(number, pieces.systems.len());
-            let found = self.solve(system, monitor)?;
+            let found = self.solve_in_time(system, monitor);
             points.unresolved.extend(found.unresolved);
             points.statistics.merge(&found.statistics);
             for mut root in found.roots {
@@ -90,11 +95,9 @@ impl PointSolver {
                     orientation: first.orientation,
                     location: place,
                 }),
-                None => points.unresolved.push(UnresolvedBox {
-                    bounds: around,
-                    cause: Cause::Smallest,
-                    boxes: count,
-                }),
+                None => points
+                    .unresolved
+                    .push(UnresolvedBox::new(around, Cause::Smallest, count)),
             }
         }
         points.roots.sort_by(|a, b| {

@@ -2,10 +2,23 @@
 
 use super::Points;
 use super::certify::Found;
+use super::flood::{COARSE, CROWD};
 use crate::coefficients::{Cell, pop, push};
 use crate::numbers::{Double, Row};
-use crate::search::{Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, open_box, unite};
+use crate::search::{
+    Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, cluster_box, clusters, unite,
+};
 use crate::{Monitor, System};
+use std::time::Instant;
+
+/// The order in which boxes are searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// Depth first, until too many boxes stay open.
+    DepthFirst,
+    /// Depth first, and the largest first once boxes stay open (`flood.rs`).
+    LargestInCrowds,
+}
 
 /// The 0-D solver. It reuses its memory from one system to the next.
 ///
@@ -36,6 +49,10 @@ pub struct PointSolver {
     pub(super) doubles: Vec<Double>,
     pub(super) ranges: Vec<(f64, f64)>,
     pub(super) failures: u32,
+    /// When the time is used up.
+    pub(super) deadline: Option<Instant>,
+    /// Boxes of at most this size (in sides of the domain) stay open where noise hides the solution.
+    pub(super) coarsest: f64,
     pub(crate) found: Vec<Found>,
     pub(crate) open: Vec<Open>,
     pub(crate) statistics: SolveStatistics,
@@ -58,8 +75,26 @@ impl PointSolver {
     /// [`SolveError::Equations`] unless there are as many equations as variables; [`SolveError::Smallest`].
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Points, SolveError> {
         self.check(system)?;
-        self.run(system, monitor);
-        Ok(self.points(system))
+        self.start_clock();
+        Ok(self.solve_in_time(system, monitor))
+    }
+
+    /// As [`solve`](Self::solve), for a system that was checked, until the deadline.
+    pub(super) fn solve_in_time(&mut self, system: &System, monitor: &dyn Monitor) -> Points {
+        self.restart();
+        self.coarsest = COARSE;
+        self.search(system, &system.root(), 0, monitor, Order::LargestInCrowds);
+        self.finish(system);
+        self.points(system)
+    }
+
+    pub(super) fn start_clock(&mut self) {
+        self.deadline = self.options.time.and_then(|t| Instant::now().checked_add(t));
+    }
+
+    /// Whether the time is used up.
+    pub(super) fn late(&self) -> bool {
+        self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
     /// Checks that the system and the limits are valid.
@@ -88,19 +123,27 @@ impl PointSolver {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         let roots = self.represent(system);
+        let unresolved = clusters(&self.open, n, self.options.unresolved)
+            .iter()
+            .map(|c| cluster_box(system, &self.open, c))
+            .collect();
         Points {
             roots,
-            unresolved: self.open.iter().map(|o| open_box(system, o)).collect(),
+            unresolved,
             statistics: self.statistics,
         }
     }
 
-    /// The search and its postprocessing, with the results in inner coordinates in `found` and `open`.
+    /// The search and its postprocessing, with the results in inner coordinates in `found` and `open`. It stops at the limit of unresolved boxes: for
+    /// systems whose roots are of no use unless all of them are simple.
     pub(crate) fn run(&mut self, system: &System, monitor: &dyn Monitor) {
+        self.start_clock();
         self.restart();
+        self.coarsest = f64::INFINITY;
         let root = system.root();
-        self.search(system, &root, 0, monitor);
+        self.search(system, &root, 0, monitor, Order::DepthFirst);
         self.finish(system);
+        unite(&mut self.open, system.layout.n);
     }
 
     /// Clears the results.
@@ -113,7 +156,7 @@ impl PointSolver {
         self.failures = 0;
     }
 
-    /// Removes duplicate roots, and merges open boxes.
+    /// Removes duplicate roots, and open boxes that hold nothing but a found root.
     pub(crate) fn finish(&mut self, system: &System) {
         let n = system.layout.n;
         self.identify(system);
@@ -124,18 +167,21 @@ impl PointSolver {
                 .iter()
                 .any(|f| inside(&o.lo, &o.hi, &f.unique_lo, &f.unique_hi, n))
         });
-        unite(&mut self.open, n);
     }
 
-    /// The depth-first search from one cell at some depth; adds to `found` and `open`.
-    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, monitor: &dyn Monitor) {
+    /// The search from one cell at some depth; adds to `found` and `open`.
+    pub(crate) fn search(&mut self, system: &System, first: &Cell, depth: u32, monitor: &dyn Monitor, order: Order) {
         let layout = &system.layout;
-        let mut watch = Watch::new(&self.options);
+        let mut watch = Watch::until(self.deadline);
         push(&mut self.stack, first, layout);
         self.depths.push(depth);
         while let Some(depth) = self.depths.pop() {
             pop(&mut self.stack, &mut self.cell, layout);
-            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
+            let open = match order {
+                Order::DepthFirst => self.open.len(),
+                Order::LargestInCrowds => 0,
+            };
+            let stop = watch.stop(&self.options, &self.statistics, open, monitor);
             if let Some(cause) = stop {
                 self.leave(cause);
                 while self.depths.pop().is_some() {
@@ -144,15 +190,9 @@ impl PointSolver {
                 }
                 break;
             }
-            let fate = self.visit(system, depth);
-            if monitor.visits() {
-                // If the cell was split, `cell` is now the upper part and `lower` the other.
-                let lo = if fate == Fate::Split {
-                    &self.lower.lo
-                } else {
-                    &self.cell.lo
-                };
-                monitor.visit(&system.outward(lo, &self.cell.hi), depth, fate);
+            self.watched_visit(system, depth, monitor);
+            if order == Order::LargestInCrowds && self.open.len() > CROWD {
+                self.largest_first(system, &mut watch, monitor);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! The tests of one box, in the order of their cost, and its reduction or split.
 
 use super::certify::{Found, newton_box, unique_root};
+use super::drowned::{FAINT, Hidden};
 use super::solver::PointSolver;
 use crate::System;
 use crate::coefficients::{Cell, Layout, excluded, push, within_domain};
@@ -46,14 +47,15 @@ impl PointSolver {
         let layout = &system.layout;
         let n = layout.n;
         let mut threshold = TRY;
-        let (totals, inverted) = loop {
+        let mut fresh = false;
+        let (inverted, faint) = loop {
             let mut totals = layout.ranges(&mut self.cell);
             if excluded(&totals, n) {
                 return Fate::Sign;
             }
-            if layout.noisy(&self.cell, &totals, NOISY) && within_domain(&self.cell, n) {
-                layout.refresh(&mut self.cell, &mut self.doubles);
-                self.statistics.refreshed += 1;
+            if !fresh && layout.noisy(&self.cell, &totals, NOISY) && within_domain(&self.cell, n) {
+                self.refresh(layout);
+                fresh = true;
                 totals = layout.ranges(&mut self.cell);
                 if excluded(&totals, n) {
                     return Fate::Sign;
@@ -92,20 +94,36 @@ impl PointSolver {
                     return Fate::Projection;
                 }
             }
-            if !self.reduce(layout, &mut window) {
-                break (totals, inverted);
+            if self.reduce(layout, &mut window) {
+                self.statistics.reductions += 1;
+                fresh = false;
+                if self.late() {
+                    self.leave(Cause::Time);
+                    return Fate::Unresolved;
+                }
+                continue;
             }
-            self.statistics.reductions += 1;
+            // Before noise is blamed, it is made as small as it can be.
+            let k = inverted.as_ref().map(|(k, _)| k);
+            let faint = self.faint(layout, k);
+            if faint && !fresh && layout.improvable(&self.cell) && within_domain(&self.cell, n) {
+                self.refresh(layout);
+                fresh = true;
+                continue;
+            }
+            break (inverted, faint);
         };
+        let hidden = if faint {
+            self.hidden(layout, SQUEEZED)
+        } else {
+            Hidden::Nothing
+        };
+        let k = inverted.as_ref().map(|(k, _)| k);
         let width = |j: usize| self.cell.hi[j] - self.cell.lo[j];
-        let vanishing = |i: usize| layout.vanishes(&self.cell, &totals, i);
         let widest = (0..n).fold(0, |best, j| if width(j) > width(best) { j } else { best });
-        let thin = |j: usize| width(j) < SQUEEZED * width(widest);
-        let squeezed = !(0..n).all(vanishing)
-            && (0..n).all(|i| !vanishing(i) || ((0..n).any(|j| thin(j) && layout.depends(i, j)) && !layout.nothing(i)));
         let cause = if (0..n).all(|j| width(j) <= self.options.smallest) {
             Some(Cause::Smallest)
-        } else if (0..n).any(vanishing) && !squeezed {
+        } else if hidden == Hidden::Wide && (width(widest) <= self.coarsest) {
             Some(Cause::Vanishing)
         } else if depth >= self.options.depth {
             Some(Cause::Depth)
@@ -115,10 +133,10 @@ impl PointSolver {
         if let Some(cause) = cause {
             return self.settle_or_leave(system, cause);
         }
-        let axis = if (0..n).any(vanishing) {
-            widest
+        let axis = if hidden == Hidden::Nothing {
+            self.direction(layout, depth, k)
         } else {
-            self.direction(layout, depth, inverted.as_ref().map(|(k, _)| k))
+            widest
         };
         let (lo, hi) = (self.cell.lo[axis], self.cell.hi[axis]);
         let at = lo + CUT * (hi - lo);
@@ -131,6 +149,27 @@ impl PointSolver {
         self.depths.push(depth + 1);
         self.depths.push(depth + 1);
         Fate::Split
+    }
+
+    /// Recomputes the current cell's coefficients.
+    fn refresh(&mut self, layout: &Layout) {
+        layout.refresh(&mut self.cell, &mut self.doubles);
+        self.statistics.refreshed += 1;
+    }
+
+    /// Whether the noise of the equations, preconditioned by this matrix, may hide something; also if there is no such matrix.
+    fn faint(&self, layout: &Layout, k: Option<&Square>) -> bool {
+        let n = layout.n;
+        let Some(k) = k else { return true };
+        let mut errors = [0.0; MAX_UNKNOWNS];
+        for (e, error) in errors[..n].iter_mut().enumerate() {
+            *error = layout.value_error(&self.cell, e);
+        }
+        (0..n).any(|i| {
+            let noise: f64 = (0..n).map(|e| k[i][e].abs() * errors[e]).sum();
+            let clear = noise < FAINT;
+            !clear
+        })
     }
 
     /// Shrinks the cell to the window (relative to its sides) if that is worth the cost.
@@ -250,7 +289,7 @@ impl PointSolver {
         let mut reach = widest;
         for _ in 0..if useful { WIDER_TRIES } else { 0 } {
             reach *= WIDER;
-            if reach > 0.5 {
+            if reach > 0.5 || self.late() {
                 break;
             }
             let trial = &mut self.trial;

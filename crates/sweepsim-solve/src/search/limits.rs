@@ -19,7 +19,9 @@ pub struct SolveOptions {
     pub boxes: u64,
     /// The maximum depth: the number of splits above a box.
     pub depth: u32,
-    /// The maximum number of boxes that may stay unresolved before the search stops, so that a continuum of solutions does not flood it.
+    /// The number of boxes that may wait or stay unresolved before a continuum of solutions is assumed. Curve and surface searches then stop. The point
+    /// search goes on more coarsely: near boxes that stay unresolved it leaves others of up to 1/2048 of the domain unresolved, too. It reports at
+    /// most this many clusters of unresolved boxes.
     pub unresolved: usize,
     /// The maximum number of vertices of polylines and meshes. 2²⁴ by default.
     pub vertices: usize,
@@ -145,12 +147,25 @@ impl std::fmt::Display for Cause {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnresolvedBox {
-    /// The box. Adjacent boxes with the same cause are merged.
+    /// The box. Boxes near one another are merged, unless that would cover much else.
     pub bounds: Vec<Enclosure>,
-    /// Why it stays unresolved.
+    /// Why it stays unresolved; if it was merged, the commonest reason.
     pub cause: Cause,
     /// The number of merged boxes.
     pub boxes: usize,
+    /// The merged boxes; empty if there is only one, or if the solver does not keep them. Outside of them, `bounds` holds no solution.
+    pub parts: Vec<Vec<Enclosure>>,
+}
+
+impl UnresolvedBox {
+    pub(crate) const fn new(bounds: Vec<Enclosure>, cause: Cause, boxes: usize) -> Self {
+        Self {
+            bounds,
+            cause,
+            boxes,
+            parts: Vec::new(),
+        }
+    }
 }
 
 /// Counts of a search, by the fate of boxes.
@@ -219,15 +234,16 @@ impl SolveStatistics {
 #[derive(Debug)]
 pub(crate) struct Watch {
     deadline: Option<Instant>,
-    ticks: u32,
 }
 
 impl Watch {
     pub(crate) fn new(options: &SolveOptions) -> Self {
-        Self {
-            deadline: options.time.and_then(|t| Instant::now().checked_add(t)),
-            ticks: 0,
-        }
+        Self::until(options.time.and_then(|t| Instant::now().checked_add(t)))
+    }
+
+    /// With a deadline that was set earlier.
+    pub(crate) const fn until(deadline: Option<Instant>) -> Self {
+        Self { deadline }
     }
 
     /// Whether the time is used up.
@@ -252,8 +268,6 @@ impl Watch {
         if monitor.cancelled() {
             return Some(Cause::Cancelled);
         }
-        // Reading the clock is more expensive.
-        self.ticks += 1;
-        (self.ticks.is_multiple_of(32) && self.late()).then_some(Cause::Time)
+        self.late().then_some(Cause::Time)
     }
 }

@@ -1,11 +1,13 @@
 //! Code shared by all searches: limits, counts, monitors, and open boxes.
 
+mod cluster;
 mod error;
 mod limits;
 mod monitor;
 mod open;
 mod picture;
 
+pub(crate) use cluster::{cluster_box, clusters};
 pub use error::SolveError;
 pub(crate) use limits::Watch;
 pub use limits::{Cause, Fate, SolveOptions, SolveStatistics, UnresolvedBox};

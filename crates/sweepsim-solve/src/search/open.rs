@@ -46,9 +46,5 @@ pub(crate) fn unite(open: &mut Vec<Open>, n: usize) {
 
 /// The box in the domain's coordinates.
 pub(crate) fn open_box(system: &System, open: &Open) -> UnresolvedBox {
-    UnresolvedBox {
-        bounds: system.outward(&open.lo, &open.hi),
-        cause: open.cause,
-        boxes: open.boxes,
-    }
+    UnresolvedBox::new(system.outward(&open.lo, &open.hi), open.cause, open.boxes)
 }
