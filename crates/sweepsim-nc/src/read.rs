@@ -27,13 +27,15 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     let read = std::fs::read(file)
         .map_err(|error| NcError::new(NcProblem::Read(error), None))
-        .and_then(|bytes| read_bytes(&bytes, extension.as_deref(), options));
+        .and_then(|bytes| read_bytes(&bytes, file, extension.as_deref(), options));
     let mut program = read.map_err(|error| error.in_file(file))?;
-    program.files = vec![file.to_owned()];
+    if program.files.is_empty() {
+        program.files = vec![file.to_owned()];
+    }
     Ok(program)
 }
 
-fn read_bytes(bytes: &[u8], extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
+fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
     let read_table = || table::read(utf8(bytes)?, if options.inch { INCH } else { 1.0 });
     if extension == Some("csv") {
         return read_table();
@@ -50,14 +52,16 @@ fn read_bytes(bytes: &[u8], extension: Option<&str>, options: &ReadOptions) -> R
     };
     match Content::of(&text) {
         Content::Table => read_table(),
-        Content::Gcode => gcode::read(&text, options),
+        Content::Gcode => gcode::read_at(&text, Some(file), options),
         Content::Apt { .. } => apt::read(&text, options),
         Content::Heidenhain { line } => fail(
             NcProblem::unsupported("programs in Heidenhain's Klartext are", INSTEAD),
             line,
         ),
         // The G-code reader reports what is wrong with the line.
-        _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => gcode::read(&text, options),
+        _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => {
+            gcode::read_at(&text, Some(file), options)
+        }
         _ if matches!(extension, Some("apt" | "cls" | "clsf" | "ncl" | "cl" | "aptsource")) => {
             apt::read(&text, options)
         }

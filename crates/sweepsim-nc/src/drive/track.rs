@@ -92,7 +92,7 @@ impl Track {
         self.program
     }
 
-    pub fn note(&mut self, message: impl Into<String>) {
+    pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
         self.notes.add(self.place.line, message);
     }
 

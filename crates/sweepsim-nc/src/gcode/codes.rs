@@ -1,14 +1,36 @@
 //! The meaning of G and M codes.
 
-use super::arc::ArcPlane;
-use super::interpreter::Values;
+use super::motion::arc::ArcPlane;
+use super::offsets::{EXTENDED, WorkOffset};
+use super::syntax::block::Block;
+use crate::model::event::Coolant;
+use crate::model::program::FeedMode;
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum MotionMode {
     Rapid,
     Feed,
-    Arc { counter_clockwise: bool },
+    Arc {
+        counter_clockwise: bool,
+    },
+    /// A drilling cycle: 73 … 89.
+    Cycle(u8),
+    /// G33.1: down and back, with the spindle.
+    RigidTap,
+}
+
+/// How G43 and its kin set the length offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LengthCode {
+    /// G43 H: from the table.
+    Table,
+    /// G44 H: from the table, with the other sign.
+    Opposite,
+    /// G43.1 X Y Z: as the words say.
+    Words,
+    /// G43.2: in addition to what there is.
+    Add,
 }
 
 /// What a G code does to the geometry.
@@ -22,11 +44,30 @@ pub(crate) enum Code {
     InchOrCycle(bool),
     Absolute(bool),
     AbsoluteCentres(bool),
+    Feed(FeedMode),
+    /// G99: cycles retract to their plane R.
+    RetractToPlane(bool),
     TipControl(bool),
-    LengthOffset,
-    WorkOffset(usize),
+    Length(LengthCode),
+    CancelLength,
+    /// G41, G42; G41.1, G42.1.
+    Compensation {
+        left: bool,
+        by_words: bool,
+    },
+    CancelCompensation,
+    WorkOffset(WorkOffset),
+    /// G54.1 P, G154 P.
+    WorkOffsetByWord,
     MachineCoordinates,
-    Home,
+    /// G28, G30.
+    Home {
+        second: bool,
+    },
+    /// G28.1, G30.1.
+    SetHome {
+        second: bool,
+    },
     SetOffsets,
     LocalShift,
     ShiftHere,
@@ -34,6 +75,14 @@ pub(crate) enum Code {
         forget: bool,
     },
     RestoreShift,
+    Rotate,
+    CancelRotation,
+    Scale,
+    CancelScale,
+    Mirror,
+    CancelMirror,
+    Polar(bool),
+    MacroCall,
     Dwell,
     /// G5: a spline, or a high-speed mode.
     SplineOrMode,
@@ -50,19 +99,19 @@ pub(crate) enum Code {
 }
 
 /// The meaning of `G value` in a block: some codes mean different things with different words, on different controls.
-pub(crate) fn g_in(value: f64, values: &Values) -> Code {
+pub(crate) fn g_in(value: f64, block: &Block) -> Code {
     const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
-    let given = |letters| values.first(letters).is_some();
+    let given = |letters: &str| letters.chars().any(|letter| block.has(letter));
     match g(value) {
         Code::SplineOrMode if given("XYZABCIJKQ") || !given("P") => Code::Refused("splines are"),
         // P10001 and on call high-speed cycles, which move axes.
-        Code::SplineOrMode => match values.get('P') {
+        Code::SplineOrMode => match block.get('P') {
             Some(0.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
             _ => Code::Refused("high-speed modes other than P0 and P10000 are"),
         },
         Code::SplineOrContouring if given("XYZABCIJK") || !given("Q") => Code::Refused("splines are"),
         // Q2 is smooth interpolation: it changes the path. R is a level of precision.
-        Code::SplineOrContouring => match values.get('Q') {
+        Code::SplineOrContouring => match block.get('Q') {
             Some(0.0 | 1.0) if !given("LP") => HIGH_SPEED,
             _ => Code::Refused("high-speed modes other than Q0 and Q1 are"),
         },
@@ -78,20 +127,20 @@ fn g(value: f64) -> Code {
     if (value * 10.0 - tenths).abs() > 1e-6 || !(0.0..=9999.0).contains(&tenths) {
         return Code::Unknown;
     }
+    let arc = |counter_clockwise| Code::Motion(MotionMode::Arc { counter_clockwise });
     match tenths as u32 {
         0 => Code::Motion(MotionMode::Rapid),
         10 => Code::Motion(MotionMode::Feed),
-        20 => Code::Motion(MotionMode::Arc {
-            counter_clockwise: false,
-        }),
-        30 => Code::Motion(MotionMode::Arc {
-            counter_clockwise: true,
-        }),
+        20 => arc(false),
+        30 => arc(true),
         40 => Code::Dwell,
         50 => Code::SplineOrMode,
         51 => Code::SplineOrContouring,
         52 | 53 => Code::Refused("splines are"),
         100 => Code::SetOffsets,
+        120 | 130 | 1500 => Code::Refused("pocket cycles are"),
+        150 => Code::Polar(false),
+        160 => Code::Polar(true),
         170 => Code::Plane([0, 1, 2]),
         180 => Code::Plane([2, 0, 1]),
         190 => Code::Plane([1, 2, 0]),
@@ -102,28 +151,54 @@ fn g(value: f64) -> Code {
         710 => Code::InchOrCycle(false),
         7000 => Code::Inch(true),
         7100 => Code::Inch(false),
-        280 | 300 => Code::Home,
-        330..=339 | 760 => Code::Refused("threading is"),
-        380..=389 | 310 => Code::Refused("probing is"),
-        410..=429 => Code::Refused("cutter compensation is"),
-        430..=432 => Code::LengthOffset,
+        280 => Code::Home { second: false },
+        300 => Code::Home { second: true },
+        281 => Code::SetHome { second: false },
+        301 => Code::SetHome { second: true },
+        // Straight, in step with the spindle.
+        330 => Code::Motion(MotionMode::Feed),
+        331 => Code::Motion(MotionMode::RigidTap),
+        332..=339 => Code::Refused("threading is"),
+        310 | 350..=389 | 1360 => Code::Refused("probing is"),
+        400 => Code::CancelCompensation,
+        410 | 420 => Code::Compensation {
+            left: tenths == 410.0,
+            by_words: false,
+        },
+        411 | 421 => Code::Compensation {
+            left: tenths == 411.0,
+            by_words: true,
+        },
+        412..=419 | 422..=429 => Code::Refused("this kind of cutter compensation is"),
+        430 => Code::Length(LengthCode::Table),
+        431 => Code::Length(LengthCode::Words),
+        432 => Code::Length(LengthCode::Add),
         434 => Code::TipControl(true),
         435 => Code::Refused("tip control with axis vectors is"),
-        490 => Code::TipControl(false),
-        // The ends of scaling, rotation, polar coordinates, and of Haas's G254 and G268, whose beginnings are refused.
-        500 | 690 | 150 | 2550 | 2690 => Code::Harmless,
-        640 => Code::Blending,
-        1870 => Code::Ignored("smoothness (G187) changes no programmed point: ignored"),
-        510 => Code::Refused("scaling is"),
-        511 => Code::Refused("mirroring is"),
-        680..=689 => Code::Refused("rotated frames are"),
-        160 => Code::Refused("polar coordinates are"),
+        440 => Code::Length(LengthCode::Opposite),
+        450..=480 => Code::Refused("tool offsets of single moves (G45 to G48) are"),
+        490 => Code::CancelLength,
+        500 => Code::CancelScale,
+        501 => Code::CancelMirror,
+        510 => Code::Scale,
+        511 => Code::Mirror,
         520 => Code::LocalShift,
         530 => Code::MachineCoordinates,
-        540 | 550 | 560 | 570 | 580 | 590 => Code::WorkOffset((tenths as usize - 540) / 10),
-        591..=593 => Code::WorkOffset(tenths as usize - 591 + 6),
-        650..=679 => Code::Refused("macro calls are"),
-        730 | 740 | 810..=890 => Code::Refused("canned cycles are"),
+        540 | 550 | 560 | 570 | 580 | 590 => Code::WorkOffset((tenths as u32 - 540) / 10),
+        541 | 1540 => Code::WorkOffsetByWord,
+        591..=593 => Code::WorkOffset(tenths as u32 - 591 + 6),
+        600 => Code::Refused("single-direction positioning is"),
+        640 => Code::Blending,
+        650 => Code::MacroCall,
+        660 | 661 => Code::Refused("modal macro calls are"),
+        670 => Code::Harmless,
+        680 => Code::Rotate,
+        681..=689 => Code::Refused("rotated frames are"),
+        690 => Code::CancelRotation,
+        760 => Code::Motion(MotionMode::Cycle(76)),
+        730 | 740 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
+            Code::Motion(MotionMode::Cycle((tenths as u32 / 10) as u8))
+        }
         800 => Code::CancelMotion,
         900 => Code::Absolute(true),
         910 => Code::Absolute(false),
@@ -133,8 +208,19 @@ fn g(value: f64) -> Code {
         921 => Code::CancelShift { forget: true },
         922 => Code::CancelShift { forget: false },
         923 => Code::RestoreShift,
-        // Compensation off, exact stop, look-ahead, feed and speed modes, return levels of cycles, diameter mode off.
-        90 | 400 | 610 | 611 | 80 | 930 | 940 | 950 | 960 | 970 | 980 | 990 => Code::Harmless,
+        930 => Code::Feed(FeedMode::InverseTime),
+        940 => Code::Feed(FeedMode::PerMinute),
+        950 => Code::Feed(FeedMode::PerRevolution),
+        980 => Code::RetractToPlane(false),
+        990 => Code::RetractToPlane(true),
+        // Haas's G110 to G129 are G154 P1 to P20.
+        tenths @ 1100..=1290 if tenths % 10 == 0 => Code::WorkOffset(EXTENDED + (tenths - 1100) / 10 + 1),
+        1870 => Code::Ignored("smoothness (G187) changes no programmed point: ignored"),
+        1030 => Code::Ignored("look-ahead limits (G103) change no programmed point: ignored"),
+        // The ends of Haas's G254 and G268, whose beginnings are refused.
+        2550 | 2690 => Code::Harmless,
+        // Exact stop, look-ahead, speed modes, diameter mode off.
+        90 | 610 | 611 | 620 | 630 | 80 | 960 | 970 => Code::Harmless,
         70 => Code::Refused("lathe diameters are"),
         _ => Code::Unknown,
     }
@@ -147,12 +233,32 @@ pub(crate) enum Misc {
     ToolChange,
     SetTool,
     End,
+    Stop,
+    OptionalStop,
+    Spindle(Turning),
+    Coolant(Coolant),
     TipControl(bool),
-    /// M99: the end of a main program.
+    /// M98, M97.
+    Call {
+        by_block_number: bool,
+    },
+    /// M99: the end of a main program, or the return from a subprogram.
     Return,
+    SaveModes,
+    ForgetModes,
+    RestoreModes,
+    SaveModesForCall,
     /// Not supported; the reason as a subject with its verb.
     Refused(&'static str),
     Unknown,
+}
+
+/// How the spindle turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Turning {
+    Clockwise,
+    CounterClockwise,
+    Stopped,
 }
 
 /// The meaning of `M value`.
@@ -161,17 +267,32 @@ pub(crate) fn m(value: f64) -> Misc {
         return Misc::Unknown;
     }
     match value as u32 {
+        0 => Misc::Stop,
+        1 => Misc::OptionalStop,
         2 | 30 => Misc::End,
+        3 => Misc::Spindle(Turning::Clockwise),
+        4 => Misc::Spindle(Turning::CounterClockwise),
+        5 => Misc::Spindle(Turning::Stopped),
         6 => Misc::ToolChange,
+        7 => Misc::Coolant(Coolant::Mist),
+        8 => Misc::Coolant(Coolant::Flood),
+        9 => Misc::Coolant(Coolant::Off),
+        88 => Misc::Coolant(Coolant::Through),
+        89 => Misc::Coolant(Coolant::ThroughOff),
         61 => Misc::SetTool,
         128 | 428 => Misc::TipControl(true),
         129 | 429 => Misc::TipControl(false),
+        97 => Misc::Call { by_block_number: true },
+        98 => Misc::Call { by_block_number: false },
         99 => Misc::Return,
-        96..=98 | 198 => Misc::Refused("subroutines are"),
-        72 | 73 => Misc::Refused("saved modes are"),
+        70 => Misc::SaveModes,
+        71 => Misc::ForgetModes,
+        72 => Misc::RestoreModes,
+        73 => Misc::SaveModesForCall,
+        96 | 198 => Misc::Refused("these subprograms are"),
         91 | 92 => Misc::Refused("machine coordinates by M code are"),
-        // Stops, spindle, coolant, clamps, overrides, digital and analog output, modal state.
-        0 | 1 | 3..=5 | 7..=11 | 19 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
+        // Clamps, spindle orientation, overrides, pallets, digital and analog output.
+        10 | 11 | 19 | 48..=53 | 60 | 62..=68 => Misc::Harmless,
         _ => Misc::Unknown,
     }
 }

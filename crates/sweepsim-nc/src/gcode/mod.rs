@@ -23,16 +23,19 @@
 //! Anything that could move the tool in a way that is not supported (splines, cycles, cutter compensation, rotated frames, subroutines,
 //! variables) is an error with its position.
 
-mod arc;
 mod codes;
-mod interpreter;
-mod lexer;
-mod moves;
+mod dialect;
+mod flow;
+mod modes;
+mod motion;
 mod offsets;
-mod state;
-mod title;
-mod turns;
+mod run;
+mod syntax;
+mod trace;
 
+use std::path::Path;
+
+use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcError;
@@ -56,11 +59,35 @@ use crate::tools::comments;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    let mut program = interpreter::read(text, options)?;
+    read_at(text, None, options)
+}
+
+/// Reads the text of a file; subprograms may be in files beside it.
+pub(crate) fn read_at(text: &str, file: Option<&Path>, options: &ReadOptions) -> Result<Program, NcError> {
+    let mut program = interpreter::read(&Input { text, file }, options, false).program?;
     let comments = comments::read(text, program.units.in_mm());
     program.tools = comments.tools;
     program.stock = comments.stock;
     Ok(program)
+}
+
+/// The canonical commands of a program: what it makes the machine do, as LinuxCNC's stand-alone interpreter writes it, one command each.
+///
+/// Moves (`STRAIGHT_TRAVERSE`, `STRAIGHT_FEED`, `ARC_FEED`) are in the program's units and coordinates, beside the programmed contour where
+/// cutter compensation is on. Besides, there are offsets, dwells and the texts of `(DEBUG,…)` and `(PRINT,…)`. The commands up to a problem
+/// come with it. `file` is where the text comes from; subprograms may be in files beside it.
+///
+/// ```
+/// use sweepsim_nc::{ReadOptions, gcode};
+/// let (commands, problem) = gcode::canonical("G20\nG0 X1 Y0 Z0.5\n", None, &ReadOptions::default());
+/// assert_eq!(commands, ["STRAIGHT_TRAVERSE(1.0000, 0.0000, 0.5000, 0.0000, 0.0000, 0.0000)"]);
+/// assert!(problem.is_none());
+/// ```
+#[must_use]
+pub fn canonical(text: &str, file: Option<&Path>, options: &ReadOptions) -> (Vec<String>, Option<NcError>) {
+    let outcome = interpreter::read(&Input { text, file }, options, true);
+    let commands = outcome.trace.iter().map(ToString::to_string).collect();
+    (commands, outcome.program.err())
 }
 
 /// Whether a line begins a subroutine or loop, or sets a variable.
@@ -71,5 +98,5 @@ pub(crate) fn is_subroutine_or_variable(line: &str) -> bool {
 
 /// Whether a line is a block with a code or a coordinate.
 pub(crate) fn is_block(line: &str) -> bool {
-    lexer::block(line).is_ok_and(|block| block.words.iter().any(|word| "GMXYZT".contains(word.letter)))
+    syntax::words::plain(line).is_ok_and(|block| block.words().iter().any(|word| "GMXYZT".contains(word.letter)))
 }

@@ -1,53 +1,91 @@
 //! Work offsets: from the coordinates of a program to the common frame of its poses.
 //!
-//! A work offset that the program sets itself (`G10 L2`) is applied. One that it does not set is taken as the part's frame; it must then
-//! be the only one in use, since only the machine knows the distance between two of them.
+//! A work offset that the program sets itself (`G10 L2`), or that the control's variables give, is applied. One that is not known is
+//! taken as the part's frame; it must then be the only one in use, since only the machine knows the distance between two of them.
 
+use std::collections::BTreeMap;
+
+use super::motion::map::Map;
 use crate::text::error::NcProblem;
 
-fn describe(frame: Option<usize>) -> String {
+/// The number of a work offset: 0 … 8 for G54 … G59.3, 100 + P for G54.1 P.
+pub(crate) type WorkOffset = u32;
+
+/// Where G54.1 P1 and its kin begin.
+pub(crate) const EXTENDED: WorkOffset = 100;
+
+/// The place of a work offset.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Placed {
+    pub origin: [f64; 3],
+    /// Degrees about Z.
+    pub turn: f64,
+}
+
+/// The work offsets, and the shifts on top of them. Millimetres.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Offsets {
+    /// The active one.
+    pub active: WorkOffset,
+    placed: BTreeMap<WorkOffset, Placed>,
+    /// Fanuc's external offset, which is added to all.
+    pub external: [f64; 3],
+    /// The frame of the moves so far: an offset that the program does not set, `None` for those that it sets.
+    used: Option<Option<WorkOffset>>,
+    /// Set by G92. Where that came before any position was known, relative to the frame that it made.
+    pub shift: [f64; 3],
+    /// What G92.3 restores; `None` until the program has set it: the machine remembers it from the last program.
+    shift_saved: Option<[f64; 3]>,
+    /// Whether LinuxCNC's #5210 is set.
+    pub shifted: bool,
+    /// The axes whose first G92 came before the position was known.
+    placed_by_shift: [bool; 3],
+    /// Those of them whose shift has ended: only the machine knows where their coordinates are now.
+    lost: [bool; 3],
+    /// Set by G52.
+    pub local: [f64; 3],
+}
+
+/// The name of a work offset in a program.
+pub(crate) fn name(index: WorkOffset) -> String {
+    match index {
+        0..=5 => format!("G{}", 54 + index),
+        6..=8 => format!("G59.{}", index - 5),
+        _ => format!("G54.1 P{}", index.saturating_sub(EXTENDED)),
+    }
+}
+
+fn describe(frame: Option<WorkOffset>) -> String {
     match frame {
         Some(index) => format!("a move in {}, which the program does not set,", name(index)),
         None => "one in an offset that it sets".into(),
     }
 }
 
-/// The offsets of G54 … G59.3, and the shifts on top of them. Millimetres.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Offsets {
-    /// The active one: 0 for G54.
-    pub active: usize,
-    placed: [Option<[f64; 3]>; 9],
-    /// The frame of the moves so far: the index of an offset that the program does not set, `None` for those that it sets.
-    used: Option<Option<usize>>,
-    /// Set by G92. Where that came before any position was known, relative to the frame that it made.
-    shift: [f64; 3],
-    /// What G92.3 restores; `None` until the program has set it: the machine remembers it from the last program.
-    shift_saved: Option<[f64; 3]>,
-    /// The axes whose first G92 came before the position was known.
-    placed_by_shift: [bool; 3],
-    /// Those of them whose shift has ended: only the machine knows where their coordinates are now.
-    lost: [bool; 3],
-    /// Set by G52.
-    local: [f64; 3],
-}
-
-fn name(index: usize) -> String {
-    match index {
-        0..=5 => format!("G{}", 54 + index),
-        _ => format!("G59.{}", index - 5),
-    }
-}
-
 impl Offsets {
-    /// What to add to a program's coordinates.
-    pub fn total(&self) -> [f64; 3] {
-        let placed = self.placed[self.active].unwrap_or_default();
-        std::array::from_fn(|k| placed[k] + self.shift[k] + self.local[k])
+    /// From coordinates after scaling and rotation (G51, G68) to the frame of the poses.
+    pub(crate) fn map(&self) -> Map {
+        let Placed { origin, turn } = self.placed(self.active).unwrap_or_default();
+        let shift = Map::shift(std::array::from_fn(|k| self.shift[k] + self.local[k]));
+        let outer = Map::shift(std::array::from_fn(|k| origin[k] + self.external[k]));
+        outer.after(&Map::turn([0, 1, 2], turn).after(&shift))
+    }
+
+    pub(crate) fn placed(&self, index: WorkOffset) -> Option<Placed> {
+        self.placed.get(&index).copied()
+    }
+
+    pub(crate) fn place(&mut self, index: WorkOffset, placed: Placed) {
+        self.placed.insert(index, placed);
+    }
+
+    /// Whether the frame of the active offset is known to the machine.
+    pub(crate) fn active_is_placed(&self) -> bool {
+        self.placed.contains_key(&self.active)
     }
 
     /// Checks that coordinates along axis `k` are known relative to those before.
-    pub fn know(&self, k: usize) -> Result<(), NcProblem> {
+    pub(crate) fn know(&self, k: usize) -> Result<(), NcProblem> {
         if !self.lost[k] {
             return Ok(());
         }
@@ -61,13 +99,13 @@ impl Offsets {
     }
 
     /// Whether a G92 before the first move has made the frame.
-    pub fn made_by_shift(&self) -> bool {
+    pub(crate) fn made_by_shift(&self) -> bool {
         self.placed_by_shift.contains(&true)
     }
 
     /// Checks that the active offset is known relative to those used before.
-    pub fn use_active(&mut self) -> Result<(), NcProblem> {
-        let frame = self.placed[self.active].is_none().then_some(self.active);
+    pub(crate) fn use_active(&mut self) -> Result<(), NcProblem> {
+        let frame = (!self.active_is_placed()).then_some(self.active);
         let before = *self.used.get_or_insert(frame);
         if before == frame {
             return Ok(());
@@ -78,45 +116,9 @@ impl Offsets {
         ))
     }
 
-    fn index(&self, p: f64) -> Result<usize, NcProblem> {
-        if p.fract() != 0.0 || !(0.0..=9.0).contains(&p) {
-            return Err(NcProblem::value("P of G10", p, "a whole number from 0 to 9"));
-        }
-        Ok(if p == 0.0 { self.active } else { p as usize - 1 })
-    }
-
-    /// `G10 L2`.
-    pub fn set(&mut self, p: f64, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
-        let index = self.index(p)?;
-        let before = self.placed[index].unwrap_or_default();
-        self.placed[index] = Some(std::array::from_fn(|k| words[k].unwrap_or(before[k])));
-        Ok(())
-    }
-
-    /// `G10 L20`: gives the current position the given coordinates.
-    pub fn set_here(&mut self, p: f64, words: [Option<f64>; 3], here: [Option<f64>; 3]) -> Result<(), NcProblem> {
-        let index = self.index(p)?;
-        let mut placed = self.placed[index].unwrap_or_default();
-        for k in 0..3 {
-            if let Some(word) = words[k] {
-                self.know(k)?;
-                placed[k] = known(here[k])? - word - self.shift[k] - self.local[k];
-            }
-        }
-        self.placed[index] = Some(placed);
-        Ok(())
-    }
-
-    /// `G52`.
-    pub fn set_local(&mut self, words: [Option<f64>; 3]) {
-        for k in 0..3 {
-            self.local[k] = words[k].unwrap_or(self.local[k]);
-        }
-    }
-
-    /// `G92`: gives the current position `here` the given coordinates. Before the first move (`fresh`) an unknown position becomes known
-    /// by it, in the frame that it makes.
-    pub fn shift_here(
+    /// `G92`: gives the current position `here` (in the program's coordinates) the given coordinates. Before the first move (`fresh`) an
+    /// unknown position becomes known by it, in the frame that it makes.
+    pub(crate) fn shift_here(
         &mut self,
         words: [Option<f64>; 3],
         here: &mut [Option<f64>; 3],
@@ -124,27 +126,28 @@ impl Offsets {
     ) -> Result<(), NcProblem> {
         for k in 0..3 {
             let Some(word) = words[k] else { continue };
-            if here[k].is_none() && fresh {
-                here[k] = Some(word + self.total()[k]);
-                self.placed_by_shift[k] = true;
-            } else {
-                self.shift[k] += known(here[k])? - word - self.total()[k];
+            match here[k] {
+                None if fresh => self.placed_by_shift[k] = true,
+                now => self.shift[k] += known(now)? - word,
             }
+            here[k] = Some(word);
             self.lost[k] = false;
         }
         if words.iter().any(Option::is_some) {
             self.shift_saved = Some(self.shift);
+            self.shifted = true;
         }
         Ok(())
     }
 
-    /// `G92.1` (`forget`) and `G92.2`, for the given axes.
-    pub fn cancel_shift(&mut self, forget: bool, axes: [bool; 3], here: &mut [Option<f64>; 3], fresh: bool) {
+    /// `G92.1` (`forget`) and `G92.2`, for the given axes. Whether the position along each is unknown from now on.
+    pub(crate) fn cancel_shift(&mut self, forget: bool, axes: [bool; 3], fresh: bool) -> [bool; 3] {
+        let mut unknown = [false; 3];
         for k in (0..3).filter(|&k| axes[k]) {
             self.shift[k] = 0.0;
             if self.placed_by_shift[k] && fresh {
                 // No move has used the frame: that of the machine takes its place.
-                here[k] = None;
+                unknown[k] = true;
                 self.placed_by_shift[k] = false;
                 self.lost[k] = false;
             } else {
@@ -157,10 +160,24 @@ impl Offsets {
         if forget && axes == [true; 3] {
             self.shift_saved = Some([0.0; 3]);
         }
+        self.shifted = false;
+        unknown
+    }
+
+    /// What G92.3 restores.
+    pub(crate) fn saved_shift(&self) -> [f64; 3] {
+        self.shift_saved.unwrap_or_default()
+    }
+
+    /// On LinuxCNC, G52 and G92 set the same offset.
+    pub(crate) fn set_shift(&mut self, shift: [f64; 3]) {
+        self.shift = shift;
+        self.shift_saved = Some(shift);
+        self.shifted = true;
     }
 
     /// `G92.3`.
-    pub fn restore_shift(&mut self) -> Result<(), NcProblem> {
+    pub(crate) fn restore_shift(&mut self) -> Result<(), NcProblem> {
         self.shift = self.shift_saved.ok_or_else(|| {
             NcProblem::unsupported(
                 "G92.3 before any G92 is",
@@ -168,11 +185,13 @@ impl Offsets {
             )
         })?;
         self.lost = [false; 3];
+        self.shifted = true;
         Ok(())
     }
 }
 
-fn known(coordinate: Option<f64>) -> Result<f64, NcProblem> {
+/// A coordinate of the current position, where a code needs it.
+pub(crate) fn known(coordinate: Option<f64>) -> Result<f64, NcProblem> {
     coordinate.ok_or_else(|| {
         NcProblem::syntax(
             "this sets the coordinates of the current position, which is not known yet: expected a move before it",

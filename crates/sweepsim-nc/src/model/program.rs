@@ -1,5 +1,6 @@
 //! A program as canonical moves, each with a pose, the way the tool gets there, and the line of the program.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -188,8 +189,23 @@ impl Program {
 pub(crate) struct NoteList(BTreeMap<String, (usize, usize)>);
 
 impl NoteList {
-    pub(crate) fn add(&mut self, line: usize, message: impl Into<String>) {
-        self.0.entry(message.into()).or_insert((line, 0)).1 += 1;
+    pub(crate) fn add(&mut self, line: usize, message: impl Into<Cow<'static, str>>) {
+        let message = message.into();
+        match self.0.get_mut(message.as_ref()) {
+            Some((_, count)) => *count += 1,
+            None => {
+                self.0.insert(message.into_owned(), (line, 1));
+            }
+        }
+    }
+
+    pub(crate) fn add_str(&mut self, line: usize, message: &str) {
+        match self.0.get_mut(message) {
+            Some((_, count)) => *count += 1,
+            None => {
+                self.0.insert(message.to_owned(), (line, 1));
+            }
+        }
     }
 
     pub(crate) fn finish(self) -> Vec<Note> {

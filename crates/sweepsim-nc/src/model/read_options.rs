@@ -1,6 +1,7 @@
 //! How programs are read.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use crate::machines::Machine;
 
@@ -35,6 +36,15 @@ pub struct ReadOptions {
     pub block_delete: bool,
     /// The control's table of tool lengths and diameters, by number: what `H` and `D` mean.
     pub tool_offsets: BTreeMap<u32, ToolOffset>,
+    /// The control's numbered variables when the program starts, as in LinuxCNC's `.var` file: work offsets from `#5221`, homes from `#5161`.
+    /// With them, positions in machine coordinates are known, and work offsets that the program does not set.
+    pub variables: BTreeMap<u32, f64>,
+    /// Folders with files of subprograms, in addition to the program's own.
+    pub subprograms: Vec<PathBuf>,
+    /// How many blocks may be executed: bounds the time that loops can take.
+    pub most_blocks: u64,
+    /// How many poses and events there may be: bounds the memory that a file of a few bytes can demand.
+    pub most_poses: usize,
     /// Where the tool's tip is when the program starts, in millimetres in the frame of the first work offset, if that is known.
     pub start: Option<[f64; 3]>,
 }
@@ -52,6 +62,10 @@ impl Default for ReadOptions {
             lenient: false,
             block_delete: false,
             tool_offsets: BTreeMap::new(),
+            variables: BTreeMap::new(),
+            subprograms: Vec::new(),
+            most_blocks: 20_000_000,
+            most_poses: 20_000_000,
             start: None,
         }
     }

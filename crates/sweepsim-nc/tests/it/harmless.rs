@@ -83,11 +83,8 @@ fn speeds_and_coolant() {
         assert_eq!(tips(&found), [[0.0, 0.0, 5.0], [10.0, 0.0, 5.0]], "{text}");
     }
     harmless("G255", &[]);
-    harmless("G10 L1 P1 R5 Z2", &["line 2: G10 other than L2 and L20 is ignored"]);
-    refused(
-        "G10 L2 P1 R45",
-        "1: work offsets that turn are not supported yet: expected X, Y, Z",
-    );
+    harmless("G10 L1 P1 R5 Z2", &[]);
+    harmless("G10 L50", &["line 2: G10 L50 sets the control's own data: ignored"]);
     harmless("G69", &[]);
     refused(
         "G254",
@@ -95,12 +92,10 @@ fn speeds_and_coolant() {
     );
     refused(
         "M198 P1",
-        "1: M198: subroutines are not supported yet: expected a program without them",
+        "1: M198: these subprograms are not supported yet: expected a program without them",
     );
-    refused(
-        "M73",
-        "1: M73: saved modes are not supported yet: expected a program without them",
-    );
+    harmless("M73", &[]);
+    refused("M72", "1: M72 without M70 before it: there are no saved modes");
 }
 
 #[test]
@@ -128,37 +123,45 @@ fn m99_ends_a_main_program() {
         found.notes[0].to_string(),
         "line 3: M99 ends the program here; a machine may start it again"
     );
-    refused(
-        "M99 P10",
-        "1: M99: jumps are not supported yet: expected M99 alone, or M30",
-    );
+    refused("M99 P10", "1: M99 P10: there is no block N10 to return to");
 }
 
 #[test]
 fn titles_and_tapes() {
     let poses = [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0]];
     let moves = "G0 X0 Y0 Z5\nG1 X1\n";
-    for (head, note) in [
-        ("%\nOFinal ToolPath\n", "line 2: title \"Final ToolPath\": ignored"),
-        ("O1000 BRACKET\n", "line 1: title \"BRACKET\": ignored"),
-        ("<BRACKET>\n", "line 1: title \"BRACKET\": ignored"),
-        (":1000\n", "line 1: program number: ignored"),
-        ("%\nO1000 (BRACKET)\n", "line 2: program number: ignored"),
-        ("BRACKET OF 12 PARTS\n%\n", "line 1: text before the first `%`: ignored"),
+    for (head, title) in [
+        ("%\nOFinal ToolPath\n", Some("Final ToolPath")),
+        ("O1000 BRACKET\n", Some("BRACKET")),
+        ("<BRACKET>\n", Some("BRACKET")),
+        (":1000\n", Some("O1000")),
+        ("%\nO1000 (BRACKET)\n", Some("O1000")),
+        ("BRACKET OF 12 PARTS\n%\n", None),
     ] {
         let found = program(&format!("{head}{moves}%\nG1 X9\n"));
         if head.contains('%') {
             assert_eq!(tips(&found), poses, "{head}");
         }
-        assert_eq!(found.notes[0].to_string(), note);
+        assert_eq!(found.title.as_deref(), title);
     }
-    // After a move they are subroutines, and before it too where they say so.
-    let subroutines = "not supported yet";
+    let found = program(&format!("BRACKET OF 12 PARTS\n%\n{moves}"));
+    assert_eq!(found.notes[0].to_string(), "line 1: text before the first `%`: ignored");
     assert!(error(&format!("{moves}O1000 BRACKET\n")).starts_with("3:7: "));
-    for text in ["O100 sub", "o100 if [1]", "o<a> call", "o<a> sub"] {
-        assert!(error(&format!("{text}\n{moves}")).contains(subroutines), "{text}");
-    }
     assert!(error(&format!("BRACKET OF 12 PARTS\n{moves}")).starts_with("1:1: statements like `BRACKET`"));
+}
+
+#[test]
+fn unclosed_subroutines() {
+    for (text, message) in [
+        ("O100 sub", "1:1: there is no `O100 endsub` after this line"),
+        ("o100 if [1 gt 2]", "1:1: there is no `O100 endif` after this line"),
+        (
+            "o<a> call",
+            "1:1: the subprogram O<a> is missing: expected it in this program, or in a file of its name beside it",
+        ),
+    ] {
+        assert_eq!(error(&format!("{text}\nG0 X0 Y0 Z5\n")), message);
+    }
 }
 
 #[test]
@@ -291,10 +294,10 @@ fn all_problems_at_once() {
     assert_eq!(
         problems("G0 X0 Y0 Z5\nG81 X1 Z-1 R1 F100\nX2\nG80\nG1 X#1\nG41 D1 X5\nG81 X3\nM98 P5\nG2 X5 I1\nM30\nG42"),
         [
-            "2:1: G81: canned cycles are",
-            "5:4: variables and expressions are",
-            "6:1: G41: cutter compensation is",
-            "8:1: M98: subroutines are"
+            "5:5: #1 has no value here: LinuxCNC takes 0, Fanuc leaves out its word; expected `#1 = …` before, or the name of the control",
+            "6:1: the diameter D1 for cutter compensation is not known: expected it in the tool table, or G41.1 D with the diameter",
+            "7:1: G81 without R: expected R, the plane to drill from, and Z, the bottom",
+            "8:1: the subprogram O5 is missing: expected it in this program, or in a file of its name beside it"
         ],
         "each once, and none that follows from another"
     );
@@ -303,7 +306,7 @@ fn all_problems_at_once() {
     assert_eq!(
         problems("G0 X0 Y0 Z5\nG1 X#1\nG0 X1 Y1 Z1\nG2 X9 I1"),
         [
-            "2:4: variables and expressions are",
+            "2:5: #1 has no value here: LinuxCNC takes 0, Fanuc leaves out its word; expected `#1 = …` before, or the name of the control",
             "4:1: the arc has two radii: its start is 1 mm and its end 7 mm from its centre, expected the same"
         ]
     );

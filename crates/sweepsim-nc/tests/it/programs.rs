@@ -174,14 +174,15 @@ fn what_is_not_understood_is_said() {
     for (text, expected) in [
         (
             "G0 X0 Y0 Z0\nG1 X1 G41 D1",
-            "2:7: G41: cutter compensation is not supported",
+            "2:7: the diameter D1 for cutter compensation",
         ),
-        ("G81 X0 Y0 Z0 R5", "1:1: G81: canned cycles are not supported"),
-        ("G0 X0 Y0 Z0\nG68 R45", "2:1: G68: rotated frames"),
-        ("G0 X#1", "1:4: variables"),
-        ("o100 sub", "1:6: "),
-        ("M98 P1000", "1:1: M98"),
-        ("G0 X0 Y0 Z0\nO200 X1", "2:1: O-words"),
+        (
+            "G87 X0 Y0 Z-2 R5",
+            "1:1: G87: back boring and threading are not supported",
+        ),
+        ("G0 X0 Y0 Z0\nG68.2 R45", "2:1: G68.2: rotated frames"),
+        ("G0 X#1", "1:5: #1 has no value here"),
+        ("M98 P1000", "1:1: the subprogram O1000 is missing"),
         ("G0 X0 Y0 Z0\nG2000 X1", "2:1: G2000"),
         ("G0 X0 Y0 Z0\nG0 U1", "2:4: the axis U"),
         ("G0 X0 Y0 Z0 X1", "1:13: a second X"),

@@ -2,16 +2,17 @@
 //!
 //! Coordinates are millimetres and degrees in the frame of the first work offset; `None` until the program has given them.
 
+use std::borrow::Cow;
+
 use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
 
+use super::compensation::Place;
 use super::turns;
 use crate::machines::Machine;
-use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
+use crate::model::event::{Event, EventKind};
+use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
 use crate::model::read_options::{AxisLaw, ReadOptions};
 use crate::text::error::NcProblem;
-
-/// The most poses of one program: bounds the memory that a file of a few bytes can demand.
-const MOST_POSES: usize = 20_000_000;
 
 /// The end of a move: coordinates, and rotary angles A, B, C.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +36,15 @@ pub(crate) struct State {
     pub tip_control: bool,
     pub tool: Option<u32>,
     pub feed: Option<f64>,
+    pub feed_mode: FeedMode,
+    /// The block that moves belong to.
+    pub place: Place,
+    pub title: Option<String>,
+    pub units: Option<Units>,
     pub notes: NoteList,
+    pub events: Vec<Event>,
+    pub calls: Vec<Call>,
+    most_poses: usize,
     table: Option<RotaryTable>,
     table_given: bool,
     /// As given.
@@ -54,7 +63,14 @@ impl State {
             tip_control: options.machine.tip_control,
             tool: None,
             feed: None,
+            feed_mode: FeedMode::default(),
+            place: Place::default(),
+            title: None,
+            units: None,
             notes: NoteList::default(),
+            events: Vec::new(),
+            calls: Vec::new(),
+            most_poses: options.most_poses,
             table: options.machine.table,
             table_given: options.machine.table.is_some(),
             machine: options.machine.clone(),
@@ -66,7 +82,11 @@ impl State {
 
     pub fn finish(self) -> Program {
         Program {
+            title: self.title,
+            units: self.units.unwrap_or_default(),
             poses: self.poses,
+            calls: self.calls,
+            events: self.events,
             machine: Machine {
                 table: self.table,
                 ..self.machine
@@ -74,6 +94,31 @@ impl State {
             notes: self.notes.finish(),
             ..Program::default()
         }
+    }
+
+    /// Takes a note on the current line.
+    pub fn note(&mut self, message: impl Into<Cow<'static, str>>) {
+        self.notes.add(self.place.line, message);
+    }
+
+    /// Something happens before the next pose.
+    pub fn event(&mut self, kind: EventKind, place: Place) -> Result<(), NcProblem> {
+        if self.events.len() >= self.most_poses {
+            return Err(self.too_many());
+        }
+        let mut event = Event::new(self.poses.len(), place.line, kind);
+        event.file = place.file;
+        event.call = place.call;
+        self.events.push(event);
+        Ok(())
+    }
+
+    fn too_many(&self) -> NcProblem {
+        NcProblem::value(
+            "the number of poses and events",
+            self.most_poses,
+            "smaller: divide the program, or allow a larger arc tolerance",
+        )
     }
 
     /// Whether there is a pose yet.
@@ -94,27 +139,16 @@ impl State {
         }
     }
 
-    /// Takes unknown coordinates as 0, before a move that needs them.
-    pub fn assume(&mut self, line: usize, xyz: impl Fn(usize) -> bool) {
-        for k in 0..3 {
-            if self.xyz[k].is_none() && xyz(k) {
-                let axis = ['X', 'Y', 'Z'][k];
-                self.notes.add(line, format!("{axis} is not known here: taken as 0"));
-                self.xyz[k] = Some(0.0);
-            }
-        }
-    }
-
     /// Adds the pose where a feed move starts, unless the path already leads there.
-    pub fn start_here(&mut self, line: usize) -> Result<(), NcProblem> {
+    pub fn start_here(&mut self) -> Result<(), NcProblem> {
         if let (false, Some(xyz)) = (self.joined, self.known()) {
-            self.push(MoveEnd { xyz, abc: self.abc }, Move::default(), true, line)?;
+            self.push(MoveEnd { xyz, abc: self.abc }, Move::default(), true)?;
         }
         Ok(())
     }
 
     /// A straight move, divided where the tool axis turns far.
-    pub fn line_to(&mut self, target: MoveEnd, rapid: bool, line: usize) -> Result<(), NcProblem> {
+    pub fn line_to(&mut self, target: MoveEnd, rapid: bool) -> Result<(), NcProblem> {
         let from = self.abc;
         if self.joined && target.abc != from && self.law != AxisLaw::Rotary {
             let table = self.table(target.abc)?;
@@ -131,10 +165,7 @@ impl State {
                 ));
             }
             if let (true, Some(start)) = (parts > 1.0, self.known()) {
-                self.notes.add(
-                    line,
-                    "the axis turns by more than 90 degrees in one block: intermediate poses inserted",
-                );
+                self.note("the axis turns by more than 90 degrees in one block: intermediate poses inserted");
                 for part in 1..parts as usize {
                     let s = part as f64 / parts;
                     let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + s * (b[k] - a[k]));
@@ -143,19 +174,19 @@ impl State {
                         abc: mix(from, target.abc),
                     };
                     let way = Move::straight(self.turning(from, between.abc)?);
-                    self.push(between, way, rapid, line)?;
+                    self.push(between, way, rapid)?;
                 }
             }
         }
         let way = Move::straight(self.turning(from, target.abc)?);
-        self.push(target, way, rapid, line)?;
+        self.push(target, way, rapid)?;
         self.xyz = target.xyz.map(Some);
         self.abc = target.abc;
         Ok(())
     }
 
     /// A feed move along an arc.
-    pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc, line: usize) -> Result<(), NcProblem> {
+    pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc) -> Result<(), NcProblem> {
         let turning = match self.turning(self.abc, target.abc)? {
             Turning::Slerp => Turning::Even,
             other => other,
@@ -164,7 +195,7 @@ impl State {
             course: Course::Arc(arc),
             turning,
         };
-        self.push(target, way, false, line)?;
+        self.push(target, way, false)?;
         self.xyz = target.xyz.map(Some);
         self.abc = target.abc;
         Ok(())
@@ -214,7 +245,7 @@ impl State {
         }
     }
 
-    fn push(&mut self, target: MoveEnd, way: Move, rapid: bool, line: usize) -> Result<(), NcProblem> {
+    fn push(&mut self, target: MoveEnd, way: Move, rapid: bool) -> Result<(), NcProblem> {
         if !self.tip_control && target.abc != [0.0; 3] {
             return Err(NcProblem::value(
                 "a move with the rotary axes turned",
@@ -230,23 +261,19 @@ impl State {
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
         if !same {
-            if self.poses.len() >= MOST_POSES {
-                return Err(NcProblem::value(
-                    "the number of poses",
-                    self.poses.len(),
-                    "smaller: divide the program, or allow a larger arc tolerance",
-                ));
+            if self.poses.len() >= self.most_poses {
+                return Err(self.too_many());
             }
             self.poses.push(ProgramPose {
                 pose,
                 rapid,
-                file: 0,
-                line,
+                file: self.place.file,
+                line: self.place.line,
                 joined: self.joined,
                 tool: self.tool,
                 feed: if rapid { None } else { self.feed },
-                feed_mode: FeedMode::default(),
-                call: None,
+                feed_mode: self.feed_mode,
+                call: self.place.call,
                 way,
             });
         }

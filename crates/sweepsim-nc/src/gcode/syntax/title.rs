@@ -1,6 +1,6 @@
 //! Titles of programs, which look like words but are none.
 
-use super::lexer;
+use super::words;
 
 /// What follows `O` in the subroutines and loops of LinuxCNC.
 const KEYWORDS: [&str; 14] = [
@@ -53,9 +53,9 @@ pub(crate) fn of(line: &str) -> Option<String> {
 pub(crate) fn leader(text: &str) -> usize {
     let mut title = false;
     for (index, line) in text.lines().enumerate() {
-        match lexer::block(line) {
+        match words::plain(line) {
             Ok(block) if block.tape => return if title { index } else { 0 },
-            Ok(block) if block.words.is_empty() => {}
+            Ok(block) if block.is_empty() => {}
             Ok(_) => return 0,
             Err(_) => title = true,
         }

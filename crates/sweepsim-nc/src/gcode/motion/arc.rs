@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 use sweepsim_motion::{ArcError, TipArc};
 
+use super::map::Map;
+
 /// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
 pub(crate) type ArcPlane = [usize; 3];
 
@@ -108,6 +110,39 @@ impl CircularArc {
             start[v] + 0.5 * chord[1] + side * height * chord[0],
         ];
         Self::about((start, end), plane, centre, counter_clockwise, turns)
+    }
+
+    /// The arc's image under a map: `None` if that is no arc.
+    pub(crate) fn mapped(&self, map: &Map) -> Option<Self> {
+        let [u, v, w] = self.plane;
+        if map.is_shift() {
+            let add = map.add;
+            return Some(Self {
+                start: map.apply(self.start),
+                end: map.apply(self.end),
+                centre: [self.centre[0] + add[u], self.centre[1] + add[v]],
+                ..*self
+            });
+        }
+        let scale = map.scale()?;
+        let mut normal = [0.0; 3];
+        normal[w] = 1.0;
+        // A mirrored arc turns the other way; its plane must still be one of the three.
+        let side = map.apply_direction(normal)[w] / scale.abs();
+        if (side.abs() - 1.0).abs() > 1e-9 {
+            return None;
+        }
+        let mut centre = self.start;
+        centre[u] = self.centre[0];
+        centre[v] = self.centre[1];
+        let centre = map.apply(centre);
+        Some(Self {
+            start: map.apply(self.start),
+            end: map.apply(self.end),
+            centre: [centre[u], centre[v]],
+            sweep: self.sweep * scale.signum() * side.signum(),
+            ..*self
+        })
     }
 
     /// Checks the word of the third axis (K in G17), which says nothing that the end does not: the pitch of a helix, or its rise. With

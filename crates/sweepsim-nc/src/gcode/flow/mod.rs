@@ -1,0 +1,5 @@
+//! Texts with their lines and labels.
+
+pub(crate) mod keywords;
+pub(crate) mod labels;
+pub(crate) mod source;

@@ -1,0 +1,75 @@
+//! What stays in effect until another word changes it.
+
+use super::codes::{MotionMode, Turning};
+use super::motion::arc::ArcPlane;
+use super::motion::map::Map;
+use crate::model::program::FeedMode;
+
+/// The words of drilling cycles, which stay until the cycle ends.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct CycleWords {
+    /// The plane R and the bottom, in the program's coordinates (mm).
+    pub plane: Option<f64>,
+    pub bottom: Option<f64>,
+    pub peck: Option<f64>,
+    pub dwell: Option<f64>,
+    /// Sideways shifts of G76 and G87.
+    pub shift: Option<[f64; 2]>,
+    /// The height from which the cycle began, to which G98 returns.
+    pub initial: Option<f64>,
+}
+
+/// Modal state.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Modes {
+    pub motion: Option<MotionMode>,
+    pub plane: ArcPlane,
+    pub absolute: bool,
+    pub absolute_centres: bool,
+    pub inch: bool,
+    pub feed_mode: FeedMode,
+    pub feed: Option<f64>,
+    pub speed: Option<f64>,
+    pub spindle: Turning,
+    /// G99: cycles retract to their plane R.
+    pub retract_to_plane: bool,
+    pub cycle: CycleWords,
+    /// G16.
+    pub polar: bool,
+    /// G68, G51 and G51.1.
+    pub rotation: Option<Map>,
+    pub scaling: Option<Map>,
+    pub mirror: Option<Map>,
+}
+
+impl Modes {
+    pub(crate) fn new(inch: bool) -> Self {
+        Self {
+            motion: None,
+            plane: [0, 1, 2],
+            absolute: true,
+            absolute_centres: false,
+            inch,
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            speed: None,
+            spindle: Turning::Stopped,
+            retract_to_plane: false,
+            cycle: CycleWords::default(),
+            polar: false,
+            rotation: None,
+            scaling: None,
+            mirror: None,
+        }
+    }
+
+    /// From the program's coordinates to those that work offsets apply to.
+    pub(crate) fn local_map(&self) -> Map {
+        // Fanuc mirrors and scales first, then turns.
+        let mut map = Map::default();
+        for step in [&self.mirror, &self.scaling, &self.rotation].into_iter().flatten() {
+            map = step.after(&map);
+        }
+        map
+    }
+}

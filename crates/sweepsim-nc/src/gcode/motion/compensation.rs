@@ -1,0 +1,397 @@
+//! Cutter compensation (G41, G42): the tool's centre beside the programmed contour, at the distance of its radius.
+//!
+//! Each programmed line or arc is offset exactly: lines to lines, arcs to concentric arcs. At outside corners the tool goes round the corner
+//! on an arc, as on LinuxCNC, or on straight lines to the meeting of the offsets and no farther than one radius beyond the corner's
+//! normals, as on Fanuc. At inside corners both offsets end where they meet. So each move can be given out only when the next one is
+//! known. The tool's centre is checked against neighbouring moves only, as controls do: a slot narrower than the tool is not noticed where
+//! more than two moves make it.
+//!
+//! The rules at the ends are LinuxCNC's (*LinuxCNC G-code reference, Cutter Compensation*): the entry move ends beside its own end, a
+//! lead-in arc is fitted between its start and its offset end; after G40, the tool moves straight to the next programmed point. On
+//! Fanuc, the entry move ends beside the start of the next move.
+
+use std::collections::VecDeque;
+use std::f64::consts::{PI, TAU};
+
+use super::arc::ArcPlane;
+use super::corner::{Curve, Flat, cross, dot, inside_corner, length, minus, plus};
+use crate::model::event::EventKind;
+use crate::model::program::FeedMode;
+use crate::text::error::NcProblem;
+
+/// Where a block is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub file: usize,
+    pub line: usize,
+    pub call: Option<u32>,
+}
+
+/// A circular arc in a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bend {
+    pub centre: Flat,
+    /// Signed, in radians: positive counter-clockwise.
+    pub sweep: f64,
+}
+
+/// A move in the program's coordinates, from where the last one ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stroke {
+    pub end: [f64; 3],
+    pub abc: [f64; 3],
+    pub rapid: bool,
+    pub bend: Option<Bend>,
+    pub plane: ArcPlane,
+    pub place: Place,
+    pub feed: Option<f64>,
+    pub feed_mode: FeedMode,
+}
+
+/// What waits for the next move.
+#[derive(Clone, Debug)]
+pub(crate) enum Item {
+    Stroke(Stroke),
+    Event(EventKind, Place),
+}
+
+/// What compensation is switched on with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Side {
+    pub left: bool,
+    /// The tool's radius, at least 0.
+    pub radius: f64,
+    /// Whether corners and entries are those of Fanuc.
+    pub fanuc: bool,
+    /// The angle, in radians, up to which a corner counts as none.
+    pub tangent: f64,
+}
+
+/// Compensation while it is on.
+#[derive(Clone, Debug)]
+pub(crate) struct Compensation {
+    pub side: Side,
+    plane: ArcPlane,
+    /// No move has been compensated yet.
+    first: bool,
+    /// The waiting move is the entry: its end is still free (Fanuc).
+    entry: bool,
+    /// Where the waiting moves start,
+    start: [f64; 3],
+    /// and where the tool is after them.
+    current: [f64; 3],
+    /// The direction of the last move at its programmed end.
+    tangent: Flat,
+    /// The curve that the last move lies on.
+    curve: Curve,
+    waiting: VecDeque<Item>,
+}
+
+fn flat(plane: ArcPlane, point: [f64; 3]) -> Flat {
+    [point[plane[0]], point[plane[1]]]
+}
+
+fn set(plane: ArcPlane, point: &mut [f64; 3], at: Flat) {
+    point[plane[0]] = at[0];
+    point[plane[1]] = at[1];
+}
+
+/// The direction of an arc about `centre` at `at`.
+fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Flat {
+    let [x, y] = minus(at, centre);
+    let r = length([x, y]);
+    if counter_clockwise {
+        [-y / r, x / r]
+    } else {
+        [y / r, -x / r]
+    }
+}
+
+impl Compensation {
+    pub(crate) fn new(side: Side, plane: ArcPlane, at: [f64; 3]) -> Self {
+        Self {
+            side,
+            plane,
+            first: true,
+            entry: false,
+            start: at,
+            current: at,
+            tangent: [1.0, 0.0],
+            curve: Curve::Line {
+                point: [0.0; 2],
+                direction: [1.0, 0.0],
+            },
+            waiting: VecDeque::new(),
+        }
+    }
+
+    /// Where the tool is after the waiting moves.
+    pub(crate) fn current(&self) -> [f64; 3] {
+        self.current
+    }
+
+    /// Something that happens after the waiting moves.
+    pub(crate) fn event(&mut self, kind: EventKind, place: Place) {
+        self.waiting.push_back(Item::Event(kind, place));
+    }
+
+    /// Whether nothing waits.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// What still waits, at the end.
+    pub(crate) fn finish(mut self) -> VecDeque<Item> {
+        std::mem::take(&mut self.waiting)
+    }
+
+    /// The unit normal towards the tool of a direction.
+    fn normal(&self, [x, y]: Flat) -> Flat {
+        if self.side.left { [-y, x] } else { [y, -x] }
+    }
+
+    /// A programmed move from `from`. What is then certain goes to `out`.
+    pub(crate) fn add(&mut self, from: [f64; 3], stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        let (p, q) = (flat(self.plane, from), flat(self.plane, stroke.end));
+        let radius = self.side.radius;
+        let Some(bend) = stroke.bend else {
+            let d = minus(q, p);
+            let distance = length(d);
+            if distance == 0.0 {
+                // Along the plane's axis only.
+                let mut end = stroke.end;
+                set(self.plane, &mut end, flat(self.plane, self.current));
+                return self.wait(Stroke { end, ..stroke }, out);
+            }
+            let t = [d[0] / distance, d[1] / distance];
+            let n = self.normal(t);
+            let end = plus(q, radius, n);
+            if self.first {
+                if distance <= radius && !self.side.fanuc {
+                    return Err(NcProblem::value(
+                        "the length of the move that begins the cutter compensation",
+                        format!("{distance} mm"),
+                        format!("more than the tool's radius, {radius} mm"),
+                    ));
+                }
+                self.entry = self.side.fanuc;
+            } else {
+                let start = plus(p, radius, n);
+                let curve = Curve::Line {
+                    point: start,
+                    direction: t,
+                };
+                self.join(p, start, t, &curve, &stroke, out)?;
+            }
+            self.first = false;
+            self.tangent = t;
+            self.curve = Curve::Line {
+                point: end,
+                direction: t,
+            };
+            return self.give(stroke, end, out);
+        };
+        let counter_clockwise = bend.sweep > 0.0;
+        let arc_radius = length(minus(p, bend.centre));
+        let inside = self.side.left == counter_clockwise;
+        let offset_radius = if inside {
+            arc_radius - radius
+        } else {
+            arc_radius + radius
+        };
+        if offset_radius <= 1e-9 {
+            return Err(NcProblem::value(
+                "the radius of this arc",
+                format!("{arc_radius} mm"),
+                format!("more than the tool's, {radius} mm: the tool does not fit into it"),
+            ));
+        }
+        let (t, last) = (
+            arc_tangent(p, bend.centre, counter_clockwise),
+            arc_tangent(q, bend.centre, counter_clockwise),
+        );
+        let end = plus(q, radius, self.normal(last));
+        let mut bend = bend;
+        if self.first {
+            bend = self.lead_in(p, end, last, counter_clockwise)?;
+        } else {
+            let start = plus(p, radius, self.normal(t));
+            let curve = Curve::Circle {
+                centre: bend.centre,
+                radius: offset_radius,
+                counter_clockwise,
+            };
+            self.join(p, start, t, &curve, &stroke, out)?;
+        }
+        self.first = false;
+        self.tangent = last;
+        self.curve = Curve::Circle {
+            centre: bend.centre,
+            radius: length(minus(end, bend.centre)),
+            counter_clockwise,
+        };
+        let bent = Stroke {
+            bend: Some(bend),
+            ..stroke
+        };
+        self.give(bent, end, out)
+    }
+
+    /// The arc from `start`, uncompensated, that ends in `end` along `last`.
+    fn lead_in(&self, start: Flat, end: Flat, last: Flat, counter_clockwise: bool) -> Result<Bend, NcProblem> {
+        if self.side.fanuc {
+            return Err(NcProblem::syntax(
+                "an arc cannot begin cutter compensation on this control: expected a straight move",
+            ));
+        }
+        let left = [-last[1], last[0]];
+        let chord = minus(start, end);
+        let (along, square) = (dot(chord, left), dot(chord, chord));
+        // The centre is at `end + s left`, as far from `start` as from `end`.
+        let s = 0.5 * square / along;
+        if !s.is_finite() || s.abs() > 1e7 || (s > 0.0) != counter_clockwise || s.abs() <= 1e-9 {
+            return Err(NcProblem::syntax(
+                "no arc from here ends beside the end of this one: cutter compensation needs a longer or straight move to begin with",
+            ));
+        }
+        let centre = plus(end, s, left);
+        let (a, b) = (minus(start, centre), minus(end, centre));
+        let mut sweep = cross(a, b).atan2(dot(a, b));
+        if counter_clockwise && sweep <= 0.0 {
+            sweep += TAU;
+        } else if !counter_clockwise && sweep >= 0.0 {
+            sweep -= TAU;
+        }
+        Ok(Bend { centre, sweep })
+    }
+
+    /// Lets a move wait; `end` is its compensated end.
+    fn give(&mut self, stroke: Stroke, at: Flat, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        let mut end = stroke.end;
+        set(self.plane, &mut end, at);
+        self.wait(Stroke { end, ..stroke }, out)
+    }
+
+    fn wait(&mut self, stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        self.current = stroke.end;
+        if self.side.radius == 0.0 {
+            self.flush(out);
+        }
+        self.waiting.push_back(Item::Stroke(stroke));
+        Ok(())
+    }
+
+    /// Gives out what waits.
+    fn flush(&mut self, out: &mut Vec<Item>) {
+        out.extend(self.waiting.drain(..));
+        self.start = self.current;
+    }
+
+    /// Gives out what waits, with its end moved.
+    fn flush_to(&mut self, at: Flat, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        let plane = self.plane;
+        let start = flat(plane, self.start);
+        for item in &mut self.waiting {
+            let Item::Stroke(stroke) = item else { continue };
+            let end = flat(plane, stroke.end);
+            let too_far = match &mut stroke.bend {
+                None if self.entry => false,
+                None => dot(minus(end, start), minus(at, start)) < -1e-12,
+                Some(bend) => {
+                    let (a, b) = (minus(start, bend.centre), minus(at, bend.centre));
+                    let angle = cross(a, b).atan2(dot(a, b));
+                    // The turn that differs least from the programmed one.
+                    let sweep = angle + TAU * ((bend.sweep - angle) / TAU).round();
+                    let reversed = sweep * bend.sweep < 0.0 && sweep.abs() * length(b) > 1e-6;
+                    let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > 0.0254;
+                    bend.sweep = sweep;
+                    reversed || longer
+                }
+            };
+            if too_far {
+                return Err(NcProblem::syntax(format!(
+                    "the tool of radius {} mm does not fit into this inside corner: it would gouge the move before",
+                    self.side.radius
+                )));
+            }
+            set(plane, &mut stroke.end, at);
+        }
+        set(plane, &mut self.current, at);
+        self.entry = false;
+        self.flush(out);
+        Ok(())
+    }
+
+    /// Joins the waiting move with the next one, whose offset starts in `start` along `t`, on `curve`; the corner is at `p`.
+    fn join(
+        &mut self,
+        p: Flat,
+        start: Flat,
+        t: Flat,
+        curve: &Curve,
+        stroke: &Stroke,
+        out: &mut Vec<Item>,
+    ) -> Result<(), NcProblem> {
+        if self.entry {
+            return self.flush_to(start, out);
+        }
+        let toward = if self.side.left { 1.0 } else { -1.0 };
+        // Positive at inside corners.
+        let angle = (toward * cross(self.tangent, t)).atan2(dot(self.tangent, t));
+        let small = self.side.tangent;
+        if angle.abs() <= small {
+            self.flush(out);
+            return Ok(());
+        }
+        let bends_in =
+            matches!(self.curve, Curve::Circle { counter_clockwise, .. } if counter_clockwise == self.side.left);
+        let reversed = angle > PI - small;
+        if angle < 0.0 || (reversed && !bends_in) {
+            self.flush(out);
+            if self.side.radius > 0.0 {
+                let turn = if angle < 0.0 { -angle } else { TAU - angle };
+                self.outside(p, start, t, turn, stroke, out);
+            }
+            return Ok(());
+        }
+        let end = flat(self.plane, self.current);
+        match inside_corner(&self.curve, end, curve, start, p) {
+            Some(at) => self.flush_to(at, out),
+            None if angle < 0.05 && length(minus(end, start)) < 0.05 * self.side.radius => {
+                self.flush(out);
+                Ok(())
+            }
+            None => Err(NcProblem::syntax(format!(
+                "the tool of radius {} mm does not fit into this inside corner",
+                self.side.radius
+            ))),
+        }
+    }
+
+    /// Goes round an outside corner.
+    fn outside(&mut self, p: Flat, start: Flat, t: Flat, turn: f64, stroke: &Stroke, out: &mut Vec<Item>) {
+        let radius = self.side.radius;
+        let plane = self.plane;
+        let mut go = |this: &mut Self, at: Flat, bend: Option<Bend>| {
+            let mut end = this.current;
+            set(plane, &mut end, at);
+            this.current = end;
+            out.push(Item::Stroke(Stroke { end, bend, ..*stroke }));
+        };
+        if !self.side.fanuc {
+            let sweep = if self.side.left { -turn } else { turn };
+            go(self, start, Some(Bend { centre: p, sweep }));
+        } else if turn <= PI / 2.0 + 1e-9 {
+            let reach = radius * (0.5 * turn).tan();
+            let tip = plus(flat(plane, self.current), reach, self.tangent);
+            go(self, tip, None);
+            go(self, start, None);
+        } else {
+            let beyond = plus(flat(plane, self.current), radius, self.tangent);
+            go(self, beyond, None);
+            go(self, plus(start, -radius, t), None);
+            go(self, start, None);
+        }
+        self.start = self.current;
+    }
+}

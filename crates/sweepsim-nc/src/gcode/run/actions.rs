@@ -1,0 +1,337 @@
+//! Codes that set coordinates instead of moving to them.
+
+use super::interpreter::Reader;
+use crate::gcode::codes::{Code, MotionMode};
+use crate::gcode::motion::map::Map;
+use crate::gcode::offsets::{EXTENDED, Placed, WorkOffset, known};
+use crate::gcode::syntax::block::Block;
+use crate::gcode::syntax::expression::Variables;
+use crate::model::read_options::Controller;
+use crate::text::error::NcProblem;
+
+/// Whether a block has a rotary word other than 0.
+fn turns(block: &Block) -> bool {
+    ['A', 'B', 'C']
+        .into_iter()
+        .any(|letter| block.get(letter).is_some_and(|value| value != 0.0))
+}
+
+impl Reader {
+    /// Words in millimetres, as written.
+    pub(crate) fn lengths(&self, block: &Block, letters: [char; 3]) -> [Option<f64>; 3] {
+        letters.map(|letter| block.get(letter).map(|value| value * self.unit()))
+    }
+
+    pub(crate) fn act(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
+        let words = self.lengths(block, ['X', 'Y', 'Z']);
+        let here_unknown = (0..3).any(|k| words[k].is_some() && self.at[k].is_none());
+        match code {
+            // An earlier problem has made the position unknown; see `Reader::go_on`.
+            Code::SetOffsets | Code::ShiftHere if self.uncertain && here_unknown => {}
+            Code::RestoreShift if self.uncertain => {}
+            Code::Ignored(note) => self.state.note(note),
+            Code::Length(code) => self.set_length(code, block)?,
+            Code::WorkOffset(index) => self.select(index)?,
+            Code::WorkOffsetByWord => match block.get('P') {
+                Some(p) if p.fract() == 0.0 && (1.0..=999.0).contains(&p) => self.select(EXTENDED + p as u32)?,
+                // G54.1 is G54 on some controls.
+                None => self.select(0)?,
+                Some(p) => return Err(NcProblem::value("P of a work offset", p, "a whole number from 1 on")),
+            },
+            Code::Home { second } => self.home(usize::from(second), block)?,
+            Code::SetHome { second } => {
+                if let [Some(x), Some(y), Some(z)] = self.machine_position() {
+                    self.homes[usize::from(second)] = Some([x, y, z]);
+                }
+            }
+            Code::SetOffsets => self.set_offsets(block, words)?,
+            Code::LocalShift => {
+                if turns(block) {
+                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                }
+                self.reframe(|reader| {
+                    if reader.controller == Some(Controller::LinuxCnc) {
+                        let shift = reader.offsets.shift;
+                        let shift = std::array::from_fn(|k| words[k].unwrap_or(shift[k]));
+                        reader.offsets.set_shift(shift);
+                    } else {
+                        for k in 0..3 {
+                            reader.offsets.local[k] = words[k].unwrap_or(reader.offsets.local[k]);
+                        }
+                    }
+                    Ok(())
+                })?;
+                self.trace_offsets();
+            }
+            Code::ShiftHere => {
+                self.check_angles(block, "G92")?;
+                self.refuse_compensation("G92")?;
+                if self.modes.local_map() != Map::default() {
+                    return Err(NcProblem::unsupported(
+                        "G92 in scaled or turned coordinates is",
+                        "expected G50, G69 or G50.1 before it",
+                    ));
+                }
+                let fresh = !self.state.has_moved();
+                let before = self.at;
+                self.offsets.shift_here(words, &mut self.at, fresh)?;
+                self.update_map();
+                if (0..3).any(|k| before[k].is_none() && self.at[k].is_some()) {
+                    self.state
+                        .note("G92 before the first move: the tool is taken to be there, in the part's frame");
+                }
+                self.state.xyz = self.map.partial(self.at);
+                self.trace_offsets();
+            }
+            Code::CancelShift { forget } => {
+                if let Some(word) = block.first("XYZABC").filter(|word| !forget || word.value != 0.0) {
+                    return Err(NcProblem::syntax(format!(
+                        "{} next to a code that ends a G92: expected none{}",
+                        word.name(),
+                        if forget { ", or 0" } else { "" }
+                    )));
+                }
+                // Fanuc names the axes: G92.1 X0.
+                let any = block.first("XYZABC").is_some();
+                let axes = words.map(|word| !any || word.is_some());
+                let fresh = !self.state.has_moved();
+                let mut unknown = [false; 3];
+                self.reframe(|reader| {
+                    unknown = reader.offsets.cancel_shift(forget, axes, fresh);
+                    Ok(())
+                })?;
+                for k in (0..3).filter(|&k| unknown[k]) {
+                    self.at[k] = None;
+                    self.state.xyz[k] = None;
+                }
+                self.trace_offsets();
+            }
+            Code::RestoreShift => {
+                if let Some(word) = block.first("XYZABC") {
+                    return Err(NcProblem::syntax(format!(
+                        "{} next to G92.3: expected none",
+                        word.letter
+                    )));
+                }
+                self.reframe(|reader| reader.offsets.restore_shift())?;
+                self.trace_offsets();
+            }
+            code => self.transform(code, block)?,
+        }
+        Ok(())
+    }
+
+    fn select(&mut self, index: WorkOffset) -> Result<(), NcProblem> {
+        if index != self.offsets.active {
+            self.refuse_compensation("a change of the work offset")?;
+        }
+        self.reframe(|reader| {
+            reader.offsets.active = index;
+            Ok(())
+        })?;
+        self.trace_offsets();
+        Ok(())
+    }
+
+    /// G10.
+    fn set_offsets(&mut self, block: &Block, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
+        let p = block.get('P').unwrap_or(0.0);
+        let fanuc = self.fanuc();
+        let l = match block.get('L') {
+            Some(l) if l.fract() == 0.0 && (0.0..=99.0).contains(&l) => l as u32,
+            Some(l) => return Err(NcProblem::value("L of G10", l, "a whole number from 0 to 99")),
+            None => 0,
+        };
+        match l {
+            2 | 20 => {
+                if p.fract() != 0.0 || !(0.0..=if fanuc { 300.0 } else { 9.0 }).contains(&p) {
+                    return Err(NcProblem::value("P of G10", p, "a whole number from 0 to 9"));
+                }
+                let p = p as u32;
+                if l == 20 && !fanuc {
+                    self.check_angles(block, "G10 L20")?;
+                    return self.place_here(p, words);
+                }
+                if turns(block) {
+                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                }
+                if fanuc && block.has('R') {
+                    return Err(NcProblem::unsupported("work offsets that turn are", "expected X, Y, Z"));
+                }
+                let turn = block.get('R');
+                self.reframe(|reader| {
+                    let added = |old: f64, word: Option<f64>| match word {
+                        Some(word) if fanuc && !reader.modes.absolute => old + word,
+                        Some(word) => word,
+                        None => old,
+                    };
+                    if fanuc && l == 2 && p == 0 {
+                        let external = reader.offsets.external;
+                        reader.offsets.external = std::array::from_fn(|k| added(external[k], words[k]));
+                        return Ok(());
+                    }
+                    let index = match (p, l) {
+                        (p, 20) => EXTENDED + p,
+                        (0, _) => reader.offsets.active,
+                        (p, _) => p - 1,
+                    };
+                    let before = reader.offsets.placed(index).unwrap_or_default();
+                    let placed = Placed {
+                        origin: std::array::from_fn(|k| added(before.origin[k], words[k])),
+                        turn: turn.unwrap_or(before.turn),
+                    };
+                    reader.offsets.place(index, placed);
+                    Ok(())
+                })?;
+                self.trace_offsets();
+                Ok(())
+            }
+            1 | 10..=13 => self.set_tool(l, block),
+            _ => {
+                self.state
+                    .note(format!("G10 L{l} sets the control's own data: ignored"));
+                Ok(())
+            }
+        }
+    }
+
+    /// G10 L20: gives the current position the given coordinates in a work offset.
+    fn place_here(&mut self, p: u32, words: [Option<f64>; 3]) -> Result<(), NcProblem> {
+        let index = if p == 0 { self.offsets.active } else { p - 1 };
+        let mut placed = self.offsets.placed(index).unwrap_or_default();
+        let local = self.modes.local_map();
+        if local != Map::default() {
+            return Err(NcProblem::unsupported(
+                "G10 L20 in scaled or turned coordinates is",
+                "expected G50, G69 or G50.1 before it",
+            ));
+        }
+        let here = self.frame_map().partial(self.at);
+        let shift: [f64; 3] = std::array::from_fn(|k| self.offsets.shift[k] + self.offsets.local[k]);
+        if placed.turn == 0.0 {
+            for k in 0..3 {
+                if let Some(word) = words[k] {
+                    self.offsets.know(k)?;
+                    placed.origin[k] = known(here[k])? - word - shift[k] - self.offsets.external[k];
+                }
+            }
+        } else {
+            // The coordinates that are not given stay as they are in that offset.
+            let turn = Map::turn([0, 1, 2], placed.turn);
+            let there = Map::shift(placed.origin).after(&turn).after(&Map::shift(shift));
+            let now = there.inverse().unwrap_or_default().partial(here);
+            let mut wanted = [0.0; 3];
+            for k in 0..3 {
+                wanted[k] = match words[k] {
+                    Some(word) => word,
+                    None => known(now[k])?,
+                };
+            }
+            let from = turn.apply(std::array::from_fn(|k| wanted[k] + shift[k]));
+            for k in 0..3 {
+                placed.origin[k] = known(here[k])? - from[k];
+            }
+        }
+        self.reframe(|reader| {
+            reader.offsets.place(index, placed);
+            Ok(())
+        })?;
+        self.trace_offsets();
+        Ok(())
+    }
+
+    /// Rotary words of a code that sets coordinates: allowed where they change nothing.
+    fn check_angles(&self, block: &Block, code: &str) -> Result<(), NcProblem> {
+        for (angle, letter) in self.state.abc.into_iter().zip(['A', 'B', 'C']) {
+            if block.get(letter).is_some_and(|value| value != angle) {
+                return Err(NcProblem::unsupported(
+                    format!("{code} with {letter} other than the current {angle} degrees is"),
+                    "expected X, Y, Z",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// G68, G51, G51.1 and their ends.
+    fn transform(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
+        let words = self.lengths(block, ['X', 'Y', 'Z']);
+        let centre: [f64; 3] = std::array::from_fn(|k| words[k].or(self.at[k]).unwrap_or(0.0));
+        let mut matrix = [[0.0; 3]; 3];
+        for (k, row) in matrix.iter_mut().enumerate() {
+            row[k] = 1.0;
+        }
+        let change: Box<dyn FnOnce(&mut Self)> = match code {
+            Code::Rotate => {
+                let Some(angle) = block.get('R') else {
+                    return Err(NcProblem::syntax("G68 without R: expected the angle"));
+                };
+                // In G91, the angle adds to the one before.
+                let turn = Map::turn(self.modes.plane, angle).matrix.unwrap_or(matrix);
+                let map = Map::about(turn, centre);
+                Box::new(move |reader| reader.modes.rotation = Some(map))
+            }
+            Code::CancelRotation => Box::new(|reader| reader.modes.rotation = None),
+            Code::Scale => {
+                // `G51 P` may be in thousandths: without a decimal point it is on Fanuc.
+                let whole = self.fanuc() && block.word('P').is_some_and(|word| word.whole);
+                let all = block.get('P').map(|p| if whole { p / 1000.0 } else { p });
+                for (k, letter) in ['I', 'J', 'K'].into_iter().enumerate() {
+                    matrix[k][k] = block.get(letter).or(all).unwrap_or(1.0);
+                }
+                if (0..3).any(|k| matrix[k][k] == 0.0) {
+                    return Err(NcProblem::value("the scale of G51", 0, "a number other than 0"));
+                }
+                let map = Map::about(matrix, centre);
+                Box::new(move |reader| reader.modes.scaling = Some(map))
+            }
+            Code::CancelScale => Box::new(|reader| reader.modes.scaling = None),
+            Code::Mirror => {
+                for k in 0..3 {
+                    if words[k].is_some() {
+                        matrix[k][k] = -1.0;
+                    }
+                }
+                let map = Map::about(matrix, words.map(|word| word.unwrap_or(0.0)));
+                Box::new(move |reader| reader.modes.mirror = Some(map))
+            }
+            Code::CancelMirror => Box::new(|reader| reader.modes.mirror = None),
+            _ => return Ok(()),
+        };
+        self.reframe(|reader| {
+            change(reader);
+            Ok(())
+        })
+    }
+
+    /// G28 and G30: over the programmed point to the machine's home.
+    fn home(&mut self, which: usize, block: &Block) -> Result<(), NcProblem> {
+        self.refuse_compensation("a move to the machine's home")?;
+        let words = self.lengths(block, ['X', 'Y', 'Z']);
+        let any = block.first("XYZABC").is_some();
+        let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.at[k].is_some());
+        if (any || self.trace.is_some()) && known && !self.uncertain {
+            self.offsets.use_active()?;
+            self.go(MotionMode::Rapid, block)?;
+        }
+        let named = |k: usize| !any || words[k].is_some();
+        for (angle, letter) in self.state.abc.iter_mut().zip(['A', 'B', 'C']) {
+            if !any || block.has(letter) {
+                *angle = 0.0;
+            }
+        }
+        if let (Some(home), true, [Some(x), Some(y), Some(z)]) =
+            (self.homes[which], self.machine_known, self.control_position())
+        {
+            let now = [x, y, z];
+            return self.go_to_control(std::array::from_fn(|k| if named(k) { home[k] } else { now[k] }), true);
+        }
+        for k in (0..3).filter(|&k| named(k)) {
+            self.forget(k);
+        }
+        self.state
+            .note("moves to the machine's home are left out: the path breaks here");
+        self.state.leave();
+        Ok(())
+    }
+}

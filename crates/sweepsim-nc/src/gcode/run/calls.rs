@@ -1,0 +1,441 @@
+//! Subprograms: where they are, and how they are called and left.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use super::interpreter::{Reader, Step};
+use super::variables::Locals;
+use crate::gcode::flow::keywords::{Keyword, Label};
+use crate::gcode::flow::source::{LONGEST, Source};
+use crate::gcode::modes::Modes;
+use crate::gcode::syntax::block::Block;
+use crate::model::program::Call;
+use crate::text::error::NcProblem;
+
+/// Calls within calls, at most.
+const DEEPEST: usize = 100;
+/// Files of subprograms, at most.
+const MOST_FILES: usize = 500;
+
+/// A line of one of the texts, both from 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Spot {
+    pub source: usize,
+    pub line: usize,
+}
+
+/// What is being executed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum FrameKind {
+    Main,
+    /// A subroutine of LinuxCNC.
+    Subroutine(Label),
+    /// M98, M97 and G65: where it starts, and how often it is still to be executed.
+    Program {
+        start: Spot,
+        left: u32,
+    },
+}
+
+/// A call that has not returned yet.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    pub kind: FrameKind,
+    /// Where to go on afterwards.
+    pub back: Spot,
+    /// The call, in the program's list.
+    pub call: Option<u32>,
+    /// What it has to restore.
+    locals: Option<(Box<Locals>, usize)>,
+    named: Option<BTreeMap<String, f64>>,
+    pub modes: Option<Box<Modes>>,
+    /// Whether the modes are restored on return (M73).
+    pub restore_modes: bool,
+    /// How often each loop (by its line) is still to be executed.
+    pub repeats: BTreeMap<usize, u64>,
+    /// Fanuc's open loops: the number and the line of each.
+    pub loops: Vec<(u32, usize)>,
+}
+
+impl Frame {
+    pub(crate) fn main() -> Self {
+        Self {
+            kind: FrameKind::Main,
+            back: Spot::default(),
+            call: None,
+            locals: None,
+            named: None,
+            modes: None,
+            restore_modes: false,
+            repeats: BTreeMap::new(),
+            loops: Vec::new(),
+        }
+    }
+}
+
+/// Fanuc's letters for the arguments of a macro, and their variables.
+const ARGUMENTS: [(char, usize); 21] = [
+    ('A', 1),
+    ('B', 2),
+    ('C', 3),
+    ('D', 7),
+    ('E', 8),
+    ('F', 9),
+    ('H', 11),
+    ('I', 4),
+    ('J', 5),
+    ('K', 6),
+    ('M', 13),
+    ('Q', 17),
+    ('R', 18),
+    ('S', 19),
+    ('T', 20),
+    ('U', 21),
+    ('V', 22),
+    ('W', 23),
+    ('X', 24),
+    ('Y', 25),
+    ('Z', 26),
+];
+
+impl Reader {
+    pub(crate) fn frame(&mut self) -> &mut Frame {
+        // There is always the frame of the main program.
+        if self.frames.is_empty() {
+            self.frames.push(Frame::main());
+        }
+        let last = self.frames.len() - 1;
+        &mut self.frames[last]
+    }
+
+    /// Calls a subroutine of LinuxCNC.
+    pub(crate) fn call_subroutine(&mut self, label: Label, arguments: &[f64], here: Spot) -> Result<Step, NcProblem> {
+        let spot = self.find(&label, here.source, Some(Keyword::Sub))?;
+        let mut locals = [Some(0.0); 34];
+        for (local, argument) in locals[1..31].iter_mut().zip(arguments) {
+            *local = Some(*argument);
+        }
+        let saved = self.variables.locals;
+        locals[0] = None;
+        locals[31..].copy_from_slice(&saved[31..]);
+        self.variables.locals = locals;
+        let mut frame = Frame::main();
+        frame.kind = FrameKind::Subroutine(label);
+        frame.locals = Some((Box::new(saved), 31));
+        frame.named = Some(std::mem::take(&mut self.variables.named));
+        self.enter(
+            frame,
+            Spot {
+                line: spot.line + 1,
+                ..spot
+            },
+            here,
+        )
+    }
+
+    /// M98, M97.
+    pub(crate) fn call_program(&mut self, block: &Block, by_block_number: bool, here: Spot) -> Result<Step, NcProblem> {
+        let code = if by_block_number { "M97" } else { "M98" };
+        let Some(p) = block.get('P') else {
+            return Err(NcProblem::syntax(format!(
+                "{code} without P: expected the number of a subprogram"
+            )));
+        };
+        if p.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&p) {
+            return Err(NcProblem::value(
+                format!("P of {code}"),
+                p,
+                "a whole number from 0 to 99999999",
+            ));
+        }
+        let mut number = p as u32;
+        let mut times = self.times(block)?;
+        // Fanuc's short form: P51002 is five times O1002.
+        if !by_block_number
+            && number > 9999
+            && !block.has('L')
+            && self.find_in_texts(&Label::Number(number), here.source).is_none()
+        {
+            times = number / 10_000;
+            number %= 10_000;
+        }
+        if times == 0 {
+            return Ok(Step::Next);
+        }
+        let start = if by_block_number {
+            let line = self.sources[here.source].labels().number(number, here.line);
+            let line = line.ok_or_else(|| NcProblem::syntax(format!("M97 P{number}: there is no block N{number}")))?;
+            Spot { line, ..here }
+        } else {
+            let spot = self.find(&Label::Number(number), here.source, None)?;
+            Spot {
+                line: spot.line + 1,
+                ..spot
+            }
+        };
+        let mut frame = Frame::main();
+        frame.kind = FrameKind::Program { start, left: times };
+        self.enter(frame, start, here)
+    }
+
+    /// G65.
+    pub(crate) fn call_macro(&mut self, block: &Block, here: Spot) -> Result<Step, NcProblem> {
+        let Some(p) = block
+            .get('P')
+            .filter(|p| p.fract() == 0.0 && (0.0..=99_999_999.0).contains(p))
+        else {
+            return Err(NcProblem::syntax("G65 without the number of a program: expected P"));
+        };
+        let times = self.times(block)?;
+        let spot = self.find(&Label::Number(p as u32), here.source, None)?;
+        let mut locals: Locals = [None; 34];
+        let after = block.span('P').end;
+        let arguments = || block.words().iter().filter(|word| word.span().start >= after);
+        let twice = "IJK"
+            .chars()
+            .any(|letter| arguments().filter(|word| word.letter == letter).count() > 1);
+        if twice {
+            // Argument specification II: A B C, then I J K in turn.
+            let (mut set, mut last) = (0, 0);
+            for word in arguments() {
+                let place = match word.letter {
+                    'A' | 'B' | 'C' => word.letter as usize - 'A' as usize + 1,
+                    'I' | 'J' | 'K' => {
+                        let k = word.letter as usize - 'I' as usize;
+                        set += usize::from(set == 0 || k <= last);
+                        last = k;
+                        4 + 3 * (set - 1) + k
+                    }
+                    _ => continue,
+                };
+                if let Some(local) = locals.get_mut(place) {
+                    *local = Some(word.value);
+                }
+            }
+        } else {
+            for word in arguments().filter(|word| word.letter != 'L') {
+                match ARGUMENTS.iter().find(|(letter, _)| *letter == word.letter) {
+                    Some(&(_, place)) => locals[place] = Some(word.value),
+                    None => {
+                        return Err(NcProblem::syntax(format!(
+                            "{} cannot be an argument of a macro call",
+                            word.letter
+                        )));
+                    }
+                }
+            }
+        }
+        if times == 0 {
+            return Ok(Step::Next);
+        }
+        let saved = std::mem::replace(&mut self.variables.locals, locals);
+        let start = Spot {
+            line: spot.line + 1,
+            ..spot
+        };
+        let mut frame = Frame::main();
+        frame.kind = FrameKind::Program { start, left: times };
+        frame.locals = Some((Box::new(saved), 34));
+        self.enter(frame, start, here)
+    }
+
+    /// How often to execute it: L.
+    fn times(&self, block: &Block) -> Result<u32, NcProblem> {
+        match block.get('L') {
+            None => Ok(1),
+            Some(l) if l.fract() == 0.0 && (0.0..=99_999.0).contains(&l) => Ok(l as u32),
+            Some(l) => Err(NcProblem::value(
+                "the number of repeats L",
+                l,
+                "a whole number from 0 to 99999",
+            )),
+        }
+    }
+
+    fn enter(&mut self, mut frame: Frame, to: Spot, here: Spot) -> Result<Step, NcProblem> {
+        if self.frames.len() > DEEPEST {
+            self.leave_frame_of(frame);
+            return Err(NcProblem::syntax(format!(
+                "calls within calls are more than {DEEPEST} deep: a subprogram calls itself without end"
+            )));
+        }
+        let parent = self.frame().call;
+        let key = (self.state.place.file, self.state.place.line, parent);
+        let next = self.state.calls.len() as u32;
+        let call = *self.call_numbers.entry(key).or_insert(next);
+        if call == next {
+            self.state.calls.push(Call::new(key.0, key.1, parent));
+        }
+        frame.call = Some(call);
+        frame.back = Spot {
+            line: here.line + 1,
+            ..here
+        };
+        self.frames.push(frame);
+        Ok(Step::Jump(to))
+    }
+
+    /// Restores what a call has saved.
+    fn leave_frame_of(&mut self, frame: Frame) {
+        if let Some((saved, count)) = frame.locals {
+            self.variables.locals[..count].copy_from_slice(&saved[..count]);
+        }
+        if let Some(named) = frame.named {
+            self.variables.named = named;
+        }
+        if let (true, Some(modes)) = (frame.restore_modes, frame.modes) {
+            self.modes = *modes;
+        }
+    }
+
+    /// Returns from a subroutine of LinuxCNC.
+    pub(crate) fn leave_subroutine(&mut self, value: Option<f64>) -> Result<Step, NcProblem> {
+        if !matches!(self.frame().kind, FrameKind::Subroutine(_)) {
+            return Err(NcProblem::syntax(
+                "this ends a subroutine that was not called by `O… call`: a subprogram called by M98 ends with M99",
+            ));
+        }
+        let Some(frame) = self.frames.pop() else {
+            return Ok(Step::Next);
+        };
+        let back = frame.back;
+        self.leave_frame_of(frame);
+        self.variables.set_returned(value);
+        Ok(Step::Jump(back))
+    }
+
+    /// M99.
+    pub(crate) fn leave_program(&mut self, block: &Block, here: Spot) -> Result<Step, NcProblem> {
+        let to_number = match block.get('P') {
+            None => None,
+            Some(p) if p.fract() == 0.0 && (0.0..=1e8).contains(&p) => Some(p as u32),
+            Some(p) => return Err(NcProblem::value("P of M99", p, "the number of a block")),
+        };
+        let jump = |reader: &Self, from: Spot| match to_number {
+            None => Ok(Step::Jump(from)),
+            Some(number) => match reader.sources[from.source].labels().number(number, from.line) {
+                Some(line) => Ok(Step::Jump(Spot { line, ..from })),
+                None => Err(NcProblem::syntax(format!(
+                    "M99 P{number}: there is no block N{number} to return to"
+                ))),
+            },
+        };
+        match &mut self.frame().kind {
+            FrameKind::Main if to_number.is_some() => jump(self, here),
+            FrameKind::Main => {
+                self.state
+                    .note("M99 ends the program here; a machine may start it again");
+                Ok(Step::End)
+            }
+            FrameKind::Subroutine(label) => Err(NcProblem::syntax(format!(
+                "M99 in a subroutine that was called by `{label} call`: expected `{label} endsub` or `{label} return`"
+            ))),
+            FrameKind::Program { start, left } if *left > 1 && to_number.is_none() => {
+                *left -= 1;
+                Ok(Step::Jump(*start))
+            }
+            FrameKind::Program { .. } => {
+                let Some(frame) = self.frames.pop() else {
+                    return Ok(Step::End);
+                };
+                let back = frame.back;
+                self.leave_frame_of(frame);
+                jump(self, back)
+            }
+        }
+    }
+
+    /// Where a label is, in the texts that have been read.
+    fn find_in_texts(&self, label: &Label, source: usize) -> Option<(Spot, Option<Keyword>)> {
+        let order = std::iter::once(source).chain(0..self.sources.len());
+        for source in order {
+            let lines = self.sources[source].labels().lines(label);
+            let found = lines
+                .iter()
+                .find(|found| matches!(found.keyword, None | Some(Keyword::Sub)));
+            if let Some(found) = found {
+                let spot = Spot {
+                    source,
+                    line: found.line,
+                };
+                return Some((spot, found.keyword));
+            }
+        }
+        None
+    }
+
+    /// Where a subroutine or a program begins: in these texts, or in a file.
+    fn find(&mut self, label: &Label, source: usize, keyword: Option<Keyword>) -> Result<Spot, NcProblem> {
+        if self.find_in_texts(label, source).is_none() {
+            self.load(label)?;
+        }
+        match (self.find_in_texts(label, source), keyword) {
+            (Some((spot, found)), keyword) if found == keyword => Ok(spot),
+            (Some(_), None) => Err(NcProblem::syntax(format!(
+                "`{label} sub` begins a subroutine of LinuxCNC: expected `{label} call`"
+            ))),
+            (Some(_), Some(_)) => Err(NcProblem::syntax(format!(
+                "{label} is a subprogram without `sub`: expected M98 P to call it"
+            ))),
+            (None, _) => Err(NcProblem::syntax(format!(
+                "the subprogram {label} is missing: expected it in this program, or in a file of its name beside it"
+            ))),
+        }
+    }
+
+    /// Reads the file of a subprogram, if there is one.
+    fn load(&mut self, label: &Label) -> Result<(), NcProblem> {
+        if !self.looked_for.insert(label.clone()) || self.sources.len() > MOST_FILES {
+            return Ok(());
+        }
+        let names = match label {
+            // No way out of the folder.
+            Label::Name(name) if name.contains(['/', '\\', '\0']) || name.starts_with('.') => return Ok(()),
+            Label::Name(name) => vec![name.clone()],
+            Label::Number(number) => vec![
+                format!("{number}"),
+                format!("O{number:04}"),
+                format!("o{number:04}"),
+                format!("O{number}"),
+                format!("o{number}"),
+                format!("{number:04}"),
+            ],
+        };
+        let extensions = [".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ""];
+        for folder in &self.folders {
+            for (name, extension) in names.iter().flat_map(|name| extensions.iter().map(move |e| (name, e))) {
+                let path = folder.join(format!("{name}{extension}"));
+                if path.is_file() {
+                    let source = read(&path, self.files.len())?;
+                    self.files.push(path);
+                    self.sources.push(Rc::new(source));
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn read(path: &Path, file: usize) -> Result<Source, NcProblem> {
+    let size = std::fs::metadata(path).map_err(NcProblem::Read)?.len();
+    if size > LONGEST as u64 {
+        return Err(NcProblem::value(
+            "the size of a file of subprograms",
+            size,
+            "less than 2 GB",
+        ));
+    }
+    let bytes = std::fs::read(path).map_err(NcProblem::Read)?;
+    Ok(Source::new(file, String::from_utf8_lossy(&bytes).into_owned()))
+}
+
+/// The folders in which to look for subprograms.
+pub(crate) fn folders(file: Option<&Path>, further: &[PathBuf]) -> Vec<PathBuf> {
+    let own = file.map(|file| match file.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+        _ => PathBuf::from("."),
+    });
+    own.into_iter().chain(further.iter().cloned()).collect()
+}

@@ -1,0 +1,382 @@
+//! Executes a program block by block.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use super::calls::{Frame, Spot, folders};
+use super::tools::ToolTable;
+use super::variables::{Store, given_work_offsets};
+use crate::gcode::flow::keywords::{Label, after_letter, is_statement, skip_head};
+use crate::gcode::flow::source::{LONGEST, Source};
+use crate::gcode::modes::Modes;
+use crate::gcode::motion::compensation::{Compensation, Place};
+use crate::gcode::motion::map::Map;
+use crate::gcode::motion::state::State;
+use crate::gcode::offsets::Offsets;
+use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::cursor::Cursor;
+use crate::gcode::syntax::{title, words};
+use crate::gcode::trace::Canonical;
+use crate::model::program::Program;
+use crate::model::read_options::{Controller, ReadOptions};
+use crate::text::error::{NcError, NcProblem, TextPosition};
+
+/// The most problems after the first one.
+const MOST_FURTHER: usize = 100;
+/// How many blocks are still executed after a problem, to find others.
+const AFTER_PROBLEM: u64 = 200_000;
+
+/// What comes after a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    Next,
+    Jump(Spot),
+    End,
+}
+
+/// The interpreter.
+pub(crate) struct Reader {
+    pub state: State,
+    pub modes: Modes,
+    pub offsets: Offsets,
+    pub variables: Store,
+    pub tools: ToolTable,
+    pub controller: Option<Controller>,
+    pub frames: Vec<Frame>,
+    pub sources: Vec<Rc<Source>>,
+    pub files: Vec<PathBuf>,
+    pub folders: Vec<PathBuf>,
+    pub looked_for: BTreeSet<Label>,
+    pub call_numbers: BTreeMap<(usize, usize, Option<u32>), u32>,
+    pub loop_ends: BTreeMap<Spot, Option<usize>>,
+    /// Where the last jump backwards led.
+    pub turned: Option<Spot>,
+    pub arc_tolerance: f64,
+    pub exact_arcs: bool,
+    pub chord_note: String,
+    pub block_delete: bool,
+    pub lenient: bool,
+    /// Whether positions in machine coordinates are known: the control's variables were given.
+    pub machine_known: bool,
+    /// The programmed position, in the program's coordinates (mm).
+    pub at: [Option<f64>; 3],
+    /// Where the tool really is, in the program's coordinates (mm): beside the programmed position while cutter compensation is on.
+    pub actual: [f64; 3],
+    /// From the program's coordinates to the tip's place in the frame of the poses.
+    pub map: Map,
+    pub compensation: Option<Compensation>,
+    /// After G40, an arc cannot come first.
+    pub straight_next: bool,
+    /// The length offset in effect,
+    pub length: [f64; 3],
+    /// and whether it is a known one.
+    pub length_known: bool,
+    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
+    pub uses_length: bool,
+    /// Selected by a T word, not yet in the spindle.
+    pub selected_tool: Option<u32>,
+    pub tool_changed: bool,
+    /// The homes of G28 and G30 in machine coordinates, as far as they are known.
+    pub homes: [Option<[f64; 3]>; 2],
+    /// Tip control by the machine's kinematics (M428).
+    pub kinematics: bool,
+    /// Tip control by the length offset (G43.4).
+    pub length_control: bool,
+    /// A program number has come.
+    pub numbered: bool,
+    pub begun: bool,
+    /// After a problem: what the program has said so far is not fully known.
+    pub uncertain: bool,
+    pub trace: Option<Vec<Canonical>>,
+}
+
+/// A text that is read, and where it comes from.
+pub(crate) struct Input<'a> {
+    pub text: &'a str,
+    pub file: Option<&'a Path>,
+}
+
+/// What a program is, or what is wrong with it; and its canonical commands, if they are traced.
+pub(crate) struct Outcome {
+    pub program: Result<Program, NcError>,
+    pub trace: Vec<Canonical>,
+}
+
+pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
+    let fail = |problem| Outcome {
+        program: Err(NcError::new(problem, None)),
+        trace: Vec::new(),
+    };
+    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
+        return fail(NcProblem::value(
+            "the arc tolerance",
+            options.arc_tolerance,
+            "a positive number of mm",
+        ));
+    }
+    if input.text.len() > LONGEST {
+        return fail(NcProblem::value(
+            "the size of a program",
+            input.text.len(),
+            "less than 2 GB",
+        ));
+    }
+    let mut reader = Reader::new(input, options);
+    reader.trace = trace.then(Vec::new);
+    let errors = reader.run(options.most_blocks, title::leader(input.text));
+    let trace = reader.trace.take().unwrap_or_default();
+    let program = match NcError::all(errors) {
+        Some(error) => Err(error),
+        None if !reader.state.has_moved() && !options.lenient => {
+            let line = input.text.lines().count().max(1);
+            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
+            Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))))
+        }
+        None => {
+            let mut program = reader.state.finish();
+            program.files = reader.files;
+            Ok(program)
+        }
+    };
+    Outcome { program, trace }
+}
+
+impl Reader {
+    fn new(input: &Input, options: &ReadOptions) -> Self {
+        let unit = if options.inch { 25.4 } else { 1.0 };
+        let mut offsets = Offsets::default();
+        for (index, placed) in given_work_offsets(&options.variables, unit) {
+            offsets.place(index, placed);
+        }
+        let home = |first: u32| {
+            let value = |k: u32| options.variables.get(&(first + k)).map(|value| value * unit);
+            Some([value(0)?, value(1)?, value(2)?])
+        };
+        let mut reader = Self {
+            state: State::new(options),
+            modes: Modes::new(options.inch),
+            offsets,
+            variables: Store::new(&options.variables),
+            tools: ToolTable::new(&options.tool_offsets),
+            controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
+            frames: vec![Frame::main()],
+            sources: vec![Rc::new(Source::new(0, input.text.to_owned()))],
+            files: input.file.map(Path::to_owned).into_iter().collect(),
+            folders: folders(input.file, &options.subprograms),
+            looked_for: BTreeSet::new(),
+            call_numbers: BTreeMap::new(),
+            loop_ends: BTreeMap::new(),
+            turned: None,
+            arc_tolerance: options.arc_tolerance,
+            exact_arcs: options.exact_arcs,
+            chord_note: format!("arcs are divided into chords within {} mm", options.arc_tolerance),
+            block_delete: options.block_delete,
+            lenient: options.lenient,
+            machine_known: !options.variables.is_empty(),
+            at: [None; 3],
+            actual: [0.0; 3],
+            map: Map::default(),
+            compensation: None,
+            straight_next: false,
+            length: [0.0; 3],
+            length_known: false,
+            uses_length: input.text.contains("G43") || input.text.contains("g43"),
+            selected_tool: None,
+            tool_changed: false,
+            homes: [home(5161), home(5181)],
+            kinematics: options.machine.tip_control,
+            length_control: false,
+            numbered: false,
+            begun: false,
+            uncertain: false,
+            trace: None,
+        };
+        reader.update_map();
+        if let Some(start) = options.start
+            && let Some(inverse) = reader.map.inverse()
+        {
+            reader.at = inverse.apply(start).map(Some);
+            reader.state.xyz = start.map(Some);
+        }
+        reader
+    }
+
+    /// Executes the main program, and returns its problems.
+    fn run(&mut self, most_blocks: u64, leader: usize) -> Vec<NcError> {
+        let mut errors: Vec<NcError> = Vec::new();
+        let mut messages = BTreeSet::new();
+        if leader > 0 {
+            self.state.notes.add(1, "text before the first `%`: ignored");
+        }
+        let mut here = Spot {
+            source: 0,
+            line: leader,
+        };
+        let mut source = Rc::clone(&self.sources[0]);
+        let mut block = Block::default();
+        let mut left = most_blocks;
+        loop {
+            if here.line >= source.len() {
+                if here.source == 0 && self.frames.len() == 1 {
+                    break;
+                }
+                let problem = NcProblem::syntax("the file ends within a subprogram: expected M99, or `endsub`");
+                errors.push(self.error(problem, &source, source.len().saturating_sub(1), 0..0));
+                break;
+            }
+            if left == 0 {
+                // Problems have made the loop's end unreachable, perhaps.
+                if errors.is_empty() {
+                    let to = self.turned.unwrap_or(here);
+                    let source = Rc::clone(&self.sources[to.source]);
+                    let problem = NcProblem::value(
+                        "the number of executed blocks",
+                        most_blocks,
+                        "smaller: the loop that begins here does not end, or `most_blocks` is too small",
+                    );
+                    errors.push(self.error(problem, &source, to.line, 0..usize::MAX));
+                }
+                break;
+            }
+            left -= 1;
+            let step = match self.line(&source, here, &mut block) {
+                Ok(step) => step,
+                Err((problem, span)) => {
+                    self.go_on(&block);
+                    let text = problem.to_string();
+                    if self.lenient {
+                        self.state.note(format!("left out: {text}"));
+                    } else if messages.insert(text) {
+                        errors.push(self.error(problem, &source, here.line, span));
+                        left = left.min(AFTER_PROBLEM);
+                    }
+                    Step::Next
+                }
+            };
+            match step {
+                Step::Next => here.line += 1,
+                Step::Jump(to) => {
+                    if to.source != here.source {
+                        source = Rc::clone(&self.sources[to.source]);
+                    }
+                    here = to;
+                }
+                Step::End => break,
+            }
+            if errors.len() > MOST_FURTHER {
+                break;
+            }
+        }
+        if let Err(problem) = self.finish_compensation() {
+            let last = here.line.min(source.len().saturating_sub(1));
+            errors.push(self.error(problem, &source, last, 0..usize::MAX));
+        }
+        // By line, of each file.
+        errors.sort_by_key(|error| (error.file().is_none(), error.position().map(|position| position.line)));
+        errors
+    }
+
+    fn error(&self, problem: NcProblem, source: &Source, line: usize, span: std::ops::Range<usize>) -> NcError {
+        let whole = source.line(line);
+        let floor = |byte: usize| {
+            (0..=byte.min(whole.len()))
+                .rev()
+                .find(|&b| whole.is_char_boundary(b))
+                .unwrap_or(0)
+        };
+        let (start, end) = (floor(span.start), floor(span.end));
+        let column = 1 + whole[..start].chars().count();
+        let width = whole[start..end.max(start)].chars().count();
+        let error = NcError::new(problem, Some(TextPosition::in_line(line + 1, whole, column, width)));
+        match self.files.get(source.file).filter(|_| source.file > 0) {
+            Some(file) => error.in_file(file),
+            None => error,
+        }
+    }
+
+    /// Goes on after a problem, to find others: where the tool is now is not known.
+    fn go_on(&mut self, block: &Block) {
+        self.uncertain = true;
+        self.compensation = None;
+        self.at = [None; 3];
+        self.state.xyz = [None; 3];
+        self.state.leave();
+        let cycle = matches!(self.modes.motion, Some(crate::gcode::codes::MotionMode::Cycle(_)));
+        if cycle || !self.lenient || block.has('G') {
+            self.modes.motion = None;
+        }
+    }
+
+    fn line(&mut self, source: &Source, here: Spot, block: &mut Block) -> Result<Step, Located> {
+        let line = source.line(here.line);
+        self.state.place = Place {
+            file: source.file,
+            line: here.line + 1,
+            call: self.frame().call,
+        };
+        if !self.state.has_moved()
+            && let Some(title) = title::of(line)
+        {
+            self.begun = true;
+            block.clear();
+            self.state.title.get_or_insert(title);
+            return Ok(Step::Next);
+        }
+        let mut cursor = Cursor::new(line);
+        match cursor.peek() {
+            None => return Ok(Step::Next),
+            Some(b'$' | b'{' | b'?' | b'!' | b'~') => return self.command(line, cursor),
+            _ => {}
+        }
+        if line.as_bytes().get(cursor.at) == Some(&b'/') && self.block_delete {
+            self.state.note("optional blocks (`/`) are skipped");
+            return Ok(Step::Next);
+        }
+        if let Some(cursor) = after_letter(line) {
+            self.begun = true;
+            block.clear();
+            return self.labelled(cursor, here);
+        }
+        skip_head(&mut cursor);
+        if is_statement(cursor) {
+            self.begun = true;
+            block.clear();
+            return self.statement(cursor, here);
+        }
+        words::read(line, self, block)?;
+        if block.tape {
+            let ends = self.begun && self.frames.len() == 1;
+            return Ok(if ends { Step::End } else { Step::Next });
+        }
+        if let Some(message) = block.message.clone() {
+            self.message(&line[message]);
+        }
+        if block.optional && !(block.is_empty() && block.assignments.is_empty()) {
+            self.state.note("optional blocks (`/`) are executed");
+        }
+        if block.is_empty() && block.assignments.is_empty() {
+            return Ok(Step::Next);
+        }
+        self.begun = true;
+        self.perform(block, here)
+    }
+
+    /// Settings of Grbl and TinyG.
+    fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
+        let upper = line.trim().to_ascii_uppercase();
+        if upper.starts_with("$H") {
+            self.state
+                .note("moves to the machine's home are left out: the path breaks here");
+            self.at = [None; 3];
+            self.state.xyz = [None; 3];
+            self.state.leave();
+        } else if upper.starts_with("$J") {
+            let problem = NcProblem::unsupported("jogging ($J) is", "expected G0 or G1");
+            return Err((problem, cursor.at..line.len()));
+        } else {
+            self.state.note("settings of the control (`$…`, `{…}`) are ignored");
+        }
+        Ok(Step::Next)
+    }
+}

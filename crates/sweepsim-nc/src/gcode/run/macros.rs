@@ -1,0 +1,140 @@
+//! Fanuc's custom macro B: `IF [...] GOTO`, `WHILE [...] DO`, `GOTO`.
+//!
+//! Source: Fanuc Series 30i operator's manual B-63944EN, *Custom macro*.
+
+use super::calls::Spot;
+use super::interpreter::{Reader, Step};
+use crate::gcode::flow::labels::loop_number;
+use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::cursor::Cursor;
+use crate::gcode::syntax::expression::Values;
+use crate::gcode::syntax::words;
+use crate::text::error::NcProblem;
+
+impl Reader {
+    /// A statement; the cursor is where it begins.
+    pub(crate) fn statement(&mut self, mut cursor: Cursor, here: Spot) -> Result<Step, Located> {
+        let start = cursor.at;
+        let word = cursor.letters().to_ascii_uppercase();
+        cursor.at += word.len();
+        let span = start..cursor.at;
+        match word.as_str() {
+            "IF" => {
+                let mut values = Values::new(cursor, self);
+                let holds = values.bracket()?.unwrap_or(0.0) != 0.0;
+                cursor = values.cursor;
+                if !holds {
+                    return Ok(Step::Next);
+                }
+                if cursor.eat_word("GOTO") {
+                    return self.go_to(cursor, here);
+                }
+                cursor.eat_word("THEN");
+                let mut block = Block::default();
+                words::read_from(cursor, self, &mut block)?;
+                self.perform(&block, here)
+            }
+            "GOTO" => self.go_to(cursor, here),
+            "WHILE" => {
+                let mut values = Values::new(cursor, self);
+                let holds = values.bracket()?.unwrap_or(0.0) != 0.0;
+                cursor = values.cursor;
+                if !cursor.eat_word("DO") {
+                    return Err(cursor.unexpected("DO after the condition"));
+                }
+                self.open_loop(cursor, holds, here)
+            }
+            "DO" => self.open_loop(cursor, true, here),
+            "END" => {
+                let number = number(&mut cursor)?;
+                let loops = &mut self.frame().loops;
+                while let Some(&(open, line)) = loops.last() {
+                    if open == number {
+                        return Ok(self.turn(Spot { line, ..here }));
+                    }
+                    loops.pop();
+                }
+                let problem = NcProblem::syntax(format!("END{number} without WHILE … DO{number} before it"));
+                Err((problem, span))
+            }
+            word => {
+                self.state.note(format!("{word} writes to a port: ignored"));
+                Ok(Step::Next)
+            }
+        }
+    }
+
+    fn go_to(&mut self, cursor: Cursor, here: Spot) -> Result<Step, Located> {
+        let start = cursor.at;
+        let mut values = Values::new(cursor, self);
+        let (value, _) = values.value()?;
+        let span = start..values.cursor.at;
+        let number = value.unwrap_or(0.0);
+        if number.fract() != 0.0 || !(0.0..=999_999_999.0).contains(&number) {
+            let problem = NcProblem::value("the block number of GOTO", number, "a whole number");
+            return Err((problem, span));
+        }
+        match self.sources[here.source].labels().number(number as u32, here.line) {
+            Some(line) if line <= here.line => Ok(self.turn(Spot { line, ..here })),
+            Some(line) => Ok(Step::Jump(Spot { line, ..here })),
+            None => {
+                let problem = NcProblem::syntax(format!("there is no block N{number} to go to"));
+                Err((problem, span))
+            }
+        }
+    }
+
+    fn open_loop(&mut self, mut cursor: Cursor, holds: bool, here: Spot) -> Result<Step, Located> {
+        let span = 0..cursor.at;
+        let number = number(&mut cursor)?;
+        let loops = &mut self.frame().loops;
+        // Jumps may have left loops, or come back to this one.
+        if let Some(open) = loops
+            .iter()
+            .position(|&(open, line)| open == number || line == here.line)
+        {
+            loops.truncate(open);
+        }
+        if holds {
+            loops.push((number, here.line));
+            return Ok(Step::Next);
+        }
+        match self.end_of_loop(number, here) {
+            Some(line) => Ok(Step::Jump(Spot { line: line + 1, ..here })),
+            None => {
+                let problem = NcProblem::syntax(format!("there is no END{number} after this line"));
+                Err((problem, span))
+            }
+        }
+    }
+
+    fn end_of_loop(&mut self, number: u32, here: Spot) -> Option<usize> {
+        if let Some(line) = self.loop_ends.get(&here) {
+            return *line;
+        }
+        let source = &self.sources[here.source];
+        let mut deep = 0_usize;
+        let mut end = None;
+        for line in here.line + 1..source.len() {
+            let text = source.line(line);
+            if loop_number(text, "DO") == Some(number) {
+                deep += 1;
+            } else if loop_number(text, "END") == Some(number) {
+                if deep == 0 {
+                    end = Some(line);
+                    break;
+                }
+                deep -= 1;
+            }
+        }
+        self.loop_ends.insert(here, end);
+        end
+    }
+}
+
+fn number(cursor: &mut Cursor) -> Result<u32, Located> {
+    match cursor.digits() {
+        Some(digits) if digits.whole && digits.value < 1e6 => Ok(digits.value as u32),
+        _ => Err(cursor.unexpected("the number of a loop")),
+    }
+}

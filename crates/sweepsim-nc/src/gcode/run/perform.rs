@@ -1,0 +1,416 @@
+//! What a block does, in the order in which controls do it: modes, speeds, tool, spindle and coolant, offsets, the move, the end.
+
+use super::calls::Spot;
+use super::interpreter::{Reader, Step};
+use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode, Turning};
+use crate::gcode::syntax::block::{Block, Located, Word};
+use crate::model::event::{EventKind, Spindle};
+use crate::model::program::Units;
+use crate::model::read_options::Controller;
+use crate::text::error::NcProblem;
+
+/// What the G words of a block ask for besides modes.
+#[derive(Default)]
+struct Plan {
+    /// A code that uses the coordinates, or sets an offset.
+    action: Option<(Code, Word)>,
+    machine_coordinates: bool,
+    motion: Option<Word>,
+    dwell: bool,
+    length: Option<(Code, Word)>,
+    macro_call: Option<Word>,
+}
+
+impl Reader {
+    /// Executes a block.
+    pub(crate) fn perform(&mut self, block: &Block, here: Spot) -> Result<Step, Located> {
+        for (target, value) in &block.assignments {
+            self.assign(target, *value)
+                .map_err(|problem| (problem, 0..usize::MAX))?;
+        }
+        if block.is_empty() {
+            return Ok(Step::Next);
+        }
+        let macro_call = block.has('G') && block.words().iter().any(|w| w.letter == 'G' && w.value == 65.0);
+        if !macro_call {
+            self.check_letters(block)?;
+        }
+        let plan = self.modal(block)?;
+        if let Some(word) = plan.macro_call {
+            return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
+        }
+        let mut step = self.misc(block)?;
+        self.state.tip_control = self.kinematics || self.length_control;
+        let whole = |problem| (problem, block.all());
+        if plan.dwell {
+            self.dwell(block).map_err(whole)?;
+        }
+        if let Some((code, word)) = plan.length {
+            let result = match code {
+                Code::Length(code) => self.set_length(code, block),
+                _ => self.use_length([0.0; 3]),
+            };
+            result.map_err(|problem| (problem, word.span()))?;
+        }
+        match plan.action {
+            Some((code, word)) => {
+                let result = self.act(code, block);
+                result.map_err(|problem| (problem, word.span()))?;
+            }
+            None if plan.dwell && plan.motion.is_none() => {}
+            None => self.motion(block, &plan)?,
+        }
+        // A subprogram is called, and the program ends, after the move.
+        if let Some(word) = block.words().iter().rfind(|word| word.letter == 'M') {
+            let span = word.span();
+            match codes::m(word.value) {
+                Misc::Call { by_block_number } => {
+                    step = self
+                        .call_program(block, by_block_number, here)
+                        .map_err(|problem| (problem, span))?;
+                }
+                Misc::Return => step = self.leave_program(block, here).map_err(|problem| (problem, span))?,
+                _ => {}
+            }
+        }
+        Ok(step)
+    }
+
+    fn motion(&mut self, block: &Block, plan: &Plan) -> Result<(), Located> {
+        let whole = |problem| (problem, block.all());
+        let letters = match self.modes.motion {
+            Some(MotionMode::Cycle(_)) => "XYZABCR",
+            // Words that arcs need, where there is no other use for them.
+            _ if block.has('M') || plan.length.is_some() => "XYZABC",
+            _ => "XYZABCIJKR",
+        };
+        let used = block.first(letters);
+        match (used, self.modes.motion) {
+            (None, Some(MotionMode::Arc { .. })) if plan.motion.is_some() => Err(whole(NcProblem::syntax(
+                "an arc without an end or a centre: expected X, Y, Z, I, J, K or R",
+            ))),
+            (None, _) => Ok(()),
+            // The block with the motion code may be the one with the problem.
+            (Some(_), None) if self.uncertain => {
+                if self.lenient {
+                    self.state
+                        .note("left out: a move after a problem, until its kind is known again");
+                }
+                Ok(())
+            }
+            (Some(word), None) => {
+                let problem = NcProblem::syntax(format!(
+                    "{} without a motion code: expected G0, G1, G2 or G3 here or before",
+                    word.letter
+                ));
+                Err((problem, word.span()))
+            }
+            (Some(_), Some(motion)) => {
+                if self.controller == Some(Controller::LinuxCnc)
+                    && motion != MotionMode::Rapid
+                    && self.modes.feed.is_none_or(|feed| feed <= 0.0)
+                {
+                    return Err(whole(NcProblem::syntax(
+                        "a feed move without a feed: expected F before it",
+                    )));
+                }
+                if self.state.units.is_none() {
+                    self.state.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
+                }
+                if plan.machine_coordinates {
+                    self.go_in_machine_coordinates(motion, block).map_err(whole)
+                } else {
+                    self.offsets.use_active().map_err(whole)?;
+                    match motion {
+                        MotionMode::Cycle(cycle) => self.cycle(cycle, block).map_err(whole),
+                        _ => self.go(motion, block).map_err(whole),
+                    }
+                }
+            }
+        }
+    }
+
+    /// The G words: modes at once, the rest as a plan.
+    fn modal(&mut self, block: &Block) -> Result<Plan, Located> {
+        let mut plan = Plan::default();
+        if !block.has('G') {
+            return Ok(plan);
+        }
+        for &word in block.words().iter().filter(|word| word.letter == 'G') {
+            let fail = |problem| Err((problem, word.span()));
+            match codes::g_in(word.value, block) {
+                Code::Motion(motion) => {
+                    if plan.motion.replace(word).is_some() {
+                        return fail(NcProblem::syntax(
+                            "a second motion code in one block: expected one of G0, G1, G2 and G3",
+                        ));
+                    }
+                    if let MotionMode::Cycle(_) = motion
+                        && self.modes.motion != Some(motion)
+                    {
+                        self.begin_cycle();
+                    }
+                    self.modes.motion = Some(motion);
+                }
+                Code::CancelMotion => self.modes.motion = None,
+                Code::Plane(plane) => {
+                    if plane != self.modes.plane {
+                        self.refuse_compensation("a change of the plane")
+                            .map_err(|problem| (problem, word.span()))?;
+                    }
+                    self.modes.plane = plane;
+                }
+                Code::Inch(inch) => self.modes.inch = inch,
+                Code::InchOrCycle(inch) => {
+                    self.modes.inch = inch;
+                    self.state.note("G70 and G71 are taken as inches and millimetres");
+                }
+                Code::Blending => {
+                    if let Some(tolerance) = block.get('P').filter(|p| *p > 0.0) {
+                        self.state.note(format!(
+                            "G64 P{tolerance}: corners may be rounded by as much; the path is read as programmed"
+                        ));
+                    }
+                }
+                Code::Absolute(absolute) => self.modes.absolute = absolute,
+                Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
+                Code::Feed(mode) => self.modes.feed_mode = mode,
+                Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
+                Code::TipControl(on) => self.length_control = on,
+                Code::CancelLength => {
+                    self.length_control = false;
+                    plan.length = Some((Code::CancelLength, word));
+                }
+                Code::Length(code) => {
+                    self.length_control = false;
+                    let by_words = matches!(code, LengthCode::Words | LengthCode::Add) && !block.has('H');
+                    let slot = Some((Code::Length(code), word));
+                    if by_words {
+                        if plan.action.is_some() {
+                            return fail(two_users(&word));
+                        }
+                        plan.action = slot;
+                    } else {
+                        plan.length = slot;
+                    }
+                }
+                code @ Code::WorkOffset(_) => self.act(code, block).map_err(|problem| (problem, word.span()))?,
+                code @ Code::WorkOffsetByWord => self.act(code, block).map_err(|problem| (problem, word.span()))?,
+                Code::Compensation { left, by_words } => self
+                    .compensate(left, by_words, block)
+                    .map_err(|problem| (problem, word.span()))?,
+                Code::CancelCompensation => self.finish_compensation().map_err(|problem| (problem, word.span()))?,
+                Code::MachineCoordinates => plan.machine_coordinates = true,
+                Code::Polar(on) => self.modes.polar = on,
+                code @ (Code::CancelRotation | Code::CancelScale | Code::CancelMirror) => {
+                    self.act(code, block).map_err(|problem| (problem, word.span()))?;
+                }
+                Code::Dwell => plan.dwell = true,
+                Code::MacroCall => plan.macro_call = Some(word),
+                code @ (Code::Ignored(_)
+                | Code::Home { .. }
+                | Code::SetHome { .. }
+                | Code::SetOffsets
+                | Code::LocalShift
+                | Code::ShiftHere
+                | Code::CancelShift { .. }
+                | Code::RestoreShift
+                | Code::Rotate
+                | Code::Scale
+                | Code::Mirror) => {
+                    if plan.action.replace((code, word)).is_some() {
+                        return fail(two_users(&word));
+                    }
+                }
+                Code::Harmless => {}
+                Code::Refused(what) => {
+                    return fail(NcProblem::unsupported(
+                        format!("{}: {what}", word.name()),
+                        "the path of the tool would be unknown; expected G0, G1, G2 or G3",
+                    ));
+                }
+                Code::SplineOrMode | Code::SplineOrContouring | Code::Unknown => {
+                    return fail(NcProblem::unsupported(
+                        format!("{} is", word.name()),
+                        "it could move the tool; expected a code of RS-274",
+                    ));
+                }
+            }
+        }
+        Ok(plan)
+    }
+
+    /// Each letter at most once, and none that could move the tool in an unknown way.
+    fn check_letters(&mut self, block: &Block) -> Result<(), Located> {
+        if let Some(word) = block.twice {
+            let problem = NcProblem::syntax(format!("a second {} in one block: expected one", word.letter));
+            return Err((problem, word.span()));
+        }
+        for word in block.words() {
+            let fail = |problem| Err((problem, word.span()));
+            match word.letter {
+                'G' | 'M' | 'N' | 'A' | 'B' | 'C' | 'X' | 'Y' | 'Z' | 'I' | 'J' | 'K' | 'R' | 'F' | 'S' | 'T' | 'P'
+                | 'Q' | 'L' | 'H' | 'D' => {}
+                'U' | 'V' | 'W' => {
+                    return fail(NcProblem::unsupported(
+                        format!("the axis {} is", word.letter),
+                        "expected X Y Z A B C",
+                    ));
+                }
+                'E' if block.words().iter().any(|w| {
+                    (w.letter == 'M' && (62.0..=68.0).contains(&w.value)) || (w.letter == 'G' && w.value == 187.0)
+                }) => {}
+                'E' => {
+                    return fail(NcProblem::unsupported(
+                        "E words are",
+                        "it could be an exponent or an extruder; expected numbers without exponent",
+                    ));
+                }
+                'O' => {
+                    return fail(NcProblem::syntax(
+                        "O within a block: expected it at the beginning of a line",
+                    ));
+                }
+                letter => self.state.note(format!("{letter} words are not understood: ignored")),
+            }
+            if word.whole
+                && matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
+                && "XYZIJKR".contains(word.letter)
+                && word.value != 0.0
+            {
+                self.state.note(
+                    "lengths without a decimal point are taken as whole units; without its calculator mode, the control takes them in its smallest increment",
+                );
+            }
+        }
+        self.check_spare_words(block)
+    }
+
+    /// LinuxCNC rejects words that no code of their block uses.
+    fn check_spare_words(&self, block: &Block) -> Result<(), Located> {
+        if self.controller != Some(Controller::LinuxCnc) || !block.has('R') {
+            return Ok(());
+        }
+        let is = |letter: char, value: f64| block.words().iter().any(|w| w.letter == letter && w.value == value);
+        let fail = |text: &str| Err((NcProblem::syntax(text.to_owned()), block.span('R')));
+        if is('G', 64.0) && is('M', 19.0) {
+            return fail("R belongs to both G64 and M19 here: expected them in blocks of their own");
+        }
+        let motion_ends = is('G', 61.0) || is('G', 80.0);
+        let moves = block.first("XYZABC").is_some();
+        if motion_ends && !moves && !is('M', 19.0) && !is('G', 10.0) {
+            return fail("no code of this block uses R: expected an arc or a cycle");
+        }
+        Ok(())
+    }
+
+    /// Executes F, S, T and M words. What comes after the block, unless it calls.
+    fn misc(&mut self, block: &Block) -> Result<Step, Located> {
+        let whole = |problem| (problem, block.all());
+        if let Some(feed) = block.get('F') {
+            self.modes.feed = Some(feed);
+        }
+        if let Some(speed) = block.get('S') {
+            let changed = self.modes.speed.replace(speed) != Some(speed);
+            if changed && self.modes.spindle != Turning::Stopped && !block.has('M') {
+                self.spindle().map_err(whole)?;
+            }
+        }
+        if let Some(word) = block.word('T') {
+            let tool = Self::tool_number(word.value).map_err(|problem| (problem, word.span()))?;
+            self.selected_tool = Some(tool);
+            // Programs without a tool change name their tool by a T word alone.
+            if self.state.tool.is_none() {
+                self.state.tool = Some(tool);
+                self.update_map();
+            }
+        }
+        if !block.has('M') {
+            return Ok(Step::Next);
+        }
+        let mut step = Step::Next;
+        for &word in block.words().iter().filter(|word| word.letter == 'M') {
+            let at = |problem| (problem, word.span());
+            match codes::m(word.value) {
+                Misc::Harmless => {}
+                Misc::End => step = Step::End,
+                Misc::Stop => self.event(EventKind::Stop).map_err(at)?,
+                Misc::OptionalStop => self.event(EventKind::OptionalStop).map_err(at)?,
+                Misc::Spindle(turning) => {
+                    self.modes.spindle = turning;
+                    self.spindle().map_err(at)?;
+                }
+                Misc::Coolant(coolant) => self.event(EventKind::Coolant(coolant)).map_err(at)?,
+                Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
+                Misc::SetTool => {
+                    let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
+                    self.change_tool(tool).map_err(at)?;
+                }
+                Misc::TipControl(on) => self.kinematics = on,
+                Misc::Call { .. } | Misc::Return => {
+                    let several = block.words().iter().filter(|w| w.letter == 'M').count() > 1;
+                    let last = block.words().iter().rfind(|w| w.letter == 'M');
+                    if several && last != Some(&word) {
+                        return Err(at(NcProblem::syntax(format!(
+                            "{} next to another M code: expected it in a block of its own",
+                            word.name()
+                        ))));
+                    }
+                }
+                Misc::SaveModes => self.frame().modes = Some(Box::new(self.modes.clone())),
+                Misc::SaveModesForCall => {
+                    let modes = Some(Box::new(self.modes.clone()));
+                    let frame = self.frame();
+                    frame.modes = modes;
+                    frame.restore_modes = true;
+                }
+                Misc::ForgetModes => {
+                    let frame = self.frame();
+                    frame.modes = None;
+                    frame.restore_modes = false;
+                }
+                Misc::RestoreModes => match self.frame().modes.clone() {
+                    Some(modes) => self.modes = *modes,
+                    None => {
+                        return Err(at(NcProblem::syntax(
+                            "M72 without M70 before it: there are no saved modes",
+                        )));
+                    }
+                },
+                Misc::Refused(what) => {
+                    let what = format!("{}: {what}", word.name());
+                    return Err(at(NcProblem::unsupported(what, "expected a program without them")));
+                }
+                Misc::Unknown => self.state.note(format!("{} is not understood: ignored", word.name())),
+            }
+        }
+        Ok(step)
+    }
+
+    fn spindle(&mut self) -> Result<(), NcProblem> {
+        let rpm = self.modes.speed;
+        self.event(EventKind::Spindle(match self.modes.spindle {
+            Turning::Stopped => Spindle::Stopped,
+            Turning::Clockwise => Spindle::Clockwise { rpm },
+            Turning::CounterClockwise => Spindle::CounterClockwise { rpm },
+        }))
+    }
+
+    /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
+    fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
+        let fanuc = matches!(self.controller, Some(Controller::Fanuc | Controller::Haas));
+        let seconds = match block.word('P') {
+            Some(word) if fanuc && word.whole => word.value / 1000.0,
+            Some(word) => word.value,
+            None => block.get('X').unwrap_or(0.0),
+        };
+        self.rest(seconds)
+    }
+}
+
+fn two_users(word: &Word) -> NcProblem {
+    NcProblem::syntax(format!(
+        "{} next to another code that uses the coordinates: expected one of them per block",
+        word.name()
+    ))
+}

@@ -1,0 +1,193 @@
+//! The control's tool table: lengths and diameters by number.
+
+use std::collections::BTreeMap;
+
+use super::interpreter::Reader;
+use crate::gcode::codes::LengthCode;
+use crate::gcode::offsets::known;
+use crate::gcode::syntax::block::Block;
+use crate::model::event::EventKind;
+use crate::model::read_options::ToolOffset;
+use crate::text::error::NcProblem;
+
+/// A row of the table, in millimetres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ToolRow {
+    pub offset: [f64; 3],
+    pub diameter: f64,
+}
+
+/// The table.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ToolTable(BTreeMap<u32, ToolRow>);
+
+impl ToolTable {
+    pub(crate) fn new(offsets: &BTreeMap<u32, ToolOffset>) -> Self {
+        let row = |tool: &ToolOffset| ToolRow {
+            offset: [0.0, 0.0, tool.length],
+            diameter: tool.diameter,
+        };
+        Self(offsets.iter().map(|(&number, tool)| (number, row(tool))).collect())
+    }
+
+    pub(crate) fn get(&self, number: u32) -> Option<ToolRow> {
+        self.0.get(&number).copied()
+    }
+}
+
+impl Reader {
+    /// A tool's number.
+    pub(crate) fn tool_number(value: f64) -> Result<u32, NcProblem> {
+        if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {
+            Ok(value as u32)
+        } else {
+            Err(NcProblem::value("a tool number", value, "a whole number"))
+        }
+    }
+
+    /// The new tool continues from the current position, on a separate path.
+    pub(crate) fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
+        self.refuse_compensation("a tool change")?;
+        let Some(tool) = tool else { return Ok(()) };
+        if Some(tool) != self.state.tool || !self.tool_changed {
+            self.event(EventKind::ToolChange(tool))?;
+        }
+        self.tool_changed = true;
+        if Some(tool) != self.state.tool {
+            self.state.tool = Some(tool);
+            self.state.leave();
+            self.update_map();
+        }
+        Ok(())
+    }
+
+    /// G43 and its kin.
+    pub(crate) fn set_length(&mut self, code: LengthCode, block: &Block) -> Result<(), NcProblem> {
+        self.refuse_compensation("a change of the length offset")?;
+        let table = matches!(code, LengthCode::Table | LengthCode::Opposite | LengthCode::Add);
+        let mut offset = if code == LengthCode::Add { self.length } else { [0.0; 3] };
+        if table && (block.has('H') || code != LengthCode::Add) {
+            let number = match block.get('H') {
+                Some(h) => Self::tool_number(h)?,
+                None => self.state.tool.unwrap_or(0),
+            };
+            let row = match self.tools.get(number) {
+                Some(row) => row,
+                None => {
+                    if number != 0 && !self.tools.0.is_empty() {
+                        self.state.note(format!(
+                            "the length of tool offset H{number} is not in the table: taken as that of the tool"
+                        ));
+                    }
+                    ToolRow::default()
+                }
+            };
+            let sign = if code == LengthCode::Opposite { -1.0 } else { 1.0 };
+            for k in 0..3 {
+                offset[k] += sign * row.offset[k];
+            }
+            // A length that is not known is that of the tool.
+            self.length_known = self.tools.get(number).is_some();
+        } else {
+            let words = self.lengths(block, ['X', 'Y', 'Z']);
+            for k in 0..3 {
+                match (words[k], code) {
+                    (Some(word), LengthCode::Add) => offset[k] += word,
+                    (Some(word), _) => offset[k] = word,
+                    (None, LengthCode::Add) => {}
+                    // G43.1 leaves the axes that it does not name.
+                    (None, _) => offset[k] = self.length[k],
+                }
+            }
+            self.length_known = true;
+        }
+        self.use_length(offset)
+    }
+
+    /// Puts a length offset into effect: the machine stays where it is.
+    pub(crate) fn use_length(&mut self, offset: [f64; 3]) -> Result<(), NcProblem> {
+        self.reframe(|reader| {
+            reader.length = offset;
+            Ok(())
+        })?;
+        self.trace_tool_offset();
+        Ok(())
+    }
+
+    /// G10 L1, L10, L11 (LinuxCNC), L10 to L13 with R alone (Fanuc): rows of the table.
+    pub(crate) fn set_tool(&mut self, l: u32, block: &Block) -> Result<(), NcProblem> {
+        let number = match block.get('P') {
+            Some(p) => Self::tool_number(p)?,
+            None => {
+                return Err(NcProblem::syntax(format!(
+                    "G10 L{l} without P: expected the number of a tool"
+                )));
+            }
+        };
+        let words = self.lengths(block, ['X', 'Y', 'Z']);
+        let mut row = self.tools.get(number).unwrap_or_default();
+        let r = block.get('R').map(|r| r * self.unit());
+        let fanuc = words.iter().all(Option::is_none) && r.is_some() && l >= 10;
+        if fanuc {
+            let r = r.unwrap_or(0.0);
+            match l {
+                10 => row.offset[2] = r,
+                12 => row.diameter = 2.0 * r,
+                // Wear, on top of the geometry.
+                11 => row.offset[2] += r,
+                _ => row.diameter += 2.0 * r,
+            }
+        } else {
+            if l >= 12 {
+                return Err(NcProblem::syntax(format!(
+                    "G10 L{l} without R: expected the tool's length or radius"
+                )));
+            }
+            if let Some(r) = r {
+                row.diameter = 2.0 * r;
+            }
+            match l {
+                1 => {
+                    for k in 0..3 {
+                        row.offset[k] = words[k].unwrap_or(row.offset[k]);
+                    }
+                }
+                _ => self.measure_tool(l == 11, words, &mut row)?,
+            }
+        }
+        self.tools.0.insert(number, row);
+        self.update_map();
+        Ok(())
+    }
+
+    /// Sets a tool's offset so that the current position has the given coordinates: in the active work offset (L10), or in G59.3 without
+    /// shifts and turns (L11).
+    fn measure_tool(&self, fixture: bool, words: [Option<f64>; 3], row: &mut ToolRow) -> Result<(), NcProblem> {
+        let mut frame = self.frame_map();
+        if fixture {
+            let placed = self.offsets.placed(8).unwrap_or_default();
+            frame = crate::gcode::motion::map::Map::shift(placed.origin);
+        }
+        let control = self.control_position();
+        // Where the tip is in the frame's own directions, with the offset of the table.
+        let inverse = frame.inverse().unwrap_or_default();
+        let now: [Option<f64>; 3] = std::array::from_fn(|k| control[k].map(|at| at - row.offset[k]));
+        let there = inverse.partial(now);
+        let mut wanted = [0.0; 3];
+        for k in 0..3 {
+            wanted[k] = match (words[k], there[k]) {
+                (Some(word), _) => word,
+                (None, Some(there)) => there,
+                // Nothing turns this axis, or the position would have to be known.
+                (None, None) => 0.0,
+            };
+        }
+        let tip = frame.apply(wanted);
+        for k in 0..3 {
+            if words[k].is_some() || !frame.is_shift() && k < 2 {
+                row.offset[k] = known(control[k])? - tip[k];
+            }
+        }
+        Ok(())
+    }
+}

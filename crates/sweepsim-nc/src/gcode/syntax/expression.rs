@@ -1,0 +1,414 @@
+//! Values: numbers, variables, and expressions in brackets.
+//!
+//! LinuxCNC's grammar (RS-274/NGC, section 3.3.2) and Fanuc's custom macro B. They agree but for the precedence of `AND`, `OR` and `XOR`,
+//! the rounding functions, and variables without a value.
+
+use super::block::{Located, Target};
+use super::cursor::{Cursor, Digits};
+use crate::text::error::NcProblem;
+
+/// The variables of a program, as an expression reads them.
+pub(crate) trait Variables {
+    /// Whether expressions follow Fanuc's rules.
+    fn fanuc(&self) -> bool;
+    /// The value of `#index`; `None` if it has none.
+    fn numbered(&self, index: u32) -> Result<Option<f64>, NcProblem>;
+    /// The value of `#<name>`.
+    fn named(&self, name: &str) -> Result<Option<f64>, NcProblem>;
+    /// Whether a variable has a value.
+    fn exists(&self, target: &Target) -> bool;
+}
+
+/// Nothing has a value: for texts that are only looked at.
+pub(crate) struct NoVariables;
+
+impl Variables for NoVariables {
+    fn fanuc(&self) -> bool {
+        false
+    }
+    fn numbered(&self, _: u32) -> Result<Option<f64>, NcProblem> {
+        Ok(Some(0.0))
+    }
+    fn named(&self, _: &str) -> Result<Option<f64>, NcProblem> {
+        Ok(Some(0.0))
+    }
+    fn exists(&self, _: &Target) -> bool {
+        false
+    }
+}
+
+/// A value: `None` is that of a variable without one, on controls that know such (Fanuc's `#0`).
+pub(crate) type Value = Option<f64>;
+
+/// Brackets within brackets, at most.
+const DEEPEST: usize = 60;
+/// Numbers closer than this are equal to `EQ` and `NE`, as on LinuxCNC.
+const EQUAL: f64 = 1e-6;
+
+/// Reads values of a line.
+pub(crate) struct Values<'a, 'b> {
+    pub cursor: Cursor<'a>,
+    pub variables: &'b dyn Variables,
+    depth: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Operator {
+    Power,
+    Times,
+    Over,
+    Modulo,
+    Plus,
+    Minus,
+    And,
+    Or,
+    Xor,
+    Equal,
+    Different,
+    Greater,
+    AtLeast,
+    Less,
+    AtMost,
+}
+
+impl Operator {
+    /// Operators with larger numbers bind tighter.
+    fn precedence(self, fanuc: bool) -> u8 {
+        match self {
+            Self::Power => 6,
+            Self::Times | Self::Over | Self::Modulo => 5,
+            Self::Plus | Self::Minus => 4,
+            Self::And if fanuc => 5,
+            Self::Or | Self::Xor if fanuc => 4,
+            Self::And | Self::Or | Self::Xor => 2,
+            _ => 3,
+        }
+    }
+}
+
+impl<'a, 'b> Values<'a, 'b> {
+    pub(crate) fn new(cursor: Cursor<'a>, variables: &'b dyn Variables) -> Self {
+        Self {
+            cursor,
+            variables,
+            depth: 0,
+        }
+    }
+
+    /// Whether a value can begin with the next character.
+    pub(crate) fn follows(&mut self) -> bool {
+        match self.cursor.peek() {
+            Some(b'+' | b'-' | b'.' | b'#' | b'[' | b'0'..=b'9') => true,
+            Some(byte) if byte.is_ascii_alphabetic() => {
+                let mut cursor = self.cursor;
+                let letters = cursor.letters();
+                cursor.at += letters.len();
+                letters.len() > 1 && cursor.peek() == Some(b'[')
+            }
+            _ => false,
+        }
+    }
+
+    /// A number, a variable, an expression in brackets or a function of one, with its sign. Also whether it is plain digits.
+    pub(crate) fn value(&mut self) -> Result<(Value, bool), Located> {
+        let mut negative = false;
+        while let Some(sign @ (b'+' | b'-')) = self.cursor.peek() {
+            negative ^= sign == b'-';
+            self.cursor.at += 1;
+        }
+        let (value, whole) = match self.cursor.peek() {
+            Some(b'[') => (self.bracket()?, false),
+            Some(b'#') => (self.variable()?, false),
+            Some(byte) if byte.is_ascii_alphabetic() => (Some(self.function()?), false),
+            _ => match self.cursor.digits() {
+                Some(Digits { value, whole }) => (Some(value), whole),
+                None => return Err(self.cursor.unexpected("a number")),
+            },
+        };
+        Ok((value.map(|value| if negative { -value } else { value }), whole))
+    }
+
+    /// A value in brackets.
+    pub(crate) fn bracket(&mut self) -> Result<Value, Located> {
+        let start = self.cursor.at;
+        if !self.cursor.eat(b'[') {
+            return Err(self.cursor.unexpected("`[`"));
+        }
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            let problem = NcProblem::syntax(format!("more than {DEEPEST} brackets within brackets"));
+            return Err((problem, start..start + 1));
+        }
+        let value = self.expression()?;
+        self.depth -= 1;
+        if !self.cursor.eat(b']') {
+            return Err(self.cursor.unexpected("an operator or `]`"));
+        }
+        Ok(value)
+    }
+
+    /// An expression, to the first character that cannot go on with it.
+    pub(crate) fn expression(&mut self) -> Result<Value, Located> {
+        let (first, _) = self.value()?;
+        self.operators(first, 1)
+    }
+
+    fn operators(&mut self, mut left: Value, lowest: u8) -> Result<Value, Located> {
+        let fanuc = self.variables.fanuc();
+        loop {
+            let before = self.cursor;
+            let Some(operator) = self.operator() else {
+                return Ok(left);
+            };
+            let precedence = operator.precedence(fanuc);
+            if precedence < lowest {
+                self.cursor = before;
+                return Ok(left);
+            }
+            let (mut right, _) = self.value()?;
+            loop {
+                let ahead = self.cursor;
+                let tighter = self.operator().is_some_and(|next| next.precedence(fanuc) > precedence);
+                self.cursor = ahead;
+                if !tighter {
+                    break;
+                }
+                right = self.operators(right, precedence + 1)?;
+            }
+            left = apply(operator, left, right, fanuc).map_err(|problem| (problem, before.at..self.cursor.at))?;
+        }
+    }
+
+    fn operator(&mut self) -> Option<Operator> {
+        let symbol = match self.cursor.peek()? {
+            b'*' if self.cursor.rest().starts_with("**") => {
+                self.cursor.at += 2;
+                return Some(Operator::Power);
+            }
+            b'*' => Operator::Times,
+            b'/' => Operator::Over,
+            b'+' => Operator::Plus,
+            b'-' => Operator::Minus,
+            byte if byte.is_ascii_alphabetic() => {
+                let operators = [
+                    ("MOD", Operator::Modulo),
+                    ("AND", Operator::And),
+                    ("XOR", Operator::Xor),
+                    ("OR", Operator::Or),
+                    ("EQ", Operator::Equal),
+                    ("NE", Operator::Different),
+                    ("GT", Operator::Greater),
+                    ("GE", Operator::AtLeast),
+                    ("LT", Operator::Less),
+                    ("LE", Operator::AtMost),
+                ];
+                let found = operators.into_iter().find(|(word, _)| self.cursor.eat_word(word));
+                return found.map(|(_, operator)| operator);
+            }
+            _ => return None,
+        };
+        self.cursor.at += 1;
+        Some(symbol)
+    }
+
+    /// What a variable at the cursor is called: `#5`, `##5`, `#[#1+2]`, `#<name>`.
+    pub(crate) fn target(&mut self) -> Result<Target, Located> {
+        let start = self.cursor.at;
+        if !self.cursor.eat(b'#') {
+            return Err(self.cursor.unexpected("`#`"));
+        }
+        let index = match self.cursor.peek() {
+            Some(b'<') => return self.cursor.name().map(Target::Name),
+            Some(b'#') => {
+                self.depth += 1;
+                if self.depth > DEEPEST {
+                    let problem = NcProblem::syntax(format!("more than {DEEPEST} `#` in a row"));
+                    return Err((problem, start..start + 1));
+                }
+                let index = self.variable()?;
+                self.depth -= 1;
+                index
+            }
+            Some(b'[') => self.bracket()?,
+            _ => match self.cursor.digits() {
+                Some(digits) => Some(digits.value),
+                None => {
+                    return Err(self.cursor.unexpected("the number or the name of a variable after `#`"));
+                }
+            },
+        }
+        .unwrap_or(0.0);
+        let near = index.round();
+        if (index - near).abs() > 1e-4 || !(0.0..=99_999.0).contains(&near) {
+            let problem = NcProblem::value("the number of a variable", index, "a whole number from 0 to 99999");
+            return Err((problem, start..self.cursor.at));
+        }
+        Ok(Target::Number(near as u32))
+    }
+
+    /// The value of a variable.
+    fn variable(&mut self) -> Result<Value, Located> {
+        let start = self.cursor.at;
+        let value = match self.target()? {
+            Target::Number(index) => self.variables.numbered(index),
+            Target::Name(name) => self.variables.named(&name),
+        };
+        value.map_err(|problem| (problem, start..self.cursor.at))
+    }
+
+    fn function(&mut self) -> Result<f64, Located> {
+        let start = self.cursor.at;
+        let name = self.cursor.letters().to_ascii_uppercase();
+        self.cursor.at += name.len();
+        if self.cursor.peek() != Some(b'[') {
+            let problem = NcProblem::syntax(format!("found `{name}`, but expected a number"));
+            return Err((problem, start..start + name.len()));
+        }
+        if name == "EXISTS" {
+            self.cursor.eat(b'[');
+            let target = self.target()?;
+            if !self.cursor.eat(b']') {
+                return Err(self.cursor.unexpected("`]` after the variable"));
+            }
+            return Ok(f64::from(self.variables.exists(&target)));
+        }
+        let two = matches!(name.as_str(), "ATAN" | "POW");
+        let (first, second) = self.arguments(two)?;
+        let whole = start..self.cursor.at;
+        call(&name, first, second, self.variables.fanuc()).map_err(|problem| (problem, whole))
+    }
+
+    /// `[a]`, or one of `[a]/[b]` and `[a,b]`.
+    fn arguments(&mut self, two: bool) -> Result<(f64, Option<f64>), Located> {
+        if !two {
+            return Ok((self.bracket()?.unwrap_or(0.0), None));
+        }
+        self.cursor.eat(b'[');
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(self.cursor.unexpected("fewer brackets within brackets"));
+        }
+        let first = self.expression()?.unwrap_or(0.0);
+        let second = if self.cursor.eat(b',') {
+            Some(self.expression()?.unwrap_or(0.0))
+        } else {
+            None
+        };
+        self.depth -= 1;
+        if !self.cursor.eat(b']') {
+            return Err(self.cursor.unexpected("an operator or `]`"));
+        }
+        let before = self.cursor;
+        if second.is_none() && self.cursor.eat(b'/') && self.cursor.peek() == Some(b'[') {
+            return Ok((first, Some(self.bracket()?.unwrap_or(0.0))));
+        }
+        if second.is_none() {
+            self.cursor = before;
+        }
+        Ok((first, second))
+    }
+}
+
+fn apply(operator: Operator, left: Value, right: Value, fanuc: bool) -> Result<Value, NcProblem> {
+    let vacant = (left.is_none(), right.is_none());
+    let (a, b) = (left.unwrap_or(0.0), right.unwrap_or(0.0));
+    let truth = |yes: bool| if yes { 1.0 } else { 0.0 };
+    let equal = match vacant {
+        (true, true) => true,
+        (false, false) => (a - b).abs() < EQUAL,
+        _ => false,
+    };
+    let bits = |f: fn(i64, i64) -> i64| f(a.round() as i64, b.round() as i64) as f64;
+    let result = match operator {
+        Operator::Power if a < 0.0 && b.fract() != 0.0 => {
+            return Err(NcProblem::syntax(format!(
+                "a negative number to a power that is not whole: {a} ** {b}"
+            )));
+        }
+        Operator::Power => a.powf(b),
+        Operator::Times => a * b,
+        Operator::Over | Operator::Modulo if b == 0.0 => {
+            return Err(NcProblem::syntax("this divides by zero"));
+        }
+        Operator::Over => a / b,
+        // Always positive, as on LinuxCNC.
+        Operator::Modulo if fanuc => a % b,
+        Operator::Modulo => a.rem_euclid(b),
+        Operator::Plus => a + b,
+        Operator::Minus => a - b,
+        Operator::And if fanuc => bits(|a, b| a & b),
+        Operator::Or if fanuc => bits(|a, b| a | b),
+        Operator::Xor if fanuc => bits(|a, b| a ^ b),
+        Operator::And => truth(a != 0.0 && b != 0.0),
+        Operator::Or => truth(a != 0.0 || b != 0.0),
+        Operator::Xor => truth((a != 0.0) != (b != 0.0)),
+        Operator::Equal => truth(equal),
+        Operator::Different => truth(!equal),
+        Operator::Greater => truth(a > b),
+        Operator::AtLeast => truth(a >= b),
+        Operator::Less => truth(a < b),
+        Operator::AtMost => truth(a <= b),
+    };
+    finite(result).map(Some)
+}
+
+fn call(name: &str, a: f64, b: Option<f64>, fanuc: bool) -> Result<f64, NcProblem> {
+    let domain = |inside: bool| {
+        if inside {
+            Ok(())
+        } else {
+            Err(NcProblem::syntax(format!("{name} of {a} has no value")))
+        }
+    };
+    let result = match (name, b) {
+        ("SIN", _) => a.to_radians().sin(),
+        ("COS", _) => a.to_radians().cos(),
+        ("TAN", _) => a.to_radians().tan(),
+        ("ASIN", _) => {
+            domain((-1.0..=1.0).contains(&a))?;
+            a.asin().to_degrees()
+        }
+        ("ACOS", _) => {
+            domain((-1.0..=1.0).contains(&a))?;
+            a.acos().to_degrees()
+        }
+        ("ATAN", Some(b)) => a.atan2(b).to_degrees(),
+        ("ATAN", None) if fanuc => a.atan().to_degrees(),
+        ("ATAN" | "POW", None) => {
+            return Err(NcProblem::syntax(format!(
+                "{name} has one argument: expected two, {name}[a]/[b]"
+            )));
+        }
+        ("POW", Some(b)) => return apply(Operator::Power, Some(a), Some(b), fanuc).map(|value| value.unwrap_or(0.0)),
+        ("SQRT" | "SQR", _) => {
+            domain(a >= 0.0)?;
+            a.sqrt()
+        }
+        ("ABS", _) => a.abs(),
+        ("EXP", _) => a.exp(),
+        ("LN", _) => {
+            domain(a > 0.0)?;
+            a.ln()
+        }
+        ("ROUND" | "RND", _) => (a + 0.5 * a.signum()).trunc(),
+        ("FIX", _) if fanuc => a.trunc(),
+        ("FUP", _) if fanuc => a.abs().ceil() * a.signum(),
+        ("FIX", _) => a.floor(),
+        ("FUP", _) => a.ceil(),
+        _ => {
+            return Err(NcProblem::unsupported(
+                format!("the function {name} is"),
+                "expected one of ABS, ACOS, ASIN, ATAN, COS, EXISTS, EXP, FIX, FUP, LN, POW, ROUND, SIN, SQRT, TAN",
+            ));
+        }
+    };
+    finite(result)
+}
+
+fn finite(value: f64) -> Result<f64, NcProblem> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(NcProblem::syntax("the result of this expression is too large"))
+    }
+}

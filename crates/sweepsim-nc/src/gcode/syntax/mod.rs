@@ -1,0 +1,7 @@
+//! From a line to its words.
+
+pub(crate) mod block;
+pub(crate) mod cursor;
+pub(crate) mod expression;
+pub(crate) mod title;
+pub(crate) mod words;
