@@ -18,6 +18,7 @@ mod bundles;
 mod charts;
 mod coefficients;
 mod curves;
+mod formulas;
 mod numbers;
 mod points;
 mod search;
@@ -31,6 +32,7 @@ pub use charts::{
 };
 pub use coefficients::MAX_DEGREE;
 pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveSolver, Curves, Singular};
+pub use formulas::{Formula, FormulaError, FormulaProblem};
 pub use numbers::{CUT, Enclosure, EnclosureError, MAX_UNKNOWNS};
 pub use points::{PointSolver, Points, Root, RootLocation};
 pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOptions, SolveStatistics, UnresolvedBox};

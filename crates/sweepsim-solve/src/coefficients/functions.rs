@@ -259,6 +259,18 @@ impl Function {
     }
 }
 
+/// The values of a function on a bounded interval, if it is defined there and bounded.
+pub(crate) fn value_range(function: Function, lo: f64, hi: f64) -> Option<(f64, f64)> {
+    let defined = match function {
+        Function::Logarithm => lo > 0.0,
+        Function::SquareRoot => lo >= 0.0,
+        _ => true,
+    };
+    let range = function.range(Range { lo, hi });
+    let known = defined && range.lo <= range.hi && range.lo.is_finite() && range.hi.is_finite();
+    known.then_some((range.lo, range.hi))
+}
+
 /// The tangent of an interval, with at most one pole in it unless nothing is known.
 fn tangent(argument: Range) -> Range {
     if argument.magnitude() >= FARTHEST {

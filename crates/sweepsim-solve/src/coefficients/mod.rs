@@ -13,7 +13,7 @@ mod summand;
 mod tape;
 pub(crate) mod tensor;
 
-pub(crate) use functions::Function;
+pub(crate) use functions::{Function, value_range};
 pub use layout::MAX_DEGREE;
 pub(crate) use layout::{Affine, Axis, Cell, Layout, Slopes, Summand};
 pub(crate) use stack::{excluded, pop, push, within_domain};

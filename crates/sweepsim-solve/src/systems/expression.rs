@@ -214,6 +214,49 @@ impl Sub for Expression {
     }
 }
 
+/// Builds an expression step by step, so that steps may be used several times.
+#[derive(Debug, Default)]
+pub(crate) struct ExpressionBuilder {
+    items: Vec<Item>,
+}
+
+impl ExpressionBuilder {
+    fn push(&mut self, item: Item) -> usize {
+        self.items.push(item);
+        self.items.len() - 1
+    }
+
+    pub(crate) fn form(&mut self, form: Equation) -> usize {
+        self.push(Item::Form(Box::new(form)))
+    }
+
+    pub(crate) fn constant(&mut self, value: f64) -> usize {
+        self.push(Item::Operation(Step::Constant(value)))
+    }
+
+    pub(crate) fn add(&mut self, a: usize, b: usize) -> usize {
+        self.push(Item::Operation(Step::Add(a, b)))
+    }
+
+    pub(crate) fn multiply(&mut self, a: usize, b: usize) -> usize {
+        self.push(Item::Operation(Step::Multiply(a, b)))
+    }
+
+    pub(crate) fn divide(&mut self, a: usize, b: usize) -> usize {
+        self.push(Item::Operation(Step::Divide(a, b)))
+    }
+
+    pub(crate) fn apply(&mut self, function: Function, a: usize) -> usize {
+        self.push(Item::Operation(Step::Apply(function, a)))
+    }
+
+    /// The expression that this step is.
+    pub(crate) fn finish(mut self, whole: usize) -> Expression {
+        self.items.truncate(whole + 1);
+        Expression { items: self.items }
+    }
+}
+
 /// Collects the rows of a layout.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {

@@ -5,6 +5,7 @@ mod pieces;
 mod separate;
 mod system;
 
+pub(crate) use expression::ExpressionBuilder;
 pub use expression::{Expression, MAX_STEPS};
 pub use pieces::{Pieces, PiecesError};
 pub use system::{Equation, MAX_SYSTEM, System, SystemError};

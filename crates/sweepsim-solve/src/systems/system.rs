@@ -172,7 +172,8 @@ pub struct System {
 }
 
 impl System {
-    /// The system of these equations over a domain, given by one enclosure per variable.
+    /// The system of these equations over a domain, given by one enclosure per variable. To write equations in the domain's own coordinates, use
+    /// [`of_formulas`](Self::of_formulas) or [`parse`](Self::parse).
     ///
     /// # Errors
     ///
@@ -182,16 +183,7 @@ impl System {
         equations: impl IntoIterator<Item = E>,
     ) -> Result<Self, SystemError> {
         let n = domain.len();
-        if n == 0 || n > MAX_UNKNOWNS {
-            return Err(SystemError::Variables { variables: n });
-        }
-        for (variable, side) in domain.iter().enumerate() {
-            let width = side.hi() - side.lo();
-            let magnitude = side.lo().abs().max(side.hi().abs());
-            if !(width.is_finite() && width > 64.0 * EPSILON * magnitude && width > f64::MIN_POSITIVE) {
-                return Err(SystemError::Domain { variable });
-            }
-        }
+        Self::check_domain(domain)?;
         let mut layout = Layout { n, ..Layout::default() };
         let mut rows = Rows::default();
         for (equation, given) in equations.into_iter().enumerate() {
@@ -215,6 +207,22 @@ impl System {
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded,
         })
+    }
+
+    /// Checks that a domain has sides, neither too many nor empty or infinite ones.
+    pub(crate) fn check_domain(domain: &[Enclosure]) -> Result<(), SystemError> {
+        let n = domain.len();
+        if n == 0 || n > MAX_UNKNOWNS {
+            return Err(SystemError::Variables { variables: n });
+        }
+        for (variable, side) in domain.iter().enumerate() {
+            let width = side.hi() - side.lo();
+            let magnitude = side.lo().abs().max(side.hi().abs());
+            if !(width.is_finite() && width > 64.0 * EPSILON * magnitude && width > f64::MIN_POSITIVE) {
+                return Err(SystemError::Domain { variable });
+            }
+        }
+        Ok(())
     }
 
     /// Restricts the search to a part of the domain. Roots on the boundary of that part count as boundary roots.

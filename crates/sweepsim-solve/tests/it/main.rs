@@ -6,6 +6,7 @@ mod bundles;
 mod curves;
 mod expressions;
 mod extremes;
+mod formulas;
 mod invariance;
 mod limits;
 mod many;

@@ -1,0 +1,367 @@
+//! Formulas and equations as text, against an evaluation that shares no code with them.
+
+use proptest::prelude::*;
+use sweepsim_solve::{
+    CurveSolver, Enclosure, Formula, FormulaProblem, PointSolver, Points, SurfaceSolver, System, SystemError,
+};
+
+fn side(lo: f64, hi: f64) -> Enclosure {
+    Enclosure::new(lo, hi).unwrap()
+}
+
+fn parse(equations: &[&str], names: &[&str], domain: &[(f64, f64)]) -> System {
+    let domain: Vec<Enclosure> = domain.iter().map(|d| side(d.0, d.1)).collect();
+    System::parse(equations, names, &domain).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn solve(equations: &[&str], names: &[&str], domain: &[(f64, f64)]) -> Points {
+    PointSolver::default()
+        .solve(&parse(equations, names, domain), &())
+        .unwrap()
+}
+
+/// All roots are found, and nothing is left.
+fn roots(equations: &[&str], names: &[&str], domain: &[(f64, f64)]) -> Vec<Vec<f64>> {
+    let points = solve(equations, names, domain);
+    assert!(points.unresolved.is_empty(), "{equations:?}: {:?}", points.unresolved);
+    points.roots.into_iter().map(|r| r.point).collect()
+}
+
+#[test]
+fn equations_are_solved_as_they_are_written() {
+    let found = roots(&["x^2 + y^2 = 1", "y = x^3"], &["x", "y"], &[(-2.0, 2.0), (-2.0, 2.0)]);
+    assert_eq!(found.len(), 2);
+    for p in &found {
+        assert!((p[0].powi(2) + p[1].powi(2) - 1.0).abs() < 1e-14 && (p[1] - p[0].powi(3)).abs() < 1e-14);
+    }
+    // The counts of zeros on bounded intervals are known: k π, solutions of tan x = x, of x = cos x, of eˣ = 3 x, of x ln x = 1.
+    for (text, interval, count) in [
+        ("sin(x) = 0", (-10.0, 10.0), 7),
+        ("tan(x) = x", (1.0, 20.0), 5),
+        ("x = cos(x)", (-5.0, 5.0), 1),
+        ("exp(x) = 3*x", (-5.0, 5.0), 2),
+        ("x*ln(x) = 1", (0.001, 5.0), 1),
+        ("sqrt(x) = x^2 - 1", (-5.0, 5.0), 1),
+        ("atan(x) = x/2", (-5.0, 5.0), 3),
+        ("1/x = 1/(x^2 + 1) + 1", (-5.0, 5.0), 1),
+        ("x^x = 2", (0.001, 5.0), 1),
+        ("sin(1/x) = 0", (0.02, 1.0), 15),
+        ("x^-2 = 4", (-5.0, 5.0), 2),
+        ("2^x = 8", (-5.0, 5.0), 1),
+        ("(x - 1)*(x - 2)*(x - 3)*(x - 4)*(x - 5)*(x - 6) = 0", (0.0, 6.5), 6),
+    ] {
+        let found = roots(&[text], &["x"], &[interval]);
+        assert_eq!(found.len(), count, "{text}: {found:?}");
+    }
+    // IntervalRootFinding.jl's examples: a rotated, a transcendental and a large domain.
+    let found = roots(&["x^2 + y^2 - 1", "y - 2*x"], &["x", "y"], &[(-1e6, 1e6), (-1e6, 1e6)]);
+    assert_eq!(found.len(), 2);
+    let found = roots(
+        &["exp(x) = y", "x + y = sin(3*y)"],
+        &["x", "y"],
+        &[(-4.0, 3.0), (-4.0, 3.0)],
+    );
+    for p in &found {
+        assert!((p[0].exp() - p[1]).abs() < 1e-13 && (p[0] + p[1] - (3.0 * p[1]).sin()).abs() < 1e-13);
+    }
+    assert!(!found.is_empty());
+}
+
+#[test]
+fn curves_and_surfaces_are_found_from_text() {
+    let system = parse(&["sin(x)^2 + y^2 = 1/4"], &["x", "y"], &[(-5.0, 5.0), (-2.0, 2.0)]);
+    let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
+    assert_eq!(
+        (curves.loops().count(), curves.curves.len(), curves.singular.len()),
+        (3, 3, 0)
+    );
+    let system = parse(
+        &["x^2 + y^2 + z^2 = 1 + 0.1*sin(5*x)"],
+        &["x", "y", "z"],
+        &[(-1.6, 1.5), (-1.5, 1.6), (-1.5, 1.5)],
+    );
+    let surface = SurfaceSolver::new(0.2).solve(&system, &()).unwrap();
+    assert_eq!(
+        (
+            surface.euler_characteristic(),
+            surface.components(),
+            surface.unresolved.len()
+        ),
+        (2, 1, 0)
+    );
+}
+
+#[test]
+fn numbers_stand_for_what_they_say() {
+    // The root is a tenth, which is not a floating-point number: the enclosure holds a tenth and not only its neighbour.
+    let found = solve(&["10*x = 1"], &["x"], &[(0.0, 1.0)]);
+    let tenth = solve(&["x = 0.1"], &["x"], &[(0.0, 1.0)]);
+    for points in [&found, &tenth] {
+        let enclosure = points.roots[0].enclosure[0];
+        // 0.1 as a floating-point number is above a tenth, the one below it is under it.
+        let holds = enclosure.lo() <= 0.1f64.next_down() && enclosure.hi() >= 0.1;
+        assert!(holds && enclosure.radius() < 1e-14, "{enclosure:?}");
+    }
+    let pi = solve(&["x = pi"], &["x"], &[(3.0, 4.0)]);
+    let enclosure = pi.roots[0].enclosure[0];
+    assert!(enclosure.lo() <= std::f64::consts::PI && enclosure.hi() >= std::f64::consts::PI.next_up());
+}
+
+#[test]
+fn wilkinson_factors_keep_their_accuracy() {
+    let text = (1..=20).map(|k| format!("(x - {k})")).collect::<Vec<_>>().join("*");
+    let points = solve(&[&text], &["x"], &[(0.5, 21.0)]);
+    assert_eq!((points.roots.len(), points.unresolved.len()), (20, 0));
+    for (k, root) in points.roots.iter().enumerate() {
+        let (enclosure, k) = (root.enclosure[0], (k + 1) as f64);
+        let near = (root.point[0] - k).abs() < 1e-8 && enclosure.radius() < 1e-3;
+        assert!(near && enclosure.contains(k), "{root:?}");
+    }
+}
+
+#[test]
+fn shared_and_long_formulas_are_compiled_once() {
+    // 2⁶⁰ uses of x, and a sum of 20,000 terms.
+    let mut shared = Formula::variable(0).sin();
+    for _ in 0..60 {
+        shared = (&shared + &shared) * 0.5;
+    }
+    let domain = [side(0.5, 4.0)];
+    let system = System::of_formulas(&domain, [shared]).unwrap();
+    let points = PointSolver::default().solve(&system, &()).unwrap();
+    assert_eq!((points.roots.len(), points.unresolved.len()), (1, 0));
+    let long = (0..20_000).fold(Formula::constant(-20_000.0), |sum, _| sum + Formula::variable(0));
+    let system = System::of_formulas(&domain, [long]).unwrap();
+    assert_eq!(PointSolver::default().solve(&system, &()).unwrap().roots.len(), 1);
+    // A million levels are dropped without a deep call stack, and are too many for a system.
+    let deep = (0..1_000_000).fold(Formula::variable(0), |f, _| f.sin());
+    let error = System::of_formulas(&domain, [deep]).unwrap_err();
+    assert!(matches!(error, SystemError::TooManySteps { equation: 0, .. }));
+}
+
+#[test]
+fn errors_name_the_place_and_what_was_expected() {
+    let error = |text: &str| System::parse(&["x = y", text], &["x", "y"], &[Enclosure::UNIT; 2]).unwrap_err();
+    for (text, message) in [
+        (
+            "",
+            "equation 2:1:1: found the end, expected a number, a name, `(` or a sign",
+        ),
+        (
+            "x +",
+            "equation 2:1:4: found the end, expected a number, a name, `(` or a sign",
+        ),
+        (
+            "x + * y",
+            "equation 2:1:5: found `*`, expected a number, a name, `(` or a sign",
+        ),
+        ("2 x", "equation 2:1:3: found `x`, expected an operator, `=` or the end"),
+        (
+            "x = y = 1",
+            "equation 2:1:7: found `=`, expected an operator or the end",
+        ),
+        (
+            "x\n + (y\n",
+            "equation 2:3:1: found the end, expected an operator or `)`",
+        ),
+        (
+            "x ) y",
+            "equation 2:1:3: found `)`, expected an operator, `=` or the end",
+        ),
+        ("x + z", "equation 2:1:5: `z` is unknown, expected one of x, y, pi, e"),
+        (
+            "foo(x)",
+            "equation 2:1:1: `foo` is not a function, expected one of sin, cos, tan, exp, ln, sqrt, atan",
+        ),
+        (
+            "sin x",
+            "equation 2:1:5: found `x`, expected `(` after a function's name",
+        ),
+        (
+            "x # y",
+            "equation 2:1:3: found `#`, expected an operator, `=`, `)` or the end",
+        ),
+        (
+            "1e999 * x",
+            "equation 2:1:1: the number 1e999 is too large, expected one below 1.8e308",
+        ),
+        (
+            "x + . 5",
+            "equation 2:1:5: found `.` without digits, expected a number such as 0.5",
+        ),
+        (
+            "é + \u{1F600}",
+            "equation 2:1:1: `é` is unknown, expected one of x, y, pi, e",
+        ),
+    ] {
+        assert_eq!(error(text).to_string(), message);
+        assert!(error(text).render(false).contains("equation 2"), "{text}");
+    }
+    let nested = format!("{}x{}", "(".repeat(100_000), ")".repeat(100_000));
+    let signs = format!("{}x", "-".repeat(100_001));
+    let powers = vec!["x"; 100_000].join("^");
+    assert!(matches!(error(&nested).problem(), FormulaProblem::TooDeep { .. }));
+    assert!(matches!(error(&powers).problem(), FormulaProblem::TooDeep { .. }));
+    assert!(System::parse(&[&signs], &["x"], &[Enclosure::UNIT]).is_ok());
+    let names = |names: &[&str]| {
+        System::parse(&["1"], names, &[Enclosure::UNIT; 2])
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(names(&["x", "x"]).contains("`x` cannot name variable 2"));
+    assert!(names(&["sin", "x"]).contains("`sin` cannot name variable 1"));
+    assert!(names(&["x y", "x"]).contains("cannot name variable 1"));
+    assert!(names(&["x"]).contains("1 names for a domain with 2 sides"));
+    let overdetermined = System::parse(&["x", "x"], &["x"], &[Enclosure::UNIT]).unwrap_err();
+    assert!(matches!(
+        overdetermined.problem(),
+        FormulaProblem::System(SystemError::TooManyEquations { .. })
+    ));
+}
+
+/// A formula in `x` and `y` with its text, and its own evaluation.
+#[derive(Clone, Debug)]
+enum Tree {
+    X,
+    Y,
+    Number(u32, u32),
+    Operation(char, Box<Tree>, Box<Tree>),
+    Negative(Box<Tree>),
+    Power(Box<Tree>, u32),
+    Function(&'static str, Box<Tree>),
+}
+
+impl Tree {
+    fn text(&self) -> String {
+        match self {
+            Self::X => "x".to_owned(),
+            Self::Y => " y".to_owned(),
+            Self::Number(a, b) => format!("{a}.{b:03}"),
+            Self::Operation(c, a, b) => format!("({} {c}{})", a.text(), b.text()),
+            Self::Negative(a) => format!("(-{})", a.text()),
+            Self::Power(a, k) => format!("({})^{k}", a.text()),
+            Self::Function(name, a) => format!("{name}({})", a.text()),
+        }
+    }
+
+    /// Without parentheses that precedence makes superfluous: a sum of products of powers of atoms.
+    fn value(&self, x: f64, y: f64) -> f64 {
+        let of = |t: &Self| t.value(x, y);
+        match self {
+            Self::X => x,
+            Self::Y => y,
+            Self::Number(a, b) => f64::from(*a) + f64::from(*b) / 1000.0,
+            Self::Operation('+', a, b) => of(a) + of(b),
+            Self::Operation('-', a, b) => of(a) - of(b),
+            Self::Operation('*', a, b) => of(a) * of(b),
+            Self::Operation(_, a, b) => of(a) / of(b),
+            Self::Negative(a) => -of(a),
+            Self::Power(a, k) => of(a).powi(*k as i32),
+            Self::Function(name, a) => match *name {
+                "sin" => of(a).sin(),
+                "cos" => of(a).cos(),
+                "tan" => of(a).tan(),
+                "exp" => of(a).exp(),
+                "ln" => of(a).ln(),
+                "sqrt" => of(a).sqrt(),
+                _ => of(a).atan(),
+            },
+        }
+    }
+}
+
+fn tree() -> impl Strategy<Value = Tree> {
+    let leaf = prop_oneof![
+        Just(Tree::X),
+        Just(Tree::Y),
+        (0u32..4, 0u32..1000).prop_map(|(a, b)| Tree::Number(a, b))
+    ];
+    leaf.prop_recursive(5, 24, 2, |inner| {
+        let two = (
+            prop::sample::select(vec!['+', '-', '*', '/']),
+            inner.clone(),
+            inner.clone(),
+        );
+        let function = prop::sample::select(vec!["sin", "cos", "tan", "exp", "ln", "sqrt", "atan"]);
+        prop_oneof![
+            4 => two.prop_map(|(c, a, b)| Tree::Operation(c, Box::new(a), Box::new(b))),
+            1 => inner.clone().prop_map(|a| Tree::Negative(Box::new(a))),
+            2 => (inner.clone(), 0u32..4).prop_map(|(a, k)| Tree::Power(Box::new(a), k)),
+            3 => (function, inner).prop_map(|(name, a)| Tree::Function(name, Box::new(a))),
+        ]
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// `z = f(x, y)` at `x = a`, `y = b` has the root that an evaluation gives, and none where the formula is not defined.
+    #[test]
+    fn text_means_what_an_evaluation_says(tree in tree(), a in -2.0f64..2.0, b in -2.0f64..2.0) {
+        let truth = tree.value(a, b);
+        prop_assume!(!(truth.abs() >= 50.0));
+        let system = parse(
+            &[&format!("z = {}", tree.text()), &format!("x = {a:?}"), &format!("y = {b:?}")],
+            &["x", "y", "z"],
+            &[(a - 0.25, a + 0.5), (b - 0.5, b + 0.25), (-60.0, 70.0)],
+        );
+        let mut solver = PointSolver::default();
+        solver.options.boxes = 20_000;
+        let points = solver.solve(&system, &()).unwrap();
+        let holds = |z: f64| points.unresolved.iter().any(|u| u.bounds[2].lo() - 1e-9 <= z && z <= u.bounds[2].hi() + 1e-9);
+        if truth.is_nan() {
+            prop_assert!(points.roots.is_empty(), "{} {:?}", tree.text(), points.roots);
+        } else {
+            // Conditioned badly, both may be off by more than rounding: then the root is near.
+            let near = points.roots.iter().any(|r| (r.point[2] - truth).abs() <= 1e-6 * (1.0 + truth.abs()));
+            prop_assert!(near || holds(truth), "{} at {a}, {b}: {truth} {:?}", tree.text(), points);
+            prop_assert!(points.roots.len() <= 1);
+        }
+    }
+
+    /// Operators need no parentheses where precedence says the same.
+    #[test]
+    fn precedence_is_that_of_mathematics(a in 1u32..9, b in 1u32..9, c in 1u32..9, x in 0.5f64..2.0) {
+        let (p, q, r) = (f64::from(a), f64::from(b), f64::from(c));
+        for (text, value) in [
+            (format!("{a} - {b} - {c}*x"), p - q - r * x),
+            (format!("{a}/{b}/{c}*x"), p / q / r * x),
+            (format!("-x^2*{a} + {b}"), -(x * x) * p + q),
+            (format!("{a}*-x**2^1 - -{b}"), p * -(x * x) + q),
+            (format!("x^-{}", a % 3 + 1), x.powi(-(a as i32 % 3 + 1))),
+            (format!("(x + {a})·{b} − {c}"), (x + p) * q - r),
+        ] {
+            let found = roots(&[&format!("y = {text}"), &format!("x = {x:?}")], &["x", "y"], &[(0.4, 2.1), (-400.0, 400.0)]);
+            prop_assert_eq!(found.len(), 1, "{}", text);
+            prop_assert!((found[0][1] - value).abs() < 1e-11 * (1.0 + value.abs()), "{} {} {:?}", text, value, found);
+        }
+    }
+
+    /// Text of any kind is a system or an error whose place lies in it.
+    #[test]
+    fn malformed_text_is_an_error_with_a_place(
+        words in prop::collection::vec(prop::sample::select(vec![
+            "x", "y", "z", "sin", "(", ")", "(", ")", "+", "-", "*", "/", "^", "**", "=", "1", "2.5e", ".", "1e400", "e3", "é", "\n", " ", "€", "pi", "1e-5", "_a", "\u{0}",
+        ]), 0..24),
+    ) {
+        let text = words.concat();
+        match System::parse(&[&text], &["x", "y"], &[Enclosure::UNIT; 2]) {
+            Ok(_) => {}
+            Err(error) if matches!(error.problem(), FormulaProblem::System(_)) => {}
+            Err(error) => {
+                let (line, column) = (error.line().unwrap(), error.column().unwrap());
+                prop_assert_eq!(error.equation(), Some(0));
+                // The place is that of a character, or just beyond the last one of a line.
+                let lines: Vec<&str> = text.split('\n').collect();
+                prop_assert!(line <= lines.len() && column <= lines[line - 1].chars().count() + 1, "{text:?} {error}");
+                prop_assert!(error.to_string().contains("expected"), "{}", error);
+                prop_assert!(!error.render(false).is_empty());
+            }
+        }
+    }
+
+    #[test]
+    fn any_text_is_read_without_panic(text in "\\PC{0,60}") {
+        let _ = System::parse(&[&text], &["x"], &[Enclosure::UNIT]);
+    }
+}
