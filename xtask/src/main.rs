@@ -41,7 +41,7 @@ enum Command {
     Bench {
         /// What to measure.
         table: Table,
-        /// For instructions: only work whose name contains this.
+        /// For instructions and systems: only work whose name contains this.
         filter: Option<String>,
     },
     /// Does one piece of work of `bench instructions`.
@@ -78,6 +78,8 @@ enum Table {
     Table1,
     /// The fixture jobs, on one thread and on all.
     Programs,
+    /// The stored systems of equations, on one thread, beside figures of other solvers.
+    Systems,
     /// Instructions of Table 1 and of small jobs, by valgrind: for comparing two versions on a busy machine.
     Instructions,
 }
@@ -103,6 +105,7 @@ fn main() -> ExitCode {
         Command::Bench { table, filter } => match table {
             Table::Table1 => bench::table1(),
             Table::Programs => bench::programs(),
+            Table::Systems => bench::systems(filter.as_deref()),
             Table::Instructions => bench::instructions(filter.as_deref()),
         }
         .map(|()| true),

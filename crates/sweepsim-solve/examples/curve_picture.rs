@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         shifted.mul(&shifted).add(&x(1).mul(&x(1)))
     };
     let cassini = around(1.0).mul(&around(-1.0)).sub(&constant(0.97));
-    let system = System::new(&[Enclosure::new(-2.0, 2.0).unwrap(); 2], [&cassini])?;
+    let system = System::mapped(&[Enclosure::new(-2.0, 2.0).unwrap(); 2], [&cassini])?;
     let mut picture = Picture::new([0, 1]);
     let curves = CurveSolver::new(1e-3).solve(&system, &picture)?;
     eprintln!(

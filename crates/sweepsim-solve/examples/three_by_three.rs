@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for height in [0.3, 0.0] {
         // z = height: at 0 the plane touches the window of Viviani where it crosses itself.
         let plane = x(2).sub(&constant(height));
-        let system = System::new(&bounds, [&sphere, &cylinder, &plane])?;
+        let system = System::mapped(&bounds, [&sphere, &cylinder, &plane])?;
         let points = solver.solve(&system, &())?;
         println!("z = {height}: {} certified roots", points.roots.len());
         for root in &points.roots {

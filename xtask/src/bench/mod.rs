@@ -2,10 +2,12 @@
 
 mod instructions;
 mod programs;
+mod systems;
 mod table1;
 
 pub use instructions::{instructions, work};
 pub use programs::programs;
+pub use systems::systems;
 pub use table1::table1;
 
 use std::time::{Duration, Instant};

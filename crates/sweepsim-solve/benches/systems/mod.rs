@@ -68,7 +68,7 @@ pub fn chebyshev_3d() -> Named {
     };
     Named {
         name: "dense_cheb4_3d",
-        system: System::new(&[Enclosure::new(-1.0, 1.0).unwrap(); 3], [form(0), form(1), form(2)])
+        system: System::mapped(&[Enclosure::new(-1.0, 1.0).unwrap(); 3], [form(0), form(1), form(2)])
             .expect("a valid system"),
         roots: 64,
     }
@@ -85,7 +85,7 @@ pub fn cyclohexane() -> Named {
     };
     Named {
         name: "cyclohexane",
-        system: System::new(
+        system: System::mapped(
             &[Enclosure::new(-20.0, 20.0).unwrap(); 3],
             [form(1, 2), form(2, 0), form(0, 1)],
         )

@@ -117,7 +117,7 @@ impl Curves {
 /// // x² + y² = 1/4 on [−1, 1]². In u = (x + 1)/2: x² = 4 u² − 4 u + 1 has coefficients 1, −1, 1.
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
 /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
-/// let system = System::new(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle])?;
+/// let system = System::mapped(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle])?;
 /// let curves = CurveSolver::new(1e-3).solve(&system, &())?;
 /// assert_eq!((curves.loops().count(), curves.arcs().count()), (1, 0));
 /// for p in &curves.curves[0].points {
@@ -244,7 +244,7 @@ impl CurveSolver {
     ///
     /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[axis]]).unwrap();
     /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 0.25));
-    /// let system = System::new(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle])?;
+    /// let system = System::mapped(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle])?;
     /// let mut length = 0.0;
     /// let rest = CurveSolver::new(1e-4).for_each_piece(&system, &(), |piece| {
     ///     for p in piece.points.windows(2) {

@@ -34,7 +34,7 @@ impl System {
     ///
     /// # Errors
     ///
-    /// [`SystemError`], as for [`System::new`]. [`SystemError::FormVariables`] if a formula has a variable that the domain does not have.
+    /// [`SystemError`], as for [`System::mapped`]. [`SystemError::FormVariables`] if a formula has a variable that the domain does not have.
     pub fn of_formulas(domain: &[Enclosure], formulas: impl IntoIterator<Item = Formula>) -> Result<Self, SystemError> {
         Self::check_domain(domain)?;
         let equations: Result<Vec<_>, SystemError> = formulas
@@ -42,7 +42,7 @@ impl System {
             .enumerate()
             .map(|(number, formula)| compile::equation(&formula, number, domain))
             .collect();
-        Self::new(domain, equations?)
+        Self::mapped(domain, equations?)
     }
 
     /// The system of these equations as text, in the variables of these names, over a domain with one enclosure per variable.

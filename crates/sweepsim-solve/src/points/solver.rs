@@ -29,7 +29,7 @@ pub(crate) enum Order {
 /// let square = |axis| Bernstein::from_fn(&[2, 2], |i| [4.0, -4.0, 4.0][i[axis]]).unwrap();
 /// let circle = square(0).add(&square(1)).sub(&Bernstein::constant(2, 1.0));
 /// let line = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
-/// let system = System::new(&[Enclosure::new(-2.0, 2.0)?; 2], [&circle, &line])?;
+/// let system = System::mapped(&[Enclosure::new(-2.0, 2.0)?; 2], [&circle, &line])?;
 /// let points = PointSolver::default().solve(&system, &())?;
 /// assert_eq!(points.roots.len(), 2);
 /// assert!(points.unresolved.is_empty());

@@ -15,7 +15,7 @@ type Drawn = ([Enclosure; 2], u32, Fate);
 ///
 /// let circle = Bernstein::from_fn(&[2, 2], |i| [1.0, -1.0, 1.0][i[0]] + [1.0, -1.0, 1.0][i[1]] - 0.25)?;
 /// let diagonal = Bernstein::variable(2, 1).sub(&Bernstein::variable(2, 0));
-/// let system = System::new(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle, &diagonal])?;
+/// let system = System::mapped(&[Enclosure::new(-1.0, 1.0)?; 2], [&circle, &diagonal])?;
 /// let mut picture = Picture::new([0, 1]);
 /// let points = PointSolver::default().solve(&system, &picture)?;
 /// points.roots.iter().for_each(|root| picture.mark(&root.point));

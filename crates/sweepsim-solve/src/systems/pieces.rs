@@ -122,7 +122,7 @@ impl Pieces {
         }
         let systems: Result<Vec<System>, SystemError> = boxes
             .into_iter()
-            .map(|(bounds, forms)| System::new(&bounds, forms.into_iter().map(Equation::from)))
+            .map(|(bounds, forms)| System::mapped(&bounds, forms.into_iter().map(Equation::from)))
             .collect();
         Ok(Self {
             systems: systems?,

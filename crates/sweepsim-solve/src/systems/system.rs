@@ -13,7 +13,7 @@ pub const MAX_SYSTEM: usize = 1 << 24;
 
 /// One equation `f = 0`: a sum of Bernstein forms, with a bound on how much the sum differs from `f`.
 ///
-/// Every form has as many variables as the system, on `[0,1]ⁿ` (the system's domain maps to it). A form's own
+/// Every form has as many variables as the system, on `[0,1]ⁿ` (see [`System::new`] and [`System::mapped`]). A form's own
 /// [`error`](Bernstein::error) counts as an error of its coefficients.
 #[derive(Clone, Debug)]
 pub struct Equation {
@@ -78,6 +78,8 @@ impl From<&Bernstein> for Equation {
 /// assert_eq!(System::new::<Bernstein>(&[], []).unwrap_err(), SystemError::Variables { variables: 0 });
 /// let too_many = System::new(&unit, [&x, &x]).unwrap_err();
 /// assert_eq!(too_many, SystemError::TooManyEquations { equations: 2, variables: 1 });
+/// let wide = [Enclosure::new(0.0, 2.0).unwrap()];
+/// assert_eq!(System::new(&wide, [&x]).unwrap_err(), SystemError::FormDomain { variable: 0 });
 /// let plane = Bernstein::variable(2, 0);
 /// let other = System::new(&unit, [&plane]).unwrap_err();
 /// assert_eq!(other, SystemError::FormVariables { equation: 0, variables: 2, expected: 1 });
@@ -110,6 +112,14 @@ pub enum SystemError {
     #[error("the domain's side {variable} is not an interval of positive finite length")]
     Domain {
         /// The variable.
+        variable: usize,
+    },
+    /// Forms live on `[0,1]ⁿ`, but the domain is another one.
+    #[error(
+        "forms live on [0, 1] in each variable, but the domain's side {variable} is another one: write formulas, or map the forms to it"
+    )]
+    FormDomain {
+        /// The first variable with another side.
         variable: usize,
     },
     /// A region does not lie in the domain, or is empty.
@@ -172,13 +182,42 @@ pub struct System {
 }
 
 impl System {
-    /// The system of these equations over a domain, given by one enclosure per variable. To write equations in the domain's own coordinates, use
-    /// [`of_formulas`](Self::of_formulas) or [`parse`](Self::parse).
+    /// The system of these equations over a domain, given by one enclosure per variable. Forms live on `[0,1]ⁿ`, so that is the only domain
+    /// allowed here. To write equations in the coordinates of another one, use [`of_formulas`](Self::of_formulas) or [`parse`](Self::parse); for forms
+    /// whose coefficients already are those over another domain, [`mapped`](Self::mapped).
+    ///
+    /// # Errors
+    ///
+    /// See [`SystemError`]; [`SystemError::FormDomain`] for any domain other than `[0,1]ⁿ`.
+    pub fn new<E: Into<Equation>>(
+        domain: &[Enclosure],
+        equations: impl IntoIterator<Item = E>,
+    ) -> Result<Self, SystemError> {
+        Self::check_domain(domain)?;
+        if let Some(variable) = domain.iter().position(|side| *side != Enclosure::UNIT) {
+            return Err(SystemError::FormDomain { variable });
+        }
+        Self::mapped(domain, equations)
+    }
+
+    /// The system of these equations over a domain to which `[0,1]ⁿ` is mapped: the forms' variables are `u = (x − lo)/(hi − lo)`, not the domain's
+    /// coordinates `x`. Their coefficients are control values over the domain, as those of a spline's piece are.
+    ///
+    /// ```
+    /// use sweepsim_solve::{Bernstein, Enclosure, PointSolver, System};
+    ///
+    /// // x² − 1 on [−2, 2] is 16 u² − 16 u + 3 in u = (x + 2)/4, with the control values 3, −5, 3.
+    /// let form = Bernstein::new(&[2], vec![3.0, -5.0, 3.0])?;
+    /// let system = System::mapped(&[Enclosure::new(-2.0, 2.0)?], [form])?;
+    /// let points = PointSolver::default().solve(&system, &())?;
+    /// assert!(points.roots[0].enclosure[0].contains(-1.0) && points.roots[1].enclosure[0].contains(1.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     ///
     /// See [`SystemError`].
-    pub fn new<E: Into<Equation>>(
+    pub fn mapped<E: Into<Equation>>(
         domain: &[Enclosure],
         equations: impl IntoIterator<Item = E>,
     ) -> Result<Self, SystemError> {

@@ -40,7 +40,7 @@ fn domains_are_checked() {
             assert!(lo > hi || lo.is_nan() || hi.is_nan(), "{lo} {hi}");
             continue;
         };
-        let bad = System::new(&[side], [&x]);
+        let bad = System::mapped(&[side], [&x]);
         assert_eq!(bad.unwrap_err(), SystemError::Domain { variable: 0 }, "{lo} {hi}");
     }
 }

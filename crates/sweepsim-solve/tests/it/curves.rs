@@ -134,7 +134,7 @@ fn random_plane_curves_agree_with_marching_squares() {
 fn symmetries_change_no_topology() {
     let mut random = Random(8);
     let topology = |forms: &[Bernstein], bounds: &[Enclosure]| {
-        let system = System::new(bounds, forms).unwrap();
+        let system = System::mapped(bounds, forms).unwrap();
         let curves = solver(1e-2).solve(&system, &()).unwrap();
         (curves.loops().count(), curves.arcs().count(), curves.singular.len())
     };
@@ -269,7 +269,7 @@ fn tangents_and_tolerances_hold_on_domains_of_any_width() {
         (vec![1e-250, 1e-250, 1e-250], vec![cylinder, plane]),
     ] {
         let domain: Vec<Enclosure> = widths.iter().map(|w| Enclosure::new(0.0, *w).unwrap()).collect();
-        let system = System::new(&domain, forms).unwrap();
+        let system = System::mapped(&domain, forms).unwrap();
         let widest = widths.iter().fold(0.0, |m: f64, w| m.max(*w));
         let curves = CurveSolver::new(1e-3 * widest).solve(&system, &()).unwrap();
         assert_eq!(

@@ -90,7 +90,7 @@ fn scales_do_not_matter() {
         let forms = [circle.scale(a).assumed_exact(), line.scale(b).assumed_exact()];
         for bounds in [[1e-200, 1e-200], [1e150, 1e-150], [1.0, 1e8]] {
             let domain = bounds.map(|w: f64| Enclosure::new(-w, w).unwrap());
-            let found = solve(&System::new(&domain, &forms).unwrap());
+            let found = solve(&System::mapped(&domain, &forms).unwrap());
             assert_eq!(
                 (found.roots.len(), found.unresolved.len()),
                 (2, 0),

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use sweepsim_solve::{
-    CurveSolver, Enclosure, Formula, FormulaProblem, PointSolver, Points, SurfaceSolver, System, SystemError,
+    Bernstein, CurveSolver, Enclosure, Formula, FormulaProblem, PointSolver, Points, SurfaceSolver, System, SystemError,
 };
 
 fn side(lo: f64, hi: f64) -> Enclosure {
@@ -65,6 +65,25 @@ fn equations_are_solved_as_they_are_written() {
         assert!((p[0].exp() - p[1]).abs() < 1e-13 && (p[0] + p[1] - (3.0 * p[1]).sin()).abs() < 1e-13);
     }
     assert!(!found.is_empty());
+}
+
+#[test]
+fn forms_on_a_domain_other_than_theirs_are_an_error() {
+    // Taken for the coordinates of [−2, 2]², the unit box's variables would give one root at (0.43…, 0.43…)·4 − 2, which is wrong.
+    let [x, y] = [0, 1].map(|j| Bernstein::variable(2, j));
+    let circle = x.mul(&x).add(&y.mul(&y)).sub(&Bernstein::constant(2, 1.0));
+    let cubic = y.sub(&x.mul(&x).mul(&x));
+    let wide = [side(-2.0, 2.0); 2];
+    let error = System::new(&wide, [&circle, &cubic]).unwrap_err();
+    assert_eq!(error, SystemError::FormDomain { variable: 0 });
+    let expression = sweepsim_solve::Expression::from(circle.clone());
+    let error = System::new(&[Enclosure::UNIT, wide[1]], [expression]).unwrap_err();
+    assert_eq!(error, SystemError::FormDomain { variable: 1 });
+    assert!(System::new(&[Enclosure::UNIT; 2], [&circle, &cubic]).is_ok());
+    // The same by formulas, on the domain by construction.
+    let [x, y] = [Formula::variable(0), Formula::variable(1)];
+    let system = System::of_formulas(&wide, [x.powi(2) + y.powi(2) - 1.0, y - x.powi(3)]).unwrap();
+    assert_eq!(PointSolver::default().solve(&system, &()).unwrap().roots.len(), 2);
 }
 
 #[test]

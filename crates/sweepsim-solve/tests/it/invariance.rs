@@ -122,7 +122,7 @@ fn equations(polynomials: &[Polynomial], bounds: &[Enclosure], factors: &[f64]) 
 const POSITIVE: [f64; 3] = [3.7e-6, 5.1e4, 0.3];
 
 fn points(polynomials: &[Polynomial], bounds: &[Enclosure], factors: &[f64]) -> Points {
-    let system = System::new(bounds, equations(polynomials, bounds, factors)).unwrap();
+    let system = System::mapped(bounds, equations(polynomials, bounds, factors)).unwrap();
     PointSolver::default().solve(&system, &()).unwrap()
 }
 
@@ -193,7 +193,7 @@ fn curves_stay_the_same() {
         let polynomials: Vec<Polynomial> = texts.iter().map(|t| named(t, n)).collect();
         let topology = |p: &[Polynomial], bounds: &[Enclosure], factors: &[f64]| {
             let tolerance = 1e-2 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
-            let system = System::new(bounds, equations(p, bounds, factors)).unwrap();
+            let system = System::mapped(bounds, equations(p, bounds, factors)).unwrap();
             let curves = CurveSolver::new(tolerance).solve(&system, &()).unwrap();
             assert!(curves.singular.is_empty(), "{texts:?}");
             (curves.loops().count(), curves.arcs().count())
@@ -227,7 +227,7 @@ fn surfaces_stay_the_same() {
         let polynomial = named(text, 3);
         let topology = |p: &Polynomial, bounds: &[Enclosure], factor: f64| {
             let tolerance = 0.1 * bounds.iter().fold(f64::INFINITY, |m: f64, b| m.min(b.radius()));
-            let system = System::new(bounds, equations(std::slice::from_ref(p), bounds, &[factor])).unwrap();
+            let system = System::mapped(bounds, equations(std::slice::from_ref(p), bounds, &[factor])).unwrap();
             let surface = SurfaceSolver::new(tolerance).solve(&system, &()).unwrap();
             assert!(surface.unresolved.is_empty(), "{text}");
             assert_eq!(surface.boundary().is_empty(), closed, "{text}");

@@ -323,7 +323,7 @@ fn planted_space_curves(number: u64) -> Outcome {
         (cylinder, loops)
     };
     let bounds = [Enclosure::new(-0.1, 1.1).unwrap(); 3];
-    let system = System::new(&bounds, [sphere.equation(&bounds), other.equation(&bounds)]).unwrap();
+    let system = System::mapped(&bounds, [sphere.equation(&bounds), other.equation(&bounds)]).unwrap();
     let curves = CurveSolver::new(1e-2).solve(&system, &()).unwrap();
     compare_curves(&curves, (loops, 0), number)
 }

@@ -80,7 +80,7 @@ proptest! {
     ) {
         let equations = forms.iter().map(|f| Equation::from(f).with_remainder(remainders.0, remainders.1));
         let bad = options().smallest(smallest);
-        for system in [System::new(&domain, equations), System::new(&domain, &forms)] {
+        for system in [System::mapped(&domain, equations), System::mapped(&domain, &forms)] {
             let Ok(system) = system else { continue };
             for system in [Ok(system.clone()), system.within(&region)].into_iter().flatten() {
                 for options in [options(), bad.clone()] {
@@ -98,7 +98,7 @@ proptest! {
     ) {
         let (a, b) = (Expression::from(a), Expression::from(b));
         let whole = (a.clone() + b.clone() * c) / (b - a * c);
-        if let Ok(system) = System::new(&domain, [whole]) {
+        if let Ok(system) = System::mapped(&domain, [whole]) {
             let _ = PointSolver::new(options()).solve(&system, &());
         }
     }

@@ -82,7 +82,7 @@ fn boxes_without_another_root_hold_exactly_one_wherever_the_domain_lies() {
                 p.bernstein(&unit)
             })
             .collect();
-        let system = System::new(&domain, &forms).unwrap();
+        let system = System::mapped(&domain, &forms).unwrap();
         let points = PointSolver::default().solve(&system, &()).unwrap();
         let what = format!("case {case}: {domain:?}");
         consistent(&points, &what);
@@ -142,7 +142,7 @@ fn a_square_far_from_the_origin() {
             .add(&Polynomial::constant(-exact(0.125), 2))
             .bernstein(&unit)
     };
-    let system = System::new(&domain, [circle(0.375), circle(0.625)]).unwrap();
+    let system = System::mapped(&domain, [circle(0.375), circle(0.625)]).unwrap();
     let points = PointSolver::default().solve(&system, &()).unwrap();
     assert_eq!((points.roots.len(), points.unresolved.len()), (2, 0));
     consistent(&points, "far away");

@@ -196,7 +196,7 @@ fn symmetries_change_no_answer() {
         }
         // Another box.
         let far = [Enclosure::new(-1e3, 1e4).unwrap(), Enclosure::new(5.0, 5.5).unwrap()];
-        let system = System::new(&far, &forms).unwrap();
+        let system = System::mapped(&far, &forms).unwrap();
         let moved = PointSolver::default().solve(&system, &()).unwrap();
         assert_eq!(counts(&moved), counts(&plain));
         // Equations mixed: a rotation of the values.

@@ -10,7 +10,7 @@ fn system(expression: &str, half: f64) -> System {
     let names = ["x", "y", "z"].map(String::from);
     let bounds = [Enclosure::new(-half, half).unwrap(); 3];
     let polynomial = Polynomial::of(&parse(expression, &names), 3).unwrap();
-    System::new(&bounds, [polynomial.equation(&bounds)]).unwrap()
+    System::mapped(&bounds, [polynomial.equation(&bounds)]).unwrap()
 }
 
 #[test]
@@ -133,6 +133,6 @@ fn bad_input_is_an_error() {
     let names = ["x", "y"].map(String::from);
     let bounds = [Enclosure::new(-1.0, 1.0).unwrap(); 2];
     let plane = Polynomial::of(&parse("x", &names), 2).unwrap().equation(&bounds);
-    let flat = System::new(&bounds, [plane]).unwrap();
+    let flat = System::mapped(&bounds, [plane]).unwrap();
     assert!(SurfaceSolver::new(0.1).solve(&flat, &()).is_err());
 }

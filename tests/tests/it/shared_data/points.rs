@@ -28,7 +28,7 @@ fn solve_in_cells(stored: &Stored, cells: usize) -> (Points, Duration) {
             let cell = [*x, *y];
             let frame = cell.map(|s| Enclosure::new(s.lo() - 0.05 * s.radius(), s.hi() + 0.05 * s.radius()).unwrap());
             let equations = stored.expressions.iter().map(|e| taylor::equation(e, &frame));
-            let system = System::new(&frame, equations).unwrap().within(&cell).unwrap();
+            let system = System::mapped(&frame, equations).unwrap().within(&cell).unwrap();
             let start = Instant::now();
             let found = solver.solve(&system, &()).unwrap();
             time += start.elapsed();

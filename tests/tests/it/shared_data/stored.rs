@@ -98,6 +98,6 @@ impl Stored {
 
     /// The system over the stored box; `None` unless polynomial.
     pub fn system(&self) -> Option<System> {
-        Some(System::new(&self.bounds, self.equations()?).unwrap())
+        Some(System::mapped(&self.bounds, self.equations()?).unwrap())
     }
 }

@@ -1,0 +1,183 @@
+//! The stored systems of equations, `../shared/data/systems`: what the solvers find, how long it takes, and what others took.
+
+use super::shortest;
+use crate::workspace;
+use serde_json::Value;
+use std::time::Duration;
+use sweepsim_solve::{CurveSolver, Enclosure, PointSolver, SolveOptions, SurfaceSolver, System};
+use sweepsim_spline::Bernstein;
+
+/// Milliseconds that other solvers took for the stored systems of these names, as far as they were measured: IRIT's `mvar_lib` at its best setting, and
+/// a prototype in plain floating-point numbers. Taken on another day, on two shared cores.
+const OTHERS: [(&str, f64, f64); 4] = [
+    ("dense_cheb4_3d", 2.0, 4.7),
+    ("cyclohexane", 42.0, 0.9),
+    ("noon4", 12_613.0, 6.8),
+    ("wood", 1_094.0, 23.0),
+];
+/// Systems that the prototype could not solve.
+const FAILED: [&str; 2] = ["katsura6", "reimer5"];
+/// No system takes longer.
+const LIMIT: Duration = Duration::from_secs(60);
+/// The tolerance of curves and surfaces, relative to the widest side of the domain.
+const TOLERANCE: f64 = 1e-3;
+
+/// What a solver found.
+struct Outcome {
+    /// As the stored answers write it.
+    found: String,
+    open: usize,
+    boxes: u64,
+}
+
+/// Solves all stored systems, or those whose names contain the filter, on one thread.
+pub fn systems(filter: Option<&str>) -> Result<(), String> {
+    let file = workspace::root().join("../shared/data/systems/systems.json");
+    let text = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let stored: Vec<Value> = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?;
+    println!(
+        "{:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10} {:>9} {:>9} {:>6}",
+        "system", "n", "expected", "found", "open", "boxes", "ms", "IRIT", "prototype", "ratio"
+    );
+    let (mut complete, mut wrong, mut incomplete, mut total) = (0, 0, 0, 0.0);
+    let mut ratios = Vec::new();
+    for json in &stored {
+        let name = json["name"].as_str().unwrap_or("?");
+        if filter.is_some_and(|filter| !name.contains(filter)) {
+            continue;
+        }
+        let system = read(json).map_err(|error| format!("{name}: {error}"))?;
+        let outcome = solve(&system).map_err(|error| format!("{name}: {error}"))?;
+        let time = shortest(|| solve(&system).map(drop))?;
+        total += time;
+        let expected = expected(json);
+        let right = expected.as_ref().is_none_or(|e| *e == outcome.found);
+        let mark = if outcome.open > 0 {
+            incomplete += 1;
+            "open"
+        } else if right {
+            complete += 1;
+            ""
+        } else {
+            wrong += 1;
+            "WRONG"
+        };
+        let others = OTHERS.iter().find(|(other, ..)| *other == name);
+        if let Some((_, irit, _)) = others {
+            ratios.push(irit / (time * 1e3));
+        }
+        let fails = if FAILED.contains(&name) { "fails" } else { "" };
+        println!(
+            "{name:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10.3} {:>9} {:>9} {:>6} {mark}",
+            system.variables(),
+            expected.as_deref().unwrap_or("?"),
+            outcome.found,
+            outcome.open,
+            outcome.boxes,
+            time * 1e3,
+            others.map_or(String::new(), |o| o.1.to_string()),
+            others.map_or(fails.to_owned(), |o| o.2.to_string()),
+            others.map_or(String::new(), |o| format!("{:.0}", o.1 / (time * 1e3))),
+        );
+    }
+    println!(
+        "{complete} complete, {incomplete} with open boxes, {wrong} wrong; {:.2} s in all",
+        total
+    );
+    if !ratios.is_empty() {
+        let mean = ratios.iter().map(|r: &f64| r.ln()).sum::<f64>() / ratios.len() as f64;
+        println!(
+            "IRIT's time over this one's, geometric mean of {}: {:.0}",
+            ratios.len(),
+            mean.exp()
+        );
+    }
+    Ok(())
+}
+
+fn expected(json: &Value) -> Option<String> {
+    let expected = &json["expected"];
+    let number = |key: &str| expected[key].as_i64();
+    if let Some(count) = expected.as_i64() {
+        return Some(count.to_string());
+    }
+    if let (Some(loops), Some(arcs)) = (number("loops"), number("arcs")) {
+        return Some(format!("{loops} + {arcs}"));
+    }
+    Some(format!("{}, χ = {}", number("components")?, number("euler")?))
+}
+
+fn read(json: &Value) -> Result<System, String> {
+    let strings = |key: &str| -> Vec<&str> {
+        json[key]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect()
+    };
+    let sides: Option<Vec<Enclosure>> = json["box"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|side| Enclosure::new(side[0].as_f64()?, side[1].as_f64()?).ok())
+        .collect();
+    let domain = sides.ok_or("the box")?;
+    if let Some(text) = json["bernstein_text"].as_str() {
+        let forms = coefficients(text).ok_or("the coefficients")?;
+        return System::mapped(&domain, forms).map_err(|error| error.to_string());
+    }
+    System::parse(&strings("equations"), &strings("vars"), &domain).map_err(|error| error.to_string())
+}
+
+/// Variables and equations, a line for each side of the box, and two lines for each form: degrees and coefficients.
+fn coefficients(text: &str) -> Option<Vec<Bernstein>> {
+    let mut lines = text.lines();
+    let mut counts = lines.next()?.split_whitespace().map(str::parse::<usize>);
+    let (variables, equations) = (counts.next()?.ok()?, counts.next()?.ok()?);
+    let mut lines = lines.skip(variables);
+    let form = |_| {
+        let degrees: Result<Vec<usize>, _> = lines.next()?.split_whitespace().map(str::parse).collect();
+        let values: Result<Vec<f64>, _> = lines.next()?.split_whitespace().map(str::parse).collect();
+        Bernstein::new(&degrees.ok()?, values.ok()?).ok()
+    };
+    (0..equations).map(form).collect()
+}
+
+fn solve(system: &System) -> Result<Outcome, String> {
+    let limited = |options: SolveOptions| options.time(Some(LIMIT));
+    let widest = system
+        .domain()
+        .iter()
+        .map(|side| 2.0 * side.radius())
+        .fold(0.0, f64::max);
+    let tolerance = TOLERANCE * widest;
+    if system.equations() == system.variables() {
+        let mut solver = PointSolver::new(limited(SolveOptions::default()));
+        let points = solver.solve(system, &()).map_err(|error| error.to_string())?;
+        return Ok(Outcome {
+            found: points.roots.len().to_string(),
+            open: points.unresolved.len(),
+            boxes: points.statistics.boxes,
+        });
+    }
+    if system.equations() + 1 == system.variables() {
+        let options = limited(CurveSolver::new(tolerance).options);
+        let curves = CurveSolver::with_options(tolerance, options).solve(system, &());
+        let curves = curves.map_err(|error| error.to_string())?;
+        return Ok(Outcome {
+            found: format!("{} + {}", curves.loops().count(), curves.arcs().count()),
+            open: curves.singular.len(),
+            boxes: curves.statistics.boxes + curves.statistics.faces,
+        });
+    }
+    let tolerance = 20.0 * tolerance;
+    let options = limited(SurfaceSolver::new(tolerance).options);
+    let surface = SurfaceSolver::with_options(tolerance, options).solve(system, &());
+    let surface = surface.map_err(|error| error.to_string())?;
+    Ok(Outcome {
+        found: format!("{}, χ = {}", surface.components(), surface.euler_characteristic()),
+        open: surface.unresolved.len(),
+        boxes: surface.statistics.boxes,
+    })
+}
