@@ -92,6 +92,26 @@ fn near_triangle(corners: &[[f64; 3]; 3], x: f64, y: f64, d: f64) -> Option<[f64
         .filter(|[low, high]| low < high)
 }
 
+/// The range of `y` of the part of a triangle whose `x` is in a range; reversed if there is none.
+fn within_slab(corners: &[[f64; 3]; 3], slab: [f64; 2]) -> [f64; 2] {
+    let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut add = |y: f64| range = [range[0].min(y), range[1].max(y)];
+    for k in 0..3 {
+        let (p, q) = (corners[k], corners[(k + 1) % 3]);
+        if slab[0] <= p[0] && p[0] <= slab[1] {
+            add(p[1]);
+        }
+        for x in slab {
+            if (p[0] < x) != (q[0] < x) {
+                // Between the ends, whatever the rounding.
+                let s = ((x - p[0]) / (q[0] - p[0])).clamp(0.0, 1.0);
+                add(p[1] + s * (q[1] - p[1]));
+            }
+        }
+    }
+    range
+}
+
 impl TriangleSoup {
     /// All points within `distance` of the surface, on the lines of a grid: exact up to rounding.
     ///
@@ -114,25 +134,32 @@ impl TriangleSoup {
         }
         let soup = self.seen_from(grid.frame());
         let spacing = grid.spacing();
-        let range = |k: usize, corners: &[[f64; 3]; 3]| {
-            let at = |p: &[f64; 3]| (p[k] - grid.min()[k]) / spacing[k] - 0.5;
-            let low = corners.iter().map(at).fold(f64::INFINITY, f64::min) - distance / spacing[k];
-            let high = corners.iter().map(at).fold(f64::NEG_INFINITY, f64::max) + distance / spacing[k];
-            let last = grid.cells()[k] as f64 - 1.0;
-            if high < 0.0 || low > last || high.is_nan() || low.is_nan() {
-                0..0
-            } else {
+        // The numbers of the lines within a range of coordinates.
+        let numbers = |k: usize, [low, high]: [f64; 2]| {
+            let at = |x: f64| (x - grid.min()[k]) / spacing[k] - 0.5;
+            let (low, high, last) = (at(low), at(high), grid.cells()[k] as f64 - 1.0);
+            if high >= 0.0 && low <= last {
                 low.floor().max(0.0) as usize..high.ceil().min(last) as usize + 1
+            } else {
+                0..0
             }
+        };
+        let columns = |corners: &[[f64; 3]; 3]| {
+            let x = corners.map(|p| p[0]);
+            let (low, high) = (x[0].min(x[1]).min(x[2]), x[0].max(x[1]).max(x[2]));
+            numbers(0, [low - distance, high + distance])
+        };
+        let rows = |corners: &[[f64; 3]; 3], x: f64| {
+            let [low, high] = within_slab(corners, [x - distance, x + distance]);
+            numbers(1, [low - distance, high + distance])
         };
         // A block of triangles at a time, so that memory does not grow with all of them.
         for block in soup.triangles.chunks(4096) {
             let found: Vec<(u32, Interval)> = block
                 .par_iter()
                 .flat_map_iter(|corners| {
-                    let js = range(1, corners);
-                    range(0, corners)
-                        .flat_map(move |i| js.clone().map(move |j| (i, j)))
+                    columns(corners)
+                        .flat_map(move |i| rows(corners, grid.x(i)).map(move |j| (i, j)))
                         .filter_map(move |(i, j)| {
                             let [low, high] = near_triangle(corners, grid.x(i), grid.y(j), distance)?;
                             Some((grid.number(i, j) as u32, Interval::between(low, high)))

@@ -1,4 +1,4 @@
-//! How deep a gouge is.
+//! The point of some material that is farthest inside, or outside, of a surface.
 
 use super::lines::Lines;
 use sweepsim_dexel::{DistanceTo, Grid};
@@ -7,6 +7,13 @@ use sweepsim_dexel::{DistanceTo, Grid};
 const MOST: usize = 20_000;
 /// Depths are found to this part of themselves, if the budget allows.
 const RELATIVE: f64 = 1e-4;
+
+/// On which side of the surface depths count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Inside,
+    Outside,
+}
 
 /// A stretch of a line between two points with known depths.
 struct Stretch {
@@ -22,19 +29,30 @@ impl Stretch {
     }
 }
 
-/// The greatest depth below the surface in the material of some lines.
-pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo) -> f64 {
-    let depth = |line: u32, z: f64| {
+/// The greatest depth of the material of some lines, and where it is, in the world. It is exact to a ten-thousandth, unless the budget ends first.
+pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo, side: Side) -> (f64, [f64; 3]) {
+    let sign = if side == Side::Inside { -1.0 } else { 1.0 };
+    let place = |line: u32, z: f64| {
         let (i, j) = grid.place(line as usize);
-        let place = grid.frame().to_world([grid.x(i), grid.y(j), z]);
-        surface.nearest(place).map_or(0.0, |near| -near.distance)
+        grid.frame().to_world([grid.x(i), grid.y(j), z])
     };
-    let mut best = 0.0_f64;
+    let mut best = (0.0_f64, None);
+    let mut depth = |line: u32, z: f64| {
+        let depth = surface.nearest(place(line, z)).map_or(0.0, |near| sign * near.distance);
+        if depth > best.0 || best.1.is_none() {
+            best = (depth.max(best.0), Some((line, z)));
+        }
+        (depth, best.0)
+    };
     let mut open: Vec<Stretch> = Vec::new();
+    let mut most = 0.0;
     for (line, heights) in &material.0 {
         for ends in heights {
-            let depths = ends.map(|z| depth(*line, z));
-            best = best.max(depths[0]).max(depths[1]);
+            let depths = ends.map(|z| {
+                let (own, best) = depth(*line, z);
+                most = best;
+                own
+            });
             open.push(Stretch {
                 line: *line,
                 ends: *ends,
@@ -46,13 +64,13 @@ pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo) -> f
     while !open.is_empty() && evaluated < MOST {
         let mut next = Vec::new();
         for stretch in open {
-            if stretch.bound() <= best * (1.0 + RELATIVE) {
+            if stretch.bound() <= most * (1.0 + RELATIVE) {
                 continue;
             }
             let middle = 0.5 * (stretch.ends[0] + stretch.ends[1]);
-            let found = depth(stretch.line, middle);
+            let (found, best) = depth(stretch.line, middle);
+            most = best;
             evaluated += 1;
-            best = best.max(found);
             let [a, b] = stretch.ends;
             for (ends, depths) in [
                 ([a, middle], [stretch.depths[0], found]),
@@ -67,5 +85,6 @@ pub(super) fn greatest(material: &Lines, grid: &Grid, surface: &DistanceTo) -> f
         }
         open = next;
     }
-    best
+    let at = best.1.map_or([0.0; 3], |(line, z)| place(line, z));
+    (best.0, at)
 }

@@ -1,6 +1,6 @@
 //! A program in its order: runs of moves, one after the other.
 
-use super::depth::greatest;
+use super::depth::{Side, greatest};
 use super::finding::{Finding, FindingKind};
 use super::heights::HeightMap;
 use super::lines::Lines;
@@ -325,7 +325,7 @@ impl Work<'_> {
         let (i, j) = grid.place(line as usize);
         let middle = 0.5 * (heights[0] + heights[1]);
         let depth = match (kind, self.target) {
-            (FindingKind::Gouge, Some(target)) => greatest(&touch.all, grid, target.distance()),
+            (FindingKind::Gouge, Some(target)) => greatest(&touch.all, grid, target.distance(), Side::Inside).0,
             _ => touch.all.longest().map_or(0.0, |(_, [lower, upper])| upper - lower),
         };
         Finding {

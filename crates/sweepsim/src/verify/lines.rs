@@ -86,6 +86,11 @@ impl Lines {
         })
     }
 
+    /// The material that is not in `other`.
+    pub fn minus(&self, other: &Self) -> Self {
+        self.merged(&other.0, true, |own, cut| difference(own, cut.iter().copied()))
+    }
+
     /// The intervals longer than `least`.
     pub fn longer_than(mut self, least: f64) -> Self {
         for (_, heights) in &mut self.0 {

@@ -10,9 +10,12 @@
 //! | [`Fixture`](FindingKind::Fixture) | the cutter or a body, and a fixture |
 //! | [`Gouge`](FindingKind::Gouge) | the cutter, the workpiece, and the target farther below its surface than the limit |
 //!
+//! What is left at the end is compared with the target by [`deviations`].
+//!
 //! No such move is missed on the lines of the grid; what is narrower than their distance may hide between them.
 
 mod depth;
+mod deviation;
 mod driver;
 mod finding;
 mod heights;
@@ -22,6 +25,7 @@ mod search;
 mod solid;
 mod target;
 
+pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
 pub use driver::verify;
 pub use finding::{Finding, FindingKind, MoveState};
 pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};

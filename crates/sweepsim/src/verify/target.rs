@@ -13,6 +13,8 @@ pub struct Target {
     /// The part, and what is nearer to it than the limit for excess.
     allowed: Dexels,
     distance: DistanceTo,
+    /// For gouges and for excess.
+    limits: [f64; 2],
 }
 
 /// Why a target is invalid.
@@ -76,6 +78,7 @@ impl Target {
             core,
             allowed,
             distance: DistanceTo::new(mesh)?,
+            limits: [gouge, excess],
         })
     }
 
@@ -95,6 +98,12 @@ impl Target {
     #[must_use]
     pub fn allowed(&self) -> &Dexels {
         &self.allowed
+    }
+
+    /// The limits for gouges and for excess.
+    #[must_use]
+    pub fn limits(&self) -> [f64; 2] {
+        self.limits
     }
 
     /// Distances from its surface.

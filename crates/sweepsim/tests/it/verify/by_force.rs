@@ -303,7 +303,7 @@ impl Case {
 }
 
 /// A closed box, with all faces outwards.
-fn box_mesh([min, max]: [[f64; 3]; 2]) -> TriangleSoup {
+pub fn box_mesh([min, max]: [[f64; 3]; 2]) -> TriangleSoup {
     let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { min[axis] } else { max[axis] });
     let faces = [
         [0, 2, 3, 1],

@@ -1,6 +1,7 @@
 //! Programs with and without planted faults.
 
 mod by_force;
+mod deviation;
 
 use by_force::{Case, Cylinder, pose};
 use std::collections::BTreeMap;
