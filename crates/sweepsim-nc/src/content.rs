@@ -12,6 +12,8 @@ pub(crate) enum Content {
     Apt {
         line: usize,
     },
+    /// Programs of Siemens's 840D.
+    Siemens,
     /// Klartext of Heidenhain's controls.
     Heidenhain {
         line: usize,
@@ -63,8 +65,8 @@ const APT: [&str; 32] = [
 const APT_ALONE: [&str; 4] = ["PARTNO", "PPRINT", "MACHIN", "FINI"];
 /// The maximum number of indistinctive lines, such as titles, before the distinctive one.
 const MOST_OTHER: usize = 5;
-/// Words of Siemens controls, which the G-code reader rejects by name.
-const SIEMENS: [&str; 9] = [
+/// Words of Siemens's controls,
+const SIEMENS: [&str; 16] = [
     "DEF",
     "PROC",
     "EXTERN",
@@ -74,7 +76,16 @@ const SIEMENS: [&str; 9] = [
     "TRANS",
     "WORKPIECE",
     "CYCLE800",
+    "CYCLE832",
+    "MCALL",
+    "SUPA",
+    "AROT",
+    "ATRANS",
+    "GOTOF",
+    "GOTOB",
 ];
+/// which may also come after this many lines of plain G-code.
+const SIEMENS_LINES: usize = 60;
 
 impl Content {
     pub(crate) fn of(text: &str) -> Self {
@@ -82,6 +93,9 @@ impl Content {
             return Self::Binary;
         }
         let mut other = 0;
+        if text.lines().take(SIEMENS_LINES).any(is_archive) {
+            return Self::Siemens;
+        }
         for (index, line) in text.lines().enumerate() {
             let line_number = index + 1;
             let line = line.trim_start_matches('\u{feff}').trim();
@@ -100,8 +114,12 @@ impl Content {
             if is_numbers(line) {
                 return Self::Numbers { line: line_number };
             }
-            if gcode::is_block(line) || gcode::is_subroutine_or_variable(line) || is_siemens(line) {
-                return Self::Gcode;
+            if is_siemens(line) {
+                return Self::Siemens;
+            }
+            if gcode::is_block(line) || gcode::is_subroutine_or_variable(line) {
+                let siemens = text.lines().take(SIEMENS_LINES).any(is_siemens);
+                return if siemens { Self::Siemens } else { Self::Gcode };
             }
             other += 1;
             if other > MOST_OTHER {
@@ -157,8 +175,14 @@ fn is_numbers(line: &str) -> bool {
     words.peek().is_some() && words.all(|word| word.parse::<f64>().is_ok_and(f64::is_finite))
 }
 
+/// The header of a program in an archive of a Siemens control.
+fn is_archive(line: &str) -> bool {
+    let upper = line.trim().to_ascii_uppercase();
+    upper.starts_with("%_N_") && (upper.ends_with("_MPF") || upper.ends_with("_SPF"))
+}
+
 fn is_siemens(line: &str) -> bool {
-    let upper = after_number(line).to_ascii_uppercase();
+    let upper = after_number(line.trim()).to_ascii_uppercase();
     let end = upper.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(upper.len());
     SIEMENS.contains(&&upper[..end])
 }
@@ -173,8 +197,9 @@ mod tests {
             ("%\n(part)\nO100\nN10 G21\n", Content::Gcode),
             ("OFinal ToolPath\nG0 X1", Content::Gcode),
             ("X1 Y2 Z3", Content::Gcode),
-            ("N30 DEF REAL _x", Content::Gcode),
-            ("%_N_PART_MPF\nN10 MSG(\"x\")", Content::Gcode),
+            ("N30 DEF REAL _x", Content::Siemens),
+            ("%_N_PART_MPF\nN10 MSG(\"x\")", Content::Siemens),
+            ("N10 G17 G90\nN20 SUPA G0 Z0 D0", Content::Siemens),
             ("x, y, z, i, j, k\n0,0,0,0,0,1", Content::Table),
             ("rapid,X,Y,Z,I,J,K", Content::Table),
             ("$$ made by hand\nGOTO/1,2,3", Content::Apt { line: 1 }),

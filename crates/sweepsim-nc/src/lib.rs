@@ -27,17 +27,18 @@
 
 pub mod apt;
 mod content;
+mod controls;
 mod drive;
 pub mod gcode;
 mod machines;
 mod model;
 mod read;
-mod rows;
 pub mod table;
 mod text;
 pub mod tools;
 pub mod write;
 
+pub use controls::siemens;
 pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, check, post};
 pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,

@@ -1,17 +1,19 @@
 //! Program files, by content.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::content::Content;
+use crate::controls::siemens;
 use crate::model::program::Program;
-use crate::model::read_options::ReadOptions;
+use crate::model::read_options::{Controller, ReadOptions};
+use crate::table::rows;
 use crate::text::error::{NcError, NcProblem, TextPosition};
-use crate::{apt, gcode, rows, table};
+use crate::{apt, gcode, table};
 
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
 /// The supported formats, for messages.
-const EXPECTED: &str = "G-code, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
+const EXPECTED: &str = "G-code, a program of Siemens, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
 /// The advice for formats that are only recognised.
 const INSTEAD: &str = "expected G-code, APT or CLSF, or its poses as a table with the columns x,y,z,i,j,k";
 
@@ -29,8 +31,10 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
         .map_err(|error| NcError::new(NcProblem::Read(error), None))
         .and_then(|bytes| read_bytes(&bytes, file, extension.as_deref(), options));
     let mut program = read.map_err(|error| error.in_file(file))?;
-    if program.files.is_empty() {
-        program.files = vec![file.to_owned()];
+    // Subprograms come after the main program.
+    match program.files.first_mut() {
+        Some(main) => *main = file.to_owned(),
+        None => program.files = vec![file.to_owned()],
     }
     Ok(program)
 }
@@ -50,7 +54,12 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
             Some(TextPosition::in_line(line, whole, 1, width)),
         ))
     };
+    match options.controller {
+        Some(Controller::Siemens) => return siemens::read_with(&text, options, &|name| siemens_subprogram(file, name)),
+        _ => {}
+    }
     match Content::of(&text) {
+        Content::Siemens => siemens::read_with(&text, options, &|name| siemens_subprogram(file, name)),
         Content::Table => read_table(),
         Content::Gcode => gcode::read_at(&text, Some(file), options),
         Content::Apt { .. } => apt::read(&text, options),
@@ -77,6 +86,20 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
             Err(NcError::new(problem, None))
         }
     }
+}
+
+/// A subprogram of a Siemens program: `NAME.spf` or `NAME.mpf` beside it, in capitals or not.
+fn siemens_subprogram(file: &Path, name: &str) -> Option<(PathBuf, String)> {
+    // Names are letters, digits and underscores: they lead nowhere else.
+    for name in [name.to_owned(), name.to_ascii_lowercase()] {
+        for extension in ["SPF", "spf", "MPF", "mpf"] {
+            let beside = file.with_file_name(format!("{name}.{extension}"));
+            if let Ok(bytes) = std::fs::read(&beside) {
+                return Some((beside, String::from_utf8_lossy(&bytes).into_owned()));
+            }
+        }
+    }
+    None
 }
 
 fn utf8(bytes: &[u8]) -> Result<&str, NcError> {

@@ -40,6 +40,7 @@ pub(crate) struct Driver {
     kinematics: Option<Arc<Kinematics>>,
     /// The rotary axes, as given or as implied by the letters so far.
     rotaries: Option<Rotaries>,
+    given: bool,
     /// The letter of the tilting axis that was implied.
     implied: Option<usize>,
     sense: Sense,
@@ -58,6 +59,7 @@ impl Driver {
         };
         Self {
             kinematics: machine.kinematics.clone(),
+            given: given.is_some(),
             rotaries: given,
             implied: None,
             sense,
@@ -74,6 +76,14 @@ impl Driver {
         self.kinematics.as_deref()
     }
 
+    /// Whether the rotary axes are known: given, or implied by letters so far.
+    pub fn knows_rotaries(&self) -> bool {
+        self.rotaries
+            .as_ref()
+            .is_some_and(|rotaries| *rotaries != Rotaries::default())
+            || self.kinematics.is_some()
+    }
+
     /// Takes the length of a new tool from the machine.
     pub fn change_tool(&mut self, tool: Option<u32>) {
         if let Some(kinematics) = &self.kinematics {
@@ -85,7 +95,7 @@ impl Driver {
     pub fn rotaries(&mut self, abc: [f64; 3]) -> Result<&Rotaries, NcProblem> {
         const LETTERS: [&str; 3] = ["A", "B", "C"];
         let turned = |letter: usize| abc[letter] != 0.0;
-        if let (Some(rotaries), None) = (&self.rotaries, self.implied) {
+        if let (true, Some(rotaries)) = (self.given, &self.rotaries) {
             if let Some(letter) = (0..3).find(|&letter| turned(letter) && !rotaries.has(letter)) {
                 let known: Vec<&str> = (0..3)
                     .filter(|&letter| rotaries.has(letter))

@@ -1,7 +1,7 @@
 //! The course of a tool: where it is, in which frame, and its poses so far. Readers say where it goes.
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use sweepsim_motion::{Course, Move, TipArc, Turning};
+use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
 
 use super::driver::{Coordinates, Driver, Sense};
 use crate::machines::{Position, WorkFrame};
@@ -48,6 +48,8 @@ pub(crate) struct Track {
     pub tool: Option<u32>,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
+    /// The direction of the tool, where the program gives it rather than the angles of axes.
+    direct: Option<[f64; 3]>,
     frame: WorkFrame,
     coordinates: Coordinates,
     /// The tip, where its axes' coordinates are not known, until an axis moves.
@@ -71,6 +73,7 @@ impl Track {
             tool: None,
             feed: None,
             feed_mode: FeedMode::default(),
+            direct: None,
             frame: WorkFrame::default(),
             coordinates: if options.machine.tip_control {
                 Coordinates::Tip
@@ -212,10 +215,8 @@ impl Track {
     }
 
     pub fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
-        if let Some(number) = tool {
+        if let Some(number) = tool.filter(|_| tool != self.tool) {
             self.event(EventKind::ToolChange(number))?;
-        }
-        if tool.is_some() && tool != self.tool {
             self.tool = tool;
             self.driver.change_tool(tool);
             self.joined = false;
@@ -228,8 +229,51 @@ impl Track {
         self.driver.rotaries(abc)?;
         if abc != self.abc {
             self.abc = abc;
+            self.direct = None;
             self.leave([true; 3]);
         }
+        Ok(())
+    }
+
+    /// Turns the tool into a direction of the part's frame by a move that only the machine knows. Whether anything turned.
+    pub fn turn_to(&mut self, direction: [f64; 3]) -> Result<bool, NcProblem> {
+        let now = Vector3::from(self.direction()?);
+        if (now - Vector3::from(direction).normalize()).norm() < 1e-12 {
+            return Ok(false);
+        }
+        if self.driver.knows_rotaries() {
+            self.abc = self.driver.angles(direction, self.abc)?;
+            self.direct = None;
+        } else {
+            self.direct = Some(direction);
+        }
+        self.leave([true; 3]);
+        Ok(true)
+    }
+
+    /// The direction from the tip to the holder now.
+    pub fn direction(&mut self) -> Result<[f64; 3], NcProblem> {
+        match self.direct {
+            Some(direction) => Ok(direction),
+            None => self.driver.axis(self.abc),
+        }
+    }
+
+    /// A straight move to coordinates in the frame, where the tool has a direction of the part's frame.
+    pub fn line_towards(&mut self, target: [f64; 3], direction: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
+        if self.driver.knows_rotaries() {
+            let abc = self.driver.angles(direction, self.abc)?;
+            self.direct = None;
+            return self.line(target, abc, rapid);
+        }
+        self.begin(rapid)?;
+        self.direct = Some(direction);
+        self.push(
+            Position::new(self.frame.point(target), self.abc),
+            Move::default(),
+            rapid,
+        )?;
+        self.arrive(target, self.abc);
         Ok(())
     }
 
@@ -237,6 +281,9 @@ impl Track {
     pub fn line(&mut self, target: [f64; 3], abc: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
         let to = Position::new(self.frame.point(target), abc);
         self.begin(rapid)?;
+        if abc != self.abc {
+            self.direct = None;
+        }
         if let Some(xyz) = self.known().filter(|_| self.joined) {
             let from = Position::new(self.frame.point(xyz), self.abc);
             let parts = self.driver.division(&from, &to, self.coordinates)?;
@@ -356,7 +403,12 @@ impl Track {
     }
 
     fn push(&mut self, to: Position, way: Move, rapid: bool) -> Result<(), NcProblem> {
-        let pose = self.driver.pose(&to, self.coordinates)?;
+        let pose = match self.direct {
+            Some(direction) if self.coordinates == Coordinates::Tip => {
+                Pose::new(to.xyz, direction).map_err(NcProblem::Pose)?
+            }
+            _ => self.driver.pose(&to, self.coordinates)?,
+        };
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| last.pose == pose);
         if !same {

@@ -35,6 +35,7 @@ mod trace;
 
 use std::path::Path;
 
+pub(crate) use self::motion::arc::CircularArc;
 use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;

@@ -7,5 +7,6 @@ mod kinematics;
 mod machines;
 mod programs;
 mod round_trips;
+mod siemens;
 mod tables;
 mod tools;

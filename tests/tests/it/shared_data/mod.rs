@@ -6,6 +6,7 @@ mod impeller;
 mod meshes;
 mod points;
 mod programs;
+mod siemens;
 mod splines;
 mod stored;
 mod surfaces;

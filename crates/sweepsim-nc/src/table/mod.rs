@@ -1,5 +1,7 @@
 //! Tables of poses (CSV): a header `x,y,z,i,j,k` with optional columns `rapid`, `feed`, `tool` and `break`, in any order, and one pose per row.
 
+pub(crate) mod rows;
+
 use std::io::Write;
 
 use csv::{ReaderBuilder, StringRecord, Trim};

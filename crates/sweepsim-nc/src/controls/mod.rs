@@ -1,0 +1,3 @@
+//! Languages of controls that are more than dialects of G-code.
+
+pub mod siemens;

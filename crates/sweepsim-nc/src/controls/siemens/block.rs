@@ -1,0 +1,408 @@
+//! Blocks: words, assignments, keywords and control structures.
+
+use std::ops::Range;
+
+use super::cursor::{Cursor, Located, without_comment};
+use super::expression::Expression;
+use crate::text::error::NcProblem;
+
+/// A part of a block.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Item {
+    /// An address with its value: `X10`, `X=R1+2`, `CR=5`, `I=AC(3)`.
+    Word {
+        name: String,
+        value: Expression,
+        span: Range<usize>,
+    },
+    /// A variable gets a value.
+    Set {
+        name: String,
+        indices: Vec<Expression>,
+        value: Expression,
+        span: Range<usize>,
+    },
+    /// A keyword or a call, with its arguments: those left out are `None`.
+    Key {
+        name: String,
+        arguments: Option<Vec<Option<Expression>>>,
+        span: Range<usize>,
+    },
+}
+
+/// Where a jump looks for its label.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Search {
+    Forward,
+    Backward,
+    /// Forward first, then from the beginning.
+    Anywhere,
+}
+
+/// What a line does.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Statement {
+    Block(Vec<Item>),
+    Goto(Search, String),
+    /// A jump under a condition.
+    IfGoto(Expression, Search, String),
+    If(Expression),
+    Else,
+    EndIf,
+    While(Expression),
+    For(Vec<Item>, Expression),
+    Loop,
+    Repeat,
+    Until(Expression),
+    /// The end of WHILE, FOR or LOOP.
+    EndLoop(&'static str),
+    /// Repeats from a label: to its next block with the second label, or to here.
+    RepeatLabel {
+        from: String,
+        to: Option<String>,
+        times: Option<Expression>,
+        /// Only the block of the label (REPEATB).
+        block: bool,
+    },
+    /// Variables with their first values.
+    Define(Vec<(String, Option<Expression>)>, bool),
+    /// The head of a subprogram, with its parameters.
+    Proc(Vec<String>),
+    /// A declaration that says nothing about moves.
+    Declaration,
+}
+
+/// A line.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// The number after N, and the label.
+    pub labels: Vec<String>,
+    pub skipped: bool,
+    pub statement: Statement,
+}
+
+/// Addresses of more than one letter.
+const ADDRESSES: [&str; 45] = [
+    "CR", "AR", "TURN", "AP", "RP", "RPL", "I1", "J1", "K1", "A2", "B2", "C2", "A3", "B3", "C3", "A4", "B4", "C4",
+    "A5", "B5", "C5", "LEAD", "TILT", "THETA", "RND", "RNDM", "CHF", "CHR", "FRC", "FRCM", "ANG", "DISR", "DISCL",
+    "DISC", "FAD", "ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL", "SPOS", "SPOSA", "FB", "FD", "STOLF",
+];
+
+/// Whether `name=` is an address rather than a variable.
+fn is_address(name: &str) -> bool {
+    let mut chars = name.chars();
+    let Some(first) = chars.next() else { return false };
+    let digits = chars.as_str();
+    ADDRESSES.contains(&name)
+        || (first != 'R' && first.is_ascii_uppercase() && digits.is_empty())
+        // Spindles and axes with numbers: S1=, M2=, X1=.
+        || ("SMXYZ".contains(first) && digits.len() == 1 && digits.chars().all(|c| c.is_ascii_digit()))
+}
+
+/// Reads a line.
+pub(super) fn line(text: &str) -> Result<Line, Located> {
+    let code = without_comment(text.trim_end().trim_start_matches('\u{feff}'));
+    // Bytes count from the line's own beginning.
+    let offset = text.len() - text.trim_start_matches('\u{feff}').len();
+    let shift = |(problem, span): Located| (problem, span.start + offset..span.end + offset);
+    let mut cursor = Cursor::new(code);
+    let mut line = Line {
+        labels: Vec::new(),
+        skipped: false,
+        statement: Statement::Block(Vec::new()),
+    };
+    if cursor.peek() == Some('/') {
+        line.skipped = true;
+        cursor.at += 1;
+        if cursor.adjacent().is_some_and(|c| c.is_ascii_digit()) {
+            cursor.at += 1;
+        }
+    }
+    loop {
+        let mut ahead = cursor.clone();
+        let Some((name, _)) = ahead.name() else { break };
+        let number = name.len() > 1 && name.starts_with('N') && name[1..].chars().all(|c| c.is_ascii_digit());
+        let label = ahead.peek() == Some(':') && !ahead.rest().starts_with(":=");
+        if label {
+            ahead.at += 1;
+        } else if !number || !line.labels.is_empty() {
+            break;
+        }
+        line.labels.push(name);
+        cursor = ahead;
+    }
+    line.statement = statement(&mut cursor).map_err(shift)?;
+    Ok(line)
+}
+
+fn statement(cursor: &mut Cursor) -> Result<Statement, Located> {
+    let key = cursor.peek_name().unwrap_or_default();
+    let start = cursor.clone();
+    let mut skip = || {
+        cursor.name();
+    };
+    let statement = match key.as_str() {
+        "GOTO" | "GOTOC" | "GOTOF" | "GOTOB" => {
+            let (search, label) = jump(cursor)?;
+            Statement::Goto(search, label)
+        }
+        "IF" => {
+            skip();
+            let condition = Expression::parse(cursor)?;
+            match cursor.peek_name() {
+                Some(name) if name.starts_with("GOTO") => {
+                    let (search, label) = jump(cursor)?;
+                    Statement::IfGoto(condition, search, label)
+                }
+                _ => Statement::If(condition),
+            }
+        }
+        "ELSE" => {
+            skip();
+            Statement::Else
+        }
+        "ENDIF" => {
+            skip();
+            Statement::EndIf
+        }
+        "WHILE" => {
+            skip();
+            Statement::While(Expression::parse(cursor)?)
+        }
+        "ENDWHILE" | "ENDFOR" | "ENDLOOP" => {
+            skip();
+            Statement::EndLoop(match key.as_str() {
+                "ENDWHILE" => "WHILE",
+                "ENDFOR" => "FOR",
+                _ => "LOOP",
+            })
+        }
+        "FOR" => {
+            skip();
+            let first = item(cursor)?;
+            match cursor.name() {
+                Some((name, _)) if name == "TO" => Statement::For(vec![first], Expression::parse(cursor)?),
+                _ => return Err(cursor.unexpected("TO")),
+            }
+        }
+        "LOOP" => {
+            skip();
+            Statement::Loop
+        }
+        "UNTIL" => {
+            skip();
+            Statement::Until(Expression::parse(cursor)?)
+        }
+        "REPEAT" | "REPEATB" => repeat(cursor)?,
+        "DEF" => define(cursor)?,
+        "PROC" => {
+            skip();
+            let name = cursor.name();
+            let mut parameters = Vec::new();
+            if name.is_some() && cursor.take("(") {
+                while !cursor.take(")") {
+                    // The type, then the name: the last name before a comma.
+                    match cursor.name() {
+                        Some((name, _)) if matches!(cursor.peek(), Some(',' | ')' | '=')) => parameters.push(name),
+                        Some(_) => {}
+                        None if cursor.take(",") => {}
+                        None => return Err(cursor.unexpected("a parameter")),
+                    }
+                }
+            }
+            cursor.at += cursor.rest().len();
+            Statement::Proc(parameters)
+        }
+        "EXTERN" | "WORKPIECE" | "REDEF" => {
+            cursor.at += cursor.rest().len();
+            Statement::Declaration
+        }
+        "CASE" | "DEFINE" | "ID" | "IDS" | "WHEN" | "WHENEVER" | "EVERY" | "FROM" if is_whole_word(&start) => {
+            let mut at = start.clone();
+            let span = at.name().map_or(0..0, |(_, span)| span);
+            let problem = NcProblem::unsupported(format!("{key} is"), "expected a program without it");
+            return Err((problem, span));
+        }
+        _ => {
+            let mut items = Vec::new();
+            while cursor.peek().is_some() {
+                items.push(item(cursor)?);
+            }
+            Statement::Block(items)
+        }
+    };
+    if cursor.peek().is_some() {
+        return Err(cursor.unexpected("the end of the block"));
+    }
+    Ok(statement)
+}
+
+/// Whether a keyword is not the name of a variable that gets a value.
+fn is_whole_word(at: &Cursor) -> bool {
+    let mut ahead = at.clone();
+    ahead.name();
+    !matches!(ahead.peek(), Some('=' | '['))
+}
+
+fn jump(cursor: &mut Cursor) -> Result<(Search, String), Located> {
+    let search = match cursor.name().map(|(name, _)| name).as_deref() {
+        Some("GOTOF") => Search::Forward,
+        Some("GOTOB") => Search::Backward,
+        _ => Search::Anywhere,
+    };
+    match cursor.name() {
+        Some((label, _)) => Ok((search, label)),
+        None => Err(cursor.unexpected("a label or a block number")),
+    }
+}
+
+fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
+    let block = cursor.name().is_some_and(|(name, _)| name == "REPEATB");
+    let mut labels = Vec::new();
+    let mut times = None;
+    while cursor.peek().is_some() {
+        let mut ahead = cursor.clone();
+        let Some((name, span)) = ahead.name() else {
+            return Err(cursor.unexpected("a label, or P= with the number of repeats"));
+        };
+        if name == "P" && ahead.take("=") {
+            times = Some(Expression::parse(&mut ahead)?);
+        } else if let Some(count) = name.strip_prefix('P').and_then(|digits| digits.parse().ok()) {
+            times = Some(Expression::number(count, span));
+        } else {
+            labels.push(name);
+        }
+        *cursor = ahead;
+    }
+    let mut labels = labels.into_iter();
+    Ok(match (labels.next(), labels.next()) {
+        (None, _) => Statement::Repeat,
+        (Some(from), to) => Statement::RepeatLabel { from, to, times, block },
+    })
+}
+
+fn define(cursor: &mut Cursor) -> Result<Statement, Located> {
+    cursor.name();
+    let kind = loop {
+        match cursor.name() {
+            Some((name, _)) if matches!(name.as_str(), "NCK" | "CHAN") => {}
+            Some((name, _))
+                if matches!(
+                    name.as_str(),
+                    "REAL" | "INT" | "BOOL" | "CHAR" | "STRING" | "AXIS" | "FRAME"
+                ) =>
+            {
+                break name;
+            }
+            _ => return Err(cursor.unexpected("a type: REAL, INT, BOOL, CHAR or STRING")),
+        }
+    };
+    if kind == "STRING" && cursor.peek() == Some('[') {
+        Expression::indices(cursor)?;
+    }
+    let mut variables = Vec::new();
+    loop {
+        let Some((name, _)) = cursor.name() else {
+            return Err(cursor.unexpected("the name of a variable"));
+        };
+        if cursor.peek() == Some('[') {
+            Expression::indices(cursor)?;
+        }
+        let value = if cursor.take("=") {
+            Some(Expression::parse(cursor)?)
+        } else {
+            None
+        };
+        variables.push((name, value));
+        if !cursor.take(",") {
+            return Ok(Statement::Define(variables, kind == "STRING"));
+        }
+    }
+}
+
+fn item(cursor: &mut Cursor) -> Result<Item, Located> {
+    let Some((name, span)) = cursor.name() else {
+        return Err(cursor.unexpected("a word"));
+    };
+    let mut chars = name.chars();
+    let letter = chars.next().unwrap_or('_');
+    let digits = chars.as_str();
+    // An address and its number: X10, X-.5, G1.
+    let sign = cursor.adjacent();
+    let number_follows = digits.is_empty() && sign.is_some_and(|c| c.is_ascii_digit() || "+-.".contains(c));
+    let number_within = !digits.is_empty() && digits.starts_with(|c: char| c.is_ascii_digit());
+    let equals = {
+        let mut ahead = cursor.clone();
+        ahead.take("=") && ahead.adjacent() != Some('=')
+    };
+    if letter.is_ascii_uppercase()
+        && (number_follows || number_within && !equals && digits.bytes().all(|b| b.is_ascii_digit()))
+    {
+        let mut at = cursor.clone();
+        at.at = span.start + 1;
+        let negative = at.adjacent() == Some('-');
+        if matches!(at.adjacent(), Some('+' | '-')) {
+            at.at += 1;
+        }
+        let value = at.number()?;
+        cursor.at = at.at;
+        let span = span.start..cursor.at;
+        let value = Expression::number(if negative { -value } else { value }, span.clone());
+        return Ok(Item::Word {
+            name: letter.to_string(),
+            value,
+            span,
+        });
+    }
+    let indices = if cursor.peek() == Some('[') {
+        Expression::indices(cursor)?
+    } else {
+        Vec::new()
+    };
+    if cursor.take("=") {
+        let value = Expression::parse(cursor)?;
+        let span = span.start..cursor.at;
+        return Ok(if indices.is_empty() && is_address(&name) {
+            Item::Word { name, value, span }
+        } else {
+            Item::Set {
+                name,
+                indices,
+                value,
+                span,
+            }
+        });
+    }
+    let mut arguments = None;
+    if cursor.peek() == Some('(') {
+        cursor.expect('(')?;
+        let mut list = Vec::new();
+        loop {
+            match cursor.peek() {
+                Some(',') => {
+                    cursor.expect(',')?;
+                    list.push(None);
+                }
+                Some(')') => {
+                    cursor.expect(')')?;
+                    break;
+                }
+                _ => {
+                    list.push(Some(Expression::parse(cursor)?));
+                    if cursor.peek() == Some(',') {
+                        cursor.expect(',')?;
+                    } else {
+                        cursor.expect(')')?;
+                        break;
+                    }
+                }
+            }
+        }
+        arguments = Some(list);
+    }
+    Ok(Item::Key {
+        name,
+        arguments,
+        span: span.start..cursor.at,
+    })
+}

@@ -1,0 +1,191 @@
+//! Frames: work offsets, programmable frames and swivelled planes.
+
+use super::cursor::Located;
+use super::interpreter::Reader;
+use super::words::Words;
+use crate::drive::Coordinates;
+use crate::machines::WorkFrame;
+use crate::text::error::NcProblem;
+
+/// The frames in effect.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Frames {
+    /// The work offset whose frame is the part's: the first one that a move uses.
+    first: Option<u32>,
+    /// The one in effect (`G500` is 0).
+    pub active: u32,
+    /// Set by `CYCLE800`.
+    pub swivel: WorkFrame,
+    pub swivelled: bool,
+    /// Set by `TRANS`, `ROT`, `SCALE`, `MIRROR`.
+    pub programmed: WorkFrame,
+}
+
+/// An operation on the programmable frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Operation {
+    pub kind: Kind,
+    /// Added to the frame rather than replacing it.
+    pub additive: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Shift,
+    Turn,
+    Scale,
+    Mirror,
+}
+
+impl Operation {
+    pub fn named(name: &str) -> Option<Self> {
+        let (kind, additive) = match name {
+            "TRANS" => (Kind::Shift, false),
+            "ATRANS" => (Kind::Shift, true),
+            "ROT" => (Kind::Turn, false),
+            "AROT" => (Kind::Turn, true),
+            "SCALE" => (Kind::Scale, false),
+            "ASCALE" => (Kind::Scale, true),
+            "MIRROR" => (Kind::Mirror, false),
+            "AMIRROR" => (Kind::Mirror, true),
+            _ => return None,
+        };
+        Some(Self { kind, additive })
+    }
+}
+
+impl Reader<'_> {
+    /// Brings all frames into effect.
+    pub(super) fn apply_frames(&mut self) {
+        self.track.set_frame(self.frames.swivel.then(&self.frames.programmed));
+    }
+
+    /// Before a move in the part's frame: the distance between two work offsets is not known.
+    pub(super) fn use_offset(&mut self) -> Result<(), NcProblem> {
+        let active = self.frames.active;
+        if *self.frames.first.get_or_insert(active) == active {
+            return Ok(());
+        }
+        let name = |offset| match offset {
+            0 => "G500".to_owned(),
+            1..=4 => format!("G{}", 53 + offset),
+            _ => format!("G{}", 500 + offset),
+        };
+        let first = name(self.frames.first.unwrap_or(active));
+        Err(NcProblem::unsupported(
+            format!("moves in {} after moves in {first} are", name(active)),
+            "only the machine knows the distance between them; expected one work offset",
+        ))
+    }
+
+    pub(super) fn operate(&mut self, operation: Operation, words: &Words) -> Result<(), Located> {
+        let unit = self.modes.unit();
+        let values = ["X", "Y", "Z"].map(|axis| words.plain(axis));
+        for axis in ["A", "B", "C"] {
+            if let Some(word) = words.get(axis)
+                && word.value != 0.0
+            {
+                let problem = NcProblem::unsupported("frames that move rotary axes are", "expected X, Y, Z");
+                return Err((problem, word.span.clone()));
+            }
+        }
+        let or = |missing: f64| values.map(|value| value.unwrap_or(missing));
+        let change = match operation.kind {
+            Kind::Shift => WorkFrame::shifted(or(0.0).map(|value| value * unit)),
+            Kind::Turn => match words.plain("RPL") {
+                Some(angle) => WorkFrame::turned(self.modes.plane[2], angle),
+                // About Z, then about the new Y, then about the new X.
+                None => WorkFrame::spatial(or(0.0)),
+            },
+            Kind::Scale => {
+                let factors = or(1.0);
+                if factors.contains(&0.0) {
+                    return Err((NcProblem::value("a scale", 0, "other than 0"), words.span("X")));
+                }
+                WorkFrame::scaled(factors)
+            }
+            Kind::Mirror => WorkFrame::scaled(values.map(|value| if value.is_some() { -1.0 } else { 1.0 })),
+        };
+        self.frames.programmed = if operation.additive {
+            self.frames.programmed.then(&change)
+        } else {
+            change
+        };
+        self.apply_frames();
+        Ok(())
+    }
+
+    /// `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, …)`: a swivelled plane.
+    pub(super) fn swivel(&mut self, arguments: &[Option<f64>]) -> Result<(), NcProblem> {
+        let get = |index: usize| arguments.get(index).copied().flatten().unwrap_or(0.0);
+        if arguments.iter().all(Option::is_none) {
+            self.frames.swivel = WorkFrame::default();
+            self.frames.swivelled = false;
+            self.apply_frames();
+            self.plane_coordinates();
+            return Ok(());
+        }
+        let mode = get(3);
+        if mode.fract() != 0.0 || !(0.0..=255.0).contains(&mode) {
+            return Err(NcProblem::value(
+                "_MODE of CYCLE800",
+                mode,
+                "a whole number from 0 to 255",
+            ));
+        }
+        let mode = mode as u32;
+        if mode >> 6 != 0 {
+            return Err(NcProblem::unsupported(
+                "CYCLE800 with solid or projection angles, or with angles of rotary axes, is",
+                "expected _MODE 57, 39, 27 … : axis by axis",
+            ));
+        }
+        let unit = self.modes.unit();
+        let mut frame = WorkFrame::shifted([get(4), get(5), get(6)].map(|value| value * unit));
+        for (turn, angle) in [get(7), get(8), get(9)].into_iter().enumerate() {
+            let axis = (mode >> (2 * turn)) & 3;
+            match axis {
+                0 if angle != 0.0 => {
+                    return Err(NcProblem::value(
+                        "_MODE of CYCLE800",
+                        mode,
+                        "with an axis (1, 2 or 3 in two bits) for each angle",
+                    ));
+                }
+                0 => {}
+                _ => frame = frame.then(&WorkFrame::turned(axis as usize - 1, angle)),
+            }
+        }
+        frame = frame.then(&WorkFrame::shifted(
+            [get(10), get(11), get(12)].map(|value| value * unit),
+        ));
+        let additive = get(2) % 10.0 == 1.0;
+        self.frames.swivel = if additive {
+            self.frames.swivel.then(&frame)
+        } else {
+            frame
+        };
+        self.frames.programmed = WorkFrame::default();
+        // Coordinates become those of the tip first: the frame is the part's.
+        self.frames.swivelled = true;
+        self.plane_coordinates();
+        self.apply_frames();
+        if get(13) == 0.0 {
+            self.track
+                .note("CYCLE800 without a direction turns no axis: the tool keeps its direction");
+        } else {
+            let normal = self.frames.swivel.direction([0.0, 0.0, 1.0]);
+            if self.track.turn_to(normal)? {
+                self.track.note("CYCLE800 turns the rotary axes: the path breaks here");
+            }
+        }
+        Ok(())
+    }
+
+    /// In a swivelled plane coordinates are those of the tip, as under tip control.
+    pub(super) fn plane_coordinates(&mut self) {
+        let tip = self.frames.swivelled || self.modes.tip_control;
+        self.track
+            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes });
+    }
+}

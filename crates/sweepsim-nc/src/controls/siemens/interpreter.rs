@@ -1,0 +1,503 @@
+//! Runs a program: jumps, loops, calls and variables.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use super::block::{Item, Statement};
+use super::cursor::Located;
+use super::expression::{self, Expression, Value};
+use super::frames::Frames;
+use super::unit::{Unit, parts};
+use super::words::Modes;
+use crate::drive::{Sense, Track};
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::{NcError, NcProblem, TextPosition};
+
+/// The most problems after the first one.
+const MOST_FURTHER: usize = 100;
+/// The most blocks that a program runs, repeats included, and more for each of its lines: programs that run for ever end here.
+const MOST_BLOCKS: usize = 1_000_000;
+const BLOCKS_PER_LINE: usize = 10;
+/// The most calls within each other. The control has 11 or 15 levels.
+const DEEPEST_CALL: usize = 32;
+/// The most variables.
+const MOST_VARIABLES: usize = 100_000;
+
+/// Finds the text of a subprogram by its name in capitals, with the file it came from.
+pub type Library<'a> = &'a dyn Fn(&str) -> Option<(PathBuf, String)>;
+
+/// A part of a program that is repeated.
+struct Section {
+    from: usize,
+    end: usize,
+    times: usize,
+    then: usize,
+}
+
+/// A program or subprogram on its way.
+struct Level {
+    unit: usize,
+    next: usize,
+    locals: BTreeMap<String, Value>,
+    sections: Vec<Section>,
+    /// How often it starts again.
+    times: usize,
+}
+
+pub(super) struct Reader<'a> {
+    pub track: Track,
+    pub modes: Modes,
+    pub frames: Frames,
+    pub options: &'a ReadOptions,
+    library: Library<'a>,
+    units: Vec<Unit>,
+    names: BTreeMap<String, usize>,
+    stack: Vec<Level>,
+    globals: BTreeMap<String, Value>,
+    /// After a problem: what the program has said so far is not fully known.
+    pub uncertain: bool,
+    pub ended: bool,
+    /// A call to make after the block.
+    pub pending: Option<(String, Vec<Value>, usize)>,
+}
+
+pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
+    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
+        let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
+        return Err(NcError::new(problem, None));
+    }
+    let mut reader = Reader {
+        track: Track::new(options, Sense::Tool),
+        modes: Modes::new(options),
+        frames: Frames::default(),
+        options,
+        library,
+        units: Vec::new(),
+        names: BTreeMap::new(),
+        stack: Vec::new(),
+        globals: BTreeMap::new(),
+        uncertain: false,
+        ended: false,
+        pending: None,
+    };
+    reader.add(text, 0);
+    reader.stack.push(Level::new(0, BTreeMap::new(), 1));
+    let mut errors: Vec<NcError> = Vec::new();
+    let mut messages = BTreeSet::new();
+    let most_blocks = MOST_BLOCKS + BLOCKS_PER_LINE * text.lines().count();
+    let mut blocks = 0_usize;
+    while !reader.ended && errors.len() <= MOST_FURTHER {
+        blocks += 1;
+        let Some((unit, index)) = reader.advance() else { break };
+        let result = if blocks > most_blocks {
+            reader.ended = true;
+            let problem = NcProblem::value(
+                "the number of blocks that this program runs",
+                format!("over {most_blocks}"),
+                "smaller: it may never end",
+            );
+            Err((problem, 0..reader.units[unit].texts[index].len()))
+        } else {
+            reader.line(unit, index)
+        };
+        if let Err((problem, span)) = result {
+            reader.uncertain = true;
+            reader.track.leave([true; 3]);
+            let message = problem.to_string();
+            if messages.insert(message.clone()) {
+                let unit = &reader.units[unit];
+                if options.lenient {
+                    reader.track.note(format!("left out: {message}"));
+                } else {
+                    errors.push(located(unit, index, problem, span, &reader.track.program.files));
+                }
+            }
+        }
+    }
+    if let Some(error) = NcError::all(errors) {
+        return Err(error);
+    }
+    if reader.track.program.poses.is_empty() {
+        let line = text.lines().count().max(1);
+        let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
+        return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
+    }
+    Ok(reader.track.finish())
+}
+
+fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<usize>, files: &[PathBuf]) -> NcError {
+    let text = &unit.texts[index];
+    let floor = |mut byte: usize| {
+        byte = byte.min(text.len());
+        while !text.is_char_boundary(byte) {
+            byte -= 1;
+        }
+        byte
+    };
+    let (start, end) = (floor(span.start), floor(span.end.max(span.start)));
+    let column = 1 + text[..start].chars().count();
+    let position = TextPosition::in_line(unit.first_line + index, text, column, text[start..end].chars().count());
+    let error = NcError::new(problem, Some(position));
+    match files.get(unit.file).filter(|_| unit.file > 0) {
+        Some(file) => error.in_file(file),
+        None => error,
+    }
+}
+
+impl Level {
+    fn new(unit: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
+        Self {
+            unit,
+            next: 0,
+            locals,
+            sections: Vec::new(),
+            times,
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// Adds the programs of a text. The first is the main one.
+    fn add(&mut self, text: &str, file: usize) {
+        for (name, first_line, lines) in parts(text) {
+            self.names.entry(name).or_insert(self.units.len());
+            self.units.push(Unit::new(file, first_line, lines));
+        }
+    }
+
+    /// The next line to run, back to the calling program where one ends.
+    fn advance(&mut self) -> Option<(usize, usize)> {
+        loop {
+            let level = self.stack.last_mut()?;
+            if let Some(section) = level.sections.last_mut()
+                && level.next == section.end
+            {
+                section.times -= 1;
+                if section.times > 0 {
+                    level.next = section.from;
+                } else {
+                    level.next = section.then;
+                    level.sections.pop();
+                    self.track.returns();
+                    continue;
+                }
+            }
+            let unit = &self.units[level.unit];
+            if level.next >= unit.lines.len() {
+                self.back();
+                continue;
+            }
+            let index = level.next;
+            level.next += 1;
+            self.track.place.file = unit.file;
+            self.track.place.line = unit.first_line + index;
+            return Some((level.unit, index));
+        }
+    }
+
+    /// Ends the current program.
+    pub fn back(&mut self) {
+        let Some(level) = self.stack.last_mut() else { return };
+        for _ in level.sections.drain(..) {
+            self.track.returns();
+        }
+        if level.times > 1 {
+            level.times -= 1;
+            level.next = 0;
+            return;
+        }
+        self.stack.pop();
+        if self.stack.is_empty() {
+            self.ended = true;
+        } else {
+            self.track.returns();
+        }
+    }
+
+    /// How deep the current program is in calls.
+    pub fn depth(&self) -> usize {
+        self.stack.len()
+    }
+
+    /// The text of the block that runs now.
+    pub fn current_text(&self) -> &str {
+        let Some(level) = self.stack.last() else { return "" };
+        let unit = &self.units[level.unit];
+        let index = self.track.place.line.saturating_sub(unit.first_line);
+        unit.texts.get(index).map_or("", String::as_str)
+    }
+
+    fn jump(&mut self, to: usize) {
+        if let Some(level) = self.stack.last_mut() {
+            // A jump out of a repeated section ends it.
+            while level
+                .sections
+                .last()
+                .is_some_and(|section| !(section.from..section.end).contains(&to))
+            {
+                level.sections.pop();
+                self.track.returns();
+            }
+            level.next = to;
+        }
+    }
+
+    fn line(&mut self, unit: usize, index: usize) -> Result<(), Located> {
+        let Ok(line) = self.units[unit].lines[index].clone() else {
+            return super::block::line(&self.units[unit].texts[index]).map(|_| ());
+        };
+        if line.skipped {
+            if self.options.block_delete {
+                return Ok(());
+            }
+            self.track.note("optional blocks (`/`) are executed");
+        }
+        let true_of = |reader: &Self, condition: &Expression| Ok::<bool, Located>(reader.number(condition)? != 0.0);
+        match &line.statement {
+            Statement::Block(items) => {
+                if !items.is_empty() {
+                    self.block(items)?;
+                    if let Some((name, arguments, times)) = self.pending.take() {
+                        self.call(&name, arguments, times)
+                            .map_err(|problem| (problem, self.whole(unit, index)))?;
+                    }
+                }
+            }
+            Statement::Goto(search, label) => {
+                let to = self.units[unit].find(label, index, *search)?;
+                self.jump(to);
+            }
+            Statement::IfGoto(condition, search, label) => {
+                if true_of(self, condition)? {
+                    let to = self.units[unit].find(label, index, *search)?;
+                    self.jump(to);
+                }
+            }
+            Statement::If(condition) => {
+                let other = self.units[unit].partner(index, "ENDIF")?;
+                if !true_of(self, condition)? {
+                    self.jump(other + 1);
+                }
+            }
+            Statement::Else => {
+                let end = self.units[unit].partner(index, "ENDIF")?;
+                self.jump(end + 1);
+            }
+            Statement::EndIf | Statement::Repeat | Statement::Loop | Statement::Declaration => {}
+            Statement::While(condition) => {
+                let end = self.units[unit].partner(index, "ENDWHILE")?;
+                if !true_of(self, condition)? {
+                    self.jump(end + 1);
+                }
+            }
+            Statement::For(first, last) => {
+                let end = self.units[unit].partner(index, "ENDFOR")?;
+                self.block(first)?;
+                if self.count(first)? > self.number(last)? {
+                    self.jump(end + 1);
+                }
+            }
+            Statement::EndLoop(kind) => {
+                let start = self.units[unit].partner(index, kind)?;
+                let begins = self.units[unit].lines[start].clone();
+                let again = match begins.as_ref().map(|line| &line.statement) {
+                    Ok(Statement::For(first, last)) => {
+                        let next = self.count(first)? + 1.0;
+                        if let Some(Item::Set { name, indices, .. }) = first.first() {
+                            let key = expression::key(name, indices, &|name| self.lookup(name))?;
+                            self.assign(key, Value::Number(next))
+                                .map_err(|problem| (problem, 0..0))?;
+                        }
+                        if next <= self.number(last)? {
+                            start + 1
+                        } else {
+                            index + 1
+                        }
+                    }
+                    _ => start,
+                };
+                self.jump(again);
+            }
+            Statement::Until(condition) => {
+                let start = self.units[unit].partner(index, "REPEAT before it")?;
+                if !true_of(self, condition)? {
+                    self.jump(start);
+                }
+            }
+            Statement::RepeatLabel { from, to, times, block } => {
+                let start = self.units[unit].find(from, index, super::block::Search::Backward)?;
+                let end = match to {
+                    Some(to) => self.units[unit].find(to, start, super::block::Search::Forward)? + 1,
+                    None if *block => start + 1,
+                    None => index,
+                };
+                let times = times.as_ref().map_or(Ok(1.0), |times| self.number(times))?;
+                if times >= 1.0 && start < end {
+                    self.track
+                        .calls()
+                        .map_err(|problem| (problem, self.whole(unit, index)))?;
+                    if let Some(level) = self.stack.last_mut() {
+                        if level.sections.len() > DEEPEST_CALL {
+                            let problem = NcProblem::syntax("repeats within repeats: nested too deeply");
+                            return Err((problem, 0..self.units[unit].texts[index].len()));
+                        }
+                        level.sections.push(Section {
+                            from: start,
+                            end,
+                            times: times as usize,
+                            then: index + 1,
+                        });
+                        level.next = start;
+                    }
+                }
+            }
+            Statement::Define(variables, text) => {
+                for (name, value) in variables {
+                    let value = match value {
+                        Some(value) => value.value(&|name| self.lookup(name))?,
+                        None if *text => Value::Text(String::new()),
+                        None => Value::Number(0.0),
+                    };
+                    if let Some(level) = self.stack.last_mut()
+                        && level.locals.len() < MOST_VARIABLES
+                    {
+                        level.locals.insert(name.clone(), value);
+                    }
+                }
+            }
+            // Its parameters are set by the call.
+            Statement::Proc(_) => {}
+        }
+        Ok(())
+    }
+
+    fn whole(&self, unit: usize, index: usize) -> std::ops::Range<usize> {
+        0..self.units[unit].texts[index].len()
+    }
+
+    /// The counter of a FOR loop.
+    fn count(&self, first: &[Item]) -> Result<f64, Located> {
+        match first {
+            [
+                Item::Set {
+                    name, indices, span, ..
+                },
+            ] => {
+                let key = expression::key(name, indices, &|name| self.lookup(name))?;
+                match self.lookup(&key).map_err(|problem| (problem, span.clone()))? {
+                    Value::Number(number) => Ok(number),
+                    Value::Text(_) => Err((
+                        NcProblem::syntax("a text as a counter: expected a number"),
+                        span.clone(),
+                    )),
+                }
+            }
+            [Item::Word { span, .. } | Item::Key { span, .. }] => {
+                Err((NcProblem::syntax("expected a variable as the counter"), span.clone()))
+            }
+            _ => Ok(0.0),
+        }
+    }
+
+    pub fn number(&self, expression: &Expression) -> Result<f64, Located> {
+        expression.as_number(&|name| self.lookup(name))
+    }
+
+    pub fn lookup(&self, name: &str) -> Result<Value, NcProblem> {
+        let local = self.stack.iter().rev().find_map(|level| level.locals.get(name));
+        if let Some(value) = local.or_else(|| self.globals.get(name)) {
+            return Ok(value.clone());
+        }
+        if name.starts_with('$') {
+            return Err(NcProblem::unsupported(
+                format!("the system variable {name} is"),
+                "only the control knows it; expected a number",
+            ));
+        }
+        // R parameters are 0 unless set; elements of arrays too.
+        let parameter = name
+            .strip_prefix('R')
+            .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()));
+        if parameter {
+            return Ok(Value::Number(0.0));
+        }
+        if let Some((array, _)) = name.split_once('[')
+            && let Some(value) = self.stack.iter().rev().find_map(|level| level.locals.get(array))
+        {
+            return Ok(value.clone());
+        }
+        Err(NcProblem::syntax(format!(
+            "the variable {name} has no value here: expected DEF and a value before it"
+        )))
+    }
+
+    pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
+        if name.starts_with('$') {
+            return Err(NcProblem::unsupported(
+                format!("setting the system variable {name} is"),
+                "it could move frames or axes; expected a program without it",
+            ));
+        }
+        let array = name.split_once('[').map(|(array, _)| array.to_owned());
+        let known = |level: &Level| {
+            level.locals.contains_key(&name) || array.as_ref().is_some_and(|array| level.locals.contains_key(array))
+        };
+        let place = match self.stack.iter_mut().rev().find(|level| known(level)) {
+            Some(level) => &mut level.locals,
+            None => &mut self.globals,
+        };
+        if place.len() >= MOST_VARIABLES && !place.contains_key(&name) {
+            return Err(NcProblem::value("the number of variables", MOST_VARIABLES, "smaller"));
+        }
+        place.insert(name, value);
+        Ok(())
+    }
+
+    /// Whether there is a subprogram of this name, read if need be.
+    pub fn knows(&mut self, name: &str) -> bool {
+        if self.names.contains_key(name) {
+            return true;
+        }
+        let Some((file, text)) = (self.library)(name) else {
+            return false;
+        };
+        // Text without a file is the main program's own, at index 0.
+        let files = &mut self.track.program.files;
+        if files.is_empty() {
+            files.push(PathBuf::new());
+        }
+        files.push(file);
+        let index = files.len() - 1;
+        self.names.insert(name.to_owned(), self.units.len());
+        self.add(&text, index);
+        true
+    }
+
+    fn call(&mut self, name: &str, arguments: Vec<Value>, times: usize) -> Result<(), NcProblem> {
+        let Some(&unit) = self.names.get(name) else {
+            return Ok(());
+        };
+        if self.stack.len() > DEEPEST_CALL {
+            return Err(NcProblem::syntax(format!(
+                "{name} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels"
+            )));
+        }
+        let parameters =
+            self.units[unit]
+                .lines
+                .iter()
+                .find_map(|line| match line.as_ref().map(|line| &line.statement) {
+                    Ok(Statement::Proc(parameters)) => Some(parameters.clone()),
+                    _ => None,
+                });
+        let mut values = arguments.into_iter();
+        let locals = parameters.unwrap_or_default().into_iter();
+        let locals = locals
+            .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
+            .collect();
+        self.track.calls()?;
+        self.stack.push(Level::new(unit, locals, times));
+        Ok(())
+    }
+}

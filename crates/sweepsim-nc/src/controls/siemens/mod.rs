@@ -1,0 +1,52 @@
+//! Programs of Siemens Sinumerik 840D.
+//!
+//! Read: `G0 G1 G2 G3` and `CIP` (centres `I J K`, also `AC(…)`; `CR=`, `AR=`, `TURN=`), `G17 G18 G19`, `G90 G91` with `AC IC DC ACP ACN`,
+//! `G70 G71 G700 G710`, one work offset (`G54`…`G57`, `G505`…, `G500`), `SUPA G53 G153` (left out, the path breaks), programmable frames
+//! (`TRANS ROT SCALE MIRROR` and those with `A`), `CYCLE800` axis by axis, `TRAORI`/`TRAFOOF`, tool vectors `A3= B3= C3=`, drilling cycles
+//! `CYCLE81`…`86`, `89`, `840` alone or after `MCALL`, tools by number or name, `R` parameters, `DEF`, expressions, jumps, `IF WHILE FOR LOOP
+//! REPEAT`, and subprograms with parameters, by name from the same archive or from a file beside.
+//!
+//! Rotary axes turn the tool relative to the part by the right-hand rule, as their letters' convention has it, unless a machine is given.
+//! Cutter compensation, splines, polar coordinates, synchronous actions and other cycles are errors with their position.
+
+mod block;
+mod cursor;
+mod cycles;
+mod expression;
+mod frames;
+mod interpreter;
+mod moves;
+mod unit;
+mod words;
+
+pub use interpreter::Library;
+
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::NcError;
+
+/// Reads a program without subprograms in other files.
+///
+/// # Errors
+/// [`NcError`] with line and column at the first problem; [`NcError::further`] has the others.
+///
+/// ```
+/// use sweepsim_nc::{ReadOptions, siemens};
+/// let text = "R1=5\nG0 X0 Y0 Z=R1*2\nTRAORI\nG1 X10 B90 C0 F500\nAROT Y90\nG1 Z=IC(3)\nM30";
+/// let program = siemens::read(text, &ReadOptions::default())?;
+/// let last = program.poses.last().ok_or("no pose")?;
+/// // The frame's z is the part's x.
+/// assert_eq!((last.pose.tip(), last.pose.axis()), ([13.0, 0.0, 10.0], [1.0, 0.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
+    interpreter::read(text, options, &|_| None)
+}
+
+/// Reads a program whose subprograms `library` finds by their names in capitals.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
+    interpreter::read(text, options, library)
+}

@@ -1,0 +1,625 @@
+//! The words of a block: codes, tools, and what they set.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use super::block::Item;
+use super::cursor::Located;
+use super::cycles::Cycle;
+use super::expression::{self, Expression, Kind, Value};
+use super::frames::Operation;
+use super::interpreter::Reader;
+use crate::drive::Coordinates;
+use crate::model::event::{Coolant, EventKind, Spindle};
+use crate::model::program::FeedMode;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::NcProblem;
+
+/// How the tool moves, until another word says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Motion {
+    Rapid,
+    Feed,
+    Arc {
+        counter_clockwise: bool,
+    },
+    /// An arc through an intermediate point (`CIP`).
+    Through,
+    /// An arc tangential to the last move (`CT`).
+    Tangential,
+}
+
+/// Modal state: in effect until another word changes it.
+pub(super) struct Modes {
+    pub motion: Motion,
+    /// The axes `[u, v, w]` of the plane: `u` to `v` is counter-clockwise.
+    pub plane: [usize; 3],
+    pub absolute: bool,
+    inch: bool,
+    pub tip_control: bool,
+    /// `D0`: without the tool's length.
+    without_length: bool,
+    /// A cycle or subprogram at each position of the program at this depth.
+    pub modal_call: Option<(usize, Modal)>,
+    pub spindle: Spindle,
+    speed: Option<f64>,
+    selected: Option<u32>,
+    tools: BTreeMap<String, u32>,
+    uses_m6: bool,
+}
+
+/// What `MCALL` calls.
+#[derive(Clone, Debug)]
+pub(super) enum Modal {
+    Cycle(Cycle),
+    Program(String, Vec<Value>),
+}
+
+impl Modes {
+    pub fn new(options: &ReadOptions) -> Self {
+        Self {
+            motion: Motion::Rapid,
+            plane: [0, 1, 2],
+            absolute: true,
+            inch: options.inch,
+            tip_control: options.machine.tip_control,
+            without_length: false,
+            modal_call: None,
+            spindle: Spindle::Stopped,
+            speed: None,
+            selected: None,
+            tools: BTreeMap::new(),
+            uses_m6: false,
+        }
+    }
+
+    /// Millimetres per unit of length.
+    pub fn unit(&self) -> f64 {
+        if self.inch { 25.4 } else { 1.0 }
+    }
+}
+
+/// How a value is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meaning {
+    Plain,
+    Absolute,
+    Incremental,
+    /// A rotary axis the shortest way, or in one sense.
+    Shortest,
+    Positive,
+    Negative,
+}
+
+/// A word with its value.
+#[derive(Clone, Debug)]
+pub(super) struct Word {
+    pub name: String,
+    pub value: f64,
+    pub meaning: Meaning,
+    pub span: Range<usize>,
+}
+
+/// The words of a block.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Words(pub Vec<Word>);
+
+impl Words {
+    pub fn get(&self, name: &str) -> Option<&Word> {
+        self.0.iter().find(|word| word.name == name)
+    }
+
+    pub fn plain(&self, name: &str) -> Option<f64> {
+        self.get(name).map(|word| word.value)
+    }
+
+    pub fn span(&self, name: &str) -> Range<usize> {
+        self.get(name).map_or(0..0, |word| word.span.clone())
+    }
+
+    /// The first word with one of these names.
+    pub fn any(&self, names: &[&str]) -> Option<&Word> {
+        self.0.iter().find(|word| names.contains(&word.name.as_str()))
+    }
+
+    fn whole(&self) -> Range<usize> {
+        match (self.0.first(), self.0.last()) {
+            (Some(first), Some(last)) => first.span.start..last.span.end,
+            _ => 0..0,
+        }
+    }
+}
+
+/// What a block does besides setting modes.
+#[derive(Default)]
+pub(super) struct Action {
+    pub operation: Option<(Operation, Range<usize>)>,
+    /// In machine coordinates: SUPA, G53, G153.
+    pub machine: bool,
+    /// To fixed points or the reference point: G74, G75.
+    pub home: bool,
+    pub dwell: bool,
+    /// Words that are no coordinates: G25, G26, oriented spindle stops.
+    pub other: bool,
+    pub tool_change: bool,
+}
+
+impl Reader<'_> {
+    pub(super) fn block(&mut self, items: &[Item]) -> Result<(), Located> {
+        let mut words = Words::default();
+        let mut action = Action::default();
+        let mut tool_name = None;
+        for item in items {
+            match item {
+                Item::Set {
+                    name,
+                    indices,
+                    value,
+                    span,
+                } => {
+                    let key = expression::key(name, indices, &|name| self.lookup(name))?;
+                    let value = value.value(&|name| self.lookup(name))?;
+                    if matches!(
+                        name.as_str(),
+                        "FA" | "ACC" | "OVRA" | "VELOLIM" | "JERKLIM" | "FGREF" | "FXST"
+                    ) {
+                        continue;
+                    }
+                    if matches!(name.as_str(), "POS" | "POSA" | "POSP" | "FOC") {
+                        let problem = NcProblem::unsupported(format!("{name} is"), "expected axes by their letters");
+                        return Err((problem, span.clone()));
+                    }
+                    self.assign(key, value).map_err(|problem| (problem, span.clone()))?;
+                }
+                Item::Word { name, value, span } => match (name.as_str(), self.value_of(value)?) {
+                    ("T", (Value::Text(text), _)) => tool_name = Some((text, span.clone())),
+                    (_, (Value::Text(text), _)) => {
+                        let problem = NcProblem::value(format!("the word {name}"), format!("{text:?}"), "a number");
+                        return Err((problem, span.clone()));
+                    }
+                    (name, (Value::Number(value), meaning)) => {
+                        let repeatable = matches!(name, "G" | "M" | "H" | "S");
+                        if !repeatable && words.get(name).is_some() {
+                            let problem = NcProblem::syntax(format!("a second {name} in one block: expected one"));
+                            return Err((problem, span.clone()));
+                        }
+                        words.0.push(Word {
+                            name: name.to_owned(),
+                            value,
+                            meaning,
+                            span: span.clone(),
+                        });
+                    }
+                },
+                Item::Key { .. } => {}
+            }
+        }
+        for word in words.0.iter().filter(|word| word.name == "G") {
+            self.code(word.value, &mut action)
+                .map_err(|problem| (problem, word.span.clone()))?;
+        }
+        for item in items {
+            if let Item::Key { name, arguments, span } = item {
+                self.keyword(name, arguments.as_deref(), &words, &mut action, span)?;
+            }
+        }
+        if let Some((text, span)) = tool_name {
+            let number = self.tool_number(&text);
+            self.select(number).map_err(|problem| (problem, span))?;
+        }
+        let ends = self.settings(&words, &mut action)?;
+        if let Some((operation, _)) = action.operation {
+            self.operate(operation, &words)?;
+        } else if action.dwell {
+            let seconds = match (words.plain("F"), words.plain("S"), self.modes.speed) {
+                (Some(seconds), _, _) => seconds,
+                (None, Some(turns), Some(speed)) if speed > 0.0 => 60.0 * turns / speed,
+                _ => 0.0,
+            };
+            self.event(EventKind::Dwell { seconds }, words.whole())?;
+        } else if !action.other {
+            self.moves(&words, &action)?;
+        }
+        if ends {
+            self.back();
+            // M2 and M30 end the main program from wherever they are.
+            if words
+                .0
+                .iter()
+                .any(|word| word.name == "M" && matches!(word.value, 2.0 | 30.0))
+            {
+                self.ended = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a word, and how it is meant.
+    fn value_of(&self, value: &Expression) -> Result<(Value, Meaning), Located> {
+        if let Kind::Call(name, arguments) = &value.kind {
+            let meaning = match name.as_str() {
+                "AC" => Some(Meaning::Absolute),
+                "IC" => Some(Meaning::Incremental),
+                "DC" => Some(Meaning::Shortest),
+                "ACP" => Some(Meaning::Positive),
+                "ACN" => Some(Meaning::Negative),
+                _ => None,
+            };
+            if let (Some(meaning), [inner]) = (meaning, &arguments[..]) {
+                return Ok((Value::Number(self.number(inner)?), meaning));
+            }
+        }
+        Ok((value.value(&|name| self.lookup(name))?, Meaning::Plain))
+    }
+
+    fn event(&mut self, kind: EventKind, span: Range<usize>) -> Result<(), Located> {
+        self.track.event(kind).map_err(|problem| (problem, span))
+    }
+
+    /// A G code.
+    fn code(&mut self, value: f64, action: &mut Action) -> Result<(), NcProblem> {
+        let refuse = |what: &str| {
+            Err(NcProblem::unsupported(
+                format!("G{value}: {what}"),
+                "the path of the tool would be unknown; expected G0, G1, G2 or G3",
+            ))
+        };
+        if value.fract() != 0.0 || !(0.0..=9999.0).contains(&value) {
+            return refuse("this code is");
+        }
+        match value as u32 {
+            0 => self.modes.motion = Motion::Rapid,
+            1 => self.modes.motion = Motion::Feed,
+            2 => {
+                self.modes.motion = Motion::Arc {
+                    counter_clockwise: false,
+                }
+            }
+            3 => {
+                self.modes.motion = Motion::Arc {
+                    counter_clockwise: true,
+                }
+            }
+            4 => action.dwell = true,
+            17 => self.modes.plane = [0, 1, 2],
+            18 => self.modes.plane = [2, 0, 1],
+            19 => self.modes.plane = [1, 2, 0],
+            25 | 26 => action.other = true,
+            53 | 153 => action.machine = true,
+            54..=57 => self.frames.active = value as u32 - 53,
+            500 => self.frames.active = 0,
+            505..=599 => self.frames.active = value as u32 - 500,
+            70 | 700 => self.modes.inch = true,
+            71 | 710 => self.modes.inch = false,
+            74 | 75 => action.home = true,
+            90 => self.modes.absolute = true,
+            91 => self.modes.absolute = false,
+            93 => self.track.feed_mode = FeedMode::InverseTime,
+            94 => self.track.feed_mode = FeedMode::PerMinute,
+            95 => self.track.feed_mode = FeedMode::PerRevolution,
+            40 => {}
+            41 | 42 => return refuse("cutter compensation is"),
+            33..=35 | 63 | 331 | 332 => return refuse("threading is"),
+            58 | 59 => return refuse("shifting frames axis by axis is"),
+            110..=112 => return refuse("polar coordinates are"),
+            // Exact stop and continuous-path modes, corners of compensated contours, soft approach off, speeds.
+            9 | 60 | 64 | 96 | 97 | 450..=453 | 458..=461 | 601..=603 | 621 | 641..=645 | 961 | 962 | 971..=973 => {}
+            140..=143 | 147 | 148 | 247 | 248 | 340 | 341 | 347 | 348 => {
+                return refuse("smooth approach and retraction are");
+            }
+            _ => return refuse("this code is"),
+        }
+        Ok(())
+    }
+
+    fn keyword(
+        &mut self,
+        name: &str,
+        arguments: Option<&[Option<Expression>]>,
+        words: &Words,
+        action: &mut Action,
+        span: &Range<usize>,
+    ) -> Result<(), Located> {
+        let here = |problem: NcProblem| (problem, span.clone());
+        if let Some(operation) = Operation::named(name) {
+            action.operation = Some((operation, span.clone()));
+            return Ok(());
+        }
+        match name {
+            "SUPA" => action.machine = true,
+            "TRAORI" => {
+                self.modes.tip_control = true;
+                self.track.set_coordinates(Coordinates::Tip);
+            }
+            "TRAFOOF" => {
+                self.modes.tip_control = false;
+                self.plane_coordinates();
+            }
+            "CIP" => self.modes.motion = Motion::Through,
+            "CT" => self.modes.motion = Motion::Tangential,
+            "MSG" => {
+                let text = arguments
+                    .and_then(|arguments| arguments.first())
+                    .and_then(Option::as_ref);
+                let text = text.map(|text| text.value(&|name| self.lookup(name))).transpose()?;
+                self.event(
+                    EventKind::Message(text.map_or_else(String::new, |text| text.text())),
+                    span.clone(),
+                )?;
+            }
+            "RET" => self.back(),
+            "MCALL" => self.modes.modal_call = None,
+            "CYCLE800" => {
+                // Names of swivel data are texts.
+                let values: Vec<Option<f64>> = arguments
+                    .unwrap_or(&[])
+                    .iter()
+                    .map(
+                        |argument| match argument.as_ref().map(|value| value.value(&|name| self.lookup(name))) {
+                            Some(Ok(Value::Number(number))) => Ok(Some(number)),
+                            Some(Ok(Value::Text(_))) => Ok(Some(0.0)),
+                            Some(Err(error)) => Err(error),
+                            None => Ok(None),
+                        },
+                    )
+                    .collect::<Result<_, _>>()?;
+                self.swivel(&values).map_err(here)?;
+            }
+            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" | "EXTCALL" if name != "EXTCALL" => {}
+            _ if HARMLESS.contains(&name) => {}
+            _ if REFUSED.contains(&name) => {
+                let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
+                return Err(here(NcProblem::unsupported(format!("{name} is"), instead)));
+            }
+            _ => return self.call_or_cycle(name, arguments, words, span),
+        }
+        Ok(())
+    }
+
+    /// A cycle, a subprogram, or nothing known.
+    fn call_or_cycle(
+        &mut self,
+        name: &str,
+        arguments: Option<&[Option<Expression>]>,
+        words: &Words,
+        span: &Range<usize>,
+    ) -> Result<(), Located> {
+        let here = |problem: NcProblem| (problem, span.clone());
+        let (name, arguments, modal) = match name {
+            "CALL" | "PCALL" => {
+                return Err(here(NcProblem::unsupported(
+                    "CALL is",
+                    "expected the name of the subprogram alone",
+                )));
+            }
+            _ => (name, arguments, self.modal_word(span)),
+        };
+        let values = arguments
+            .unwrap_or(&[])
+            .iter()
+            .map(|argument| {
+                argument
+                    .as_ref()
+                    .map(|value| value.value(&|name| self.lookup(name)))
+                    .transpose()
+            })
+            .collect::<Result<Vec<Option<Value>>, _>>()?;
+        if name.starts_with("CYCLE") {
+            let numbers: Vec<Option<f64>> = values
+                .iter()
+                .map(|value| match value {
+                    Some(Value::Number(number)) => Some(*number),
+                    _ => None,
+                })
+                .collect();
+            let cycle = Cycle::new(name, &numbers, self.modes.unit()).map_err(here)?;
+            if modal {
+                self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
+                return Ok(());
+            }
+            return self.drill(&cycle).map_err(here);
+        }
+        if !self.knows(name) {
+            return Err(here(NcProblem::unsupported(
+                format!("{name} is"),
+                format!("it is neither known nor a subprogram beside this file; expected a file {name}.SPF"),
+            )));
+        }
+        let values: Vec<Value> = values
+            .into_iter()
+            .map(|value| value.unwrap_or(Value::Number(0.0)))
+            .collect();
+        if modal {
+            self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
+        } else {
+            let times = words.plain("P").unwrap_or(1.0);
+            if !(1.0..=9999.0).contains(&times) || times.fract() != 0.0 {
+                return Err((
+                    NcProblem::value("the number of calls P", times, "a whole number from 1 to 9999"),
+                    words.span("P"),
+                ));
+            }
+            self.pending = Some((name.to_owned(), values, times as usize));
+        }
+        Ok(())
+    }
+
+    /// Whether this call follows `MCALL`, which stands right before it.
+    fn modal_word(&self, span: &Range<usize>) -> bool {
+        let before = self
+            .current_text()
+            .get(..span.start)
+            .unwrap_or("")
+            .trim_end()
+            .to_ascii_uppercase();
+        before.ends_with("MCALL")
+    }
+
+    /// The number of a tool that has a name: in the order of their first use.
+    fn tool_number(&mut self, name: &str) -> u32 {
+        let name = name.trim().to_owned();
+        if let Some(&number) = self.modes.tools.get(&name) {
+            return number;
+        }
+        let number = self.modes.tools.len() as u32 + 1;
+        self.track.note(format!("tool {name:?} is taken as T{number}"));
+        self.modes.tools.insert(name, number);
+        number
+    }
+
+    fn select(&mut self, number: u32) -> Result<(), NcProblem> {
+        self.modes.selected = Some(number);
+        // Programs without a tool change name their tool by T alone.
+        if self.track.tool.is_none() && number > 0 && !self.modes.uses_m6 {
+            self.track.change_tool(Some(number))?;
+        }
+        Ok(())
+    }
+
+    /// F, S, T, D and M words. Whether the program ends.
+    fn settings(&mut self, words: &Words, action: &mut Action) -> Result<bool, Located> {
+        if !action.dwell
+            && let Some(feed) = words.plain("F")
+        {
+            self.track.feed = Some(feed);
+        }
+        if let Some(offset) = words.plain("D") {
+            self.modes.without_length = offset == 0.0;
+        }
+        if let Some(word) = words.get("T") {
+            if !(0.0..=f64::from(u32::MAX)).contains(&word.value) || word.value.fract() != 0.0 {
+                return Err((
+                    NcProblem::value("a tool number", word.value, "a whole number"),
+                    word.span.clone(),
+                ));
+            }
+            self.select(word.value as u32)
+                .map_err(|problem| (problem, word.span.clone()))?;
+        }
+        if let Some(word) = words
+            .any(&["RND", "RNDM", "CHF", "CHR", "ANG", "AP", "RP"])
+            .filter(|word| word.value != 0.0)
+        {
+            let problem = NcProblem::unsupported(format!("{} is", word.name), "expected the contour by lines and arcs");
+            return Err((problem, word.span.clone()));
+        }
+        if let Some(speed) = words.get("S").filter(|_| !action.dwell) {
+            self.modes.speed = Some(speed.value);
+        }
+        let mut ends = false;
+        let mut spindle = None;
+        for word in words.0.iter().filter(|word| word.name == "M") {
+            let rpm = self.modes.speed;
+            match word.value {
+                0.0 => self.event(EventKind::Stop, word.span.clone())?,
+                1.0 => self.event(EventKind::OptionalStop, word.span.clone())?,
+                2.0 | 17.0 | 30.0 => ends = true,
+                3.0 => spindle = Some(Spindle::Clockwise { rpm }),
+                4.0 => spindle = Some(Spindle::CounterClockwise { rpm }),
+                5.0 => spindle = Some(Spindle::Stopped),
+                19.0 => {}
+                6.0 => {
+                    self.modes.uses_m6 = true;
+                    action.tool_change = true;
+                    let tool = self.modes.selected.filter(|tool| *tool > 0);
+                    self.track
+                        .change_tool(tool)
+                        .map_err(|problem| (problem, word.span.clone()))?;
+                }
+                7.0 => self.event(EventKind::Coolant(Coolant::Mist), word.span.clone())?,
+                8.0 => self.event(EventKind::Coolant(Coolant::Flood), word.span.clone())?,
+                9.0 => self.event(EventKind::Coolant(Coolant::Off), word.span.clone())?,
+                code => self.track.note(format!("M{code} is not understood: ignored")),
+            }
+        }
+        if spindle.is_none() && words.get("S").is_some() && !action.dwell {
+            spindle = match self.modes.spindle {
+                Spindle::Clockwise { .. } => Some(Spindle::Clockwise { rpm: self.modes.speed }),
+                Spindle::CounterClockwise { .. } => Some(Spindle::CounterClockwise { rpm: self.modes.speed }),
+                _ => None,
+            };
+        }
+        if let Some(spindle) = spindle
+            && spindle != self.modes.spindle
+        {
+            self.modes.spindle = spindle;
+            self.event(EventKind::Spindle(spindle), words.whole())?;
+        }
+        Ok(ends)
+    }
+
+    pub(super) fn without_length(&self) -> bool {
+        self.modes.without_length
+    }
+}
+
+/// Keywords that change no programmed point.
+const HARMLESS: [&str; 62] = [
+    "FNORM",
+    "FLIN",
+    "FCUB",
+    "COMPOF",
+    "COMPON",
+    "COMPCURV",
+    "COMPCAD",
+    "COMPSURF",
+    "SOFT",
+    "BRISK",
+    "DRIVE",
+    "FFWON",
+    "FFWOF",
+    "DIAMOF",
+    "DIAMON",
+    "STOPRE",
+    "ORIWKS",
+    "ORIMKS",
+    "ORIAXES",
+    "ORIVECT",
+    "ORIPLANE",
+    "ORIROTA",
+    "ORIC",
+    "ORID",
+    "ORISON",
+    "ORISOF",
+    "OSC",
+    "OSD",
+    "OSOF",
+    "OSS",
+    "OSSE",
+    "UPATH",
+    "SPATH",
+    "DISPLON",
+    "DISPLOF",
+    "SAVE",
+    "SBLON",
+    "SBLOF",
+    "WALIMON",
+    "WALIMOF",
+    "STARTFIFO",
+    "STOPFIFO",
+    "FIFOCTRL",
+    "CFC",
+    "CFTCP",
+    "CFIN",
+    "NORM",
+    "KONT",
+    "CDON",
+    "CDOF",
+    "CDOF2",
+    "RTLION",
+    "RTLIOF",
+    "FENDNORM",
+    "G1COMP",
+    "OEMIPO1",
+    "SETMS",
+    "TOWSTD",
+    "CP",
+    "EXECUTE",
+    "PAROTOF",
+    "TOROTOF",
+];
+/// Keywords that change the path.
+const REFUSED: [&str; 21] = [
+    "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",
+    "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON",
+];
