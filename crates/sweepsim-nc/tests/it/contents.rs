@@ -68,7 +68,8 @@ fn what_is_recognised_but_not_read() {
 
 #[test]
 fn what_is_not_recognised() {
-    let expected = "but must be G-code, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
+    let expected =
+        "but must be G-code, a program of Siemens, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
     assert_eq!(
         read("a.txt", b"-20.1 -18.5 1.6 0 0 1 7\n").unwrap_err(),
         format!(

@@ -72,11 +72,15 @@ fn all_are_read() {
         });
         assert_eq!(changes.collect::<Vec<_>>(), known.tools, "{}", known.name);
         // What is left out are moves in machine coordinates, and codes that switch coolant, chips and suction.
-        let rest: Vec<_> = program.notes.iter().filter(|note| {
-            !["machine coordinates", "is taken as T", "is not understood: ignored"]
-                .iter()
-                .any(|part| note.message.contains(part))
-        });
+        let rest: Vec<_> = program
+            .notes
+            .iter()
+            .filter(|note| {
+                !["machine coordinates", "is taken as T", "is not understood: ignored"]
+                    .iter()
+                    .any(|part| note.message.contains(part))
+            })
+            .collect();
         assert!(rest.is_empty(), "{rest:#?}");
     }
 }
