@@ -31,7 +31,7 @@ pub use charts::{
     UnresolvedTarget,
 };
 pub use coefficients::MAX_DEGREE;
-pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveSolver, Curves, Singular};
+pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveShape, CurveSolver, Curves, Singular};
 pub use formulas::{Formula, FormulaError, FormulaProblem};
 pub use numbers::{CUT, Enclosure, EnclosureError, MAX_UNKNOWNS};
 pub use points::{PointSolver, Points, Root, RootLocation};

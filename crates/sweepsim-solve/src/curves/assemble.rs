@@ -135,8 +135,10 @@ impl Search<'_> {
             ];
             closed = ends[0] == ends[1] && chain.len() > 1;
             let mut points: Vec<CurvePoint> = Vec::new();
+            let mut handles = Vec::new();
             for p in &chain {
-                let vertices = &self.pieces[*p].vertices;
+                let vertices = &self.pieces[*p].trace.vertices;
+                handles.extend_from_slice(&self.pieces[*p].trace.handles);
                 let skip = usize::from(!points.is_empty());
                 points.extend(vertices[skip..].iter().map(|v| self.tracer.outer(v)));
             }
@@ -164,7 +166,7 @@ impl Search<'_> {
                 }
             };
             let ends = if closed { None } else { Some([end(0), end(1)]) };
-            curves.push(Curve { points, ends });
+            curves.push(Curve { points, handles, ends });
         }
         Curves {
             curves,
@@ -180,7 +182,7 @@ impl Search<'_> {
         let region = &self.system.region;
         let inside = |x: &Row| (0..n).all(|j| region.0[j] <= x[j] && x[j] <= region.1[j]);
         !chain.iter().any(|p| {
-            let vertices = &self.pieces[*p].vertices;
+            let vertices = &self.pieces[*p].trace.vertices;
             let middle = |w: &[Vertex]| {
                 let mut x = [0.0; MAX_UNKNOWNS];
                 for j in 0..n {

@@ -15,6 +15,7 @@
 //! Cells at the smallest size stay open. They are singular points (nodes, cusps, isolated points), whose branches are the crossings of their outer faces.
 
 mod assemble;
+mod cubic;
 mod faces;
 mod graph;
 mod subdivide;
@@ -57,8 +58,46 @@ pub enum CurveEnd {
 pub struct Curve {
     /// The vertices, on the curve up to rounding. The first vertex of a loop is not repeated at its end.
     pub points: Vec<CurvePoint>,
+    /// For [`CurveShape::Cubics`], one for each segment between vertices: the distances of its two inner control points from its ends. Empty for chords.
+    pub handles: Vec<[f64; 2]>,
     /// `None` for a loop.
     pub ends: Option<[CurveEnd; 2]>,
+}
+
+impl Curve {
+    /// The number of segments.
+    #[must_use]
+    pub fn segments(&self) -> usize {
+        self.points.len().saturating_sub(usize::from(self.ends.is_some()))
+    }
+
+    /// The control points of the cubic Bézier curve from a vertex to the next one; `None` for chords, or if there is no such segment.
+    #[must_use]
+    pub fn cubic(&self, segment: usize) -> Option<[Vec<f64>; 4]> {
+        let [first, second] = *self.handles.get(segment)?;
+        let (from, to) = (
+            self.points.get(segment)?,
+            &self.points[(segment + 1) % self.points.len()],
+        );
+        let along = |p: &CurvePoint, by: f64| p.point.iter().zip(&p.tangent).map(|(x, t)| x + by * t).collect();
+        Some([
+            from.point.clone(),
+            along(from, first),
+            along(to, -second),
+            to.point.clone(),
+        ])
+    }
+}
+
+/// What curves are made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CurveShape {
+    /// Chords between vertices: as many as the square root of the inverse tolerance.
+    #[default]
+    Chords,
+    /// Cubic Bézier curves between vertices, with common tangents there: far fewer, between the fourth and the sixth root. Not for systems with expressions.
+    Cubics,
 }
 
 /// A piece of the curve in one box of the subdivision.
@@ -69,6 +108,8 @@ pub struct CurvePiece {
     pub ends: [usize; 2],
     /// The vertices, both ends among them, in the direction of the curve.
     pub points: Vec<CurvePoint>,
+    /// As in [`Curve::handles`].
+    pub handles: Vec<[f64; 2]>,
 }
 
 /// A box in which the curve may be singular, or could not be resolved.
@@ -133,6 +174,8 @@ pub struct CurveSolver {
     /// The largest distance of the polylines from the curve, and of the curve from them, in the domain's units; plus the amount by which rounding
     /// errors (and stated errors) of the coefficients move the curve.
     pub tolerance: f64,
+    /// Chords or cubics between vertices.
+    pub shape: CurveShape,
     points: PointSolver,
 }
 
@@ -154,8 +197,31 @@ impl CurveSolver {
         Self {
             options,
             tolerance,
+            shape: CurveShape::default(),
             points: PointSolver::default(),
         }
+    }
+
+    /// Makes the curves of cubics instead of chords.
+    ///
+    /// ```
+    /// use sweepsim_solve::{CurveSolver, Enclosure, System};
+    ///
+    /// let domain = [Enclosure::new(-2.0, 2.0)?; 2];
+    /// let system = System::parse(&["x^2 + y^2 = 1"], &["x", "y"], &domain)?;
+    /// let curves = CurveSolver::new(1e-10).cubics().solve(&system, &())?;
+    /// let circle = &curves.curves[0];
+    /// assert!(circle.segments() < 400);
+    /// let [a, b, c, d] = circle.cubic(0).ok_or("no segment")?;
+    /// // Its middle is within the tolerance of the circle.
+    /// let middle = |j: usize| (a[j] + 3.0 * b[j] + 3.0 * c[j] + d[j]) / 8.0;
+    /// assert!((middle(0).hypot(middle(1)) - 1.0).abs() < 1e-10);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn cubics(mut self) -> Self {
+        self.shape = CurveShape::Cubics;
+        self
     }
 
     /// All curves of the system in its region.
@@ -163,7 +229,8 @@ impl CurveSolver {
     /// # Errors
     ///
     /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
-    /// there is one equation fewer, [`SolveError::Smallest`] for an invalid size or tolerance.
+    /// there is one equation fewer, [`SolveError::Smallest`] for an invalid size or tolerance, [`SolveError::Cubics`] for cubics of a system
+    /// with an expression.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Curves, SolveError> {
         self.check(system)?;
         let mut search = self.search(system, monitor);
@@ -193,6 +260,9 @@ impl CurveSolver {
         if !possible {
             return Err(SolveError::Smallest);
         }
+        if self.shape == CurveShape::Cubics && system.layout.tape.is_some() {
+            return Err(SolveError::Cubics);
+        }
         Ok(())
     }
 
@@ -207,7 +277,7 @@ impl CurveSolver {
             system,
             options: self.options.clone(),
             points: &mut self.points,
-            tracer: Tracer::new(system, self.tolerance, &self.options, monitor),
+            tracer: Tracer::new(system, (self.tolerance, self.shape), &self.options, monitor),
             crossings: Vec::new(),
             pieces: Vec::new(),
             open: Vec::new(),
@@ -269,10 +339,11 @@ impl CurveSolver {
         let (root, first, skin) = search.boundary(monitor);
         search.run(root, first, monitor, &mut |tracer, pieces| {
             for piece in pieces.drain(..) {
-                tracer.room += piece.vertices.len();
+                tracer.room += piece.trace.vertices.len();
                 visit(CurvePiece {
                     ends: piece.ends,
-                    points: piece.vertices.iter().map(|v| tracer.outer(v)).collect(),
+                    points: piece.trace.vertices.iter().map(|v| tracer.outer(v)).collect(),
+                    handles: piece.trace.handles,
                 });
             }
         });

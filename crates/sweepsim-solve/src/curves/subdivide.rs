@@ -1,7 +1,7 @@
 //! The search: crossings of faces, cells that are graphs, splits that avoid known crossings.
 
 use super::graph::{graph, minor};
-use super::trace::{Tracer, Vertex};
+use super::trace::{Trace, Tracer};
 use crate::coefficients::{Cell, excluded, pop, push, within_domain};
 use crate::numbers::{CUT, MAX_UNKNOWNS, Row};
 use crate::points::PointSolver;
@@ -22,7 +22,7 @@ pub(crate) struct FaceCrossing {
 /// A piece of the curve in a settled cell.
 pub(super) struct GraphPiece {
     pub ends: [usize; 2],
-    pub vertices: Vec<Vertex>,
+    pub trace: Trace,
 }
 
 /// An open cell with its crossings.
@@ -235,17 +235,14 @@ impl Search<'_> {
             for pair in sorted.chunks_exact(2) {
                 let ends = [&self.crossings[pair[0]], &self.crossings[pair[1]]];
                 match self.tracer.piece(cell, &graph, ends) {
-                    Some(mut vertices) => {
+                    Some(mut trace) => {
                         let mut ends = [pair[0], pair[1]];
                         // The wedge product's entry k is (−1)ᵏ times the minor without column k.
                         if (graph.sign < 0) == (over % 2 == 0) {
                             ends.reverse();
-                            vertices.reverse();
-                            for v in &mut vertices {
-                                v.tangent.iter_mut().for_each(|x| *x = -*x);
-                            }
+                            trace.reverse();
                         }
-                        traced.push(GraphPiece { ends, vertices });
+                        traced.push(GraphPiece { ends, trace });
                     }
                     None if self.tracer.stopped.is_some() => return Err(over),
                     None => break,
@@ -255,7 +252,7 @@ impl Search<'_> {
                 self.pieces.append(&mut traced);
                 return Ok(Fate::Certified);
             }
-            self.tracer.room += traced.iter().map(|t| t.vertices.len()).sum::<usize>();
+            self.tracer.room += traced.iter().map(|t| t.trace.vertices.len()).sum::<usize>();
         }
         // Split where the derivatives vary most, relative to the equations' slopes.
         let mut weight = [0.0; MAX_UNKNOWNS];

@@ -5,9 +5,10 @@
 //! Where that is more than the tolerance, the part is halved at a point of the curve. The part of `half` due to errors of the coefficients is not counted:
 //! near singular points it may exceed any tolerance, and halving does not help.
 
-use super::CurvePoint;
+use super::cubic::{self, Span};
 use super::graph::{Graph, Tube, minor, tube, without};
 use super::subdivide::FaceCrossing;
+use super::{CurvePoint, CurveShape};
 use crate::coefficients::Cell;
 use crate::numbers::double::Double;
 use crate::numbers::{MAX_UNKNOWNS, Row, apply, inverse};
@@ -19,6 +20,25 @@ use crate::{Monitor, System};
 pub(crate) struct Vertex {
     pub point: Row,
     pub tangent: Row,
+}
+
+/// A traced piece.
+pub(crate) struct Trace {
+    pub vertices: Vec<Vertex>,
+    /// The lengths of the handles of the cubics between vertices; none for chords.
+    pub handles: Vec<[f64; 2]>,
+}
+
+impl Trace {
+    /// The same piece in the other direction.
+    pub(super) fn reverse(&mut self) {
+        self.vertices.reverse();
+        for v in &mut self.vertices {
+            v.tangent.iter_mut().for_each(|x| *x = -*x);
+        }
+        self.handles.reverse();
+        self.handles.iter_mut().for_each(|h| h.reverse());
+    }
 }
 
 /// The maximum number of halvings before a piece is given up.
@@ -46,6 +66,7 @@ const HOPELESS: f64 = 16.0;
 pub(crate) struct Tracer<'a> {
     system: &'a System,
     tolerance: f64,
+    shape: CurveShape,
     monitor: &'a dyn Monitor,
     watch: Watch,
     /// How many vertices may still be stored.
@@ -58,10 +79,16 @@ pub(crate) struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    pub(crate) fn new(system: &'a System, tolerance: f64, options: &SolveOptions, monitor: &'a dyn Monitor) -> Self {
+    pub(crate) fn new(
+        system: &'a System,
+        (tolerance, shape): (f64, CurveShape),
+        options: &SolveOptions,
+        monitor: &'a dyn Monitor,
+    ) -> Self {
         Self {
             system,
             tolerance,
+            shape,
             monitor,
             watch: Watch::new(options),
             room: options.vertices,
@@ -76,24 +103,20 @@ impl<'a> Tracer<'a> {
         &mut self.doubles
     }
 
-    /// The vertices from one end to the other, `ends` being sorted by the graph's variable.
-    pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&FaceCrossing; 2]) -> Option<Vec<Vertex>> {
-        let mut vertices = vec![self.vertex(cell, graph, &ends[0].point)];
+    /// The vertices from one end to the other, `ends` being sorted by the graph's variable, and the handles of cubics between them.
+    pub(crate) fn piece(&mut self, cell: &Cell, graph: &Graph, ends: [&FaceCrossing; 2]) -> Option<Trace> {
+        let mut trace = Trace {
+            vertices: vec![self.vertex(cell, graph, &ends[0].point)],
+            handles: Vec::new(),
+        };
         let mut parts = std::mem::take(&mut self.parts);
         parts.resize_with(DEPTH + 2, Cell::default);
         parts[0].clone_from(cell);
-        let done = self.halve(
-            cell,
-            &mut parts,
-            graph,
-            [ends[0].point, ends[1].point],
-            1,
-            &mut vertices,
-        );
+        let done = self.halve(cell, &mut parts, graph, [ends[0].point, ends[1].point], 1, &mut trace);
         self.parts = parts;
         done?;
-        self.room = self.room.saturating_sub(vertices.len());
-        Some(vertices)
+        self.room = self.room.saturating_sub(trace.vertices.len());
+        Some(trace)
     }
 
     /// Adds the vertices after the first end; `None` if that fails or tracing [stops](Self::stopped). The part of the cell in which the curve between the
@@ -105,13 +128,13 @@ impl<'a> Tracer<'a> {
         graph: &Graph,
         ends: [Row; 2],
         depth: usize,
-        out: &mut Vec<Vertex>,
+        out: &mut Trace,
     ) -> Option<()> {
         self.stopped = if self.monitor.cancelled() {
             Some(Cause::Cancelled)
         } else if self.watch.late() {
             Some(Cause::Time)
-        } else if out.len() >= self.room {
+        } else if out.vertices.len() >= self.room {
             Some(Cause::Vertices)
         } else {
             None
@@ -122,10 +145,19 @@ impl<'a> Tracer<'a> {
         let close = {
             let (before, after) = parts.split_at_mut(depth);
             after[0].clone_from(&before[depth - 1]);
-            self.within_tolerance(&mut after[0], graph.over, ends[0][graph.over], ends[1][graph.over])
+            match self.shape {
+                CurveShape::Chords => {
+                    self.within_tolerance(&mut after[0], graph.over, ends[0][graph.over], ends[1][graph.over])
+                }
+                CurveShape::Cubics => {
+                    let handles = self.cubic_handles(cell, graph, &mut after[0], &ends);
+                    out.handles.extend(handles);
+                    handles.is_some()
+                }
+            }
         };
         if close || depth > DEPTH {
-            out.push(self.vertex(cell, graph, &ends[1]));
+            out.vertices.push(self.vertex(cell, graph, &ends[1]));
             return close.then_some(());
         }
         let middle = self.between(cell, graph, &ends)?;
@@ -133,8 +165,90 @@ impl<'a> Tracer<'a> {
         self.halve(cell, parts, graph, [middle, ends[1]], depth + 1, out)
     }
 
+    /// The lengths of a cubic's handles between two points of the curve, if the cubic is within the tolerance. Restricts the part as
+    /// [`within_tolerance`](Self::within_tolerance) does, but with room for the control points, which lie farther out than the curve.
+    fn cubic_handles(&mut self, cell: &Cell, graph: &Graph, part: &mut Cell, ends: &[Row; 2]) -> Option<[f64; 2]> {
+        let layout = &self.system.layout;
+        let (n, over) = (layout.n, graph.over);
+        let directions = [0, 1].map(|k| {
+            let mut d = self.direction(cell, &ends[k]);
+            if d[over] < 0.0 {
+                d.iter_mut().for_each(|x| *x = -*x);
+            }
+            d
+        });
+        self.narrow(part, over, [ends[0][over], ends[1][over]], 2.0, f64::INFINITY);
+        // Over the variable along which the curve is longest, at the end where that is the least: a cubic over another one is a poor approximation near
+        // a point where the curve turns back in that. The bound of the distance proves that the curve in the part is a graph over this one as well.
+        let along = {
+            let share = |j: usize| {
+                let shares = directions.map(|d| {
+                    let width = |i: usize| d[i].abs() * self.system.domain_width(i);
+                    width(j) / (0..n).fold(0.0, |m: f64, i| m.max(width(i)))
+                });
+                shares[0].min(shares[1])
+            };
+            (0..n).fold(over, |best, j| if share(j) > share(best) { j } else { best })
+        };
+        let length = ends[1][along] - ends[0][along];
+        let forward = directions.iter().all(|d| length * d[along] > 0.0);
+        if !forward {
+            return None;
+        }
+        let mut span = Span {
+            ends: [[0.0; MAX_UNKNOWNS]; 2],
+            along: [[0.0; MAX_UNKNOWNS]; 2],
+        };
+        let mut units = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            let side = part.hi[j] - part.lo[j];
+            units[j] = side * (self.system.domain_width(j) / self.tolerance);
+            for k in 0..2 {
+                span.ends[k][j] = (ends[k][j] - part.lo[j]) / side;
+                span.along[k][j] = length * (directions[k][j] / directions[k][along]) / side;
+            }
+        }
+        layout.ranges(part);
+        let handles = span.fit(layout, part, along, &units, &mut self.buffer);
+        let mut control = span.control(handles, n);
+        let mut moved = [0.0; MAX_UNKNOWNS];
+        for j in 0..n {
+            for u in &mut control[j] {
+                // Crossings of faces lie outside by their rounding.
+                let inside = u.clamp(0.0, 1.0);
+                let off = (*u - inside).abs();
+                if !(off <= BESIDE) {
+                    return None;
+                }
+                moved[j] = f64::max(moved[j], off);
+                *u = inside;
+            }
+        }
+        let distance = cubic::distance(layout, part, along, &control)?;
+        let mut square = 0.0;
+        for j in 0..n {
+            square += ((distance[j] + moved[j]) * units[j]).powi(2);
+        }
+        let close = square <= 1.0;
+        close.then(|| {
+            [0, 1].map(|k| {
+                let d = &directions[k];
+                let width = |j: usize| self.system.domain_width(j) * (d[j] / d[along]).abs();
+                let largest = (0..n).fold(0.0, |m: f64, j| m.max(width(j)));
+                let square: f64 = (0..n).map(|j| (width(j) / largest).powi(2)).sum();
+                handles[k] * length.abs() * largest * square.sqrt()
+            })
+        })
+    }
+
     /// Restricts the part to an interval of the graph's variable and to the tube there; returns whether the tube is thin enough.
     fn within_tolerance(&self, part: &mut Cell, over: usize, from: f64, to: f64) -> bool {
+        self.narrow(part, over, [from, to], 1.0, HOPELESS)
+    }
+
+    /// As [`within_tolerance`](Self::within_tolerance); tubes count with `slack` times their thickness, and only tubes thicker than `hopeless` tolerances are
+    /// not narrowed further.
+    fn narrow(&self, part: &mut Cell, over: usize, [from, to]: [f64; 2], slack: f64, hopeless: f64) -> bool {
         let layout = &self.system.layout;
         let n = layout.n;
         if to - from > SHORTEST * (part.hi[over] - part.lo[over]) && from >= part.lo[over] && to <= part.hi[over] {
@@ -161,7 +275,7 @@ impl<'a> Tracer<'a> {
                 let scale = side * (self.system.domain_width(j) / self.tolerance);
                 let error = 2.0 * (half[place] - noise[place]).max(0.0) * scale;
                 square += error * error;
-                let reach = 0.5 * slope[place].abs() + half[place];
+                let reach = 0.5 * slope[place].abs() + slack * half[place];
                 let lo = (part.lo[j] + (0.5 + centre[place] - 1.05 * reach) * side).max(part.lo[j]);
                 let hi = (part.lo[j] + (0.5 + centre[place] + 1.05 * reach) * side).min(part.hi[j]);
                 windows[j] = (lo, hi);
@@ -177,7 +291,7 @@ impl<'a> Tracer<'a> {
                     layout.restrict(part, j, lo, hi);
                 }
             }
-            if square > HOPELESS * HOPELESS {
+            if square > hopeless * hopeless {
                 return false;
             }
         }
@@ -221,6 +335,26 @@ impl<'a> Tracer<'a> {
 
     /// The point with its tangent, towards increasing values of the graph's variable.
     fn vertex(&mut self, cell: &Cell, graph: &Graph, point: &Row) -> Vertex {
+        let n = self.system.layout.n;
+        let mut tangent = self.direction(cell, point);
+        let mut largest: f64 = 0.0;
+        for j in 0..n {
+            largest = largest.max(tangent[j].abs() * self.system.domain_width(j));
+        }
+        let forward = if tangent[graph.over] < 0.0 { -1.0 } else { 1.0 };
+        let mut square = 0.0;
+        for j in 0..n {
+            // In the domain's units. Only at the end, since the product of all units may be too large or too small a number.
+            tangent[j] *= self.system.domain_width(j) / largest;
+            square += tangent[j] * tangent[j];
+        }
+        let factor = forward / f64::sqrt(square);
+        tangent.iter_mut().for_each(|x| *x *= factor);
+        Vertex { point: *point, tangent }
+    }
+
+    /// The direction of the curve at a point, in inner coordinates, of any length.
+    fn direction(&mut self, cell: &Cell, point: &Row) -> Row {
         let layout = &self.system.layout;
         let (n, m) = (layout.n, layout.m);
         let mut s = [0.0; MAX_UNKNOWNS];
@@ -233,23 +367,12 @@ impl<'a> Tracer<'a> {
             let length = row[..n].iter().fold(0.0, |l: f64, x| l.max(x.abs()));
             row.iter_mut().for_each(|x| *x /= length);
         }
-        let mut tangent = [0.0; MAX_UNKNOWNS];
-        let mut largest: f64 = 0.0;
+        let mut direction = [0.0; MAX_UNKNOWNS];
         for j in 0..n {
             let sign = if j % 2 == 0 { 1.0 } else { -1.0 };
-            // In the domain's units. Only at the end, since the product of all units may be too large or too small a number.
-            tangent[j] = sign * minor(&jacobian, j, m) * (cell.hi[j] - cell.lo[j]);
-            largest = largest.max(tangent[j].abs() * self.system.domain_width(j));
+            direction[j] = sign * minor(&jacobian, j, m) * (cell.hi[j] - cell.lo[j]);
         }
-        let forward = if tangent[graph.over] < 0.0 { -1.0 } else { 1.0 };
-        let mut square = 0.0;
-        for j in 0..n {
-            tangent[j] *= self.system.domain_width(j) / largest;
-            square += tangent[j] * tangent[j];
-        }
-        let factor = forward / f64::sqrt(square);
-        tangent.iter_mut().for_each(|x| *x *= factor);
-        Vertex { point: *point, tangent }
+        direction
     }
 
     /// A vertex in the domain's coordinates.
