@@ -17,8 +17,9 @@ use std::process::ExitCode;
 #[must_use]
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
-        Command::Simulate(options) => commands::run(commands::Task::Simulate, &options),
-        Command::Sweep(options) => commands::run(commands::Task::Sweep, &options),
+        Command::Simulate(options) => commands::run(commands::Task::Simulate, &options, false),
+        Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, false),
+        Command::Verify { run, first } => commands::run(commands::Task::Verify, &run, first),
         Command::Section(options) => commands::section(&options),
         Command::Inspect { file } => commands::inspect(&file).map(|()| ExitCode::SUCCESS),
         Command::Convert(options) => commands::convert(&options).map(|()| ExitCode::SUCCESS),

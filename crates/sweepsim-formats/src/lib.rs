@@ -61,6 +61,7 @@ pub use meshes::{
     write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    Collision, ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, Report, ReportedDexel,
+    ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, PathSummary, Report, ReportedDexel,
+    ReportedFinding, ReportedRegion, Verdict,
 };
 pub use sweepsim_nc::shortest;

@@ -33,9 +33,18 @@ pub struct Report {
     /// Where too little was removed (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub excess: Option<DeviationSummary>,
-    /// Collisions of the tool (`verify`).
+    /// `pass` or `fail` (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub collisions: Option<Vec<Collision>>,
+    pub verdict: Option<Verdict>,
+    /// The moves that do harm, in the program's order, then the places where too much is left (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub findings: Option<Vec<ReportedFinding>>,
+    /// Where the result deviates from the target by more than its limits (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regions: Option<Vec<ReportedRegion>>,
+    /// What each path removes (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub paths: Option<Vec<PathSummary>>,
     /// What was ignored or decided while reading the job and its files.
     pub notes: Vec<String>,
 }
@@ -89,17 +98,80 @@ pub struct DeviationSummary {
     pub area: f64,
 }
 
-/// A collision of the tool with something that it must not touch.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Collision {
+/// Whether a program may be run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// Nothing was found, and the result is within its limits.
+    Pass,
+    /// Something was found.
+    Fail,
+}
+
+/// A move that does harm, or a place where too much is left.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ReportedFinding {
+    /// `collision`, `rapid`, `fixture`, `gouge`, `excess`, `spindle`, `feed` or `limit`.
+    pub kind: String,
+    /// The tool's number; none for an excess.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tool: Option<u32>,
+    /// The body that touches, if it is not the cutter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub body: Option<String>,
     /// The path of the job, from 0.
-    pub path: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub path: Option<usize>,
     /// The move of the path, from 0.
-    pub r#move: usize,
-    /// The position.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub r#move: Option<usize>,
+    /// The program's file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The line of the file, from 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<usize>,
+    /// The text of the line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    /// When it begins, as a fraction of the move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time: Option<f64>,
+    /// Where.
     pub place: [f64; 3],
-    /// The depth.
+    /// The depth, in mm.
     pub depth: f64,
+    /// The volume, in mm³.
+    pub volume: f64,
+}
+
+/// A connected piece of material that is missing, or left, beyond its limit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ReportedRegion {
+    /// `gouge` or `excess`.
+    pub kind: String,
+    /// The point farthest from the target's surface.
+    pub place: [f64; 3],
+    /// How far that is, in mm.
+    pub depth: f64,
+    /// The area as seen along the dexels, in mm².
+    pub area: f64,
+    /// The volume beyond the limit, in mm³.
+    pub volume: f64,
+}
+
+/// What a path removes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct PathSummary {
+    /// The tool's number.
+    pub tool: u32,
+    /// The moves of the path.
+    pub moves: usize,
+    /// The volume, in mm³.
+    pub removed: f64,
 }
 
 /// How a part differs from its target. Lengths are in mm, areas in mm², volumes in mm³.

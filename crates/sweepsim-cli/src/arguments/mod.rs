@@ -11,7 +11,7 @@ use values::{area, camera, cells, parsed, plane, section, size, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
-/// Exit status: 0 done; 2 bad input or usage; 3 done, but some dexels are unresolved (the report lists them); 130 interrupted.
+/// Exit status: 0 done; 1 `verify` found a fault; 2 bad input or usage; 3 done, but some dexels are unresolved (the report lists them); 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(name = "sweepsim", version, max_term_width = 100)]
 pub(crate) struct Arguments {
@@ -23,6 +23,15 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Moves the tools of a job through its stock, and writes the remaining part as dexels, mesh, picture and report.
     Simulate(RunOptions),
+    /// Judges a job's moves in their order: collisions of shanks and holders, rapids through material, fixtures, and gouges and excess against the
+    /// target. The same outputs as `simulate`; exit status 1 if anything is found.
+    Verify {
+        #[command(flatten)]
+        run: RunOptions,
+        /// Ends at the first finding.
+        #[arg(long)]
+        first: bool,
+    },
     /// Writes the volume that the tools of a job sweep, without stock: the same outputs.
     Sweep(RunOptions),
     /// Cuts the volume that the tools of a job sweep by a plane: a drawing and a table of points.

@@ -9,6 +9,7 @@ mod section;
 mod summary;
 mod task;
 mod tri_surface;
+mod verify;
 
 pub(crate) use compare::compare;
 pub(crate) use convert::convert;

@@ -70,7 +70,7 @@ fn html(page: &Page) -> String {
         "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>{name} — sweepsim</title>\n<style>{STYLE}</style>\n<main>\n<h1>{name}</h1>\n<p class=\"lead\">{}, {} on {} × {} dexels, tolerance {} mm</p>\n",
         match page.task {
-            Task::Simulate => "What is left of the stock",
+            Task::Simulate | Task::Verify => "What is left of the stock",
             Task::Sweep => "The swept volume",
         },
         words::counted(report.moves as u64, "move"),

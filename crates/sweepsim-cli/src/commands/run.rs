@@ -4,6 +4,7 @@ use super::page::Page;
 use super::summary::{NAMED, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
+use super::verify::verified;
 use crate::arguments::{Output, RunOptions};
 use crate::session::{Failure, JobSession, phase, picture, print, words};
 use std::io::Write as _;
@@ -11,7 +12,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh};
-use sweepsim_formats::{Job, Report, ReportedDexel, write_dexels_binary, write_dexels_csv, write_ply};
+use sweepsim_formats::{Job, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_ply};
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
 const CHORD: f64 = 0.02;
@@ -26,7 +27,7 @@ struct Outcome {
 }
 
 /// Runs a job and writes its outputs.
-pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure> {
+pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let mut report = Report::default();
     let job = phase(&mut report, "read", || read(options))?;
@@ -43,7 +44,7 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         .build()
         .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
     let threads = pool.current_num_threads();
-    let outcome = pool.install(|| work(task, &mut session, options, &mut report));
+    let outcome = pool.install(|| work(task, &mut session, options, first, &mut report));
     session.progress.finish();
     let outcome = outcome?;
     let page = Page {
@@ -71,7 +72,9 @@ pub(crate) fn run(task: Task, options: &RunOptions) -> Result<ExitCode, Failure>
         summary(task, &session, &report, threads, total).print()?;
     }
     let certified = outcome.statistics.unresolved.is_empty() && outcome.uncertified == 0;
-    Ok(if certified {
+    Ok(if report.verdict == Some(Verdict::Fail) {
+        ExitCode::FAILURE
+    } else if certified {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(3)
@@ -91,8 +94,14 @@ fn read(options: &RunOptions) -> Result<Job, Failure> {
 }
 
 /// Computes the result, and writes everything but the report.
-fn work(task: Task, session: &mut JobSession, options: &RunOptions, report: &mut Report) -> Result<Outcome, Failure> {
-    let mut outcome = compute(task, session, options, report)?;
+fn work(
+    task: Task,
+    session: &mut JobSession,
+    options: &RunOptions,
+    first: bool,
+    report: &mut Report,
+) -> Result<Outcome, Failure> {
+    let mut outcome = compute(task, session, options, first, report)?;
     session.progress.check()?;
     describe(report, session, options, &outcome);
     write_dexels(&outcome, session, report)?;
@@ -113,7 +122,13 @@ fn json(report: &Report) -> Result<String, Failure> {
 }
 
 /// Computes the dexels along z.
-fn compute(task: Task, session: &JobSession, options: &RunOptions, report: &mut Report) -> Result<Outcome, Failure> {
+fn compute(
+    task: Task,
+    session: &JobSession,
+    options: &RunOptions,
+    first: bool,
+    report: &mut Report,
+) -> Result<Outcome, Failure> {
     let (job, progress) = (&session.job, &session.progress);
     let cuts = session.cuts();
     let sweeping = sweeping(job, options);
@@ -133,6 +148,15 @@ fn compute(task: Task, session: &JobSession, options: &RunOptions, report: &mut 
                 volume_removed: Some(before - done.remaining.volume()),
                 dexels: done.remaining,
                 statistics: done.statistics,
+                uncertified: 0,
+            })
+        }
+        Task::Verify => {
+            let done = verified(session, options, first, report)?;
+            Ok(Outcome {
+                dexels: done.remaining,
+                statistics: done.statistics,
+                volume_removed: Some(done.volume_removed),
                 uncertified: 0,
             })
         }
@@ -168,7 +192,7 @@ fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, out
         .collect();
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
-    report.notes = session.notes();
+    report.notes.splice(0..0, session.notes());
     if options.boundary == BoundaryOperator::Paper {
         let note = "intervals were found by the paper's boundary operator, which fails where a sweep overlaps itself; nothing was audited";
         report.notes.push(note.to_owned());

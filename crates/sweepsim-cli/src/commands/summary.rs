@@ -2,7 +2,7 @@
 
 use super::task::Task;
 use crate::session::{JobSession, Lines, words};
-use sweepsim_formats::Report;
+use sweepsim_formats::{Report, ReportedFinding, Verdict};
 
 /// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
 pub(crate) const NAMED: usize = 10;
@@ -11,6 +11,7 @@ pub(crate) const NAMED: usize = 10;
 pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads: usize, total: f64) -> Lines {
     let mut lines = Lines::default();
     let mut line = |label: &str, value: &str| lines.line(label, value);
+    verdict(&mut line, report);
     let [nx, ny] = report.cells;
     let moves = words::counted(report.moves as u64, "move");
     let tools = words::counted(session.job.tools.len() as u64, "tool");
@@ -42,7 +43,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
         (0, repaired) => format!("all certified, {} after a repair", words::count(repaired)),
         (open, _) => format!("{} UNRESOLVED", words::count(open)),
     };
-    let what = if task == Task::Simulate {
+    let what = if task != Task::Sweep {
         "with material left"
     } else {
         "touched"
@@ -79,4 +80,74 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
     }
     line("out", &session.outputs.listed());
     lines
+}
+
+/// The verdict, and the first findings.
+fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
+    let (Some(verdict), Some(findings)) = (report.verdict, &report.findings) else {
+        return;
+    };
+    if verdict == Verdict::Pass {
+        line("verdict", "PASS: nothing was found that does harm");
+    } else {
+        let mut counts: Vec<(&str, u64)> = Vec::new();
+        for finding in findings {
+            match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((&finding.kind, 1)),
+            }
+        }
+        let counts: Vec<String> = counts
+            .iter()
+            .map(|(kind, count)| match *kind {
+                "collision" => words::counted(*count, "collision"),
+                "rapid" => format!("{} through material", words::counted(*count, "rapid move")),
+                "fixture" => format!("{} into a fixture", words::counted(*count, "move")),
+                "gouge" => words::counted(*count, "gouging move"),
+                "excess" => format!("{} with material left", words::counted(*count, "place")),
+                "spindle" => format!("{} with the spindle stopped", words::counted(*count, "cut")),
+                "feed" => format!("{} without a feed", words::counted(*count, "cut")),
+                kind => words::counted(*count, kind),
+            })
+            .collect();
+        line("verdict", &format!("FAIL: {}", counts.join(", ")));
+    }
+    for finding in findings.iter().take(NAMED) {
+        line(&finding.kind, &sentence(finding));
+    }
+    if findings.len() > NAMED {
+        line(
+            "",
+            &format!("… and {} more, all listed in the report", findings.len() - NAMED),
+        );
+    }
+    for (name, found) in [("gouge", report.gouge), ("excess", report.excess)] {
+        if let Some(found) = found {
+            // Rounding is nothing.
+            let max = if found.max < 1e-9 { 0.0 } else { found.max };
+            line(name, &format!("at most {} mm", words::measure(max)));
+        }
+    }
+}
+
+/// A finding in one line.
+fn sentence(finding: &ReportedFinding) -> String {
+    let mut text = match (&finding.file, finding.line, finding.path, finding.r#move) {
+        (Some(file), Some(line), ..) => format!("{file}:{line}: "),
+        (_, _, Some(path), Some(number)) => format!("path {path}, move {number}: "),
+        _ => String::new(),
+    };
+    if let Some(tool) = finding.tool {
+        let part = finding.body.as_deref().unwrap_or("cutter");
+        text += &format!("{part} of tool {tool}, ");
+    }
+    let [x, y, z] = finding.place.map(|c| format!("{c:.3}"));
+    text += &format!("{} mm deep at ({x}, {y}, {z})", words::measure(finding.depth));
+    if let Some(time) = finding.time {
+        text += &format!(", from {:.1} % of the move", 100.0 * time);
+    }
+    if let Some(program) = &finding.text {
+        text += &format!(" | {program}");
+    }
+    text
 }

@@ -11,6 +11,8 @@ pub(crate) enum Task {
     Simulate,
     /// The swept volume.
     Sweep,
+    /// The remaining stock, and all that is wrong with the program.
+    Verify,
 }
 
 /// The options of the sweep.

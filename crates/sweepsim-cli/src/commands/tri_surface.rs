@@ -75,7 +75,7 @@ pub(crate) fn surface(
     let (min, max, cells) = ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize]);
     let wrong = |error: &dyn std::error::Error| Failure::message(format!("--tri: {error}"));
     let stock = phase(report, "stock", || match task {
-        Task::Simulate => TriDexels::new(min, max, cells, &job.stock),
+        Task::Simulate | Task::Verify => TriDexels::new(min, max, cells, &job.stock),
         Task::Sweep => TriDexels::empty(min, max, cells),
     });
     let [along_x, along_y, _] = stock.map_err(|error| wrong(&error))?.into_sets();
@@ -108,7 +108,7 @@ fn cut(
     monitor: &dyn Monitor,
 ) -> Result<(Dexels, usize), SweepError> {
     let (set, statistics) = match task {
-        Task::Simulate => {
+        Task::Simulate | Task::Verify => {
             let done = simulate(set, cuts, options, monitor)?;
             (done.remaining, done.statistics)
         }

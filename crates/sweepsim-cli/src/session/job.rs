@@ -28,6 +28,11 @@ impl JobSession {
         })
     }
 
+    /// The job's file.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
     /// The tools of the job, and their paths.
     pub fn cuts(&self) -> Vec<Cut<'_>> {
         cuts_of(&self.job)

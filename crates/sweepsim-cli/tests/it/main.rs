@@ -4,3 +4,4 @@ mod command;
 mod directions;
 mod exchange;
 mod support;
+mod verify;

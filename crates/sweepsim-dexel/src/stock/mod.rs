@@ -101,7 +101,87 @@ pub(super) fn end(z: f64, normal: [f64; 3]) -> End {
     }
 }
 
+/// A box: its lowest and highest corner.
+type Corners = [[f64; 3]; 2];
+
+fn hull(corners: impl Iterator<Item = [f64; 3]>) -> Option<Corners> {
+    corners.fold(None, |all: Option<Corners>, p| {
+        let [low, high] = all.unwrap_or([p, p]);
+        let [low, high] = [
+            [0, 1, 2].map(|k| low[k].min(p[k])),
+            [0, 1, 2].map(|k| high[k].max(p[k])),
+        ];
+        Some([low, high])
+    })
+}
+
 impl Stock {
+    /// A box along the axes of the world that holds the stock: its lowest and highest corner. `None` if there is no material.
+    ///
+    /// ```
+    /// use sweepsim_dexel::Stock;
+    /// let ball = Stock::Ball { centre: [1.0, 2.0, 3.0], radius: 1.0 };
+    /// assert_eq!(ball.bounds(), Some([[0.0, 1.0, 2.0], [2.0, 3.0, 4.0]]));
+    /// ```
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        match self {
+            Self::Block { min, max } => Some([*min, *max]),
+            Self::Cylinder {
+                base,
+                axis,
+                radius,
+                height,
+            } => {
+                let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+                let way = axis.map(|c| c / length);
+                let around = way.map(|c| radius * (1.0 - c * c).max(0.0).sqrt());
+                let top = [0, 1, 2].map(|k| base[k] + height * way[k]);
+                let corner = |end: [f64; 3], sign: f64| [0, 1, 2].map(|k| end[k] + sign * around[k]);
+                hull(
+                    [*base, top]
+                        .into_iter()
+                        .flat_map(|end| [corner(end, -1.0), corner(end, 1.0)]),
+                )
+            }
+            Self::Ball { centre, radius } => Some([centre.map(|c| c - radius), centre.map(|c| c + radius)]),
+            Self::Mesh(soup) => hull(soup.triangles.iter().flatten().copied()),
+            Self::Dexels(dexels) => {
+                let (grid, spacing) = (dexels.grid(), dexels.grid().spacing());
+                let corners = dexels.iter().flat_map(|(line, intervals)| {
+                    let (i, j) = grid.place(line);
+                    let (x, y) = (grid.x(i), grid.y(j));
+                    let ends: Vec<f64> = intervals.heights().flatten().collect();
+                    ends.into_iter().flat_map(move |z| {
+                        let half = spacing.map(|s| 0.5 * s);
+                        let corner = |a: f64, b: f64| grid.frame().to_world([x + a * half[0], y + b * half[1], z]);
+                        [
+                            corner(-1.0, -1.0),
+                            corner(1.0, -1.0),
+                            corner(-1.0, 1.0),
+                            corner(1.0, 1.0),
+                        ]
+                    })
+                });
+                hull(corners)
+            }
+            Self::Union(parts) => hull(parts.iter().filter_map(Self::bounds).flatten()),
+            Self::Intersection(parts) => {
+                let mut all: Option<Corners> = None;
+                for part in parts {
+                    let [low, high] = part.bounds()?;
+                    let [a, b] = all.unwrap_or([low, high]);
+                    all = Some([
+                        [0, 1, 2].map(|k| a[k].max(low[k])),
+                        [0, 1, 2].map(|k| b[k].min(high[k])),
+                    ]);
+                }
+                all.filter(|[low, high]| (0..3).all(|k| low[k] < high[k]))
+            }
+            Self::Difference(whole, _) => whole.bounds(),
+        }
+    }
+
     /// The dexels of the stock. The stock is in world coordinates; the grid may be in a frame.
     ///
     /// ```

@@ -74,6 +74,8 @@ pub struct Job {
     pub bodies: BTreeMap<u32, Vec<Body>>,
     /// The paths, in the order of cutting.
     pub paths: Vec<JobPath>,
+    /// Clamps, vices and tables, which nothing may touch.
+    pub fixtures: Vec<Stock>,
     /// The design part.
     pub target: Option<Target>,
     /// How far the result may deviate from the target.

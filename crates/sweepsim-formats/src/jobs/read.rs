@@ -115,6 +115,15 @@ impl JobReader<'_> {
         for (index, path) in raw.paths.iter().enumerate() {
             paths.extend(self.path(index, path, &tools, tolerance)?);
         }
+        let mut fixtures = Vec::with_capacity(raw.fixtures.len());
+        for (index, fixture) in raw.fixtures.iter().enumerate() {
+            let steps: [Step; 2] = ["fixtures".into(), Step::Item(index)];
+            if let schema::Stock::Dexels(_) = fixture {
+                let problem = Problem::syntax("a fixture cannot be dexels: expected a solid or a mesh");
+                return Err(self.error(problem, &steps));
+            }
+            fixtures.push(self.stock(fixture, &steps, &grid)?);
+        }
         let target = match &raw.target {
             None => None,
             Some(schema::Target::Mesh(name)) => Some(Target {
@@ -150,6 +159,7 @@ impl JobReader<'_> {
             tools,
             bodies,
             paths,
+            fixtures,
             target,
             limits,
             notes,

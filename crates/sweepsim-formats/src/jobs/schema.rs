@@ -21,6 +21,8 @@ pub(crate) struct Job {
     pub bodies: BTreeMap<u32, Vec<Body>>,
     pub paths: Vec<Path>,
     #[serde(default)]
+    pub fixtures: Vec<Stock>,
+    #[serde(default)]
     pub target: Option<Target>,
     #[serde(default)]
     pub limits: Option<Limits>,

@@ -69,7 +69,7 @@ fn every_example_is_read() {
     let guide = guide();
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
-    for name in ["stock.stl", "part.stl"] {
+    for name in ["stock.stl", "part.stl", "clamp.stl"] {
         let mut stl = Vec::new();
         write_stl(&CUBE, &mut stl).unwrap();
         fs::write(path(name), stl).unwrap();

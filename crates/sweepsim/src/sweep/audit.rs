@@ -18,15 +18,22 @@ use sweepsim_solve::Cause;
 pub(crate) struct SweptLines {
     pub lines: Vec<(u32, Vec<Interval>)>,
     pub unresolved: Vec<UnresolvedDexel>,
+    /// The number of crossings.
+    pub crossings: u64,
 }
 
 impl SweptLines {
     /// Both together.
     pub fn united(self, other: Self) -> Self {
         let unresolved = [self.unresolved, other.unresolved].concat();
+        let crossings = self.crossings + other.crossings;
         if self.lines.is_empty() {
             let lines = other.lines;
-            return Self { lines, unresolved };
+            return Self {
+                lines,
+                unresolved,
+                crossings,
+            };
         }
         let mut all: BTreeMap<u32, Vec<Interval>> = self.lines.into_iter().collect();
         for (line, more) in other.lines {
@@ -39,6 +46,7 @@ impl SweptLines {
         Self {
             lines: all.into_iter().collect(),
             unresolved,
+            crossings,
         }
     }
 }
@@ -77,7 +85,10 @@ impl SweepJob<'_> {
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
         }
-        let mut swept = SweptLines::default();
+        let mut swept = SweptLines {
+            crossings: crossings.len() as u64,
+            ..SweptLines::default()
+        };
         for (line, found) in solved {
             match found {
                 Ok(intervals) if intervals.is_empty() => {}

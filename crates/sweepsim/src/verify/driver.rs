@@ -81,6 +81,7 @@ pub fn verify(
             findings: Vec::new(),
             paths: vec![PathRemoval::default(); program.len()],
             moves: Vec::new(),
+            crossings: 0,
             unresolved: Vec::new(),
             undecided: Vec::new(),
             stopped: false,
@@ -218,6 +219,7 @@ impl Work<'_> {
         let grid = *self.remaining.grid();
         let swept = solid.swept_near(moves, &grid, &self.heights, &self.options, self.monitor)?;
         self.done.unresolved.extend(swept.unresolved);
+        self.done.crossings += swept.crossings;
         Ok(swept.lines)
     }
 

@@ -142,6 +142,8 @@ pub struct Verification {
     pub paths: Vec<PathRemoval>,
     /// What each move removes, if [asked for](VerifyOptions::each_move).
     pub moves: Vec<MoveRemoval>,
+    /// Crossings found, but for those of the search within runs.
+    pub crossings: u64,
     /// Dexels of sweeps that could not be certified.
     pub unresolved: Vec<UnresolvedDexel>,
     /// Moves, by path and number, in which a body follows its cutter so closely that it is not known whether it touches.

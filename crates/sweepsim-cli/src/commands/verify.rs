@@ -1,0 +1,282 @@
+//! `verify`: what is wrong with a program, and how far its result is from the target.
+
+use super::task::sweeping;
+use crate::arguments::RunOptions;
+use crate::session::{Failure, JobSession, phase};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use sweepsim::motion::{Assembly, BodyKind};
+use sweepsim::verify::{
+    Deviation, DeviationKind, Deviations, Finding, MoveState, Region, Scene, Target, ToolPath, Verification,
+    VerifyOptions, deviations, verify,
+};
+use sweepsim::{Monitor, Statistics};
+use sweepsim_dexel::{Dexels, Grid, Operation};
+use sweepsim_formats::{DeviationSummary, Job, JobPath, PathSummary, Report, ReportedFinding, ReportedRegion, Verdict};
+
+/// The limits of a target that comes without any, in millimetres.
+const LIMIT: f64 = 0.1;
+/// The most lines of a grid of fixtures.
+const MOST_LINES: f64 = 4e6;
+
+/// What remains of the stock.
+pub(super) struct Verified {
+    pub remaining: Dexels,
+    pub statistics: Statistics,
+    pub volume_removed: f64,
+}
+
+/// Verifies the job of a session, and describes the findings in the report.
+pub(super) fn verified(
+    session: &JobSession,
+    options: &RunOptions,
+    first: bool,
+    report: &mut Report,
+) -> Result<Verified, Failure> {
+    let (job, progress) = (&session.job, &session.progress);
+    progress.phase("stock");
+    let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
+    let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
+    let fixtures = phase(report, "stock", || fixtures(session))?;
+    progress.phase("target");
+    let target = phase(report, "target", || target(session))?;
+    let assemblies = assemblies(job);
+    let states: Vec<Vec<MoveState>> = job.paths.iter().map(states).collect();
+    let program: Vec<ToolPath> = job
+        .paths
+        .iter()
+        .zip(&states)
+        .map(|(path, states)| ToolPath::new(&assemblies[&path.tool], &path.path).with_states(states))
+        .collect();
+    let mut scene = Scene::new(stock.clone());
+    if let Some(fixtures) = &fixtures {
+        scene = scene.with_fixtures(fixtures);
+    }
+    if let Some(target) = &target {
+        scene = scene.with_target(target);
+    }
+    progress.phase("verify");
+    let go_on = if first {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    };
+    let verifying = VerifyOptions::new(sweeping(job, options));
+    let done = phase(report, "sweep", || {
+        verify(scene, &program, &verifying, &mut |_| go_on, progress as &dyn Monitor)
+    });
+    let done = done.map_err(|error| session.failed(error))?;
+    progress.phase("deviation");
+    let found = target
+        .as_ref()
+        .filter(|_| !done.stopped)
+        .map(|target| phase(report, "deviation", || deviations(&stock, &done.remaining, target)));
+    describe(report, session, &done, found.as_ref());
+    let statistics = {
+        let mut statistics = Statistics::default();
+        statistics.moves = job.moves();
+        statistics.crossings = done.crossings;
+        statistics.unresolved = done.unresolved;
+        statistics
+    };
+    Ok(Verified {
+        volume_removed: stock.volume() - done.remaining.volume(),
+        remaining: done.remaining,
+        statistics,
+    })
+}
+
+fn assemblies(job: &Job) -> BTreeMap<u32, Assembly> {
+    let assembly = |(number, tool): (&u32, &sweepsim::motion::Tool)| {
+        let bodies = job.bodies.get(number).into_iter().flatten();
+        let whole = bodies.fold(Assembly::new(tool.clone()), |all, body| {
+            all.with(body.kind, body.solid.clone())
+        });
+        (*number, whole)
+    };
+    job.tools.iter().map(assembly).collect()
+}
+
+fn states(path: &JobPath) -> Vec<MoveState> {
+    let state = |rapid: &bool| if *rapid { MoveState::RAPID } else { MoveState::FEED };
+    path.rapid.iter().map(state).collect()
+}
+
+fn target(session: &JobSession) -> Result<Option<Target>, Failure> {
+    let job = &session.job;
+    let Some(target) = &job.target else { return Ok(None) };
+    let [gouge, excess] = job.limits.map_or([LIMIT; 2], |limits| [limits.gouge, limits.excess]);
+    // Below the tolerance of the dexels there is nothing to judge.
+    let [gouge, excess] = [gouge, excess].map(|limit| limit.max(2.0 * job.tolerance));
+    Target::new(&target.mesh, &job.grid, gouge, excess)
+        .map(Some)
+        .map_err(|error| session.failure(format!("target: {error}")))
+}
+
+/// The fixtures on a grid that holds all of them, with lines as far apart as the stock's.
+fn fixtures(session: &JobSession) -> Result<Option<Dexels>, Failure> {
+    let job = &session.job;
+    let frame = job.grid.frame();
+    let corners = job.fixtures.iter().filter_map(|fixture| fixture.bounds());
+    let corners = corners.flat_map(|[low, high]| {
+        (0..8).map(move |n| frame.from_world([0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] })))
+    });
+    let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    for corner in corners {
+        for (range, c) in range.iter_mut().zip(corner) {
+            *range = [range[0].min(c), range[1].max(c)];
+        }
+    }
+    if range[0][0] > range[0][1] {
+        return Ok(None);
+    }
+    let spacing = job.grid.spacing();
+    let mut cells = [0, 1].map(|k| ((range[k][1] - range[k][0]) / spacing[k]).ceil().max(1.0));
+    let too_many = (cells[0] * cells[1] / MOST_LINES).sqrt();
+    if too_many > 1.0 {
+        cells = cells.map(|n| (n / too_many).ceil());
+    }
+    let failed = |error: &dyn std::fmt::Display| session.failure(format!("fixtures: {error}"));
+    let [min, max] = [0, 1].map(|end| [range[0][end], range[1][end]]);
+    let grid = Grid::new(min, max, cells.map(|n| n as usize)).map_err(|error| failed(&error))?;
+    let grid = grid.in_frame(*frame);
+    let mut all = Dexels::empty(grid);
+    for fixture in &job.fixtures {
+        let own = fixture.dexels(&grid).map_err(|error| failed(&error))?;
+        all.combine(Operation::Union, &own).map_err(|error| failed(&error))?;
+    }
+    Ok(Some(all))
+}
+
+fn describe(report: &mut Report, session: &JobSession, done: &Verification, found: Option<&Deviations>) {
+    let job = &session.job;
+    let mut texts = ProgramTexts::new(session);
+    let mut findings: Vec<ReportedFinding> = done
+        .findings
+        .iter()
+        .map(|finding| reported(finding, job, &mut texts))
+        .collect();
+    let paths = job.paths.iter().zip(&done.paths).map(|(path, removal)| {
+        let mut summary = PathSummary::default();
+        (summary.tool, summary.moves, summary.removed) = (path.tool, path.path.moves(), removal.volume);
+        summary
+    });
+    report.paths = Some(paths.collect());
+    if let Some(found) = found {
+        report.gouge = Some(summed(&found.gouge));
+        report.excess = Some(summed(&found.excess));
+        report.regions = Some(found.regions.iter().map(region).collect());
+        let excess = found
+            .regions
+            .iter()
+            .filter(|region| region.kind == DeviationKind::Excess);
+        findings.extend(excess.map(|region| {
+            let mut finding = ReportedFinding::default();
+            finding.kind = "excess".to_owned();
+            (finding.place, finding.depth, finding.volume) = (region.place, region.depth, region.volume);
+            finding
+        }));
+        if found.beyond_stock > 0.0 {
+            report.notes.push(format!(
+                "{:.3} mm³ of the target are outside the stock: they were missing before the first cut",
+                found.beyond_stock
+            ));
+        }
+        if job.limits.is_none() {
+            report.notes.push(format!(
+                "the job has no limits: gouges and excess of more than {LIMIT} mm count"
+            ));
+        }
+    } else if job.target.is_none() {
+        report
+            .notes
+            .push("the job has no target: gouges and excess were not looked for".to_owned());
+    }
+    for (number, moved) in &done.undecided {
+        report.notes.push(format!(
+            "path {number}, move {moved}: a body follows its cutter so closely that it is not known whether it touches the workpiece"
+        ));
+    }
+    let missed = found.is_some_and(|found| !found.regions.is_empty());
+    report.verdict = Some(if findings.is_empty() && !missed {
+        Verdict::Pass
+    } else {
+        Verdict::Fail
+    });
+    report.findings = Some(findings);
+}
+
+fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedFinding {
+    let path = &job.paths[finding.path];
+    let bodies = job.bodies.get(&path.tool);
+    let body = finding
+        .body
+        .and_then(|number| bodies?.get(number))
+        .map(|body| match body.kind {
+            BodyKind::Shank => "shank",
+            BodyKind::Holder => "holder",
+            _ => "body",
+        });
+    let mut reported = ReportedFinding::default();
+    reported.kind = finding.kind.name().to_owned();
+    reported.tool = Some(path.tool);
+    reported.body = body.map(str::to_owned);
+    reported.path = Some(finding.path);
+    reported.r#move = Some(finding.number);
+    // A move belongs to the line of the pose where it ends.
+    if let Some(line) = path.lines.get(finding.number + 1) {
+        reported.file = Some(path.source.clone());
+        reported.line = Some(*line);
+        reported.text = texts.line(&path.source, *line);
+    }
+    reported.time = Some(finding.time);
+    (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);
+    reported
+}
+
+fn summed(deviation: &Deviation) -> DeviationSummary {
+    let mut summary = DeviationSummary::default();
+    (summary.max, summary.mean, summary.rms) = (deviation.max, deviation.mean, deviation.rms);
+    (summary.count, summary.area) = (deviation.count, deviation.area);
+    summary
+}
+
+fn region(region: &Region) -> ReportedRegion {
+    let mut reported = ReportedRegion::default();
+    reported.kind = match region.kind {
+        DeviationKind::Gouge => "gouge",
+        DeviationKind::Excess => "excess",
+    }
+    .to_owned();
+    (reported.place, reported.depth) = (region.place, region.depth);
+    (reported.area, reported.volume) = (region.area, region.volume);
+    reported
+}
+
+/// The lines of the programs of a job, read on demand.
+struct ProgramTexts {
+    folder: PathBuf,
+    files: BTreeMap<String, Vec<String>>,
+}
+
+impl ProgramTexts {
+    fn new(session: &JobSession) -> Self {
+        Self {
+            folder: session.file().parent().unwrap_or(Path::new("")).to_owned(),
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// A line of a file, without the space around it.
+    fn line(&mut self, file: &str, line: usize) -> Option<String> {
+        let lines = self.files.entry(file.to_owned()).or_insert_with(|| {
+            let text = std::fs::read(self.folder.join(file)).unwrap_or_default();
+            String::from_utf8_lossy(&text)
+                .lines()
+                .map(|line| line.trim().to_owned())
+                .collect()
+        });
+        lines.get(line.checked_sub(1)?).cloned()
+    }
+}

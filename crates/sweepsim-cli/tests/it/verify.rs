@@ -1,0 +1,132 @@
+//! `verify`: verdicts, findings with their lines, exit status.
+
+use crate::support::{Workdir, text};
+use std::fs;
+use sweepsim_formats::{Report, ReportedFinding, Verdict};
+
+/// A slot 5 mm deep, in two passes, and a hole.
+const PROGRAM: &str = "G21 G90 G17
+T1 M6
+S8000 M3
+G0 X-20 Y0 Z10
+G0 Z5.5
+G1 X20 F400
+Z3
+X-20
+G0 Z20
+M30
+";
+
+fn job(fixture: &str, reach: f64, limits: &str) -> String {
+    format!(
+        "Job(
+    grid: Grid(min: (-15, -15), max: (15, 15), cells: (60, 60)),
+    stock: Block(min: (-15, -15, 0), max: (15, 15, 8)),
+    tools: {{ 1: Flat(radius: 3, length: 12) }},
+    bodies: {{ 1: [Holder(Profile(start: (0, {reach}), segments: [Line((10, {reach})), Line((10, 60)), Line((0, 60))]))] }},
+    fixtures: [{fixture}],
+    paths: [Path(file: \"part.nc\")],
+    target: Mesh(\"part.ply\"),
+    limits: {limits},
+)"
+    )
+}
+
+const CLAMP: &str = "Block(min: (-15, 14, 0), max: (15, 20, 9))";
+const LIMITS: &str = "Limits(gouge: 0.02, excess: 0.05)";
+
+/// A folder with the program, and the part that it makes as the target.
+fn workdir(job: &str) -> Workdir {
+    let folder = Workdir::new(&self::job("", 12.0, LIMITS).replace("    target: Mesh(\"part.ply\"),\n", ""));
+    fs::write(folder.path("part.nc"), PROGRAM).unwrap();
+    folder.good(&["simulate", "job.ron", "--tri", "--only", "mesh", "--out", "."]);
+    fs::write(folder.path("job.ron"), job).unwrap();
+    folder
+}
+
+fn verified(folder: &Workdir, code: i32, more: &[&str]) -> (Report, Vec<ReportedFinding>) {
+    let output = folder.run_job("verify", &[&["--only", "report"], more].concat());
+    assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+    let report: Report = serde_json::from_slice(&fs::read(folder.path("out/report.json")).unwrap()).unwrap();
+    let findings = report.findings.clone().unwrap();
+    (report, findings)
+}
+
+#[test]
+fn a_good_program_passes() {
+    let folder = workdir(&job(CLAMP, 12.0, LIMITS));
+    let (report, findings) = verified(&folder, 0, &[]);
+    assert_eq!((report.verdict, findings), (Some(Verdict::Pass), Vec::new()));
+    // The target is a mesh of the same part: flat faces agree.
+    assert!(report.gouge.unwrap().max < 0.02 && report.excess.unwrap().max < 0.02);
+    let output = folder.run_job("verify", &["--only", "report"]);
+    assert!(
+        text(&output.stdout).contains("verdict  PASS"),
+        "{}",
+        text(&output.stdout)
+    );
+}
+
+#[test]
+fn faults_are_named_by_their_lines() {
+    // The second pass too low by a digit, and back to the start by a rapid through the block.
+    let folder = workdir(&job(CLAMP, 12.0, LIMITS));
+    let wrong = PROGRAM.replace("\nZ3\nX-20\n", "\nZ2\nX-20\nG0 X20 Y7\n");
+    fs::write(folder.path("part.nc"), wrong).unwrap();
+    let (report, findings) = verified(&folder, 1, &[]);
+    assert_eq!(report.verdict, Some(Verdict::Fail));
+    let kinds: Vec<(&str, Option<usize>)> = findings.iter().map(|f| (f.kind.as_str(), f.line)).collect();
+    assert_eq!(
+        kinds,
+        [("gouge", Some(8)), ("gouge", Some(9)), ("rapid", Some(9))],
+        "{findings:?}"
+    );
+    let gouge = &findings[0];
+    assert_eq!(
+        (gouge.file.as_deref(), gouge.text.as_deref()),
+        (Some("part.nc"), Some("X-20"))
+    );
+    assert_eq!((gouge.tool, &gouge.body), (Some(1), &None));
+    assert!((gouge.depth - 1.0).abs() < 0.01, "{gouge:?}");
+    assert!(gouge.time.unwrap() > 0.0 && gouge.time.unwrap() < 0.1);
+    let regions = report.regions.unwrap();
+    assert!(regions.iter().all(|region| region.kind == "gouge") && !regions.is_empty());
+    let (_, first) = verified(&folder, 1, &["--first"]);
+    assert_eq!(first.len(), 1);
+}
+
+#[test]
+fn holders_and_clamps() {
+    // A holder that reaches down to 4.5 mm above the tip meets the block's top in the second pass, 5 mm deep.
+    let folder = workdir(&job("", 4.5, LIMITS));
+    let (_, findings) = verified(&folder, 1, &[]);
+    let found: Vec<_> = findings
+        .iter()
+        .map(|f| (f.kind.as_str(), f.line, f.body.as_deref()))
+        .collect();
+    assert!(found.contains(&("collision", Some(8), Some("holder"))), "{found:?}");
+    assert!(
+        found
+            .iter()
+            .all(|(kind, line, _)| *kind == "collision" && *line >= Some(7)),
+        "{found:?}"
+    );
+    // A clamp in the way of the cutter, beside the grid.
+    let folder = workdir(&job("Block(min: (16, -2, 0), max: (18, 2, 7))", 12.0, LIMITS));
+    let (_, findings) = verified(&folder, 1, &[]);
+    assert!(findings.iter().all(|f| f.kind == "fixture"), "{findings:?}");
+    let lines: Vec<usize> = findings.iter().filter_map(|f| f.line).collect();
+    assert_eq!(lines, [6, 7, 8]);
+}
+
+#[test]
+fn too_little_is_found_as_well() {
+    let folder = workdir(&job("", 12.0, LIMITS));
+    fs::write(folder.path("part.nc"), PROGRAM.replace("\nZ3\n", "\nZ3.2\n")).unwrap();
+    let (report, findings) = verified(&folder, 1, &[]);
+    let [excess] = &findings[..] else {
+        panic!("{findings:?}")
+    };
+    assert_eq!((excess.kind.as_str(), excess.line), ("excess", None));
+    assert!((excess.depth - 0.2).abs() < 1e-3 && (report.excess.unwrap().max - 0.2).abs() < 1e-3);
+}
