@@ -36,10 +36,11 @@ pub(crate) struct Modes {
     pub cycle: CycleWords,
     /// G16.
     pub polar: bool,
-    /// G68, G51 and G51.1.
+    /// G68 and G51.
     pub rotation: Option<Map>,
     pub scaling: Option<Map>,
-    pub mirror: Option<Map>,
+    /// G51.1: where the mirror of each axis is.
+    pub mirror: [Option<f64>; 3],
 }
 
 impl Modes {
@@ -59,7 +60,7 @@ impl Modes {
             polar: false,
             rotation: None,
             scaling: None,
-            mirror: None,
+            mirror: [None; 3],
         }
     }
 
@@ -67,7 +68,14 @@ impl Modes {
     pub(crate) fn local_map(&self) -> Map {
         // Fanuc mirrors and scales first, then turns.
         let mut map = Map::default();
-        for step in [&self.mirror, &self.scaling, &self.rotation].into_iter().flatten() {
+        if self.mirror.iter().any(Option::is_some) {
+            let mut matrix = [[0.0; 3]; 3];
+            for (k, row) in matrix.iter_mut().enumerate() {
+                row[k] = if self.mirror[k].is_some() { -1.0 } else { 1.0 };
+            }
+            map = Map::about(matrix, self.mirror.map(|at| at.unwrap_or(0.0)));
+        }
+        for step in [&self.scaling, &self.rotation].into_iter().flatten() {
             map = step.after(&map);
         }
         map

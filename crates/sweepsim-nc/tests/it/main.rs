@@ -2,6 +2,7 @@
 
 mod apt;
 mod contents;
+mod gcode;
 mod harmless;
 mod kinematics;
 mod machines;

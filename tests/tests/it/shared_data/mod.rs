@@ -1,6 +1,7 @@
 //! Files that nobody here wrote: `../shared/data` beside the project. Where it is absent, these tests are listed as ignored.
 
 mod cl_files;
+mod conformance;
 mod curves;
 mod impeller;
 mod meshes;

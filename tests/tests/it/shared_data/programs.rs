@@ -109,7 +109,7 @@ fn three_axes() {
         }
     }
     println!("{poses} poses");
-    // Expressions and calls.
+    // A subroutine without a move, and a variable of the machine's own.
     let expected = ["428remap.ngc", "xyzab-tdr-demo.ngc"];
     assert_eq!(refused, expected);
 }
@@ -170,31 +170,139 @@ fn every_program_is_read_or_says_why_not() {
     }
     println!("{read} read, {poses} poses");
     let reasons = [
-        ("O-words (subroutines, loops) are not supported yet", 1),
-        ("statements like `DEF` are not supported yet", 3),
+        // A variable of the machine's kinematics.
+        ("#<_hal[xyzab_tdr_kins.x-rot-point]> has no value here", 1),
         // Tables in the literature's own formats.
         ("the content of this path file is not recognised", 2),
-        ("variables and expressions are not supported yet", 1),
+        // A subroutine that only switches the kinematics.
+        ("this program has no move", 1),
     ];
     assert_eq!(refused.len(), reasons.len(), "{refused:#?}");
     for ((why, files), (reason, count)) in refused.iter().zip(reasons) {
         assert!(why.starts_with(reason) && files.len() == count, "{why}: {files:?}");
     }
-    assert_eq!(read, 32);
+    assert_eq!(read, 69);
 }
 
-/// LinuxCNC's own programs that must be refused.
+/// What is known of the G-code programs: poses, sections, rapids, events, and the corners of the box that the tip stays in, in mm. The
+/// corners were checked against the words in the files; poses depend on the chords of arcs, which are within 0.01 mm.
 #[test]
 #[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
-fn bad_programs_are_refused() {
-    let mut files = Vec::new();
-    programs_below(&folder().join("conformance/linuxcnc/interp/bad"), &mut files);
-    let read: Vec<&str> = files
+fn what_is_known_of_programs() {
+    type Known = (&'static str, [usize; 4], [f64; 3], [f64; 3]);
+    const KNOWN: [Known; 12] = [
+        (
+            "camotics/bear.nc",
+            [15_156, 1, 4, 2],
+            [0.0, 0.0, -17.368],
+            [79.999, 79.998, 20.0],
+        ),
+        (
+            "camotics/botomata_bottom.nc",
+            [12_225, 3, 551, 51],
+            [-44.132, -145.732, -20.0],
+            [44.132, 44.132, 2.0],
+        ),
+        (
+            "camotics/engrave.ngc",
+            [2102, 1, 7, 14],
+            [-36.22, -25.97, 0.0],
+            [34.86, 25.61, 25.0],
+        ),
+        (
+            "camotics/flower_mold.nc",
+            [16_557, 1, 4, 1],
+            [0.0, 0.0, -9.235],
+            [57.125, 57.099, 5.08],
+        ),
+        (
+            "camotics/slant_test.nc",
+            [18, 1, 10, 0],
+            [0.0, 0.0, -5.0],
+            [10.0, 10.0, 1.0],
+        ),
+        (
+            "camotics/vcarve.ngc",
+            [3735, 1, 119, 0],
+            [-1.648, 0.0, -0.411],
+            [12.271, 4.834, 2.54],
+        ),
+        (
+            "linuxcnc/Cereal.ngc",
+            [2428, 1, 52, 2],
+            [-96.382, -36.282, -4.057],
+            [97.789, 0.0, 100.0],
+        ),
+        (
+            "linuxcnc/LHchips4.ngc",
+            [12_581, 1, 70, 5],
+            [-7.413, -6.959, -37.0],
+            [75.516, 107.503, 60.0],
+        ),
+        (
+            "linuxcnc/arcspiral.ngc",
+            [2218, 1, 3, 1],
+            [-49.476, -50.274, -2.54],
+            [47.879, 48.678, 25.4],
+        ),
+        (
+            "linuxcnc/circle_small_segments_ncd.ngc",
+            [10_001, 1, 1, 0],
+            [-25.4, -25.4, 0.0],
+            [25.4, 25.4, 0.0],
+        ),
+        (
+            "linuxcnc/trochoidal.ngc",
+            [11_351, 1, 11, 0],
+            [-34.071, 0.0, -1.0],
+            [59.071, 108.568, 5.0],
+        ),
+        (
+            "linuxcnc/zigzag_0.002_0.001.ngc",
+            [2002, 1, 2, 0],
+            [0.0, -0.0254, 0.0],
+            [101.6, 0.0254, 0.0],
+        ),
+    ];
+    let mut options = ReadOptions::default();
+    options.arc_tolerance = 1e-2;
+    for (name, counts, low, high) in KNOWN {
+        let program = read_file(&folder().join("3axis").join(name), &options).unwrap_or_else(|error| panic!("{error}"));
+        let rapids = program.poses.iter().filter(|pose| pose.rapid).count();
+        let found = [
+            program.poses.len(),
+            program.sections().count(),
+            rapids,
+            program.events.len(),
+        ];
+        assert_eq!(found, counts, "{name}");
+        for k in 0..3 {
+            let along = program.poses.iter().map(|pose| pose.pose.tip()[k]);
+            let (least, most) = along.fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+            assert!(
+                (least - low[k]).abs() < 1e-3 && (most - high[k]).abs() < 1e-3,
+                "{name} {k}: {least} {most}"
+            );
+        }
+    }
+}
+
+/// Stages of a program with three tools and two work offsets, which it sets itself.
+#[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+fn botomata() {
+    let program = read(&folder().join("3axis/camotics/botomata_bottom.nc"));
+    let changes: Vec<u32> = program
+        .events
         .iter()
-        .filter(|file| read_file(file, &ReadOptions::default()).is_ok())
-        .filter_map(|file| file.file_name()?.to_str())
+        .filter_map(|event| match event.kind {
+            sweepsim_nc::EventKind::ToolChange(tool) => Some(tool),
+            _ => None,
+        })
         .collect();
-    assert_eq!(files.len(), 23);
-    // Its path is known, although a machine would not start without a feed.
-    assert_eq!(read, ["no-feed-rate.ngc"]);
+    let mut tools: Vec<u32> = program.poses.iter().filter_map(|pose| pose.tool).collect();
+    tools.dedup();
+    assert_eq!(tools, [1, 2, 3]);
+    assert!(changes.starts_with(&[1]) && changes.ends_with(&[3]), "{changes:?}");
+    assert!(program.poses.iter().all(|pose| pose.call.is_none()));
 }

@@ -34,10 +34,10 @@ impl Labels {
             let mut cursor = Cursor::new(text);
             if matches!(cursor.peek(), Some(b'N' | b'n' | b'/')) {
                 cursor.eat(b'/');
-                if cursor.eat(b'N') || cursor.eat(b'n') {
-                    if let Some(digits) = cursor.digits().filter(|digits| digits.whole && digits.value < 1e9) {
-                        labels.numbers.entry(digits.value as u32).or_default().push(line);
-                    }
+                if (cursor.eat(b'N') || cursor.eat(b'n'))
+                    && let Some(digits) = cursor.digits().filter(|digits| digits.whole && digits.value < 1e9)
+                {
+                    labels.numbers.entry(digits.value as u32).or_default().push(line);
                 }
             }
             let Some(mut cursor) = after_letter(text) else {

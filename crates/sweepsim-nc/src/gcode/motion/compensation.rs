@@ -82,6 +82,8 @@ pub(crate) struct Compensation {
     current: [f64; 3],
     /// The direction of the last move at its programmed end.
     tangent: Flat,
+    /// Its curvature there, positive to the left.
+    curvature: f64,
     /// The curve that the last move lies on.
     curve: Curve,
     waiting: VecDeque<Item>,
@@ -117,6 +119,7 @@ impl Compensation {
             start: at,
             current: at,
             tangent: [1.0, 0.0],
+            curvature: 0.0,
             curve: Curve::Line {
                 point: [0.0; 2],
                 direction: [1.0, 0.0],
@@ -154,6 +157,11 @@ impl Compensation {
     pub(crate) fn add(&mut self, from: [f64; 3], stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let (p, q) = (flat(self.plane, from), flat(self.plane, stroke.end));
         let radius = self.side.radius;
+        if radius == 0.0 {
+            self.current = stroke.end;
+            out.push(Item::Stroke(stroke));
+            return Ok(());
+        }
         let Some(bend) = stroke.bend else {
             let d = minus(q, p);
             let distance = length(d);
@@ -161,7 +169,8 @@ impl Compensation {
                 // Along the plane's axis only.
                 let mut end = stroke.end;
                 set(self.plane, &mut end, flat(self.plane, self.current));
-                return self.wait(Stroke { end, ..stroke }, out);
+                self.wait(Stroke { end, ..stroke });
+                return Ok(());
             }
             let t = [d[0] / distance, d[1] / distance];
             let n = self.normal(t);
@@ -185,14 +194,17 @@ impl Compensation {
             }
             self.first = false;
             self.tangent = t;
+            self.curvature = 0.0;
             self.curve = Curve::Line {
                 point: end,
                 direction: t,
             };
-            return self.give(stroke, end, out);
+            self.give(stroke, end);
+            return Ok(());
         };
         let counter_clockwise = bend.sweep > 0.0;
-        let arc_radius = length(minus(p, bend.centre));
+        // Where the ends' radii differ a little, that of the end counts, as on LinuxCNC.
+        let arc_radius = length(minus(q, bend.centre));
         let inside = self.side.left == counter_clockwise;
         let offset_radius = if inside {
             arc_radius - radius
@@ -225,6 +237,7 @@ impl Compensation {
         }
         self.first = false;
         self.tangent = last;
+        self.curvature = bend.sweep.signum() / arc_radius;
         self.curve = Curve::Circle {
             centre: bend.centre,
             radius: length(minus(end, bend.centre)),
@@ -234,7 +247,8 @@ impl Compensation {
             bend: Some(bend),
             ..stroke
         };
-        self.give(bent, end, out)
+        self.give(bent, end);
+        Ok(())
     }
 
     /// The arc from `start`, uncompensated, that ends in `end` along `last`.
@@ -265,20 +279,16 @@ impl Compensation {
         Ok(Bend { centre, sweep })
     }
 
-    /// Lets a move wait; `end` is its compensated end.
-    fn give(&mut self, stroke: Stroke, at: Flat, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+    /// Lets a move wait; `at` is its compensated end.
+    fn give(&mut self, stroke: Stroke, at: Flat) {
         let mut end = stroke.end;
         set(self.plane, &mut end, at);
-        self.wait(Stroke { end, ..stroke }, out)
+        self.wait(Stroke { end, ..stroke });
     }
 
-    fn wait(&mut self, stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+    fn wait(&mut self, stroke: Stroke) {
         self.current = stroke.end;
-        if self.side.radius == 0.0 {
-            self.flush(out);
-        }
         self.waiting.push_back(Item::Stroke(stroke));
-        Ok(())
     }
 
     /// Gives out what waits.
@@ -290,13 +300,12 @@ impl Compensation {
     /// Gives out what waits, with its end moved.
     fn flush_to(&mut self, at: Flat, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let plane = self.plane;
-        let start = flat(plane, self.start);
+        let (start, direction) = (flat(plane, self.start), self.tangent);
         for item in &mut self.waiting {
             let Item::Stroke(stroke) = item else { continue };
-            let end = flat(plane, stroke.end);
             let too_far = match &mut stroke.bend {
                 None if self.entry => false,
-                None => dot(minus(end, start), minus(at, start)) < -1e-12,
+                None => dot(direction, minus(at, start)) < -1e-9,
                 Some(bend) => {
                     let (a, b) = (minus(start, bend.centre), minus(at, bend.centre));
                     let angle = cross(a, b).atan2(dot(a, b));
@@ -343,15 +352,19 @@ impl Compensation {
             self.flush(out);
             return Ok(());
         }
-        let bends_in =
-            matches!(self.curve, Curve::Circle { counter_clockwise, .. } if counter_clockwise == self.side.left);
-        let reversed = angle > PI - small;
-        if angle < 0.0 || (reversed && !bends_in) {
+        // Where the contour turns back, the tool goes round its tip, unless the moves part from each other towards the tool's side: then it
+        // is a wedge. Their curvatures decide.
+        let curvature = match stroke.bend {
+            Some(bend) => bend.sweep.signum() / length(minus(p, bend.centre)),
+            None => 0.0,
+        };
+        let wedge = toward * (curvature + self.curvature) < -1e-12;
+        let reversed = angle.abs() > PI - small;
+        let goes_round = if reversed { !wedge } else { angle < 0.0 };
+        if goes_round {
             self.flush(out);
-            if self.side.radius > 0.0 {
-                let turn = if angle < 0.0 { -angle } else { TAU - angle };
-                self.outside(p, start, t, turn, stroke, out);
-            }
+            let turn = if angle < 0.0 { -angle } else { TAU - angle };
+            self.outside(p, start, t, turn, stroke, out);
             return Ok(());
         }
         let end = flat(self.plane, self.current);

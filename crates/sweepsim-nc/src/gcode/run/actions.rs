@@ -286,16 +286,19 @@ impl Reader {
                 Box::new(move |reader| reader.modes.scaling = Some(map))
             }
             Code::CancelScale => Box::new(|reader| reader.modes.scaling = None),
-            Code::Mirror => {
+            Code::Mirror => Box::new(move |reader| {
                 for k in 0..3 {
-                    if words[k].is_some() {
-                        matrix[k][k] = -1.0;
-                    }
+                    reader.modes.mirror[k] = words[k].or(reader.modes.mirror[k]);
                 }
-                let map = Map::about(matrix, words.map(|word| word.unwrap_or(0.0)));
-                Box::new(move |reader| reader.modes.mirror = Some(map))
+            }),
+            Code::CancelMirror => {
+                let all = words.iter().all(Option::is_none);
+                Box::new(move |reader| {
+                    for k in 0..3 {
+                        reader.modes.mirror[k] = reader.modes.mirror[k].filter(|_| !all && words[k].is_none());
+                    }
+                })
             }
-            Code::CancelMirror => Box::new(|reader| reader.modes.mirror = None),
             _ => return Ok(()),
         };
         self.reframe(|reader| {

@@ -112,6 +112,7 @@ impl Reader {
     /// Calls a subroutine of LinuxCNC.
     pub(crate) fn call_subroutine(&mut self, label: Label, arguments: &[f64], here: Spot) -> Result<Step, NcProblem> {
         let spot = self.find(&label, here.source, Some(Keyword::Sub))?;
+        self.end_of_subroutine(&label, spot)?;
         let mut locals = [Some(0.0); 34];
         for (local, argument) in locals[1..31].iter_mut().zip(arguments) {
             *local = Some(*argument);

@@ -43,6 +43,8 @@ pub(crate) struct Reader {
     pub variables: Store,
     pub tools: ToolTable,
     pub controller: Option<Controller>,
+    /// Whether the control is given, not guessed: its own rules about missing and spare words then count.
+    pub strict: bool,
     pub frames: Vec<Frame>,
     pub sources: Vec<Rc<Source>>,
     pub files: Vec<PathBuf>,
@@ -160,6 +162,7 @@ impl Reader {
             variables: Store::new(&options.variables),
             tools: ToolTable::new(&options.tool_offsets),
             controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
+            strict: options.controller.is_some(),
             frames: vec![Frame::main()],
             sources: vec![Rc::new(Source::new(0, input.text.to_owned()))],
             files: input.file.map(Path::to_owned).into_iter().collect(),
@@ -264,7 +267,7 @@ impl Reader {
                 }
                 Step::End => break,
             }
-            if errors.len() > MOST_FURTHER {
+            if errors.len() > MOST_FURTHER || self.trace.is_some() && !errors.is_empty() {
                 break;
             }
         }

@@ -65,8 +65,9 @@ impl Reader {
     }
 
     fn go_to(&mut self, cursor: Cursor, here: Spot) -> Result<Step, Located> {
-        let start = cursor.at;
         let mut values = Values::new(cursor, self);
+        values.cursor.peek();
+        let start = values.cursor.at;
         let (value, _) = values.value()?;
         let span = start..values.cursor.at;
         let number = value.unwrap_or(0.0);

@@ -8,7 +8,7 @@ use crate::gcode::codes::MotionMode;
 use crate::gcode::motion::arc::CircularArc;
 use crate::gcode::motion::compensation::{Bend, Compensation, Item, Side, Stroke};
 use crate::gcode::motion::state::MoveEnd;
-use crate::gcode::syntax::block::Block;
+use crate::gcode::syntax::block::{Block, Word};
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::trace::Canonical;
 use crate::model::read_options::Controller;
@@ -200,21 +200,21 @@ impl Reader {
                 let back = self.stroke_to(start, abc, false);
                 return self.give(back);
             }
-            _ if !block.has('M') && block.first("IJKR").is_some() => {
-                // G33's K is a pitch.
-                if !block
-                    .words()
-                    .iter()
-                    .any(|w| w.letter == 'G' && (w.value == 33.0 || w.value == 28.0))
-                {
-                    return Err(NcProblem::syntax(
-                        "I, J, K or R outside an arc: expected G2 or G3 with them",
-                    ));
-                }
+            _ if Self::has_spare_centre(block) => {
+                return Err(NcProblem::syntax(
+                    "I, J, K or R outside an arc: expected G2 or G3 with them",
+                ));
             }
             _ => {}
         }
         self.give(stroke)
+    }
+
+    /// Whether a straight move has words of an arc.
+    fn has_spare_centre(block: &Block) -> bool {
+        // G33's K is a pitch; M codes have words of their own.
+        let other = |w: &Word| w.letter == 'G' && (w.value == 33.0 || w.value == 28.0);
+        block.first("IJKR").is_some() && !block.has('M') && !block.words().iter().any(other)
     }
 
     /// The arc of a block.

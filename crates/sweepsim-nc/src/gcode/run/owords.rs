@@ -41,7 +41,7 @@ impl Reader {
         };
         let span = start..cursor.at;
         let at = |result: Result<Step, NcProblem>| result.map_err(|problem| (problem, span.clone()));
-        let step = match keyword {
+        match keyword {
             Keyword::Sub => at(self.skip_subroutine(&name, here)),
             Keyword::EndSub | Keyword::Return => {
                 let value = self.optional_bracket(cursor)?;
@@ -116,8 +116,7 @@ impl Reader {
                     None => at(Err(NcProblem::syntax(format!("`{name} continue` outside of a loop")))),
                 }
             }
-        };
-        step
+        }
     }
 
     /// A jump backwards: loops end by a budget.
@@ -158,12 +157,7 @@ impl Reader {
     }
 
     fn skip_subroutine(&mut self, name: &Label, here: Spot) -> Result<Step, NcProblem> {
-        let Some(end) = self.following(name, here, &[Keyword::EndSub]) else {
-            return Err(NcProblem::syntax(format!(
-                "there is no `{name} endsub` after this line"
-            )));
-        };
-        self.check_nested(here, end)?;
+        let end = self.end_of_subroutine(name, here)?;
         if matches!(self.frame().kind, FrameKind::Subroutine(_)) {
             return Err(NcProblem::syntax(
                 "a subroutine within a subroutine: expected one after the other",
@@ -172,13 +166,19 @@ impl Reader {
         Ok(Step::Jump(Spot { line: end + 1, ..here }))
     }
 
-    fn check_nested(&self, here: Spot, end: usize) -> Result<(), NcProblem> {
+    /// The line where the subroutine that begins at a line ends.
+    pub(crate) fn end_of_subroutine(&self, name: &Label, here: Spot) -> Result<usize, NcProblem> {
+        let Some(end) = self.following(name, here, &[Keyword::EndSub]) else {
+            return Err(NcProblem::syntax(format!(
+                "there is no `{name} endsub` after the line where it begins"
+            )));
+        };
         match self.sources[here.source].labels().subroutine_within(here.line, end) {
             Some(line) => Err(NcProblem::syntax(format!(
                 "a subroutine within this one, in line {}: expected one after the other",
                 line + 1
             ))),
-            None => Ok(()),
+            None => Ok(end),
         }
     }
 

@@ -106,7 +106,8 @@ impl Reader {
                 Err((problem, word.span()))
             }
             (Some(_), Some(motion)) => {
-                if self.controller == Some(Controller::LinuxCnc)
+                if self.strict
+                    && self.controller == Some(Controller::LinuxCnc)
                     && motion != MotionMode::Rapid
                     && self.modes.feed.is_none_or(|feed| feed <= 0.0)
                 {
@@ -202,7 +203,7 @@ impl Reader {
                 Code::CancelCompensation => self.finish_compensation().map_err(|problem| (problem, word.span()))?,
                 Code::MachineCoordinates => plan.machine_coordinates = true,
                 Code::Polar(on) => self.modes.polar = on,
-                code @ (Code::CancelRotation | Code::CancelScale | Code::CancelMirror) => {
+                code @ (Code::CancelRotation | Code::CancelScale) => {
                     self.act(code, block).map_err(|problem| (problem, word.span()))?;
                 }
                 Code::Dwell => plan.dwell = true,
@@ -217,7 +218,8 @@ impl Reader {
                 | Code::RestoreShift
                 | Code::Rotate
                 | Code::Scale
-                | Code::Mirror) => {
+                | Code::Mirror
+                | Code::CancelMirror) => {
                     if plan.action.replace((code, word)).is_some() {
                         return fail(two_users(&word));
                     }
@@ -288,7 +290,7 @@ impl Reader {
 
     /// LinuxCNC rejects words that no code of their block uses.
     fn check_spare_words(&self, block: &Block) -> Result<(), Located> {
-        if self.controller != Some(Controller::LinuxCnc) || !block.has('R') {
+        if !self.strict || self.controller != Some(Controller::LinuxCnc) || !block.has('R') {
             return Ok(());
         }
         let is = |letter: char, value: f64| block.words().iter().any(|w| w.letter == letter && w.value == value);

@@ -49,7 +49,7 @@ pub(crate) enum Target {
 }
 
 /// One line.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Block {
     words: Vec<Word>,
     /// For each letter, the index of its first word, plus 1.
@@ -64,20 +64,6 @@ pub(crate) struct Block {
     pub tape: bool,
     /// The bytes of a comment that says something to the operator: `MSG,…`, `DEBUG,…`, `PRINT,…`.
     pub message: Option<Range<usize>>,
-}
-
-impl Default for Block {
-    fn default() -> Self {
-        Self {
-            words: Vec::new(),
-            first: [0; 26],
-            twice: None,
-            assignments: Vec::new(),
-            optional: false,
-            tape: false,
-            message: None,
-        }
-    }
 }
 
 /// More words are an error: it bounds the work of one line.

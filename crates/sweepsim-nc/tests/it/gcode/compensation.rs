@@ -1,0 +1,302 @@
+//! Cutter compensation against offsets computed independently.
+
+use std::f64::consts::TAU;
+
+use proptest::prelude::*;
+use sweepsim_motion::Course;
+use sweepsim_nc::{Controller, Program, ReadOptions, ToolOffset, gcode};
+
+use super::{assert_near, options, program, program_with, tips};
+
+/// A piece of a programmed contour.
+#[derive(Clone, Copy, Debug)]
+enum Piece {
+    Line([f64; 2], [f64; 2]),
+    /// From, to, centre, counter-clockwise.
+    Arc([f64; 2], [f64; 2], [f64; 2], bool),
+}
+
+fn distance_to_point(p: [f64; 2], q: [f64; 2]) -> f64 {
+    (p[0] - q[0]).hypot(p[1] - q[1])
+}
+
+impl Piece {
+    fn distance(&self, p: [f64; 2]) -> f64 {
+        match *self {
+            Self::Line(a, b) => {
+                let d = [b[0] - a[0], b[1] - a[1]];
+                let t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
+                let t = t.clamp(0.0, 1.0);
+                distance_to_point(p, [a[0] + t * d[0], a[1] + t * d[1]])
+            }
+            Self::Arc(a, b, c, ccw) => {
+                let angle = |q: [f64; 2]| (q[1] - c[1]).atan2(q[0] - c[0]);
+                let (from, to) = if ccw {
+                    (angle(a), angle(b))
+                } else {
+                    (angle(b), angle(a))
+                };
+                let span = (to - from).rem_euclid(TAU);
+                let span = if span < 1e-9 { TAU } else { span };
+                if (angle(p) - from).rem_euclid(TAU) <= span {
+                    (distance_to_point(p, c) - distance_to_point(a, c)).abs()
+                } else {
+                    distance_to_point(p, a).min(distance_to_point(p, b))
+                }
+            }
+        }
+    }
+
+    fn block(&self) -> String {
+        match *self {
+            Self::Line(_, b) => format!("G1 X{:.9} Y{:.9}\n", b[0], b[1]),
+            Self::Arc(a, b, c, ccw) => format!(
+                "G{} X{:.9} Y{:.9} I{:.9} J{:.9}\n",
+                if ccw { 3 } else { 2 },
+                b[0],
+                b[1],
+                c[0] - a[0],
+                c[1] - a[1]
+            ),
+        }
+    }
+}
+
+/// Points of the moves of a program from one pose to another, densely.
+fn samples(program: &Program, poses: std::ops::Range<usize>) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
+    for pair in program.poses[poses].windows(2) {
+        let (a, b): ([f64; 3], [f64; 3]) = (pair[0].pose.tip(), pair[1].pose.tip());
+        for k in 0..=20 {
+            let s = f64::from(k) / 20.0;
+            points.push(match pair[1].way.course {
+                Course::Arc(arc) => {
+                    let (c, turn) = (arc.centre(), s * arc.angle() * arc.normal()[2].signum());
+                    let (x, y) = (a[0] - c[0], a[1] - c[1]);
+                    [
+                        c[0] + x * turn.cos() - y * turn.sin(),
+                        c[1] + x * turn.sin() + y * turn.cos(),
+                    ]
+                }
+                _ => [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])],
+            });
+        }
+    }
+    points
+}
+
+/// The program of a closed contour with a tangential entry and exit of 10 mm.
+fn contour_program(contour: &[Piece], left: bool, diameter: f64) -> String {
+    let Piece::Line(a, b) = contour[0] else {
+        panic!("begin with a line")
+    };
+    let length = distance_to_point(a, b);
+    let t = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+    let mut text = format!(
+        "G21 G90 G17 F100\nG0 X{:.9} Y{:.9} Z0\nG{} D{diameter}\nG1 X{:.9} Y{:.9}\n",
+        a[0] - 10.0 * t[0],
+        a[1] - 10.0 * t[1],
+        if left { "41.1" } else { "42.1" },
+        a[0],
+        a[1]
+    );
+    for piece in contour {
+        text += &piece.block();
+    }
+    text += "G40\nG1 X500 Y500\n";
+    text
+}
+
+/// Reads with exact arcs, and checks that the tool keeps its distance from the contour everywhere, on its side.
+fn check_distance(contour: &[Piece], left: bool, radius: f64, controller: Option<Controller>) -> Result<(), String> {
+    let mut options = ReadOptions::default();
+    options.exact_arcs = true;
+    options.controller = controller;
+    let text = contour_program(contour, left, 2.0 * radius);
+    let program = gcode::read(&text, &options).map_err(|error| error.to_string())?;
+    let last = program.poses.len() - 1;
+    // From the end of the entry to the end of the contour.
+    let points = samples(&program, 1..last);
+    assert!(points.len() > 20 * contour.len() / 2);
+    let round = controller != Some(Controller::Fanuc);
+    for point in points {
+        let distance = contour
+            .iter()
+            .map(|piece| piece.distance(point))
+            .fold(f64::MAX, f64::min);
+        if distance < radius - 1e-6 {
+            return Err(format!("{point:?} is {distance} from the contour\n{text}"));
+        }
+        let most = if round { radius } else { radius * 2.0_f64.sqrt() };
+        if distance > most + 1e-6 {
+            return Err(format!("{point:?} is {distance} from the contour, too far\n{text}"));
+        }
+    }
+    // The side: beside the middle of the first line.
+    let Piece::Line(a, b) = contour[0] else { unreachable!() };
+    let tip: [f64; 3] = program.poses[1].pose.tip();
+    let side = (b[0] - a[0]) * (tip[1] - a[1]) - (b[1] - a[1]) * (tip[0] - a[0]);
+    assert_eq!(side > 0.0, left);
+    Ok(())
+}
+
+/// A closed polygon, from the middle of its first side.
+fn polygon(points: &[[f64; 2]]) -> Vec<Piece> {
+    let n = points.len();
+    let middle = [0, 1].map(|k| 0.5 * (points[0][k] + points[1][k]));
+    let mut pieces = vec![Piece::Line(middle, points[1])];
+    pieces.extend((1..n).map(|k| Piece::Line(points[k], points[(k + 1) % n])));
+    pieces.push(Piece::Line(points[0], middle));
+    pieces
+}
+
+/// A polygon round the origin, not convex in general.
+fn star(radii: &[f64]) -> Vec<[f64; 2]> {
+    let n = radii.len() as f64;
+    let point = |(k, r): (usize, &f64)| {
+        let (sin, cos) = (TAU * k as f64 / n).sin_cos();
+        // As the program says it.
+        [r * cos, r * sin].map(|x| (x * 1e9).round() / 1e9)
+    };
+    radii.iter().enumerate().map(point).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_tool_keeps_its_distance_from_polygons(
+        radii in prop::collection::vec(20.0..30.0_f64, 4..9),
+        left in any::<bool>(),
+        reverse in any::<bool>(),
+        radius in 0.1..1.0_f64,
+        fanuc in any::<bool>(),
+    ) {
+        let mut points = star(&radii);
+        if reverse {
+            points.reverse();
+        }
+        let controller = fanuc.then_some(Controller::Fanuc);
+        let result = check_distance(&polygon(&points), left, radius, controller);
+        prop_assert!(result.is_ok(), "{}", result.unwrap_err());
+    }
+
+    /// Rectangles with rounded corners, outside and inside, in both directions.
+    #[test]
+    fn the_tool_keeps_its_distance_from_arcs(
+        corner in 1.5..9.0_f64,
+        outside in any::<bool>(),
+        left in any::<bool>(),
+        bulge in any::<bool>(),
+        radius in 0.1..1.4_f64,
+    ) {
+        let corner = (corner * 1e6).round() / 1e6;
+        let (w, h, r) = (40.0, 30.0, corner);
+        // Counter-clockwise; a notch with corners to the right where `bulge`.
+        let arc = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| Piece::Arc(a, b, c, true);
+        let mut pieces = vec![
+            Piece::Line([20.0, 0.0], [w - r, 0.0]),
+            arc([w - r, 0.0], [w, r], [w - r, r]),
+            Piece::Line([w, r], [w, h - r]),
+            arc([w, h - r], [w - r, h], [w - r, h - r]),
+            Piece::Line([w - r, h], [r, h]),
+            arc([r, h], [0.0, h - r], [r, h - r]),
+            Piece::Line([0.0, h - r], [0.0, r]),
+            arc([0.0, r], [r, 0.0], [r, r]),
+        ];
+        if bulge {
+            // A half circle with sharp corners on both sides.
+            pieces.push(Piece::Line([r, 0.0], [12.0, 0.0]));
+            pieces.push(Piece::Arc([12.0, 0.0], [18.0, 0.0], [15.0, 0.0], outside));
+            pieces.push(Piece::Line([18.0, 0.0], [20.0, 0.0]));
+        } else {
+            pieces.push(Piece::Line([r, 0.0], [20.0, 0.0]));
+        }
+        let result = check_distance(&pieces, left, radius, None);
+        prop_assert!(result.is_ok(), "{}", result.unwrap_err());
+    }
+}
+
+#[test]
+fn a_square_by_hand() {
+    let text = |side: &str| format!("G0 X-10 Y0 Z0\n{side} D2\nG1 X0 Y0 F100\nX10\nY10\nX0\nY0\nG40\nG0 X-10\n");
+    let mut exact = ReadOptions::default();
+    exact.exact_arcs = true;
+    // Inside: the corners are where the offsets meet.
+    let inside = program_with(&text("G41.1"), &exact);
+    assert_near(
+        &tips(&inside),
+        &[
+            [-10.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [9.0, 1.0, 0.0],
+            [9.0, 9.0, 0.0],
+            [1.0, 9.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [-10.0, 0.0, 0.0],
+        ],
+    );
+    // Outside: quarter circles about the corners.
+    let outside = program_with(&text("G42.1"), &exact);
+    assert_near(
+        &tips(&outside)[1..5],
+        &[[0.0, -1.0, 0.0], [10.0, -1.0, 0.0], [11.0, 0.0, 0.0], [11.0, 10.0, 0.0]],
+    );
+    assert!(matches!(outside.poses[3].way.course, Course::Arc(arc) if arc.centre() == [10.0, 0.0, 0.0]));
+    // Lines keep the lines of the program; an arc at a corner belongs to the move after it.
+    let lines: Vec<usize> = outside.poses.iter().map(|pose| pose.line).collect();
+    assert_eq!(lines[..5], [1, 3, 4, 5, 5]);
+    // Fanuc's corners are the meetings of the offsets, its entry ends beside the next move's start.
+    let mut fanuc = options(Controller::Fanuc);
+    fanuc.tool_offsets.insert(
+        7,
+        ToolOffset {
+            length: 0.0,
+            diameter: 2.0,
+        },
+    );
+    let found = program_with(
+        "G0 X-10. Y-10. Z0\nG42 D7 G1 X0 Y0 F100\nX10.\nY10.\nX0\nG40 G1 X-20.\n",
+        &fanuc,
+    );
+    assert_near(
+        &tips(&found),
+        &[
+            [-10.0, -10.0, 0.0],
+            [0.0, -1.0, 0.0],
+            [10.0, -1.0, 0.0],
+            [11.0, -1.0, 0.0],
+            [11.0, 0.0, 0.0],
+            [11.0, 10.0, 0.0],
+            [11.0, 11.0, 0.0],
+            [10.0, 11.0, 0.0],
+            [0.0, 11.0, 0.0],
+            [-20.0, 10.0, 0.0],
+        ],
+    );
+}
+
+#[test]
+fn heights_and_planes() {
+    // A move along Z waits with the one before it.
+    let found = program("G0 X-10 Y0 Z0\nG41.1 D2\nG1 X0 Y0 F100\nX10 Z-1\nZ-2\nY10\nG40\nG1 X0 Y20\n");
+    assert_near(
+        &tips(&found),
+        &[
+            [-10.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [9.0, 1.0, -1.0],
+            [9.0, 1.0, -2.0],
+            [9.0, 10.0, -2.0],
+            [0.0, 20.0, -2.0],
+        ],
+    );
+    let found = program("G18 G0 Z-10 X0 Y0\nG41.1 D2\nG1 Z0 X0 F100\nZ10\nX10\nG40\nG1 X20 Z0\n");
+    assert_near(
+        &tips(&found)[1..4],
+        &[[1.0, 0.0, 0.0], [1.0, 0.0, 9.0], [10.0, 0.0, 9.0]],
+    );
+    // A negative diameter is the other side.
+    let other = program("G0 X-10 Y0 Z0\nG42.1 D-2\nG1 X0 Y0 F100\nX10\nG40\nG1 X0 Y20\n");
+    assert_near(&tips(&other)[1..3], &[[0.0, 1.0, 0.0], [10.0, 1.0, 0.0]]);
+}

@@ -1,0 +1,122 @@
+//! Cycles against their expansion by hand.
+
+use sweepsim_nc::{Controller, EventKind, Program};
+
+use super::{assert_near, options, program, program_with, tips};
+
+/// The tips and rapids of a program.
+fn moves(program: &Program) -> Vec<([f64; 3], bool)> {
+    program.poses.iter().map(|pose| (pose.pose.tip(), pose.rapid)).collect()
+}
+
+/// Two programs make the same moves.
+#[track_caller]
+fn same(cycle: &str, by_hand: &str) {
+    let (found, expected) = (program(cycle), program(by_hand));
+    assert_near(&tips(&found), &tips(&expected));
+    let rapids = |program: &Program| -> Vec<bool> { moves(program).iter().map(|(_, rapid)| *rapid).collect() };
+    assert_eq!(rapids(&found), rapids(&expected), "{cycle}");
+}
+
+const START: &str = "G90 G17 F100\nG0 X0 Y0 Z10\n";
+
+#[test]
+fn drilling() {
+    same(
+        &format!("{START}G98 G81 X5 Y6 Z-3 R2\nX7\nG80\nG0 X0"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-3\nG0 Z10\nX7\nZ2\nG1 Z-3\nG0 Z10\nX0"),
+    );
+    same(
+        &format!("{START}G99 G82 X5 Y6 Z-3 R2 P0.5\nX7\nG80\nG0 X0"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-3\nG0 Z2\nX7\nG1 Z-3\nG0 Z2\nX0"),
+    );
+    // Pecks: 2, 0, -2, -3.
+    same(
+        &format!("{START}G99 G83 X5 Y6 Z-3 R2 Q2"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z0\nG0 Z2\nZ0.254\nG1 Z-2\nG0 Z2\nZ-1.746\nG1 Z-3\nG0 Z2"),
+    );
+    same(
+        &format!("{START}G98 G73 X5 Y6 Z-3 R2 Q2"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z0\nG0 Z0.254\nG1 Z-2\nG0 Z-1.746\nG1 Z-3\nG0 Z10"),
+    );
+    same(
+        &format!("{START}G99 G85 X5 Y6 Z-3 R2"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-3\nZ2"),
+    );
+    same(
+        &format!("{START}G98 G84 X5 Y6 Z-3 R2"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-3\nZ2\nG0 Z10"),
+    );
+    same(
+        &format!("{START}G98 G76 X5 Y6 Z-3 R2 I0.5 J0"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-3\nX5.5\nG0 Z10\nX5"),
+    );
+}
+
+#[test]
+fn repeats_steps_and_planes() {
+    same(
+        &format!("{START}G91 G99 G81 X5 Y6 Z-3 R-8 L3"),
+        &format!("{START}G0 X5 Y6\nZ2\nG1 Z-1\nG0 Z2\nX10 Y12\nG1 Z-1\nG0 Z2\nX15 Y18\nG1 Z-1\nG0 Z2"),
+    );
+    same(
+        &format!("{START}G98 G81 X5 Y6 Z-3 R2 L0\nX9 Y9"),
+        &format!("{START}G0 X9 Y9\nZ2\nG1 Z-3\nG0 Z10"),
+    );
+    same(
+        "G18 F100\nG0 X0 Y10 Z0\nG99 G81 X5 Z6 Y-3 R2",
+        "G0 X0 Y10 Z0\nX5 Z6\nY2\nG1 Y-3 F100\nG0 Y2",
+    );
+    same(
+        "G19 F100\nG0 X10 Y0 Z0\nG99 G81 Y5 Z6 X-3 R2",
+        "G0 X10 Y0 Z0\nY5 Z6\nX2\nG1 X-3 F100\nG0 X2",
+    );
+    // From below the plane R, first up.
+    same(
+        "F100\nG0 X0 Y0 Z1\nG98 G81 X5 Z-3 R2",
+        "F100\nG0 X0 Y0 Z1\nZ2\nX5\nG1 Z-3\nG0 Z2",
+    );
+    // In inches.
+    same(
+        "G20 F100\nG0 X0 Y0 Z1\nG99 G81 X5 Z-3 R0.5",
+        "G20 F100\nG0 X0 Y0 Z1\nX5\nZ0.5\nG1 Z-3\nG0 Z0.5",
+    );
+    // Nothing is known of the height before: the cycle begins in its plane.
+    assert_eq!(
+        tips(&program("G81 X5 Y5 Z-3 R2 F100"))[..2],
+        [[5.0, 5.0, 2.0], [5.0, 5.0, -3.0]]
+    );
+}
+
+#[test]
+fn what_cycles_do_besides() {
+    let found = program("S100 M3 F100\nG0 X0 Y0 Z10\nG84 X5 Z-3 R2 P1");
+    let kinds: Vec<String> = found
+        .events
+        .iter()
+        .map(|event| format!("{} {:?}", event.pose, event.kind))
+        .collect();
+    assert_eq!(
+        kinds,
+        [
+            "0 Spindle(Clockwise { rpm: Some(100.0) })",
+            "4 Spindle(Stopped)",
+            "4 Spindle(CounterClockwise { rpm: Some(100.0) })",
+            "4 Dwell { seconds: 1.0 }",
+            "5 Spindle(Stopped)",
+            "5 Spindle(Clockwise { rpm: Some(100.0) })",
+        ]
+    );
+    // Fanuc counts milliseconds, and repeats by K.
+    let fanuc = options(Controller::Fanuc);
+    let found = program_with("F100\nG0 X0 Y0 Z10.\nG91 G82 X5. Z-3. R-8. P500 K2", &fanuc);
+    assert!(
+        found
+            .events
+            .iter()
+            .any(|event| event.kind == EventKind::Dwell { seconds: 0.5 })
+    );
+    assert_eq!(found.poses.iter().filter(|pose| !pose.rapid).count(), 2);
+    // All moves of a cycle keep its line.
+    assert!(found.poses[1..].iter().all(|pose| pose.line == 3));
+}

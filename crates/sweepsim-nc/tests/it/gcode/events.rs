@@ -1,0 +1,104 @@
+//! Spindle, coolant, dwells, stops, messages and feeds, in their order.
+
+use sweepsim_nc::{Controller, FeedMode, ReadOptions, Units, gcode};
+
+use super::{options, program, program_with, tips};
+
+#[test]
+fn events_in_order() {
+    let found = program(
+        "%\nO7 (BRACKET)\nG21 T3 M6\nS8000 M3 M8\nG0 X0 Y0 Z5\n(MSG, clamp now)\nM0\nG4 P1.5\nG1 Z-1 F100\nS9000\nM5 M9\nM1\nM30\n",
+    );
+    let events: Vec<String> = found
+        .events
+        .iter()
+        .map(|event| format!("{}:{} {:?}", event.pose, event.line, event.kind))
+        .collect();
+    assert_eq!(
+        events,
+        [
+            "0:3 ToolChange(3)",
+            "0:4 Spindle(Clockwise { rpm: Some(8000.0) })",
+            "0:4 Coolant(Flood)",
+            "1:6 Message(\"clamp now\")",
+            "1:7 Stop",
+            "1:8 Dwell { seconds: 1.5 }",
+            "2:10 Spindle(Clockwise { rpm: Some(9000.0) })",
+            "2:11 Spindle(Stopped)",
+            "2:11 Coolant(Off)",
+            "2:12 OptionalStop",
+        ]
+    );
+    assert_eq!(found.title.as_deref(), Some("O7"));
+    assert_eq!(found.units, Units::Mm);
+    assert_eq!(program("G20 G0 X1 Y0 Z0").units, Units::Inch);
+    // Compensated moves wait for the next one; what comes between them stays there.
+    let found = program("G0 X-9 Y0 Z0\nG41.1 D2\nG1 X0 Y0 F9\nX10\nM8\nY10\nG40\nG1 X0\n");
+    let event = &found.events[0];
+    assert_eq!((event.pose, event.line), (3, 5));
+}
+
+#[test]
+fn feeds_keep_their_mode() {
+    let found = program("G0 X0 Y0 Z0\nG94 G1 X1 F100\nG95 X2 F0.1\nG93 X3 F2\nG0 X4");
+    let feeds: Vec<(Option<f64>, FeedMode)> = found.poses[1..]
+        .iter()
+        .map(|pose| (pose.feed, pose.feed_mode))
+        .collect();
+    assert_eq!(
+        feeds,
+        [
+            (Some(100.0), FeedMode::PerMinute),
+            (Some(0.1), FeedMode::PerRevolution),
+            (Some(2.0), FeedMode::InverseTime),
+            (None, FeedMode::InverseTime),
+        ]
+    );
+}
+
+#[test]
+fn optional_blocks() {
+    let text = "G0 X0 Y0 Z0\n/G1 X5\nG1 Y1";
+    assert_eq!(tips(&program(text)).len(), 3);
+    let mut skip = ReadOptions::default();
+    skip.block_delete = true;
+    assert_eq!(tips(&program_with(text, &skip)), [[0.0; 3], [0.0, 1.0, 0.0]]);
+}
+
+#[test]
+fn lenient_reading_lists_what_it_leaves_out() {
+    let text = "G0 X0 Y0 Z5\nG1 X1\nG5 X9 Y9\nX2\nG1 Y3\nG0 X4 Y4 Z4\nG1 X5\n";
+    assert!(gcode::read(text, &ReadOptions::default()).is_err());
+    let mut lenient = ReadOptions::default();
+    lenient.lenient = true;
+    let found = program_with(text, &lenient);
+    assert_eq!(
+        tips(&found),
+        [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [4.0, 4.0, 4.0], [5.0, 4.0, 4.0]]
+    );
+    // The path breaks where something is missing, and every line without its move is noted.
+    assert_eq!(found.sections().map(<[_]>::len).collect::<Vec<_>>(), [2, 2]);
+    let notes: Vec<String> = found.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        notes,
+        [
+            "line 3: left out: G5: splines are not supported yet: the path of the tool would be unknown; expected G0, G1, G2 or G3",
+            "line 4: left out: a move after a problem, until its kind is known again",
+            "line 5: left out: a move after a problem, until its start is known again",
+        ]
+    );
+    // A program without any move that can be read is empty, and says why.
+    let found = program_with("G5 X1\nG5 X2", &lenient);
+    assert!(found.poses.is_empty() && found.notes.len() == 1);
+}
+
+#[test]
+fn settings_of_grbl() {
+    let found = program_with("$21=1\n$X\nG21\nG0 X0 Y0 Z5\nG1 X1 F100\n", &options(Controller::Grbl));
+    assert_eq!(found.poses.len(), 2);
+    assert!(found.notes[0].message.contains("settings of the control"));
+    // Homing moves the axes: nothing is known of where the tool is after it.
+    let found = program("G0 X0 Y0 Z5\nG1 X1 F100\n$H\nG0 X0 Y0 Z5\nG1 X2");
+    assert_eq!(found.sections().count(), 2);
+    assert!(gcode::read("G0 X0 Y0 Z0\n$J=G91 X5 F10", &ReadOptions::default()).is_err());
+}

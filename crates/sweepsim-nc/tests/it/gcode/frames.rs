@@ -1,0 +1,171 @@
+//! Work offsets, length offsets, turned, scaled, mirrored and polar coordinates.
+
+use sweepsim_nc::{Controller, ReadOptions, ToolOffset, gcode};
+
+use super::{assert_near, options, program, program_with, tips};
+
+#[test]
+fn turned_coordinates() {
+    let start = "F100\nG0 X0 Y0 Z0\n";
+    // Half a turn about (5, 0).
+    assert_near(
+        &tips(&program(&format!("{start}G68 X5 Y0 R180\nG1 X1 Y1\nX2\nG69\nX2"))),
+        &[[0.0; 3], [9.0, -1.0, 0.0], [8.0, -1.0, 0.0], [2.0, -1.0, 0.0]],
+    );
+    // Arcs turn along.
+    let mut exact = ReadOptions::default();
+    exact.exact_arcs = true;
+    let found = program_with(&format!("{start}G68 X0 Y0 R90\nG1 X10 Y0\nG3 X0 Y10 I-10 J0\n"), &exact);
+    assert_near(&tips(&found)[1..], &[[0.0, 10.0, 0.0], [-10.0, 0.0, 0.0]]);
+    let sweepsim_motion::Course::Arc(arc) = found.poses[2].way.course else {
+        panic!()
+    };
+    assert!((arc.angle() * arc.normal()[2] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    // Work offsets that turn.
+    assert_near(
+        &tips(&program("G10 L2 P1 X10 Y0 Z0 R90\nG0 X1 Y0 Z0\nX2")),
+        &[[10.0, 1.0, 0.0], [10.0, 2.0, 0.0]],
+    );
+}
+
+#[test]
+fn scaled_and_mirrored_coordinates() {
+    let start = "F100\nG0 X0 Y0 Z0\n";
+    let mut exact = ReadOptions::default();
+    exact.exact_arcs = true;
+    let found = program_with(
+        &format!("{start}G51 X0 Y0 Z0 P2.0\nG1 X5\nG3 X0 Y5 I-5\nG50\nG1 X1"),
+        &exact,
+    );
+    assert_near(
+        &tips(&found)[1..],
+        &[[10.0, 0.0, 0.0], [0.0, 10.0, 0.0], [1.0, 10.0, 0.0]],
+    );
+    // Mirrored arcs turn the other way.
+    let found = program_with(
+        &format!("{start}G51.1 X0\nG1 X5\nG3 X0 Y5 I-5\nG50.1 X0\nG1 X1"),
+        &exact,
+    );
+    assert_near(
+        &tips(&found)[1..],
+        &[[-5.0, 0.0, 0.0], [0.0, 5.0, 0.0], [1.0, 5.0, 0.0]],
+    );
+    let sweepsim_motion::Course::Arc(arc) = found.poses[2].way.course else {
+        panic!()
+    };
+    assert!(arc.angle() * arc.normal()[2] < 0.0 && arc.centre() == [0.0, 0.0, 0.0]);
+    let error = gcode::read(&format!("{start}G51 X0 Y0 I2 J1\nG3 X2 Y0 I1 J0"), &exact).unwrap_err();
+    assert!(
+        error.to_string().contains("arcs in coordinates with unequal scales"),
+        "{error}"
+    );
+}
+
+#[test]
+fn polar_coordinates() {
+    let found = program("F100\nG0 X0 Y0 Z5\nG16 G99 G81 X10 Y30 Z-1 R2\nX10 Y120\nG15 G80\nG0 X0 Y0");
+    let (sin, cos) = 30_f64.to_radians().sin_cos();
+    assert_near(&[tips(&found)[1]], &[[10.0 * cos, 10.0 * sin, 5.0]]);
+    assert_near(&[tips(&found)[6]], &[[-10.0 * sin, 10.0 * cos, -1.0]]);
+    assert!(gcode::read("G0 X0 Y0 Z0\nG16 G91 X1 Y2", &ReadOptions::default()).is_err());
+}
+
+#[test]
+fn length_offsets() {
+    // Without a table, programs are written for the tip.
+    assert_eq!(
+        tips(&program("T1 M6\nG0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F9\nG49")),
+        [[0.0, 0.0, 5.0], [0.0, 0.0, -1.0]]
+    );
+    // With one, a wrong H shows: the tip is lower by what the tool is longer.
+    let mut table = ReadOptions::default();
+    table.tool_offsets.insert(
+        1,
+        ToolOffset {
+            length: 50.0,
+            diameter: 6.0,
+        },
+    );
+    table.tool_offsets.insert(
+        2,
+        ToolOffset {
+            length: 80.0,
+            diameter: 6.0,
+        },
+    );
+    let z = |text: &str| tips(&program_with(text, &table)).last().unwrap()[2];
+    assert_eq!(z("T1 M6\nG0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F9"), -1.0);
+    assert_eq!(z("T2 M6\nG0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F9"), -31.0);
+    assert_eq!(
+        z("T1 M6\nG0 X0 Y0\nG43 H1 Z5\nT2 M6\nG0 X0 Y0 Z5\nG1 Z-1 F9"),
+        -31.0,
+        "a missing G43"
+    );
+    assert_eq!(
+        z("T1 M6\nG0 X0 Y0\nG43.1 Z50\nG0 Z5\nG1 Z-1 F9"),
+        -1.0,
+        "words are offsets, not moves"
+    );
+    assert_eq!(z("T1 M6\nG0 X0 Y0\nG43 H1 G0 Z5\nG43.2 Z3\nG1 Z-1 F9"), 2.0);
+    // G10 sets rows of the table.
+    assert_eq!(
+        z("T1 M6\nG10 L1 P1 Z60\nG0 X0 Y0\nG43 H1 Z5\nG10 L1 P1 Z50\nG43 H1\nG1 Z-1 F9"),
+        -1.0
+    );
+}
+
+#[test]
+fn machine_coordinates() {
+    // Where the control's variables say where its offsets are, G53 and G28 are moves like others.
+    let mut known = ReadOptions::default();
+    for (index, value) in [
+        (5221, 100.0),
+        (5222, 50.0),
+        (5223, -200.0),
+        (5161, 0.0),
+        (5162, 0.0),
+        (5163, 0.0),
+    ] {
+        known.variables.insert(index, value);
+    }
+    let found = program_with("G0 X0 Y0 Z5\nG53 G0 Z0\nG91 G28 X0\nG90 G0 X1\n", &known);
+    assert_near(
+        &tips(&found),
+        &[
+            [100.0, 50.0, -195.0],
+            [100.0, 50.0, 0.0],
+            [0.0, 50.0, 0.0],
+            [101.0, 50.0, 0.0],
+        ],
+    );
+    assert_eq!(found.sections().count(), 1);
+    // The point on the way home is a move: into the part, if it says so.
+    let found = program("G0 X0 Y0 Z5\nG90 G28 Z-3\nG0 X0 Y0 Z9");
+    assert_eq!(tips(&found), [[0.0, 0.0, 5.0], [0.0, 0.0, -3.0], [0.0, 0.0, 9.0]]);
+    assert_eq!(found.sections().count(), 2);
+}
+
+#[test]
+fn work_offsets_of_fanuc() {
+    let fanuc = options(Controller::Fanuc);
+    let found = program_with(
+        "G90\nG10 L2 P0 X1. Y0 Z0\nG10 L2 P1 X10. Y0 Z0\nG10 L20 P3 X20. Y0 Z0\nG54 G0 X0 Y0 Z0\nG54.1 P3 X0\nG91 G10 L2 P1 X5.\nG90 G54 G0 X0",
+        &fanuc,
+    );
+    assert_near(&tips(&found), &[[11.0, 0.0, 0.0], [21.0, 0.0, 0.0], [16.0, 0.0, 0.0]]);
+    let found = program_with(
+        "G10 L20 P1 X20. Y0 Z0\nG54.1 P1 G0 X0 Y0 Z0\nG110 G0 X1.",
+        &options(Controller::Haas),
+    );
+    assert_near(&tips(&found), &[[20.0, 0.0, 0.0], [21.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn the_start_can_be_given() {
+    let mut start = ReadOptions::default();
+    start.start = Some([1.0, 2.0, 3.0]);
+    assert_eq!(
+        tips(&program_with("G91 G1 X1 F10", &start)),
+        [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
+    );
+}
