@@ -8,6 +8,7 @@
 //! derivative then errs by at most `2 d · noise`. The *remainder* bounds the difference of the polynomial from the function that it
 //! represents, and of their derivatives; it does not change under subdivision (but derivatives scale).
 
+use super::blend::Blend;
 use super::range::Range;
 use super::tape::Tape;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList, Square};
@@ -73,6 +74,8 @@ pub(crate) struct Layout {
     pub factor: RowList,
     /// How rows are combined into equations; `None` if each row is an equation.
     pub tape: Option<Tape>,
+    /// How preconditioned coefficients are computed, if they are worth it.
+    pub blend: Option<Blend>,
 }
 
 /// A box with the coefficients of all equations over it.

@@ -1,5 +1,6 @@
 //! The coefficients of a system: their layout, how boxes are cut, and what can be read off them.
 
+mod blend;
 mod enclose;
 mod functions;
 mod layout;
@@ -13,6 +14,7 @@ mod summand;
 mod tape;
 pub(crate) mod tensor;
 
+pub(crate) use blend::Blend;
 pub(crate) use functions::{Function, value_range};
 pub use layout::MAX_DEGREE;
 pub(crate) use layout::{Affine, Axis, Cell, Layout, Slopes, Summand};

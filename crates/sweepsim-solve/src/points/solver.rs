@@ -20,6 +20,27 @@ pub(crate) enum Order {
     LargestInCrowds,
 }
 
+/// Whether preconditioned coefficients help: in some systems they halve the boxes, in others they only take time.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Blending {
+    chances: u32,
+    tries: u32,
+    helps: u32,
+}
+
+impl Blending {
+    /// Whether to try: at first, while at least half of the tries help, and now and then.
+    pub(super) fn worthwhile(&mut self) -> bool {
+        self.chances += 1;
+        self.tries < 32 || 2 * self.helps >= self.tries || self.chances.is_multiple_of(16)
+    }
+
+    pub(super) fn record(&mut self, helped: bool) {
+        self.tries += 1;
+        self.helps += u32::from(helped);
+    }
+}
+
 /// The 0-D solver. It reuses its memory from one system to the next.
 ///
 /// ```
@@ -49,6 +70,7 @@ pub struct PointSolver {
     pub(super) doubles: Vec<Double>,
     pub(super) ranges: Vec<(f64, f64)>,
     pub(super) failures: u32,
+    pub(super) blending: Blending,
     /// When the time is used up.
     pub(super) deadline: Option<Instant>,
     /// Boxes of at most this size (in sides of the domain) stay open where noise hides the solution.
@@ -154,6 +176,7 @@ impl PointSolver {
         self.stack.clear();
         self.depths.clear();
         self.failures = 0;
+        self.blending = Blending::default();
     }
 
     /// Removes duplicate roots, and open boxes that hold nothing but a found root.

@@ -23,8 +23,12 @@ const SHRINK: f64 = 1.0 / 64.0;
 const THIN: f64 = 1e-8;
 /// The smallest side, relative to those of the domain: a few units in the last place.
 const LEAST_SIDE: f64 = 4e-15;
+/// Preconditioned coefficients have helped if they narrow a window to this part of its width.
+const HELPS: f64 = 0.8;
 /// If noise exceeds this fraction of an equation's size, its coefficients are worth recomputing.
 const NOISY: f64 = 1.5e-8;
+/// Noise below this fraction of an equation's size hides nothing that a few more splits would not hide as well.
+const NEGLIGIBLE: f64 = 1e-12;
 /// If an equation vanishes up to noise because a side that it depends on is below this fraction of another side, the other is still split: the cell may
 /// hold several simple roots.
 const SQUEEZED: f64 = 1.0 / 64.0;
@@ -84,6 +88,17 @@ impl PointSolver {
                         }
                         Verdict::Elsewhere => return Fate::Elsewhere,
                         Verdict::Unclear => {}
+                    }
+                }
+            }
+            if let (Some((k, _)), Some(blend)) = (&inverted, &layout.blend) {
+                if self.blending.worthwhile() {
+                    let before = window;
+                    blend.project(layout, &self.cell, k, &mut self.buffer, &mut window);
+                    let narrower = |j: usize| window[j].1 - window[j].0 < HELPS * (before[j].1 - before[j].0);
+                    self.blending.record((0..n).any(narrower));
+                    if window[..n].iter().any(|w| w.0 > w.1) {
+                        return Fate::Linear;
                     }
                 }
             }
@@ -157,19 +172,23 @@ impl PointSolver {
         self.statistics.refreshed += 1;
     }
 
-    /// Whether the noise of the equations, preconditioned by this matrix, may hide something; also if there is no such matrix.
+    /// Whether noise may hide something: it is not negligible, and preconditioned by this matrix it is a part of a side (or there is no such
+    /// matrix).
     fn faint(&self, layout: &Layout, k: Option<&Square>) -> bool {
         let n = layout.n;
-        let Some(k) = k else { return true };
         let mut errors = [0.0; MAX_UNKNOWNS];
+        let mut negligible = true;
         for (e, error) in errors[..n].iter_mut().enumerate() {
             *error = layout.value_error(&self.cell, e);
+            negligible &= *error <= NEGLIGIBLE * layout.size(&self.cell, e);
         }
-        (0..n).any(|i| {
-            let noise: f64 = (0..n).map(|e| k[i][e].abs() * errors[e]).sum();
-            let clear = noise < FAINT;
-            !clear
-        })
+        let clear = |k: &Square| {
+            (0..n).all(|i| {
+                let noise: f64 = (0..n).map(|e| k[i][e].abs() * errors[e]).sum();
+                noise < FAINT
+            })
+        };
+        !negligible && !k.is_some_and(clear)
     }
 
     /// Shrinks the cell to the window (relative to its sides) if that is worth the cost.

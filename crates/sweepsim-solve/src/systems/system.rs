@@ -2,7 +2,7 @@
 
 use super::expression::{Expression, Rows};
 use crate::Enclosure;
-use crate::coefficients::{Cell, Layout};
+use crate::coefficients::{Blend, Cell, Layout};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Place, Row};
 use smallvec::SmallVec;
 use sweepsim_spline::{Bernstein, RationalBernstein};
@@ -240,6 +240,7 @@ impl System {
         if layout.m == 0 {
             return Err(SystemError::NoEquations);
         }
+        layout.blend = Blend::new(&layout);
         Ok(Self {
             layout,
             domain: domain.into(),

@@ -2,6 +2,15 @@
 
 /// Raises the degree of one block of rows by one: the first `degree + 1` rows of `inner` numbers become `degree + 2`.
 ///
+/// ```
+/// use sweepsim_spline::kernel::elevate;
+///
+/// // x on [0, 1] as a form of degree 2.
+/// let mut block = [0.0, 1.0, 0.0];
+/// elevate(&mut block, 1, 1);
+/// assert_eq!(block, [0.0, 0.5, 1.0]);
+/// ```
+///
 /// # Panics
 /// If `block` is shorter than `degree + 2` rows.
 pub fn elevate(block: &mut [f64], degree: usize, inner: usize) {

@@ -38,7 +38,7 @@ pub(crate) use along::{Along, along};
 pub use basis::{accumulate, basis, basis_with_slopes};
 pub(crate) use binomial::roundings as binomial_roundings;
 pub use binomial::{Binomials, binomial, binomials};
-pub(crate) use elevate::elevate;
+pub use elevate::elevate;
 pub use lines::{Coefficient, derivative, evaluate, product, raised, split_line, wronskian};
 pub(crate) use multiply::{degree_of, multiply};
 pub use restrict::restrict_rectangle;
