@@ -7,6 +7,9 @@ use crate::numbers::{EPSILON, MAX_UNKNOWNS, RowList};
 use smallvec::SmallVec;
 use sweepsim_spline::kernel;
 
+/// The error of a value, relative to coefficients of size 2, for each step of evaluation; each step errs by `2⁻¹⁰⁰` or so.
+const STEP_ERROR: f64 = f64::from_bits((1023 - 92) << 52);
+
 impl Layout {
     /// Restricts along one variable; the new ends may lie outside the old ones.
     pub(crate) fn restrict(&self, cell: &mut Cell, variable: usize, lo: f64, hi: f64) {
@@ -87,6 +90,50 @@ impl Layout {
         cell.lo[variable] = at;
     }
 
+    /// The original coefficients of a part.
+    pub(super) fn originals(&self, part: &Summand, out: &mut Vec<Double>) {
+        out.clear();
+        out.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
+    }
+
+    /// The equations' values at a point of the domain, with bounds of their errors; `None` if rows are combined by a tape, or outside.
+    pub(crate) fn residual(&self, x: &Row, buffer: &mut Vec<Double>) -> Option<(Row, Row)> {
+        let inside = x[..self.n].iter().all(|x| (0.0..=1.0).contains(x));
+        if self.tape.is_some() || !inside {
+            return None;
+        }
+        let mut sums = [Double::default(); MAX_UNKNOWNS];
+        let mut errors = [0.0; MAX_UNKNOWNS];
+        for (e, error) in errors[..self.m].iter_mut().enumerate() {
+            *error = self.first_noise[e] + self.remainder[e];
+        }
+        let one = Double::new(1.0);
+        for part in &self.parts {
+            self.originals(part, buffer);
+            let mut steps = 4;
+            // De Casteljau along the slowest axis first: the blocks in front hold the result.
+            for axis in part.axes.iter().rev() {
+                let t = Double::new(x[axis.variable]);
+                let s = one.sub(t);
+                for level in 0..axis.degree {
+                    for i in 0..(axis.degree - level) * axis.inner {
+                        buffer[i] = s.mul(buffer[i]).add(t.mul(buffer[i + axis.inner]));
+                    }
+                }
+                steps += axis.degree;
+            }
+            let e = part.equation;
+            sums[e] = sums[e].add(buffer[0]);
+            errors[e] += STEP_ERROR * steps as f64;
+        }
+        let mut values = [0.0; MAX_UNKNOWNS];
+        for e in 0..self.m {
+            values[e] = sums[e].hi;
+            errors[e] += f64::EPSILON * sums[e].hi.abs();
+        }
+        Some((values, errors))
+    }
+
     /// Recomputes the cell's coefficients from the original ones, in double-double precision. Cells may extend slightly beyond the domain: restriction to
     /// `[−a, 1 + b]` magnifies errors of degree `d` by at most `((1 + 2a)(1 + 2b))ᵈ`.
     ///
@@ -96,8 +143,7 @@ impl Layout {
         // Last parts first: the first part of each equation absorbs the constants of the others.
         for (number, part) in self.parts.iter().enumerate().rev() {
             let e = part.equation;
-            buffer.clear();
-            buffer.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
+            self.originals(part, buffer);
             for axis in &part.axes {
                 let (lo, hi) = (cell.lo[axis.variable], cell.hi[axis.variable]);
                 if lo != 0.0 || hi != 1.0 {

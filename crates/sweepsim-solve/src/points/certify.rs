@@ -1,7 +1,10 @@
 //! The certificate of a root: a box that holds exactly one root, and a bound on its distance from a point.
 
 use crate::coefficients::{Affine, Cell, Layout};
-use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
+use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
+
+/// Roots that are known less well than this, in sides of the cell, are refined in double-double precision.
+const BLUNT: f64 = 1e-10;
 
 /// A certified root in inner coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -44,7 +47,12 @@ pub(crate) fn newton_box(affine: &Affine, k: &Square, n: usize) -> (Row, Row) {
 }
 
 /// Proves that the cell holds exactly one root, and encloses it; `None` if that cannot be proved.
-pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64>) -> Option<Found> {
+pub(crate) fn unique_root(
+    layout: &Layout,
+    cell: &mut Cell,
+    buffer: &mut Vec<f64>,
+    doubles: &mut Vec<Double>,
+) -> Option<Found> {
     let n = layout.n;
     layout.ranges(cell);
     let mean = layout.mean_slopes(&cell.c);
@@ -115,13 +123,66 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             break;
         }
     }
+    let mut value_errors = [0.0; MAX_UNKNOWNS];
+    for (e, error) in value_errors[..n].iter_mut().enumerate() {
+        *error = layout.value_error(cell, e);
+    }
+    let side = |i: usize| cell.hi[i] - cell.lo[i];
+    let mut point = [0.0; MAX_UNKNOWNS];
+    for i in 0..n {
+        point[i] = cell.lo[i] + s[i] * side(i);
+    }
+    let mut errors = distances(&k, &rest, contraction, &value, &value_errors, n);
+    let sharp = errors.is_some_and(|errors| errors[..n].iter().all(|e| *e <= BLUNT));
+    if !sharp && layout.improvable(cell) {
+        // The equations are nearly singular, or their values mostly noise: values in double-double precision, from the original coefficients.
+        let mut better = point;
+        for _ in 0..8 {
+            let Some((value, value_errors)) = layout.residual(&better, doubles) else {
+                break;
+            };
+            if let Some(own) = distances(&k, &rest, contraction, &value, &value_errors, n)
+                && errors.is_none_or(|old| (0..n).all(|i| own[i] <= old[i]))
+            {
+                (errors, point) = (Some(own), better);
+            }
+            let step = apply(&k, &value, n);
+            for i in 0..n {
+                better[i] = (better[i] - step[i] * side(i)).clamp(cell.lo[i], cell.hi[i]);
+            }
+        }
+    }
+    let errors = errors?;
+    let mut found = Found {
+        point: [0.0; MAX_UNKNOWNS],
+        lo: [0.0; MAX_UNKNOWNS],
+        hi: [0.0; MAX_UNKNOWNS],
+        unique_lo: cell.lo,
+        unique_hi: cell.hi,
+        orientation,
+        straddles: false,
+        boundary: false,
+    };
+    for i in 0..n {
+        let x = point[i];
+        let pad = errors[i] * side(i) * (1.0 + 8.0 * EPSILON) + 2.0 * EPSILON * (x.abs() + side(i));
+        found.point[i] = x;
+        found.lo[i] = (x - pad).max(cell.lo[i]);
+        found.hi[i] = (x + pad).min(cell.hi[i]);
+    }
+    Some(found)
+}
+
+/// Bounds of a root's distance from a point with these values of the equations, in sides of the cell, entry by entry; `None` if they are no
+/// less than the cell. `rest` bounds `|I − K J|` on the cell, and its row sums are at most `contraction`.
+fn distances(k: &Square, rest: &Square, contraction: f64, value: &Row, value_errors: &Row, n: usize) -> Option<Row> {
     let mut direct = [0.0; MAX_UNKNOWNS];
     let mut largest: f64 = 0.0;
     for i in 0..n {
         let (mut sum, mut error) = (0.0, 0.0);
         for e in 0..n {
             sum += k[i][e] * value[e];
-            error += k[i][e].abs() * (layout.value_error(cell, e) + 16.0 * EPSILON * f64::abs(value[e]));
+            error += k[i][e].abs() * (value_errors[e] + 16.0 * EPSILON * f64::abs(value[e]));
         }
         direct[i] = f64::abs(sum) + error;
         if !direct[i].is_finite() {
@@ -150,23 +211,5 @@ pub(crate) fn unique_root(layout: &Layout, cell: &mut Cell, buffer: &mut Vec<f64
             break;
         }
     }
-    let mut found = Found {
-        point: [0.0; MAX_UNKNOWNS],
-        lo: [0.0; MAX_UNKNOWNS],
-        hi: [0.0; MAX_UNKNOWNS],
-        unique_lo: cell.lo,
-        unique_hi: cell.hi,
-        orientation,
-        straddles: false,
-        boundary: false,
-    };
-    for i in 0..n {
-        let side = cell.hi[i] - cell.lo[i];
-        let x = cell.lo[i] + s[i] * side;
-        let pad = errors[i] * side * (1.0 + 8.0 * EPSILON) + 2.0 * EPSILON * (x.abs() + side);
-        found.point[i] = x;
-        found.lo[i] = (x - pad).max(cell.lo[i]);
-        found.hi[i] = (x + pad).min(cell.hi[i]);
-    }
-    Some(found)
+    Some(errors)
 }

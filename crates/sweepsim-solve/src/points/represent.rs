@@ -99,7 +99,7 @@ impl PointSolver {
         layout.refresh(trial, &mut self.doubles);
         self.statistics.refreshed += 1;
         self.statistics.attempts += 1;
-        unique_root(layout, trial, &mut self.buffer)
+        unique_root(layout, trial, &mut self.buffer, &mut self.doubles)
     }
 }
 

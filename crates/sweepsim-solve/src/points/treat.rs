@@ -27,7 +27,7 @@ const LEAST_SIDE: f64 = 4e-15;
 const HELPS: f64 = 0.8;
 /// If noise exceeds this fraction of an equation's size, its coefficients are worth recomputing.
 const NOISY: f64 = 1.5e-8;
-/// Noise below this fraction of an equation's size hides nothing that a few more splits would not hide as well.
+/// Without a preconditioner, noise below this fraction of every equation's size does not count: it hides nothing that it would not hide a few splits on.
 const NEGLIGIBLE: f64 = 1e-12;
 /// If an equation vanishes up to noise because a side that it depends on is below this fraction of another side, the other is still split: the cell may
 /// hold several simple roots.
@@ -91,15 +91,15 @@ impl PointSolver {
                     }
                 }
             }
-            if let (Some((k, _)), Some(blend)) = (&inverted, &layout.blend) {
-                if self.blending.worthwhile() {
-                    let before = window;
-                    blend.project(layout, &self.cell, k, &mut self.buffer, &mut window);
-                    let narrower = |j: usize| window[j].1 - window[j].0 < HELPS * (before[j].1 - before[j].0);
-                    self.blending.record((0..n).any(narrower));
-                    if window[..n].iter().any(|w| w.0 > w.1) {
-                        return Fate::Linear;
-                    }
+            if let (Some((k, _)), Some(blend)) = (&inverted, &layout.blend)
+                && self.blending.worthwhile()
+            {
+                let before = window;
+                blend.project(layout, &self.cell, k, &mut self.buffer, &mut window);
+                let narrower = |j: usize| window[j].1 - window[j].0 < HELPS * (before[j].1 - before[j].0);
+                self.blending.record((0..n).any(narrower));
+                if window[..n].iter().any(|w| w.0 > w.1) {
+                    return Fate::Linear;
                 }
             }
             layout.part_ranges(&self.cell, &mut self.ranges);
@@ -172,23 +172,22 @@ impl PointSolver {
         self.statistics.refreshed += 1;
     }
 
-    /// Whether noise may hide something: it is not negligible, and preconditioned by this matrix it is a part of a side (or there is no such
-    /// matrix).
+    /// Whether noise may hide something: preconditioned by this matrix it is a part of a side; or there is no such matrix, and the noise is not
+    /// negligible.
     fn faint(&self, layout: &Layout, k: Option<&Square>) -> bool {
         let n = layout.n;
         let mut errors = [0.0; MAX_UNKNOWNS];
-        let mut negligible = true;
         for (e, error) in errors[..n].iter_mut().enumerate() {
             *error = layout.value_error(&self.cell, e);
-            negligible &= *error <= NEGLIGIBLE * layout.size(&self.cell, e);
         }
-        let clear = |k: &Square| {
-            (0..n).all(|i| {
-                let noise: f64 = (0..n).map(|e| k[i][e].abs() * errors[e]).sum();
-                noise < FAINT
-            })
+        let Some(k) = k else {
+            return (0..n).any(|e| errors[e] > NEGLIGIBLE * layout.size(&self.cell, e));
         };
-        !negligible && !k.is_some_and(clear)
+        (0..n).any(|i| {
+            let noise: f64 = (0..n).map(|e| k[i][e].abs() * errors[e]).sum();
+            let clear = noise < FAINT;
+            !clear
+        })
     }
 
     /// Shrinks the cell to the window (relative to its sides) if that is worth the cost.
@@ -290,7 +289,7 @@ impl PointSolver {
             }
             layout.restrict(trial, j, lo, hi);
         }
-        match unique_root(layout, trial, &mut self.buffer) {
+        match unique_root(layout, trial, &mut self.buffer, &mut self.doubles) {
             Some(unique) => placed(system, cell, unique),
             None => Verdict::Unclear,
         }
@@ -320,7 +319,7 @@ impl PointSolver {
             layout.refresh(trial, &mut self.doubles);
             self.statistics.refreshed += 1;
             self.statistics.attempts += 1;
-            let Some(unique) = unique_root(layout, trial, &mut self.buffer) else {
+            let Some(unique) = unique_root(layout, trial, &mut self.buffer, &mut self.doubles) else {
                 continue;
             };
             match placed(system, cell, unique) {
