@@ -3,7 +3,7 @@
 use super::layout::{Axis, Cell, Layout, Summand};
 use super::tensor;
 use crate::numbers::double::{self, Double};
-use crate::numbers::{EPSILON, MAX_UNKNOWNS, RowList};
+use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList};
 use smallvec::SmallVec;
 use sweepsim_spline::kernel;
 
