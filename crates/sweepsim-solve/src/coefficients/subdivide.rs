@@ -1,7 +1,6 @@
 //! Restricting, splitting and recomputing the coefficients of a cell, and extracting those of a face.
 
 use super::layout::{Axis, Cell, Layout, Summand};
-use super::tensor;
 use crate::numbers::double::{self, Double};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList};
 use smallvec::SmallVec;
@@ -34,7 +33,6 @@ impl Layout {
         let growth_upper = if cut_upper { upper.0.abs() + upper.1.abs() } else { 1.0 };
         let growth_lower = if cut_lower { lower.0.abs() + lower.1.abs() } else { 1.0 };
         let passes = f64::from(u8::from(cut_upper) + u8::from(cut_lower));
-        let mut grown = RowList::filled(1.0, self.rows());
         for part in &self.parts {
             let Some(axis) = part.axis(variable) else { continue };
             let c = part.of_mut(&mut cell.c);
@@ -56,10 +54,8 @@ impl Layout {
             let e = part.equation;
             let added = 4.0 * EPSILON * axis.degree as f64 * passes * cell.scale[e];
             cell.noise[e] = (cell.noise[e] + added) * growth;
-            grown[e] = tensor::greater(grown[e], growth);
-        }
-        for e in 0..self.rows() {
-            cell.scale[e] *= grown[e];
+            // No other part of the row depends on this variable.
+            cell.scale[e] *= growth;
         }
         cell.lo[variable] = lo;
         cell.hi[variable] = hi;

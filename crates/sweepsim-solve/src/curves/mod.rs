@@ -18,6 +18,8 @@ mod assemble;
 mod cubic;
 mod faces;
 mod graph;
+#[cfg(feature = "rayon")]
+mod parallel;
 mod subdivide;
 mod trace;
 
@@ -235,7 +237,7 @@ impl CurveSolver {
         self.check(system)?;
         let mut search = self.search(system, monitor);
         let (root, first, skin) = search.boundary(monitor);
-        search.run(root, first, monitor, &mut |_, _| {});
+        search.run((root, 0), first, monitor, &mut |_, _| {});
         Ok(search.assemble(skin))
     }
 
@@ -337,7 +339,7 @@ impl CurveSolver {
         self.check(system)?;
         let mut search = self.search(system, monitor);
         let (root, first, skin) = search.boundary(monitor);
-        search.run(root, first, monitor, &mut |tracer, pieces| {
+        search.run((root, 0), first, monitor, &mut |tracer, pieces| {
             for piece in pieces.drain(..) {
                 tracer.room += piece.trace.vertices.len();
                 visit(CurvePiece {

@@ -60,10 +60,10 @@ pub(super) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The search. After each cell, `hand` may take the pieces found so far.
+    /// The search of a cell at some depth. After each cell, `hand` may take the pieces found so far.
     pub(super) fn run(
         &mut self,
-        root: Cell,
+        (root, depth): (Cell, u32),
         first: Vec<usize>,
         monitor: &dyn Monitor,
         hand: &mut dyn FnMut(&mut Tracer<'_>, &mut Vec<GraphPiece>),
@@ -71,16 +71,13 @@ impl Search<'_> {
         let layout = &self.system.layout;
         let mut watch = Watch::new(&self.options);
         let mut stack = Vec::new();
-        let mut frames: Vec<(u32, Vec<usize>)> = vec![(0, first)];
+        let mut frames: Vec<(u32, Vec<usize>)> = vec![(depth, first)];
         push(&mut stack, &root, layout);
         let mut cell = root;
         let mut lower = Cell::default();
         while let Some((depth, crossings)) = frames.pop() {
             pop(&mut stack, &mut cell, layout);
-            let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
-            // A cell takes long enough to look at the clock before each.
-            let late = watch.late().then_some(Cause::Time);
-            if let Some(cause) = stop.or(late).or(self.tracer.stopped) {
+            if let Some(cause) = self.stop(&mut watch, monitor) {
                 self.leave(&cell, crossings, cause);
                 while let Some((_, crossings)) = frames.pop() {
                     pop(&mut stack, &mut cell, layout);
@@ -88,28 +85,14 @@ impl Search<'_> {
                 }
                 return;
             }
-            self.statistics.boxes += 1;
-            self.statistics.depth = self.statistics.depth.max(depth);
             let (lo, hi) = (cell.lo, cell.hi);
-            let fate = match self.settle(&mut cell, &crossings) {
-                Ok(fate) => fate,
-                Err(_) if self.tracer.stopped.is_some() => {
-                    let cause = self.tracer.stopped.unwrap_or(Cause::Time);
-                    self.leave(&cell, crossings, cause);
-                    Fate::Unresolved
-                }
-                Err(axis) => match self.split(&mut cell, &mut lower, axis, depth, crossings, monitor) {
-                    Some((below, above)) => {
-                        push(&mut stack, &cell, layout);
-                        frames.push((depth + 1, above));
-                        push(&mut stack, &lower, layout);
-                        frames.push((depth + 1, below));
-                        Fate::Split
-                    }
-                    None => Fate::Unresolved,
-                },
-            };
-            self.statistics.count(fate);
+            let (fate, children) = self.visit(&mut cell, &mut lower, depth, crossings, monitor);
+            if let Some((below, above)) = children {
+                push(&mut stack, &cell, layout);
+                frames.push((depth + 1, above));
+                push(&mut stack, &lower, layout);
+                frames.push((depth + 1, below));
+            }
             hand(&mut self.tracer, &mut self.pieces);
             if monitor.visits() {
                 monitor.visit(&self.system.outward(&lo, &hi), depth, fate);
@@ -117,7 +100,43 @@ impl Search<'_> {
         }
     }
 
-    fn leave(&mut self, cell: &Cell, crossings: Vec<usize>, cause: Cause) {
+    /// The reason to stop before the next cell, if any.
+    pub(super) fn stop(&self, watch: &mut Watch, monitor: &dyn Monitor) -> Option<Cause> {
+        let stop = watch.stop(&self.options, &self.statistics, self.open.len(), monitor);
+        // A cell takes long enough to look at the clock before each.
+        let late = watch.late().then_some(Cause::Time);
+        stop.or(late).or(self.tracer.stopped)
+    }
+
+    /// Settles a cell, leaves it open, or splits it: then the upper part stays in it, and the crossings of either part are returned.
+    pub(super) fn visit(
+        &mut self,
+        cell: &mut Cell,
+        lower: &mut Cell,
+        depth: u32,
+        crossings: Vec<usize>,
+        monitor: &dyn Monitor,
+    ) -> (Fate, Option<(Vec<usize>, Vec<usize>)>) {
+        self.statistics.boxes += 1;
+        self.statistics.depth = self.statistics.depth.max(depth);
+        let (fate, children) = match self.settle(cell, &crossings) {
+            Ok(fate) => (fate, None),
+            Err(axis) => match self.tracer.stopped {
+                Some(cause) => {
+                    self.leave(cell, crossings, cause);
+                    (Fate::Unresolved, None)
+                }
+                None => match self.split(cell, lower, axis, depth, crossings, monitor) {
+                    Some(children) => (Fate::Split, Some(children)),
+                    None => (Fate::Unresolved, None),
+                },
+            },
+        };
+        self.statistics.count(fate);
+        (fate, children)
+    }
+
+    pub(super) fn leave(&mut self, cell: &Cell, crossings: Vec<usize>, cause: Cause) {
         self.open.push(OpenCell {
             lo: cell.lo,
             hi: cell.hi,

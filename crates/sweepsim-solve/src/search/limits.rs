@@ -246,6 +246,11 @@ impl Watch {
         Self { deadline }
     }
 
+    /// A clock for another thread, with the same deadline.
+    pub(crate) fn share(&self) -> Self {
+        Self::until(self.deadline)
+    }
+
     /// Whether the time is used up.
     pub(crate) fn late(&self) -> bool {
         self.deadline.is_some_and(|d| Instant::now() >= d)

@@ -6,6 +6,7 @@ mod limits;
 mod monitor;
 mod open;
 mod picture;
+mod spread;
 
 pub(crate) use cluster::{cluster_box, clusters};
 pub use error::SolveError;
@@ -14,3 +15,4 @@ pub use limits::{Cause, Fate, SolveOptions, SolveStatistics, UnresolvedBox};
 pub use monitor::{CancelOnly, Monitor};
 pub(crate) use open::{Open, open_box, unite};
 pub use picture::Picture;
+pub(crate) use spread::spread;

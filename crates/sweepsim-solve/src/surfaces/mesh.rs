@@ -3,13 +3,12 @@
 use super::lattice::PlaneLattice;
 use super::octree::{FINEST, OctreeNode, State};
 use crate::Monitor;
-use crate::coefficients::Cell;
 use crate::numbers::{MAX_UNKNOWNS, Row};
-use crate::search::{Cause, Watch};
+use crate::search::{Cause, Watch, spread};
 use std::collections::BTreeMap;
 
 /// An edge of the finest neighbour: where it starts, its axis, its length.
-type Edge = ([u32; 3], u8, u32);
+pub(crate) type Edge = ([u32; 3], u8, u32);
 
 pub(crate) struct Mesher<'a> {
     grid: &'a PlaneLattice<'a>,
@@ -19,6 +18,12 @@ pub(crate) struct Mesher<'a> {
     signs: BTreeMap<[u32; 3], i8>,
     buffer: Vec<f64>,
 }
+
+/// Leaves with the cycles of crossings around them.
+pub(crate) type Cycles = Vec<(usize, Vec<Edge>)>;
+
+/// Leaves or vertices that are treated together, on one thread.
+const CHUNK: usize = 512;
 
 /// Vertices, and the vertex numbers of each triangle.
 type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
@@ -61,62 +66,105 @@ impl<'a> Mesher<'a> {
         (number.is_multiple_of(16) && self.watch.late()).then_some(Cause::Time)
     }
 
-    /// Plain leaves whose neighbourhood violates the conditions, or why the check was stopped.
-    pub(crate) fn check(&mut self) -> Result<Vec<usize>, Cause> {
-        let mut bad = Vec::new();
-        for (number, node) in self.nodes.iter().enumerate() {
+    /// The cycles around all plain leaves, or else the leaves whose neighbourhood violates the conditions; or why the check was stopped.
+    pub(crate) fn check(&self, parallel: bool) -> Result<Result<Cycles, Vec<usize>>, Cause> {
+        let numbers: Vec<usize> = (0..self.nodes.len()).collect();
+        let chunks: Vec<&[usize]> = numbers.chunks(CHUNK).collect();
+        let (mut cycles, mut bad) = (Vec::new(), Vec::new());
+        for chunk in spread(parallel, chunks, |chunk| self.share().check_some(chunk)) {
+            let (some, failures) = chunk?;
+            cycles.extend(some);
+            bad.extend(failures);
+        }
+        Ok(if bad.is_empty() { Ok(cycles) } else { Err(bad) })
+    }
+
+    /// One for another thread.
+    fn share(&self) -> Self {
+        Self::new(self.grid, self.nodes, self.watch, self.monitor)
+    }
+
+    fn check_some(&mut self, numbers: &[usize]) -> Result<(Cycles, Vec<usize>), Cause> {
+        let (mut cycles, mut bad) = (Vec::new(), Vec::new());
+        for &number in numbers {
+            let node = &self.nodes[number];
             if !matches!(node.state, State::Plain(_)) {
                 continue;
             }
             if let Some(cause) = self.stop(number) {
                 return Err(cause);
             }
-            if matches!(self.cycle(node), Cycle::Bad) {
-                bad.push(number);
+            match self.cycle(node) {
+                Cycle::Empty => {}
+                Cycle::One(cycle) => cycles.push((number, cycle)),
+                Cycle::Bad => bad.push(number),
             }
         }
-        Ok(bad)
+        Ok((cycles, bad))
     }
 
-    /// All triangles, with at most `most` vertices; otherwise the cause of failure. The octree must have passed the check.
-    pub(crate) fn mesh(&mut self, most: usize) -> Result<Triangles, Cause> {
-        let nodes = self.nodes;
-        let mut vertices: Vec<[f64; 3]> = Vec::new();
+    /// All triangles, with at most `most` vertices; otherwise the cause of failure. The octree must have passed the check, which gave these cycles.
+    pub(crate) fn mesh(&self, cycles: &Cycles, most: usize, parallel: bool) -> Result<Triangles, Cause> {
+        // First the numbers of all vertices: on an edge, or in the middle of a leaf.
+        let mut known: BTreeMap<Edge, u32> = BTreeMap::new();
+        let (mut edges, mut centres) = (Vec::new(), Vec::new());
         let mut triangles = Vec::new();
-        let mut known: BTreeMap<Edge, (u32, Row)> = BTreeMap::new();
-        for (number, node) in nodes.iter().enumerate() {
-            let State::Plain(cell) = &node.state else { continue };
-            if let Some(cause) = self.stop(number) {
+        let mut count = 0;
+        for (number, cycle) in cycles {
+            if let Some(cause) = self.stop(*number) {
                 return Err(cause);
             }
-            let Cycle::One(cycle) = self.cycle(node) else { continue };
             // At most one vertex on each edge of the cycle and one in the middle.
-            if vertices.len() + cycle.len() >= most {
+            if count as usize + cycle.len() >= most {
                 return Err(Cause::Vertices);
             }
             let mut corners = Vec::with_capacity(cycle.len());
             for edge in cycle {
-                let entry = known.get(&edge).copied();
-                let (vertex, point) = entry.unwrap_or_else(|| {
-                    let point = self.crossing(&edge);
-                    vertices.push(self.grid.outer(&point));
-                    let new = (vertices.len() as u32 - 1, point);
-                    known.insert(edge, new);
-                    new
-                });
-                corners.push((vertex, point));
+                corners.push(*known.entry(*edge).or_insert_with(|| {
+                    edges.push((count, *edge));
+                    count += 1;
+                    count - 1
+                }));
             }
             if corners.len() == 3 {
-                triangles.push([corners[0].0, corners[1].0, corners[2].0]);
+                triangles.push([corners[0], corners[1], corners[2]]);
                 continue;
             }
-            let centre = self.centre(cell, &corners);
-            vertices.push(self.grid.outer(&centre));
-            let middle = vertices.len() as u32 - 1;
             for k in 0..corners.len() {
-                triangles.push([corners[k].0, corners[(k + 1) % corners.len()].0, middle]);
+                triangles.push([corners[k], corners[(k + 1) % corners.len()], count]);
+            }
+            centres.push((count, *number, corners));
+            count += 1;
+        }
+        // Then their places.
+        let mut places = vec![[0.0; MAX_UNKNOWNS]; count as usize];
+        let on_edges = spread(parallel, edges.chunks(CHUNK).collect(), |chunk| {
+            let mut own = self.share();
+            let place = |(vertex, edge): &(u32, Edge)| match own.stop(*vertex as usize) {
+                Some(cause) => Err(cause),
+                None => Ok((*vertex, own.crossing(edge))),
+            };
+            chunk.iter().map(place).collect::<Result<Vec<_>, Cause>>()
+        });
+        for chunk in on_edges {
+            for (vertex, place) in chunk? {
+                places[vertex as usize] = place;
             }
         }
+        let in_leaves = spread(parallel, centres.chunks(CHUNK).collect(), |chunk| {
+            let mut own = self.share();
+            let place = |(vertex, number, corners): &(u32, usize, Vec<u32>)| match own.stop(*vertex as usize) {
+                Some(cause) => Err(cause),
+                None => Ok((*vertex, own.centre(*number, corners, &places))),
+            };
+            chunk.iter().map(place).collect::<Result<Vec<_>, Cause>>()
+        });
+        for chunk in in_leaves {
+            for (vertex, place) in chunk? {
+                places[vertex as usize] = place;
+            }
+        }
+        let vertices = places.iter().map(|place| self.grid.outer(place)).collect();
         Ok((vertices, triangles))
     }
 
@@ -313,14 +361,17 @@ impl<'a> Mesher<'a> {
     }
 
     /// A point of the surface between the crossings, by Newton's method along the gradient within the cell; if that fails, their mean.
-    fn centre(&mut self, cell: &Cell, corners: &[(u32, Row)]) -> Row {
+    fn centre(&mut self, number: usize, corners: &[u32], places: &[Row]) -> Row {
         let layout = &self.grid.system.layout;
         let mut mean = [0.0; MAX_UNKNOWNS];
-        for (_, p) in corners {
+        for corner in corners {
             for j in 0..3 {
-                mean[j] += p[j] / corners.len() as f64;
+                mean[j] += places[*corner as usize][j] / corners.len() as f64;
             }
         }
+        let State::Plain(cell) = &self.nodes[number].state else {
+            return mean;
+        };
         let domain = self.grid.domain();
         // Any common factor cancels.
         let width = [0, 1, 2].map(|j: usize| domain[j].hi() - domain[j].lo());

@@ -135,11 +135,30 @@ impl SurfaceSolver {
     /// [`SolveError::Variables`] unless there are three variables, [`SolveError::Equations`] unless there is one equation,
     /// [`SolveError::Smallest`] for an invalid size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
-        self.solve_within(system, monitor, self.options.vertices.min(u32::MAX as usize))
+        self.solve_within(system, monitor, self.options.vertices, false)
     }
 
-    /// As [`solve`](Self::solve), with at most this many vertices.
-    fn solve_within(&self, system: &System, monitor: &dyn Monitor, most: usize) -> Result<Surface, SolveError> {
+    /// As [`solve`](Self::solve), on the threads of the current rayon pool. The result is the same for any number of threads, unless
+    /// [`SolveOptions::time`] is set or the monitor cancels the search; it differs from that of `solve` in the order of vertices and triangles. Budgets of boxes
+    /// apply to each of at most 512 parts of the search. The monitor [visits](Monitor::visit) boxes of all parts, in any order.
+    ///
+    /// # Errors
+    ///
+    /// As [`solve`](Self::solve).
+    #[cfg(feature = "rayon")]
+    pub fn solve_parallel(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Surface, SolveError> {
+        self.solve_within(system, monitor, self.options.vertices, true)
+    }
+
+    /// As [`solve`](Self::solve), with at most this many vertices, on one or many threads.
+    fn solve_within(
+        &self,
+        system: &System,
+        monitor: &dyn Monitor,
+        most: usize,
+        parallel: bool,
+    ) -> Result<Surface, SolveError> {
+        let most = most.min(u32::MAX as usize);
         let (n, m) = (system.layout.n, system.layout.m);
         if n != 3 {
             return Err(SolveError::Variables {
@@ -180,16 +199,20 @@ impl SurfaceSolver {
             level: 0,
             state: State::Plain(Box::new(root)),
         });
-        search.treat(0, monitor);
+        if parallel {
+            search.treat_parallel(monitor);
+        } else {
+            search.treat(0, monitor);
+        }
         let mut mesh = None;
         while search.stopped.is_none() && mesh.is_none() {
-            let mut mesher = Mesher::new(&search.grid, &search.nodes, &search.watch, monitor);
-            match mesher.check() {
-                Ok(failures) if failures.is_empty() => match mesher.mesh(most) {
+            let mesher = Mesher::new(&search.grid, &search.nodes, &search.watch, monitor);
+            match mesher.check(parallel) {
+                Ok(Ok(cycles)) => match mesher.mesh(&cycles, most, parallel) {
                     Ok(triangles) => mesh = Some(triangles),
                     Err(cause) => search.stopped = Some(cause),
                 },
-                Ok(failures) => {
+                Ok(Err(failures)) => {
                     for node in failures {
                         search.split(node, monitor);
                     }
@@ -263,9 +286,11 @@ mod tests {
             .sub(&Bernstein::constant(3, 0.16));
         let system = System::new(&[Enclosure::UNIT; 3], [&sphere]).unwrap();
         let solver = SurfaceSolver::new(0.05);
-        let whole = solver.solve_within(&system, &(), u32::MAX as usize).unwrap();
+        let whole = solver.solve_within(&system, &(), u32::MAX as usize, false).unwrap();
         assert!(whole.unresolved.is_empty() && whole.vertices.len() > 100);
-        let some = solver.solve_within(&system, &(), whole.vertices.len() / 2).unwrap();
+        let some = solver
+            .solve_within(&system, &(), whole.vertices.len() / 2, false)
+            .unwrap();
         assert!(some.vertices.is_empty() && some.triangles.is_empty());
         assert!(some.unresolved.iter().all(|u| u.cause == Cause::Vertices) && !some.unresolved.is_empty());
     }

@@ -4,11 +4,15 @@ use super::lattice::PlaneLattice;
 use super::plain::plain;
 use crate::coefficients::Cell;
 use crate::numbers::Double;
-use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch};
+use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch, spread};
 use crate::{Monitor, System};
+use std::collections::VecDeque;
 
 /// The finest level: lattice coordinates go up to `2^FINEST`.
 pub(crate) const FINEST: u32 = 20;
+
+/// The number of leaves that are treated independently on several threads: many more than these, since they differ in cost.
+const PARTS: usize = 256;
 
 /// The state of a node.
 #[derive(Debug)]
@@ -58,56 +62,118 @@ impl Search<'_> {
     pub(super) fn treat(&mut self, first: usize, monitor: &dyn Monitor) {
         let mut stack = vec![first];
         while let Some(number) = stack.pop() {
-            let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
-            let State::Plain(mut cell) = state else { continue };
-            if self.stopped.is_none() {
-                self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
-                // Children are numbered with 32 bits.
-                if self.nodes.len() + 8 > u32::MAX as usize {
-                    self.stopped = Some(Cause::Boxes);
-                }
-            }
-            if let Some(cause) = self.stopped {
-                self.leave(number, cause);
-                continue;
-            }
-            self.statistics.boxes += 1;
-            self.statistics.depth = self.statistics.depth.max(self.nodes[number].level);
-            let bounds = monitor.visits().then(|| self.system.outward(&cell.lo, &cell.hi));
-            let layout = &self.system.layout;
-            let mut totals = layout.ranges(&mut cell);
-            let fate = if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
-                Fate::Sign
-            } else {
-                if self.nodes[number].level > 0 && layout.noisy(&cell, &totals, 1e-7) {
-                    layout.refresh(&mut cell, &mut self.doubles);
-                    self.statistics.refreshed += 1;
-                    totals = layout.ranges(&mut cell);
-                }
-                if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
-                    Fate::Sign
-                } else if plain(layout, &cell) && self.flat(&cell) {
-                    Fate::Certified
-                } else if self.nodes[number].level < self.deepest {
-                    Fate::Split
-                } else {
-                    Fate::Unresolved
-                }
-            };
-            self.statistics.count(fate);
-            if let Some(bounds) = bounds {
-                monitor.visit(&bounds, self.nodes[number].level, fate);
-            }
-            match fate {
-                Fate::Sign => {}
-                Fate::Certified => self.nodes[number].state = State::Plain(cell),
-                Fate::Split => {
-                    let children = self.divide(number, *cell);
-                    stack.extend((children..children + 8).rev());
-                }
-                _ => self.leave(number, Cause::Smallest),
+            if let Some(children) = self.decide(number, monitor) {
+                stack.extend((children..children + 8).rev());
             }
         }
+    }
+
+    /// As [`treat`](Self::treat) of the root, on the threads of the current pool: breadth first to some hundred leaves, which are then treated
+    /// independently.
+    pub(super) fn treat_parallel(&mut self, monitor: &dyn Monitor) {
+        let mut waiting = VecDeque::from([0]);
+        while waiting.len() < PARTS {
+            let Some(number) = waiting.pop_front() else { break };
+            if let Some(children) = self.decide(number, monitor) {
+                waiting.extend(children..children + 8);
+            }
+        }
+        let mut parts = Vec::with_capacity(waiting.len());
+        for number in waiting {
+            let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
+            let (corner, level) = (self.nodes[number].corner, self.nodes[number].level);
+            parts.push((number, OctreeNode { corner, level, state }));
+        }
+        let (system, options, tolerance, deepest) = (self.system, self.options, self.tolerance, self.deepest);
+        let (watch, stopped) = (&self.watch, self.stopped);
+        let searched = spread(true, parts, |(number, root): (usize, OctreeNode)| {
+            let mut part = Search {
+                system,
+                grid: PlaneLattice::new(system),
+                options,
+                tolerance,
+                deepest,
+                nodes: vec![root],
+                statistics: SolveStatistics::default(),
+                doubles: Vec::new(),
+                watch: watch.share(),
+                stopped,
+                open: 0,
+            };
+            part.treat(0, monitor);
+            (number, part.nodes, part.statistics, part.stopped, part.open)
+        });
+        for (number, nodes, statistics, stopped, open) in searched {
+            // The part's first node is this one; the others come after all nodes so far.
+            let by = self.nodes.len() as u32;
+            for (own, mut node) in nodes.into_iter().enumerate() {
+                if let State::Inner(first) = &mut node.state {
+                    *first += by - 1;
+                }
+                if own == 0 {
+                    self.nodes[number] = node;
+                } else {
+                    self.nodes.push(node);
+                }
+            }
+            self.statistics.merge(&statistics);
+            self.stopped = self.stopped.or(stopped);
+            self.open += open;
+        }
+        if self.nodes.len() > u32::MAX as usize - 8 {
+            self.stopped = Some(Cause::Boxes);
+        }
+    }
+
+    /// Decides a new leaf; returns the first of its children if it is split.
+    fn decide(&mut self, number: usize, monitor: &dyn Monitor) -> Option<usize> {
+        let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
+        let State::Plain(mut cell) = state else { return None };
+        if self.stopped.is_none() {
+            self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
+            // Children are numbered with 32 bits.
+            if self.nodes.len() + 8 > u32::MAX as usize {
+                self.stopped = Some(Cause::Boxes);
+            }
+        }
+        if let Some(cause) = self.stopped {
+            self.leave(number, cause);
+            return None;
+        }
+        self.statistics.boxes += 1;
+        self.statistics.depth = self.statistics.depth.max(self.nodes[number].level);
+        let bounds = monitor.visits().then(|| self.system.outward(&cell.lo, &cell.hi));
+        let layout = &self.system.layout;
+        let mut totals = layout.ranges(&mut cell);
+        let fate = if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
+            Fate::Sign
+        } else {
+            if self.nodes[number].level > 0 && layout.noisy(&cell, &totals, 1e-7) {
+                layout.refresh(&mut cell, &mut self.doubles);
+                self.statistics.refreshed += 1;
+                totals = layout.ranges(&mut cell);
+            }
+            if totals.0[0] > 0.0 || totals.1[0] < 0.0 {
+                Fate::Sign
+            } else if plain(layout, &cell) && self.flat(&cell) {
+                Fate::Certified
+            } else if self.nodes[number].level < self.deepest {
+                Fate::Split
+            } else {
+                Fate::Unresolved
+            }
+        };
+        self.statistics.count(fate);
+        if let Some(bounds) = bounds {
+            monitor.visit(&bounds, self.nodes[number].level, fate);
+        }
+        match fate {
+            Fate::Sign => {}
+            Fate::Certified => self.nodes[number].state = State::Plain(cell),
+            Fate::Split => return Some(self.divide(number, *cell)),
+            _ => self.leave(number, Cause::Smallest),
+        }
+        None
     }
 
     pub(super) fn leave(&mut self, number: usize, cause: Cause) {
