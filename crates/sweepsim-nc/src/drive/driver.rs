@@ -1,12 +1,13 @@
 //! The meaning of a block's coordinates on a machine: poses, and how the tool gets from one to the next.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::Vector3;
-use sweepsim_motion::{Pose, Turning};
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_motion::{Pose, RotaryTable, Turning};
 
 use crate::machines::{Kinematics, Machine, Position, Rotaries};
-use crate::model::read_options::{AxisLaw, ReadOptions};
+use crate::model::read_options::{AxisLaw, ReadOptions, ToolOffset};
 use crate::text::error::NcProblem;
 
 /// What coordinates are.
@@ -46,7 +47,10 @@ pub(crate) struct Driver {
     sense: Sense,
     law: AxisLaw,
     tolerance: f64,
-    pub tool_length: f64,
+    tool: Option<u32>,
+    tool_length: f64,
+    /// The control's table of tools.
+    lengths: BTreeMap<u32, ToolOffset>,
 }
 
 impl Driver {
@@ -69,11 +73,35 @@ impl Driver {
                 .kinematics
                 .as_ref()
                 .map_or(0.0, |kinematics| kinematics.tool_length(None)),
+            tool: None,
+            lengths: options.tool_offsets.clone(),
         }
     }
 
     pub fn kinematics(&self) -> Option<&Kinematics> {
         self.kinematics.as_deref()
+    }
+
+    /// Takes the signs of axes that no machine gives, from now on.
+    pub fn prefer(&mut self, sense: Sense) {
+        if sense != self.sense && self.implied.is_some() {
+            self.rotaries = self.rotaries.take().map(Rotaries::reversed);
+        }
+        self.sense = sense;
+    }
+
+    /// The table that the letters of the program imply, if its signs are those of [`RotaryTable`].
+    pub fn implied_table(&self) -> Option<RotaryTable> {
+        match (self.sense, self.implied) {
+            (Sense::Part, Some(0)) => Some(RotaryTable::Ac),
+            (Sense::Part, Some(_)) => Some(RotaryTable::Bc),
+            _ => None,
+        }
+    }
+
+    /// From the tool's to the part's directions.
+    pub fn orientation(&mut self, abc: [f64; 3]) -> Result<Matrix3<f64>, NcProblem> {
+        Ok(self.rotaries(abc)?.orientation(abc))
     }
 
     /// Whether the rotary axes are known: given, or implied by letters so far.
@@ -86,8 +114,16 @@ impl Driver {
 
     /// Takes the length of a new tool from the machine.
     pub fn change_tool(&mut self, tool: Option<u32>) {
+        if tool == self.tool {
+            return;
+        }
+        self.tool = tool;
         if let Some(kinematics) = &self.kinematics {
             self.tool_length = kinematics.tool_length(tool);
+            let own = tool.filter(|tool| !kinematics.description().tool_lengths.contains_key(tool));
+            if let Some(offset) = own.and_then(|tool| self.lengths.get(&tool)) {
+                self.tool_length = offset.length;
+            }
         }
     }
 
@@ -103,12 +139,19 @@ impl Driver {
                     .collect();
                 let expected = match known[..] {
                     [] => "none: the machine has no rotary axes".to_owned(),
+                    _ if self.kinematics.is_none() => {
+                        format!("{}: the table is given as {}", known.join(" or "), known.join("/"))
+                    }
                     _ => format!("{}: the machine has no other rotary axes", known.join(" or ")),
                 };
                 return Err(NcProblem::value("the rotary word", LETTERS[letter], expected));
             }
         } else if let Some(tilting) = (0..2).find(|&letter| turned(letter)) {
-            if turned(0) && turned(1) || self.implied.is_some_and(|before| before != tilting) {
+            if let Some(before) = self.implied.filter(|before| *before != tilting && !turned(*before)) {
+                let expected = format!("{} or C, as before", LETTERS[before]);
+                return Err(NcProblem::value("the rotary word", LETTERS[tilting], expected));
+            }
+            if turned(0) && turned(1) {
                 return Err(NcProblem::unsupported(
                     "programs with both A and B axes are, without their machine,",
                     "give a machine whose axes have these letters",

@@ -82,6 +82,17 @@ pub(crate) enum Code {
     Mirror,
     CancelMirror,
     Polar(bool),
+    /// G68.2, G268.
+    TiltedPlane,
+    CancelTilt,
+    /// G53.1, G253.
+    AlignTool,
+    /// G254, G255.
+    DynamicOffset(bool),
+    /// G43.5.
+    TipVectors,
+    /// G234, whose axes have the signs of their letters' convention.
+    TipControlByLetters,
     MacroCall,
     Dwell,
     /// G5: a spline, or a high-speed mode.
@@ -174,7 +185,7 @@ fn g(value: f64) -> Code {
         431 => Code::Length(LengthCode::Words),
         432 => Code::Length(LengthCode::Add),
         434 => Code::TipControl(true),
-        435 => Code::Refused("tip control with axis vectors is"),
+        435 => Code::TipVectors,
         440 => Code::Length(LengthCode::Opposite),
         450..=480 => Code::Refused("tool offsets of single moves (G45 to G48) are"),
         490 => Code::CancelLength,
@@ -193,7 +204,9 @@ fn g(value: f64) -> Code {
         660 | 661 => Code::Refused("modal macro calls are"),
         670 => Code::Harmless,
         680 => Code::Rotate,
-        681..=689 => Code::Refused("rotated frames are"),
+        682 | 2680 => Code::TiltedPlane,
+        2690 => Code::CancelTilt,
+        681 | 683..=689 => Code::Refused("rotated frames are"),
         690 => Code::CancelRotation,
         760 => Code::Motion(MotionMode::Cycle(76)),
         730 | 740 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
@@ -217,8 +230,10 @@ fn g(value: f64) -> Code {
         tenths @ 1100..=1290 if tenths % 10 == 0 => Code::WorkOffset(EXTENDED + (tenths - 1100) / 10 + 1),
         1870 => Code::Ignored("smoothness (G187) changes no programmed point: ignored"),
         1030 => Code::Ignored("look-ahead limits (G103) change no programmed point: ignored"),
-        // The ends of Haas's G254 and G268, whose beginnings are refused.
-        2550 | 2690 => Code::Harmless,
+        531 | 2530 => Code::AlignTool,
+        2540 => Code::DynamicOffset(true),
+        2550 => Code::DynamicOffset(false),
+        2340 => Code::TipControlByLetters,
         // Exact stop, look-ahead, speed modes, diameter mode off.
         90 | 610 | 611 | 620 | 630 | 80 | 960 | 970 => Code::Harmless,
         70 => Code::Refused("lathe diameters are"),

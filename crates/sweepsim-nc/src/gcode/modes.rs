@@ -41,6 +41,10 @@ pub(crate) struct Modes {
     pub scaling: Option<Map>,
     /// G51.1: where the mirror of each axis is.
     pub mirror: [Option<f64>; 3],
+    /// G68.2 or G254: a plane that the tool is turned to.
+    pub tilt: Option<Map>,
+    /// G254: the plane follows the table.
+    pub dynamic: bool,
 }
 
 impl Modes {
@@ -61,6 +65,8 @@ impl Modes {
             rotation: None,
             scaling: None,
             mirror: [None; 3],
+            tilt: None,
+            dynamic: false,
         }
     }
 
@@ -75,7 +81,7 @@ impl Modes {
             }
             map = Map::about(matrix, self.mirror.map(|at| at.unwrap_or(0.0)));
         }
-        for step in [&self.scaling, &self.rotation].into_iter().flatten() {
+        for step in [&self.scaling, &self.rotation, &self.tilt].into_iter().flatten() {
             map = step.after(&map);
         }
         map

@@ -88,11 +88,11 @@ fn what_is_not_recognised() {
         "a.nc:1:1: statements like `dear` are not supported yet: expected RS-274 words, a letter and a number each (Siemens and macro \
          programs: post-process them first)"
     );
-    // So it does with dialects that it knows.
+    // Siemens's words are those of another reader.
     assert!(
         read("a.txt", b"N10 DEF REAL _x\n")
             .unwrap_err()
-            .starts_with("a.txt:1:5: statements like `DEF`")
+            .starts_with("a.txt:1:1: this program has no move")
     );
 }
 

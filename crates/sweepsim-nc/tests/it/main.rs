@@ -6,6 +6,7 @@ mod gcode;
 mod harmless;
 mod kinematics;
 mod machines;
+mod posted;
 mod programs;
 mod round_trips;
 mod siemens;

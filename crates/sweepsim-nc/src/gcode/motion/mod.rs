@@ -5,4 +5,3 @@ pub(crate) mod compensation;
 pub(crate) mod corner;
 pub(crate) mod map;
 pub(crate) mod state;
-pub(crate) mod turns;

@@ -4,14 +4,14 @@
 
 use std::borrow::Cow;
 
-use sweepsim_motion::{Course, Move, Pose, RotaryTable, TipArc, Turning};
+use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
 
 use super::compensation::Place;
-use super::turns;
-use crate::machines::Machine;
+use crate::drive::{Coordinates, Driver, Sense};
+use crate::machines::{Machine, Position};
 use crate::model::event::{Event, EventKind};
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
-use crate::model::read_options::{AxisLaw, ReadOptions};
+use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::NcProblem;
 
 /// The end of a move: coordinates, and rotary angles A, B, C.
@@ -19,14 +19,6 @@ use crate::text::error::NcProblem;
 pub(crate) struct MoveEnd {
     pub xyz: [f64; 3],
     pub abc: [f64; 3],
-}
-
-/// The angles `[tilt, C]` of a table.
-fn angles(table: RotaryTable, [a, b, c]: [f64; 3]) -> [f64; 2] {
-    match table {
-        RotaryTable::Ac => [a, c],
-        RotaryTable::Bc => [b, c],
-    }
 }
 
 /// The state of the interpreter.
@@ -45,14 +37,17 @@ pub(crate) struct State {
     pub events: Vec<Event>,
     pub calls: Vec<Call>,
     most_poses: usize,
-    table: Option<RotaryTable>,
-    table_given: bool,
+    pub driver: Driver,
+    /// Whether coordinates are in a plane that the tool is turned to.
+    pub tilted: bool,
+    /// The direction of the tool, where the program gives it rather than the angles of axes.
+    pub direct: Option<[f64; 3]>,
     /// As given.
     machine: Machine,
+    positions: Vec<Position>,
     poses: Vec<ProgramPose>,
     /// Whether the tool moves to the next pose from the last one.
     joined: bool,
-    law: AxisLaw,
 }
 
 impl State {
@@ -71,12 +66,19 @@ impl State {
             events: Vec::new(),
             calls: Vec::new(),
             most_poses: options.most_poses,
-            table: options.machine.table,
-            table_given: options.machine.table.is_some(),
+            driver: Driver::new(
+                options,
+                match options.controller {
+                    Some(Controller::Haas | Controller::Fanuc) => Sense::Tool,
+                    _ => Sense::Part,
+                },
+            ),
+            tilted: false,
+            direct: None,
+            positions: Vec::new(),
             machine: options.machine.clone(),
             poses: Vec::new(),
             joined: false,
-            law: options.law,
         }
     }
 
@@ -84,11 +86,16 @@ impl State {
         Program {
             title: self.title,
             units: self.units.unwrap_or_default(),
+            positions: if self.positions.len() == self.poses.len() {
+                self.positions
+            } else {
+                Vec::new()
+            },
             poses: self.poses,
             calls: self.calls,
             events: self.events,
             machine: Machine {
-                table: self.table,
+                table: self.machine.table.or(self.driver.implied_table()),
                 ..self.machine
             },
             notes: self.notes.finish(),
@@ -147,38 +154,52 @@ impl State {
         Ok(())
     }
 
-    /// A straight move, divided where the tool axis turns far.
+    /// What coordinates are: of the tip under tip control and in tilted planes, else of the machine's axes.
+    pub fn coordinates(&self) -> Coordinates {
+        if self.tip_control || self.tilted {
+            Coordinates::Tip
+        } else {
+            Coordinates::Axes
+        }
+    }
+
+    /// A straight move, divided where the tool axis turns far, or where the tip does not move straight.
     pub fn line_to(&mut self, target: MoveEnd, rapid: bool) -> Result<(), NcProblem> {
+        let coordinates = self.coordinates();
+        self.driver.change_tool(self.tool);
         let from = self.abc;
-        if self.joined && target.abc != from && self.law != AxisLaw::Rotary {
-            let table = self.table(target.abc)?;
-            let tilt = |abc: [f64; 3]| match table {
-                Some(table) => angles(table, abc),
-                None => [0.0, abc[2]],
-            };
-            let parts = turns::parts(tilt(from), tilt(target.abc));
-            if parts > 1e4 {
-                return Err(NcProblem::value(
-                    "the turn of the rotary axes in one block",
-                    format!("{} degrees", parts * 90.0),
-                    "less than 900000 degrees",
-                ));
+        if target.abc != from {
+            self.direct = None;
+        }
+        let mut last = from;
+        if self.joined
+            && target.abc != from
+            && let Some(start) = self.known()
+        {
+            let ends = [Position::new(start, from), Position::new(target.xyz, target.abc)];
+            let parts = self.driver.division(&ends[0], &ends[1], coordinates)?;
+            if parts > 1 {
+                self.note(match coordinates {
+                    Coordinates::Tip => {
+                        "the axis turns by more than 90 degrees in one block: intermediate poses inserted"
+                    }
+                    Coordinates::Axes => {
+                        "rotary axes turn without tip control: the tip's course is divided into chords"
+                    }
+                });
             }
-            if let (true, Some(start)) = (parts > 1.0, self.known()) {
-                self.note("the axis turns by more than 90 degrees in one block: intermediate poses inserted");
-                for part in 1..parts as usize {
-                    let s = part as f64 / parts;
-                    let mix = |a: [f64; 3], b: [f64; 3]| std::array::from_fn(|k| a[k] + s * (b[k] - a[k]));
-                    let between = MoveEnd {
-                        xyz: mix(start, target.xyz),
-                        abc: mix(from, target.abc),
-                    };
-                    let way = Move::straight(self.turning(from, between.abc)?);
-                    self.push(between, way, rapid)?;
-                }
+            for part in 1..parts {
+                let between = ends[0].towards(&ends[1], part as f64 / parts as f64);
+                let way = Move::straight(self.driver.turning(last, between.abc, coordinates)?);
+                last = between.abc;
+                let between = MoveEnd {
+                    xyz: between.xyz,
+                    abc: between.abc,
+                };
+                self.push(between, way, rapid)?;
             }
         }
-        let way = Move::straight(self.turning(from, target.abc)?);
+        let way = Move::straight(self.driver.turning(last, target.abc, coordinates)?);
         self.push(target, way, rapid)?;
         self.xyz = target.xyz.map(Some);
         self.abc = target.abc;
@@ -187,7 +208,7 @@ impl State {
 
     /// A feed move along an arc.
     pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc) -> Result<(), NcProblem> {
-        let turning = match self.turning(self.abc, target.abc)? {
+        let turning = match self.driver.turning(self.abc, target.abc, self.coordinates())? {
             Turning::Slerp => Turning::Even,
             other => other,
         };
@@ -201,63 +222,16 @@ impl State {
         Ok(())
     }
 
-    /// How the tool axis turns between two positions of the rotary axes.
-    fn turning(&mut self, from: [f64; 3], to: [f64; 3]) -> Result<Turning, NcProblem> {
-        Ok(match (self.law, self.table(to)?) {
-            (AxisLaw::ConstantSpeed, _) => Turning::Even,
-            (AxisLaw::Rotary, Some(table)) if from != to => Turning::Rotary {
-                table,
-                from: angles(table, from),
-                to: angles(table, to),
-            },
-            _ => Turning::Slerp,
-        })
-    }
-
-    /// The rotary table: as given, or by the letters whose values are not 0.
-    fn table(&mut self, [a, b, _]: [f64; 3]) -> Result<Option<RotaryTable>, NcProblem> {
-        let used = match (a != 0.0, b != 0.0) {
-            (false, false) => return Ok(self.table),
-            (true, false) => RotaryTable::Ac,
-            (false, true) => RotaryTable::Bc,
-            (true, true) => {
-                return Err(NcProblem::unsupported(
-                    "machines with both A and B axes are",
-                    "expected A and C, or B and C",
-                ));
-            }
-        };
-        match self.table {
-            Some(table) if table != used => Err(NcProblem::value(
-                "the rotary word",
-                if used == RotaryTable::Ac { "A" } else { "B" },
-                match (table, self.table_given) {
-                    (RotaryTable::Ac, true) => "A or C: the table is given as A/C",
-                    (RotaryTable::Bc, true) => "B or C: the table is given as B/C",
-                    (RotaryTable::Ac, false) => "A or C, as before",
-                    (RotaryTable::Bc, false) => "B or C, as before",
-                },
-            )),
-            _ => {
-                self.table = Some(used);
-                Ok(self.table)
-            }
-        }
-    }
-
     fn push(&mut self, target: MoveEnd, way: Move, rapid: bool) -> Result<(), NcProblem> {
-        if !self.tip_control && target.abc != [0.0; 3] {
-            return Err(NcProblem::value(
-                "a move with the rotary axes turned",
-                "without tip control",
-                "after M428, M128 or G43.4 (or read with `tip_control: true` when the coordinates are the tip in the part's frame)",
-            ));
-        }
-        let axis = match self.table(target.abc)? {
-            Some(table) => table.axis(angles(table, target.abc)),
-            None => [0.0, 0.0, 1.0],
+        let coordinates = self.coordinates();
+        self.driver.change_tool(self.tool);
+        let at = Position::new(target.xyz, target.abc);
+        let pose = match self.direct {
+            Some(direction) if coordinates == Coordinates::Tip => {
+                Pose::new(target.xyz, direction).map_err(NcProblem::Pose)?
+            }
+            _ => self.driver.pose(&at, coordinates)?,
         };
-        let pose = Pose::new(target.xyz, axis).map_err(NcProblem::Pose)?;
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
         if !same {
@@ -276,6 +250,16 @@ impl State {
                 call: self.place.call,
                 way,
             });
+            if self.driver.kinematics().is_some() {
+                let position = match coordinates {
+                    Coordinates::Axes => Some(at),
+                    Coordinates::Tip => self
+                        .driver
+                        .axes_at(at.xyz, at.abc)
+                        .map(|xyz| Position::new(xyz, at.abc)),
+                };
+                self.positions.extend(position);
+            }
         }
         self.joined = true;
         Ok(())

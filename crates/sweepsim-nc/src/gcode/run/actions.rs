@@ -271,7 +271,10 @@ impl Reader {
                 let map = Map::about(turn, centre);
                 Box::new(move |reader| reader.modes.rotation = Some(map))
             }
-            Code::CancelRotation => Box::new(|reader| reader.modes.rotation = None),
+            Code::CancelRotation => {
+                self.set_tilt(None)?;
+                Box::new(|reader| reader.modes.rotation = None)
+            }
             Code::Scale => {
                 // `G51 P` may be in thousandths: without a decimal point it is on Fanuc.
                 let whole = self.fanuc() && block.word('P').is_some_and(|word| word.whole);

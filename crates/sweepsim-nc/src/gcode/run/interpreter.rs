@@ -85,6 +85,8 @@ pub(crate) struct Reader {
     pub kinematics: bool,
     /// Tip control by the length offset (G43.4).
     pub length_control: bool,
+    /// G43.5: tool vectors.
+    pub vectors: bool,
     /// A program number has come.
     pub numbered: bool,
     pub begun: bool,
@@ -190,6 +192,7 @@ impl Reader {
             homes: [home(5161), home(5181)],
             kinematics: options.machine.tip_control,
             length_control: false,
+            vectors: false,
             numbered: false,
             begun: false,
             uncertain: false,

@@ -10,5 +10,6 @@ pub(crate) mod macros;
 pub(crate) mod moves;
 pub(crate) mod owords;
 pub(crate) mod perform;
+pub(crate) mod tilted;
 pub(crate) mod tools;
 pub(crate) mod variables;

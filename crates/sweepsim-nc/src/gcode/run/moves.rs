@@ -126,6 +126,11 @@ impl Reader {
     pub(crate) fn go(&mut self, motion: MotionMode, block: &Block) -> Result<(), NcProblem> {
         let words = self.polar(self.lengths(block, ['X', 'Y', 'Z']))?;
         let abc = self.angles(block);
+        if self.turn_alone(block, motion, abc)? {
+            return Ok(());
+        }
+        let abc = self.aim(block, motion, abc)?;
+        let vector = self.has_vector(block, motion);
         let cuts = motion != MotionMode::Rapid;
         let unknown = self.known_position().is_none();
         if self.uncertain && unknown && (cuts || !self.modes.absolute) {
@@ -162,7 +167,7 @@ impl Reader {
                 });
             }
         }
-        if !self.map.is_shift() || self.map.add != [0.0; 3] {
+        if self.modes.tilt.is_none() && (!self.map.is_shift() || self.map.add != [0.0; 3]) {
             self.state.note(if self.offsets.made_by_shift() {
                 "work offsets set by the program are applied"
             } else {
@@ -200,7 +205,7 @@ impl Reader {
                 let back = self.stroke_to(start, abc, false);
                 return self.give(back);
             }
-            _ if Self::has_spare_centre(block) => {
+            _ if !vector && Self::has_spare_centre(block) => {
                 return Err(NcProblem::syntax(
                     "I, J, K or R outside an arc: expected G2 or G3 with them",
                 ));

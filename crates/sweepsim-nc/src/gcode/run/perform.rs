@@ -2,6 +2,7 @@
 
 use super::calls::Spot;
 use super::interpreter::{Reader, Step};
+use crate::drive::Sense;
 use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode, Turning};
 use crate::gcode::syntax::block::{Block, Located, Word};
 use crate::model::event::{EventKind, Spindle};
@@ -40,8 +41,8 @@ impl Reader {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
         }
         let mut step = self.misc(block)?;
-        self.state.tip_control = self.kinematics || self.length_control;
         let whole = |problem| (problem, block.all());
+        self.switch_control().map_err(whole)?;
         if plan.dwell {
             self.dwell(block).map_err(whole)?;
         }
@@ -54,8 +55,20 @@ impl Reader {
         }
         match plan.action {
             Some((code, word)) => {
-                let result = self.act(code, block);
+                let tilts = matches!(
+                    code,
+                    Code::TiltedPlane | Code::CancelTilt | Code::AlignTool | Code::DynamicOffset(_)
+                );
+                let result = if tilts {
+                    self.tilt(code, block)
+                } else {
+                    self.act(code, block)
+                };
                 result.map_err(|problem| (problem, word.span()))?;
+                // The words of a tilted plane are its own; the other codes may stand beside a move.
+                if tilts && code != Code::TiltedPlane {
+                    self.motion(block, &plan)?;
+                }
             }
             None if plan.dwell && plan.motion.is_none() => {}
             None => self.motion(block, &plan)?,
@@ -177,7 +190,19 @@ impl Reader {
                 Code::AbsoluteCentres(absolute) => self.modes.absolute_centres = absolute,
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
-                Code::TipControl(on) => self.length_control = on,
+                Code::TipControl(on) => {
+                    self.length_control = on;
+                    self.vectors = false;
+                }
+                Code::TipVectors => {
+                    self.length_control = true;
+                    self.vectors = true;
+                }
+                Code::TipControlByLetters => {
+                    self.state.driver.prefer(Sense::Tool);
+                    self.length_control = true;
+                    self.vectors = false;
+                }
                 Code::CancelLength => {
                     self.length_control = false;
                     plan.length = Some((Code::CancelLength, word));
@@ -217,6 +242,10 @@ impl Reader {
                 | Code::CancelShift { .. }
                 | Code::RestoreShift
                 | Code::Rotate
+                | Code::TiltedPlane
+                | Code::CancelTilt
+                | Code::AlignTool
+                | Code::DynamicOffset(_)
                 | Code::Scale
                 | Code::Mirror
                 | Code::CancelMirror) => {
