@@ -21,7 +21,8 @@ pub fn main() -> ExitCode {
         Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, false),
         Command::Verify { run, first } => commands::run(commands::Task::Verify, &run, first),
         Command::Section(options) => commands::section(&options),
-        Command::Inspect { file } => commands::inspect(&file).map(|()| ExitCode::SUCCESS),
+        Command::New(options) => commands::new(&options).map(|()| ExitCode::SUCCESS),
+        Command::Inspect(options) => commands::inspect(&options).map(|()| ExitCode::SUCCESS),
         Command::Convert(options) => commands::convert(&options).map(|()| ExitCode::SUCCESS),
         Command::Compare(options) => commands::compare(&options).map(|()| ExitCode::SUCCESS),
     };

@@ -85,6 +85,16 @@ pub enum Problem {
         /// The reason.
         source: ProfileError,
     },
+    /// The description of a tool is not enough.
+    #[error("tool {number} of {file}: {source}: expected it in `tools` of the job")]
+    Described {
+        /// The tool's number.
+        number: u32,
+        /// The library or program that describes it.
+        file: String,
+        /// What is missing.
+        source: Box<sweepsim_nc::ToolProblem>,
+    },
     /// A pose is invalid.
     #[error("{0}")]
     Pose(#[source] PoseError),

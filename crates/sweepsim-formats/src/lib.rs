@@ -16,7 +16,7 @@
 //!
 //! | what | read | write |
 //! | --- | --- | --- |
-//! | jobs (RON) | [`Job::read`] | |
+//! | jobs (RON) | [`Job::read`] | [`draft`], for a program |
 //! | tools made of B-spline surfaces, motions along B-splines (RON) | with the job | |
 //! | paths as programs and tables | with the job, by [`sweepsim_nc`] | |
 //! | triangles (STL) | [`read_stl`] | [`write_stl`] |
@@ -40,6 +40,7 @@ mod archive;
 mod atomic;
 mod checksum;
 mod dexels;
+mod drafts;
 mod error;
 mod extension;
 mod jobs;
@@ -54,8 +55,9 @@ pub use dexels::{
     read_dexels_csv, read_dexels_file, read_dexels_npz, write_dexels_binary, write_dexels_csv, write_dexels_file,
     write_dexels_npz, write_dexels_vtu,
 };
+pub use drafts::{Draft, DraftOptions, DraftStock, draft};
 pub use error::{FormatError, Problem, TextPosition};
-pub use jobs::{Job, JobPath, Limits, Target, Units};
+pub use jobs::{Job, JobPath, Limits, Origin, Target, Units};
 pub use meshes::{
     MeshFormat, parse_stl, read_3mf, read_glb, read_mesh_file, read_ply, read_stl, read_vtp, write_3mf, write_glb,
     write_mesh_file, write_ply, write_stl, write_vtp,

@@ -15,6 +15,9 @@ pub struct Report {
     pub cells: [usize; 2],
     /// The number of moves of all paths.
     pub moves: usize,
+    /// How many of them are rapids.
+    #[serde(default)]
+    pub rapid_moves: usize,
     /// The duration of each phase, in order.
     pub seconds: IndexMap<String, f64>,
     /// The number of crossings of dexels and envelopes.

@@ -45,10 +45,12 @@ pub use machines::{
     Solutions, WorkFrame,
 };
 pub use model::event::{Coolant, Event, EventKind, Spindle};
+pub use model::names::Format;
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use model::stock::StockDescription;
 pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
+pub use model::usage::ToolUsage;
 pub use read::read_file;
 pub use sweepsim_motion::RotaryTable;
 pub use text::error::{NcError, NcProblem, TextPosition};

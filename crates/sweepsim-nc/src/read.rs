@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::content::Content;
 use crate::controls::siemens;
+use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::table::rows;
@@ -21,7 +22,7 @@ const INSTEAD: &str = "expected G-code, APT or CLSF, or its poses as a table wit
 ///
 /// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
 /// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) or APT (`.apt`, `.cls`, `.clsf`, `.ncl`) are read as such if the content is not
-/// distinctive. Rows of six numbers without a header are poses. Heidenhain's Klartext is recognised but not read yet.
+/// distinctive; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Heidenhain's Klartext is recognised but not read yet.
 ///
 /// # Errors
 /// [`NcError`]: the file cannot be read, or its content is invalid, not supported or not recognised.
@@ -41,8 +42,17 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
 
 fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
     let read_table = || table::read(utf8(bytes)?, if options.inch { INCH } else { 1.0 });
-    if extension == Some("csv") {
-        return read_table();
+    let unit = if options.inch { INCH } else { 1.0 };
+    match options.format {
+        Some(Format::Gcode) => return gcode::read_at(&String::from_utf8_lossy(bytes), Some(file), options),
+        Some(Format::Apt) => return apt::read(&String::from_utf8_lossy(bytes), options),
+        Some(Format::Table) => return read_table(),
+        Some(Format::Rows) => {
+            let problem = NcProblem::value("the first row", "of other content", "six numbers");
+            return rows::read(utf8(bytes)?, unit).unwrap_or_else(|| Err(NcError::new(problem, None)));
+        }
+        None if extension == Some("csv") => return read_table(),
+        None => {}
     }
     // Comments come in all encodings; anything else that is not ASCII is an error of the reader.
     let text = String::from_utf8_lossy(bytes);
@@ -74,7 +84,7 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
         _ if matches!(extension, Some("apt" | "cls" | "clsf" | "ncl" | "cl" | "aptsource")) => {
             apt::read(&text, options)
         }
-        Content::Numbers { line } => match rows::read(&text, if options.inch { INCH } else { 1.0 }) {
+        Content::Numbers { line } => match rows::read(&text, unit) {
             Some(read) => read,
             None => {
                 let found = "rows of numbers without a header, and not six in each";

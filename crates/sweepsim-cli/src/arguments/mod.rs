@@ -1,8 +1,10 @@
 //! The command line.
 
+mod programs;
 mod values;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
@@ -36,16 +38,15 @@ pub(crate) enum Command {
     Sweep(RunOptions),
     /// Cuts the volume that the tools of a job sweep by a plane: a drawing and a table of points.
     Section(SectionOptions),
-    /// Reports what is in a job, path, mesh or dexel file, and what was ignored in it.
-    Inspect {
-        /// A job (.ron), path (.csv .nc .ngc …), mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz).
-        #[arg(value_hint = ValueHint::FilePath)]
-        file: PathBuf,
-    },
-    /// Converts a path, mesh or dexel file to another format, by the extensions.
+    /// Writes a job for a program: what was found in it and in a tool library, and what had to be guessed, each said.
+    New(NewOptions),
+    /// Reports what is in a job, program, tool library, mesh or dexel file, and what was ignored in it.
+    Inspect(InspectOptions),
+    /// Converts a program, tool library, mesh or dexel file to another format, by the extensions.
     ///
     /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to pictures (.png), and
-    /// dexels to .vtu. Paths are converted to tables (.csv).
+    /// dexels to .vtu. Programs are converted to tables (.csv), CLSF (.cls .apt) and text with one line per move (.txt), tool libraries to
+    /// the tools of a job (.ron).
     Convert(ConvertOptions),
     /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by distance.
     Compare(CompareOptions),
@@ -53,9 +54,11 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct RunOptions {
-    /// The job, a .ron file.
+    /// The job, a .ron file, or a program (.nc .cls …).
     #[arg(value_hint = ValueHint::FilePath)]
     pub job: PathBuf,
+    #[command(flatten)]
+    pub program: ProgramOptions,
     /// The output folder [default: out/NAME].
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
@@ -93,9 +96,11 @@ pub(crate) struct RunOptions {
 
 #[derive(Debug, Args)]
 pub(crate) struct SectionOptions {
-    /// The job, a .ron file.
+    /// The job, a .ron file, or a program (.nc .cls …).
     #[arg(value_hint = ValueHint::FilePath)]
     pub job: PathBuf,
+    #[command(flatten)]
+    pub program: ProgramOptions,
     /// The plane: x=3.5, y=…, z=…, or a,b,c=d for a x + b y + c z = d, in millimetres.
     #[arg(long, value_name = "PLANE", value_parser = plane)]
     pub plane: Plane,
@@ -121,6 +126,8 @@ pub(crate) struct ConvertOptions {
     /// The output file.
     #[arg(value_name = "OUT", value_hint = ValueHint::FilePath)]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub dialect: DialectOptions,
     #[command(flatten)]
     pub grid: GridOptions,
     #[command(flatten)]

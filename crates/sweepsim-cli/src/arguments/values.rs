@@ -1,6 +1,7 @@
 //! Parsers of option values.
 
 use sweepsim::systems::Plane;
+use sweepsim_formats::DraftStock;
 use sweepsim_picture::{Axis, CuttingPlane, Image, View};
 
 /// Parses one of several names, which clap lists in its help.
@@ -99,6 +100,26 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
         _ => Err("expected a positive number of millimetres".to_owned()),
+    }
+}
+
+/// `auto`, `block:` and six numbers, or a file.
+pub(super) fn stock(text: &str) -> Result<DraftStock, String> {
+    if text.eq_ignore_ascii_case("auto") {
+        return Ok(DraftStock::Auto);
+    }
+    let Some(list) = text.strip_prefix("block:") else {
+        return Ok(DraftStock::Mesh(text.into()));
+    };
+    let numbers: Result<Vec<f64>, _> = list.split(',').map(|word| word.trim().parse()).collect();
+    match numbers.ok().and_then(|n| <[f64; 6]>::try_from(n).ok()) {
+        Some([a, b, c, x, y, z]) if a < x && b < y && c < z && [a, b, c, x, y, z].iter().all(|n| n.is_finite()) => {
+            Ok(DraftStock::Block {
+                min: [a, b, c],
+                max: [x, y, z],
+            })
+        }
+        _ => Err("expected the lower and the upper corner in millimetres, like block:0,0,-20,60,40,0".to_owned()),
     }
 }
 

@@ -5,7 +5,8 @@ use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
 use std::io::Write as _;
 use std::path::Path;
 use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
-use sweepsim_nc::{Program, ReadOptions, read_file, table};
+use sweepsim_nc::tools::{read_library, to_ron};
+use sweepsim_nc::{Program, read_file, table, write};
 
 /// Reads one file, writes the other, and prints a summary.
 pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
@@ -20,11 +21,18 @@ pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
             )));
         }
         Kind::Path => {
-            let program = read_file(input, &ReadOptions::default())?;
-            path(&program, input, output)?;
+            let extension = output
+                .extension()
+                .map(|e| e.to_string_lossy().to_ascii_lowercase())
+                .unwrap_or_default();
+            let program = read_program(options, &extension)?;
+            let lost = path(&program, &extension, output)?;
             line("path", &words::counted(program.poses.len() as u64, "pose"));
+            lost.iter()
+                .for_each(|what| line("note", &format!("not written: {what}")));
             program.notes.iter().for_each(|note| line("note", &note.to_string()));
         }
+        Kind::Tools => tools(options, &mut line)?,
         Kind::Mesh | Kind::Dexels => {
             let grid = options.grid.grid(None);
             // The mesh provides the area, so the number of cells is enough.
@@ -84,24 +92,63 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     Ok(write_dexels_file(&dexels, output)?)
 }
 
-/// Writes a table of poses. A table cannot express a break in the path without a tool change.
-fn path(program: &Program, input: &Path, output: &Path) -> Result<(), Failure> {
-    if output.extension().is_none_or(|e| !e.eq_ignore_ascii_case("csv")) {
-        return Err(Failure::message(format!(
-            "{}: paths can only be written as tables: expected .csv",
+/// Reads a program as its output needs it: CLSF and the canonical text have arcs, tables have not.
+fn read_program(options: &ConvertOptions, extension: &str) -> Result<Program, Failure> {
+    let mut reading = options.dialect.reading().map_err(Failure::message)?;
+    reading.exact_arcs = extension != "csv";
+    Ok(read_file(&options.input, &reading)?)
+}
+
+/// Writes a program, and returns what the format cannot say.
+fn path(program: &Program, extension: &str, output: &Path) -> Result<Vec<String>, Failure> {
+    let mut lost = Vec::new();
+    match extension {
+        "csv" => write_atomically(output, |file| table::write(&program.poses, file))?,
+        "cls" | "clsf" | "apt" | "ncl" => write_atomically(output, |file| {
+            lost = write::clsf(program, file)?;
+            Ok(())
+        })?,
+        "txt" => write_atomically(output, |file| write::canonical(program, file))?,
+        _ => {
+            return Err(Failure::message(format!(
+                "{}: programs can be written as tables (.csv), CLSF (.cls, .apt) and text (.txt): expected one of them",
+                output.display()
+            )));
+        }
+    }
+    Ok(lost)
+}
+
+/// Writes tools as fields of a job.
+fn tools(options: &ConvertOptions, line: &mut impl FnMut(&str, &str)) -> Result<(), Failure> {
+    let (input, output) = (&options.input, &options.output);
+    if output
+        .extension()
+        .is_none_or(|extension| !extension.eq_ignore_ascii_case("ron"))
+    {
+        let message = format!(
+            "{}: tools can be written as those of a job: expected .ron",
             output.display()
-        )));
+        );
+        return Err(Failure::message(message));
     }
-    let broken = program
-        .poses
-        .windows(2)
-        .find(|w| !w[1].joined && w[0].tool == w[1].tool);
-    if let Some([_, after]) = broken {
+    let library = read_library(input, false)?;
+    let (text, problems) = to_ron(&library.tools);
+    if problems.len() == library.tools.len() {
+        let first = problems
+            .first()
+            .map(|(number, problem)| format!("tool {number}: {problem}"));
+        let reason = first.unwrap_or_else(|| "it has no tool".to_owned());
         return Err(Failure::message(format!(
-            "{}:{}: the path breaks here without a tool change, which a table cannot express",
-            input.display(),
-            after.line
+            "{}: no tool of it can be written: {reason}",
+            input.display()
         )));
     }
-    Ok(write_atomically(output, |file| table::write(&program.poses, file))?)
+    write_atomically(output, |file| file.write_all(text.as_bytes()))?;
+    line("tools", &words::count((library.tools.len() - problems.len()) as u64));
+    for (number, problem) in problems {
+        line("note", &format!("tool {number} is left out: {problem}"));
+    }
+    library.notes.iter().for_each(|note| line("note", &note.message));
+    Ok(())
 }

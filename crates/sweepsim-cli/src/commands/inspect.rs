@@ -1,18 +1,22 @@
 //! `inspect`: describes the content of a file.
 
+use super::program::{library, program};
+use crate::arguments::InspectOptions;
 use crate::session::words::{self, count, counted, measure, point};
 use crate::session::{Failure, Kind, Lines, soup, tool_in_words};
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
 use sweepsim_motion::Pose;
-use sweepsim_nc::{Note, Program, ReadOptions, read_file};
+use sweepsim_nc::tools::read_library;
+use sweepsim_nc::{Note, read_file};
 
 /// Prints a description of a file.
-pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
+pub(crate) fn inspect(options: &InspectOptions) -> Result<(), Failure> {
+    let file = &*options.file;
     let mut text = Lines::default();
+    let reading = options.dialect.reading().map_err(Failure::message)?;
     match Kind::of(file)? {
         Kind::Job => job(&mut text, &Job::read(file)?),
         Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),
@@ -25,13 +29,18 @@ pub(crate) fn inspect(file: &Path) -> Result<(), Failure> {
             table(&mut text, &rows);
         }
         Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
-        Kind::Path => program(&mut text, &read_file(file, &ReadOptions::default())?),
+        Kind::Tools => library(&mut text, &read_library(file, false)?),
+        Kind::Path => program(&mut text, &read_file(file, &reading)?),
     }
     text.print()
 }
 
 impl Lines {
-    fn bounds(&mut self, points: impl Iterator<Item = [f64; 3]>) {
+    pub(crate) fn bounds(&mut self, points: impl Iterator<Item = [f64; 3]>) {
+        self.labelled_bounds("bounds", points);
+    }
+
+    pub(crate) fn labelled_bounds(&mut self, label: &str, points: impl Iterator<Item = [f64; 3]>) {
         let mut range = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for place in points {
             for k in 0..3 {
@@ -40,7 +49,7 @@ impl Lines {
             }
         }
         if range[0][0] <= range[1][0] {
-            self.line("bounds", &format!("{} … {} mm", point(range[0]), point(range[1])));
+            self.line(label, &format!("{} … {} mm", point(range[0]), point(range[1])));
         }
     }
 
@@ -111,7 +120,14 @@ fn job(text: &mut Lines, job: &Job) {
     text.notes(job.notes.iter());
     for path in &job.paths {
         let moves = counted(path.path.moves() as u64, "move");
-        text.line("path", &format!("{moves} of tool {}, from {}", path.tool, path.source));
+        let rapids = match path.rapid_moves() as u64 {
+            0 => String::new(),
+            rapids => format!(" ({} rapid)", count(rapids)),
+        };
+        text.line(
+            "path",
+            &format!("{moves}{rapids} of tool {}, from {}", path.tool, path.source),
+        );
         text.bounds(path.path.poses().iter().map(tip));
         text.notes(path.notes.iter());
     }
@@ -123,36 +139,6 @@ fn job(text: &mut Lines, job: &Job) {
 
 fn tip(pose: &Pose) -> [f64; 3] {
     pose.tip()
-}
-
-fn program(text: &mut Lines, program: &Program) {
-    let sections = program.sections().count();
-    let moves: usize = program.sections().map(|section| section.len() - 1).sum();
-    let rapid = program.poses.iter().filter(|pose| pose.joined && pose.rapid).count();
-    text.line(
-        "path",
-        &format!(
-            "{} in {}, {} rapid",
-            counted(moves as u64, "move"),
-            counted(sections as u64, "piece"),
-            count(rapid as u64)
-        ),
-    );
-    text.bounds(program.poses.iter().map(|pose| tip(&pose.pose)));
-    let tilt = program
-        .poses
-        .iter()
-        .map(|pose| pose.pose.axis()[2].clamp(-1.0, 1.0).acos().to_degrees())
-        .fold(0.0, f64::max);
-    text.line("axis", &format!("up to {} degrees from z", measure(tilt)));
-    let mut tools: Vec<u32> = program.poses.iter().filter_map(|pose| pose.tool).collect();
-    tools.sort_unstable();
-    tools.dedup();
-    if !tools.is_empty() {
-        let tools: Vec<String> = tools.iter().map(u32::to_string).collect();
-        text.line("tools", &tools.join(", "));
-    }
-    text.notes(program.notes.iter());
 }
 
 fn mesh(text: &mut Lines, mesh: &Mesh) {

@@ -3,7 +3,9 @@
 mod compare;
 mod convert;
 mod inspect;
+mod new;
 mod page;
+mod program;
 mod run;
 mod section;
 mod summary;
@@ -14,6 +16,7 @@ mod verify;
 pub(crate) use compare::compare;
 pub(crate) use convert::convert;
 pub(crate) use inspect::inspect;
+pub(crate) use new::new;
 pub(crate) use run::run;
 pub(crate) use section::section;
 pub(crate) use task::Task;

@@ -6,13 +6,13 @@ use super::task::{Task, sweeping};
 use super::tri_surface;
 use super::verify::verified;
 use crate::arguments::{Output, RunOptions};
-use crate::session::{Failure, JobSession, phase, picture, print, words};
+use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh};
-use sweepsim_formats::{Job, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_ply};
+use sweepsim_formats::{Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_ply};
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
 const CHORD: f64 = 0.02;
@@ -30,12 +30,12 @@ struct Outcome {
 pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let mut report = Report::default();
-    let job = phase(&mut report, "read", || read(options))?;
+    let read = phase(&mut report, "read", || read(options))?;
     if options.tri {
-        tri_surface::check(&job)?;
+        tri_surface::check(&read.job)?;
     }
     let out = options.out.as_deref();
-    let mut session = JobSession::new(&options.job, job, out, &options.only, options.quiet)?;
+    let mut session = JobSession::new(&options.job, read, out, &options.only, options.quiet)?;
     let mut builder = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = options.threads {
         builder = builder.num_threads(usize::from(threads));
@@ -82,15 +82,16 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
 }
 
 /// The job, with the grid and the tolerance given by the options.
-fn read(options: &RunOptions) -> Result<Job, Failure> {
-    let mut job = Job::read(&options.job)?;
+fn read(options: &RunOptions) -> Result<JobRead, Failure> {
+    let mut read = read_job(&options.job, &options.program, options.cells)?;
+    let job = &mut read.job;
     if let Some(cells) = options.cells {
         job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
             .map(|grid| grid.in_frame(*job.grid.frame()))
             .map_err(|error| Failure::message(format!("--cells: {error}")))?;
     }
     job.tolerance = options.tolerance.unwrap_or(job.tolerance);
-    Ok(job)
+    Ok(read)
 }
 
 /// Computes the result, and writes everything but the report.
@@ -183,6 +184,7 @@ fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, out
     report.method = options.method.to_string();
     report.cells = job.grid.cells();
     report.moves = job.moves();
+    report.rapid_moves = job.paths.iter().map(sweepsim_formats::JobPath::rapid_moves).sum();
     report.crossings = outcome.statistics.crossings;
     let unresolved = outcome.statistics.unresolved.iter();
     report.dexels.covered = outcome.dexels.covered();

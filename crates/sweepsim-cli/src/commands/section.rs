@@ -1,18 +1,17 @@
 //! `section`: cuts the swept volume of a job by a plane.
 
 use crate::arguments::{Output, SectionOptions};
-use crate::session::{Failure, JobSession, Lines, words};
+use crate::session::{Failure, JobSession, Lines, read_job, words};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
 use sweepsim::{BoundaryPiece, Monitor, Options, Section, section as cut_by_plane};
-use sweepsim_formats::Job;
 
 /// Cuts the swept volume by the plane, and writes `section.svg` and `section.csv`.
 pub(crate) fn section(options: &SectionOptions) -> Result<ExitCode, Failure> {
-    let job = Job::read(&options.job)?;
+    let read = read_job(&options.job, &options.program, None)?;
     let out = options.out.as_deref();
-    let mut session = JobSession::new(&options.job, job, out, &[Output::Report], options.quiet)?;
+    let mut session = JobSession::new(&options.job, read, out, &[Output::Report], options.quiet)?;
     session.progress.phase("section");
     let sweeping = Options::new(options.tolerance.unwrap_or(session.job.tolerance));
     let found = cut_by_plane(

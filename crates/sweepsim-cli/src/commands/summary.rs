@@ -13,7 +13,14 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
     let mut line = |label: &str, value: &str| lines.line(label, value);
     verdict(&mut line, report);
     let [nx, ny] = report.cells;
-    let moves = words::counted(report.moves as u64, "move");
+    let moves = match report.rapid_moves as u64 {
+        0 => words::counted(report.moves as u64, "move"),
+        rapid => format!(
+            "{} ({} rapid)",
+            words::counted(report.moves as u64, "move"),
+            words::count(rapid)
+        ),
+    };
     let tools = words::counted(session.job.tools.len() as u64, "tool");
     line(
         "job",

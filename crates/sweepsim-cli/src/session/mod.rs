@@ -10,9 +10,9 @@ mod tool;
 pub(crate) mod words;
 
 pub(crate) use failure::Failure;
-pub(crate) use job::{JobSession, phase};
+pub(crate) use job::{JobRead, JobSession, phase, read_job};
 pub(crate) use lines::{Lines, print};
 pub(crate) use outputs::{Outputs, output_folder};
 pub(crate) use progress::Progress;
 pub(crate) use solid::{CRISP, Kind, Solid, bounds, picture, soup};
-pub(crate) use tool::tool_in_words;
+pub(crate) use tool::{described_tool, tool_in_words};

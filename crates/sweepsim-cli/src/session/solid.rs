@@ -25,6 +25,8 @@ pub(crate) enum Kind {
     Job,
     Mesh,
     Dexels,
+    /// Tools of CAM systems and controls.
+    Tools,
     /// A path, or anything else, which the path reader then reports.
     Path,
 }
@@ -35,6 +37,12 @@ impl Kind {
         let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         if extension.as_deref() == Some("ron") {
             return Ok(Self::Job);
+        }
+        if matches!(
+            extension.as_deref(),
+            Some("json" | "fctb" | "fctl" | "tbl" | "camotics")
+        ) {
+            return Ok(Self::Tools);
         }
         if MeshFormat::of(file).is_some() {
             return Ok(Self::Mesh);
@@ -59,7 +67,7 @@ impl Solid {
                 )))
             }
             Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
-            Kind::Job | Kind::Path => Err(Failure::message(format!(
+            Kind::Job | Kind::Tools | Kind::Path => Err(Failure::message(format!(
                 "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz)",
                 file.display()
             ))),

@@ -2,6 +2,7 @@
 
 use super::words::{counted, measure};
 use sweepsim_motion::{ProfileSegment, Tool, Turn};
+use sweepsim_nc::{CutterKind, ToolDescription};
 
 /// A tool's size and shape in a few words.
 pub(crate) fn tool_in_words(tool: &Tool) -> String {
@@ -60,4 +61,38 @@ pub(crate) fn tool_in_words(tool: &Tool) -> String {
         measure(length),
         kinds.join(", ")
     )
+}
+
+/// A tool as a library or a program describes it, and what is missing for a simulation.
+pub(crate) fn described_tool(tool: &ToolDescription) -> String {
+    let mut words = vec![tool.kind.as_ref().map_or("tool", CutterKind::name).to_owned()];
+    let measures = [
+        ("diameter", tool.diameter),
+        ("corner", tool.corner_radius),
+        ("flutes", tool.flute_length),
+        ("shank", tool.shank_diameter),
+        ("stick-out", tool.stick_out),
+    ];
+    for (name, value) in measures {
+        if let Some(value) = value {
+            words.push(format!("{name} {}", measure(value)));
+        }
+    }
+    let angles = [("point", tool.point_angle), ("taper", tool.taper_angle)];
+    for (name, value) in angles {
+        if let Some(value) = value {
+            words.push(format!("{name} {}°", measure(value)));
+        }
+    }
+    if !tool.holder.is_empty() {
+        words.push(format!("holder of {}", counted(tool.holder.len() as u64, "segment")));
+    }
+    if let Some(name) = &tool.name {
+        words.push(format!("{name:?}"));
+    }
+    let mut text = words.join(", ");
+    if let Err(problem) = tool.build() {
+        text.push_str(&format!(" — {problem}"));
+    }
+    text
 }

@@ -1,5 +1,6 @@
 //! Jobs: RON files that define what is cut, with which tools and along which paths.
 
+mod area;
 mod job;
 mod path_entry;
 mod paths;
@@ -8,7 +9,8 @@ mod schema;
 mod spline_motion;
 mod stock;
 mod surface_tool;
+mod tool_box;
 mod tools;
 
 pub use job::{Job, Limits, Target, Units};
-pub use paths::JobPath;
+pub use paths::{JobPath, Origin};

@@ -1,12 +1,13 @@
 //! The entries of a job's list of paths: poses, moves, a motion, or a file.
 
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use sweepsim_motion::{Law, Path, RotaryTable, Tool};
-use sweepsim_nc::{AxisLaw, Machine, ReadOptions, read_file};
+use sweepsim_motion::{Law, Path, RotaryTable};
+use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions, read_file};
 
 use super::paths::{self, JobPath};
 use super::read::JobReader;
+use super::tool_box::ToolBox;
 use super::tools::Step;
 use super::{schema, spline_motion};
 use crate::error::{FormatError, Problem};
@@ -20,7 +21,7 @@ impl JobReader<'_> {
         &self,
         index: usize,
         raw: &schema::Path,
-        tools: &BTreeMap<u32, Tool>,
+        tools: &mut ToolBox,
         tolerance: f64,
     ) -> Result<Vec<JobPath>, FormatError> {
         let steps = |rest: &[Step]| {
@@ -28,15 +29,11 @@ impl JobReader<'_> {
             steps.extend_from_slice(rest);
             steps
         };
-        let has_tool = |number: u32| {
-            let known = || tools.keys().copied().collect();
+        // A program's own tools are known only when it has been read.
+        if let (Some(number), None) = (raw.tool, &raw.file) {
             tools
-                .contains_key(&number)
-                .then_some(())
-                .ok_or_else(|| Problem::NoSuchTool { number, known: known() })
-        };
-        if let Some(number) = raw.tool {
-            has_tool(number).map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
+                .need(number, None)
+                .map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
         }
         let law = raw.law.unwrap_or(schema::Law::Slerp);
         let table = |table: schema::Table| match table {
@@ -55,7 +52,9 @@ impl JobReader<'_> {
                 rapid: vec![false; path.moves()],
                 path,
                 source,
-                lines: Vec::new(),
+                origins: Vec::new(),
+                files: Arc::new([]),
+                calls: Arc::new([]),
                 notes: Vec::new(),
             }]
         };
@@ -109,11 +108,13 @@ impl JobReader<'_> {
                 let mut options = ReadOptions::default();
                 options.arc_tolerance = arc_tolerance;
                 options.inch = self.unit != 1.0;
-                options.machine = Machine::default().tip_control(raw.tip_control.unwrap_or(false));
-                options.machine.table = match law {
+                self.dialect(raw, &mut options, &steps)?;
+                options.machine = std::mem::take(&mut options.machine).tip_control(raw.tip_control.unwrap_or(false));
+                let given = match law {
                     schema::Law::Rotary(axes) => Some(table(axes)),
                     _ => raw.table.map(table),
                 };
+                options.machine.table = given.or(options.machine.table);
                 options.law = match law {
                     schema::Law::Slerp => AxisLaw::Slerp,
                     schema::Law::ConstantSpeed => AxisLaw::ConstantSpeed,
@@ -131,6 +132,9 @@ impl JobReader<'_> {
                         return Err(self.error(problem, &steps(&["law".into()])));
                     }
                     let tool = tool()?;
+                    tools
+                        .need(tool, None)
+                        .map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
                     let path = self.named(
                         spline_motion::read(&file, self.unit),
                         &file,
@@ -141,7 +145,12 @@ impl JobReader<'_> {
                 }
                 let read = read_file(&file, &options).map_err(FormatError::from);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
-                paths::of_program(program, &file, name, raw.tool, own_law, has_tool)
+                if let Some(number) = raw.tool {
+                    tools
+                        .need(number, Some((&program.tools, name)))
+                        .map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
+                }
+                paths::of_program(program, &file, name, raw.tool, own_law, tools)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
@@ -156,5 +165,42 @@ impl JobReader<'_> {
                 }
             },
         }
+    }
+
+    /// The format, the control and the machine of a program.
+    fn dialect(
+        &self,
+        raw: &schema::Path,
+        options: &mut ReadOptions,
+        steps: &impl Fn(&[Step]) -> Vec<Step>,
+    ) -> Result<(), FormatError> {
+        options.lenient = raw.lenient.unwrap_or(false);
+        if let Some(name) = &raw.format {
+            let format = Format::named(name).ok_or_else(|| {
+                let expected = format!("one of {}", Format::NAMES.join(", "));
+                let problem = Problem::value("the format of this program", format!("{name:?}"), expected);
+                self.error(problem, &steps(&["format".into()]))
+            })?;
+            options.format = Some(format);
+        }
+        if let Some(name) = &raw.controller {
+            let controller = Controller::named(name).ok_or_else(|| {
+                let expected = format!("one of {}", Controller::NAMES.join(", "));
+                let problem = Problem::value("the controller of this program", format!("{name:?}"), expected);
+                self.error(problem, &steps(&["controller".into()]))
+            })?;
+            options.controller = Some(controller);
+        }
+        if let Some(name) = &raw.machine {
+            let read = match Machine::named(name) {
+                Some(machine) => Ok(machine),
+                None => Machine::read_file(&paths::beside(self.file, name)),
+            };
+            options.machine = read.map_err(|error| {
+                let problem = Problem::syntax(format!("machine {name}: {error}"));
+                self.error(problem, &steps(&["machine".into()]))
+            })?;
+        }
+        Ok(())
     }
 }

@@ -1,11 +1,13 @@
 //! The paths of a job: poses in the job itself, or a file whose extension determines its format.
 
 use std::path::{Path as FilePath, PathBuf};
+use std::sync::Arc;
 
 use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
-use sweepsim_nc::{Note, Program, ProgramPose};
+use sweepsim_nc::{Call, Note, Program, ProgramPose};
 
 use super::schema;
+use super::tool_box::ToolBox;
 use crate::error::{FormatError, Problem, TextPosition};
 
 /// A path of a job, with its tool. A file has several of them if its path breaks or its tool changes.
@@ -20,10 +22,48 @@ pub struct JobPath {
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Vec<bool>,
-    /// The line of each pose in its file; empty for poses in the job itself.
-    pub lines: Vec<usize>,
+    /// Where each pose comes from; empty for poses in the job itself.
+    pub origins: Vec<Origin>,
+    /// The files of the program, the main program first.
+    pub files: Arc<[PathBuf]>,
+    /// The calls of subprograms, loops and cycles of the program, each before those within it.
+    pub calls: Arc<[Call]>,
     /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
+}
+
+/// Where a pose of a program comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Origin {
+    /// The file: an index of [`JobPath::files`].
+    pub file: usize,
+    /// The line, from 1.
+    pub line: usize,
+    /// The call that made the pose: an index of [`JobPath::calls`].
+    pub call: Option<u32>,
+}
+
+impl JobPath {
+    /// The files and lines that a pose comes from: first its own, then those of the calls that led to it, the innermost first.
+    #[must_use]
+    pub fn places(&self, pose: usize) -> Vec<(&FilePath, usize)> {
+        let file = |index: usize| self.files.get(index).map_or(FilePath::new(""), PathBuf::as_path);
+        let Some(origin) = self.origins.get(pose) else {
+            return Vec::new();
+        };
+        let at = |index: Option<u32>| index.and_then(|index| self.calls.get(index as usize));
+        let calls = std::iter::successors(at(origin.call), |call| at(call.parent));
+        std::iter::once((file(origin.file), origin.line))
+            .chain(calls.map(|call| (file(call.file), call.line)))
+            .collect()
+    }
+
+    /// The number of moves that are rapids.
+    #[must_use]
+    pub fn rapid_moves(&self) -> usize {
+        self.rapid.iter().filter(|rapid| **rapid).count()
+    }
 }
 
 /// The paths of a program. The tool axis turns according to `law` where the program does not specify how. `tool` is the job's tool for the whole
@@ -34,7 +74,7 @@ pub(crate) fn of_program(
     shown: &str,
     tool: Option<u32>,
     law: Law,
-    has_tool: impl Fn(u32) -> Result<(), Problem>,
+    tools: &mut ToolBox,
 ) -> Result<Vec<JobPath>, FormatError> {
     let at = |problem: Problem, line: usize| {
         let text = std::fs::read(file).map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
@@ -50,6 +90,14 @@ pub(crate) fn of_program(
         ));
     }
     let mut notes = std::mem::take(&mut program.notes);
+    let described = std::mem::take(&mut program.tools);
+    let files: Arc<[PathBuf]> = std::mem::take(&mut program.files).into();
+    let calls: Arc<[Call]> = std::mem::take(&mut program.calls).into();
+    let origin = |pose: &ProgramPose| Origin {
+        file: pose.file,
+        line: pose.line,
+        call: pose.call,
+    };
     let mut paths = Vec::new();
     for section in program.sections() {
         let first = section[0];
@@ -62,7 +110,9 @@ pub(crate) fn of_program(
                 return Err(at(problem, first.line));
             }
         };
-        has_tool(number).map_err(|problem| at(problem, first.line))?;
+        tools
+            .need(number, Some((&described, shown)))
+            .map_err(|problem| at(problem, first.line))?;
         let poses = section.iter().map(|pose| pose.pose).collect();
         let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
         // Tables do not specify how the tool turns.
@@ -85,7 +135,9 @@ pub(crate) fn of_program(
             path,
             source: shown.to_owned(),
             rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
-            lines: section.iter().map(|pose| pose.line).collect(),
+            origins: section.iter().map(origin).collect(),
+            files: files.clone(),
+            calls: calls.clone(),
             notes: std::mem::take(&mut notes),
         });
     }

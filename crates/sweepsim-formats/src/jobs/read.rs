@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 
-use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{AptWarning, Body, BodyKind, Tool};
-use sweepsim_nc::Note;
+use sweepsim_nc::tools::read_library;
+use sweepsim_nc::{Note, ToolDescription};
 
 use super::job::{Job, Limits, Target, Units};
+use super::tool_box::ToolBox;
 use super::tools::{self, Step};
 use super::{paths, schema, surface_tool};
 use crate::error::{FormatError, Problem, TextPosition};
@@ -76,8 +77,7 @@ impl JobReader<'_> {
             &["tolerance".into()],
         )?;
         let tolerance = tolerance * self.unit;
-        let grid = self.grid(&raw.grid)?;
-        let stock = self.stock(&raw.stock, &["stock".into()], &grid)?;
+        let (grid, stock) = self.grid_and_stock(&raw)?;
         if let Some((number, place)) = self.spans.key("tools").second_key() {
             let problem = Problem::syntax(format!("a second tool {number}: expected each number once"));
             return Err(FormatError::new(
@@ -111,9 +111,10 @@ impl JobReader<'_> {
             }
             bodies.insert(number, made);
         }
+        let mut tool_box = ToolBox::new((tools, notes), bodies, self.library(raw.library.as_deref())?);
         let mut paths = Vec::new();
         for (index, path) in raw.paths.iter().enumerate() {
-            paths.extend(self.path(index, path, &tools, tolerance)?);
+            paths.extend(self.path(index, path, &mut tool_box, tolerance)?);
         }
         let mut fixtures = Vec::with_capacity(raw.fixtures.len());
         for (index, fixture) in raw.fixtures.iter().enumerate() {
@@ -124,6 +125,9 @@ impl JobReader<'_> {
             }
             fixtures.push(self.stock(fixture, &steps, &grid)?);
         }
+        let ToolBox {
+            tools, bodies, notes, ..
+        } = tool_box;
         let target = match &raw.target {
             None => None,
             Some(schema::Target::Mesh(name)) => Some(Target {
@@ -166,6 +170,15 @@ impl JobReader<'_> {
         })
     }
 
+    /// The tools of a library, and its name.
+    fn library(&self, name: Option<&str>) -> Result<Option<(BTreeMap<u32, ToolDescription>, String)>, FormatError> {
+        let Some(name) = name else { return Ok(None) };
+        let file = paths::beside(self.file, name);
+        let read = read_library(&file, self.unit != 1.0).map_err(FormatError::from);
+        let library = self.named(read, &file, "tool", &["library".into()])?;
+        Ok(Some((library.tools, name.to_owned())))
+    }
+
     /// The solid of tool `number`, or of one of its bodies, and notes about it.
     fn tool(&self, number: u32, raw: &schema::Tool, steps: &[Step]) -> Result<(Tool, Vec<Note>), FormatError> {
         if let schema::Tool::Surface(name) = raw {
@@ -180,33 +193,6 @@ impl JobReader<'_> {
         let line = TextPosition::of_bytes(self.text, self.node(steps).span.clone()).line;
         let note = |warning: AptWarning| Note::new(line, format!("tool {number}: {warning}"));
         Ok((made.tool, made.warnings.into_iter().map(note).collect()))
-    }
-
-    fn grid(&self, raw: &schema::Grid) -> Result<Grid, FormatError> {
-        let scale = |corner: [f64; 2]| corner.map(|c| c * self.unit);
-        let mut cells = [0; 2];
-        for (k, cell) in cells.iter_mut().enumerate() {
-            *cell = usize::try_from(raw.cells[k]).ok().filter(|&n| n > 0).ok_or_else(|| {
-                let problem = Problem::value("a number of cells", raw.cells[k], "a positive whole number");
-                self.error(problem, &["grid".into(), "cells".into(), Step::Item(k)])
-            })?;
-        }
-        for (name, corner) in [("min", raw.min), ("max", raw.max)] {
-            for (k, value) in corner.into_iter().enumerate() {
-                let steps = ["grid".into(), name.into(), Step::Item(k)];
-                self.check("a corner of the grid", value, true, "finite", &steps)?;
-            }
-        }
-        let grid = Grid::new(scale(raw.min), scale(raw.max), cells).map_err(|error| {
-            let ordered = (0..2).all(|k| raw.min[k] < raw.max[k]);
-            let field = if ordered { "cells" } else { "min" };
-            self.error(Problem::Grid(error), &["grid".into(), field.into()])
-        })?;
-        let Some(frame) = &raw.frame else { return Ok(grid) };
-        let origin = frame.origin.map(|c| c * self.unit);
-        let frame = Frame::new(origin, frame.z, frame.x)
-            .map_err(|error| self.error(Problem::Frame(error), &["grid".into(), "frame".into()]))?;
-        Ok(grid.in_frame(frame))
     }
 
     /// A file that cannot be opened is an error in the job, at the position of its name.

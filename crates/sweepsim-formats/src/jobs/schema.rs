@@ -14,9 +14,13 @@ pub(crate) struct Job {
     pub units: Units,
     #[serde(default)]
     pub tolerance: Option<f64>,
-    pub grid: Grid,
+    #[serde(default)]
+    pub grid: Option<Grid>,
     pub stock: Stock,
+    #[serde(default)]
     pub tools: BTreeMap<u32, Tool>,
+    #[serde(default)]
+    pub library: Option<String>,
     #[serde(default)]
     pub bodies: BTreeMap<u32, Vec<Body>>,
     pub paths: Vec<Path>,
@@ -35,12 +39,17 @@ pub(crate) enum Units {
     Inch,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Grid {
-    pub min: [f64; 2],
-    pub max: [f64; 2],
-    pub cells: [i64; 2],
+    #[serde(default)]
+    pub min: Option<[f64; 2]>,
+    #[serde(default)]
+    pub max: Option<[f64; 2]>,
+    #[serde(default)]
+    pub cells: Option<[i64; 2]>,
+    #[serde(default)]
+    pub cell: Option<f64>,
     #[serde(default)]
     pub frame: Option<Frame>,
 }
@@ -210,6 +219,14 @@ pub(crate) struct Path {
     pub table: Option<Table>,
     #[serde(default)]
     pub tip_control: Option<bool>,
+    #[serde(default)]
+    pub format: Option<String>,
+    #[serde(default)]
+    pub controller: Option<String>,
+    #[serde(default)]
+    pub machine: Option<String>,
+    #[serde(default)]
+    pub lenient: Option<bool>,
 }
 
 /// The tip, the axis, and optionally the direction of the tool's x axis: two or three triples in parentheses.

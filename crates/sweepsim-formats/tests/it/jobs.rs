@@ -88,7 +88,8 @@ Job(
         [20.0 * 25.4, 10.0 * 25.4, 8.0 * 25.4]
     );
     let last = &job.paths[3];
-    assert_eq!(last.lines, [4, 5, 6]);
+    let lines: Vec<usize> = last.origins.iter().map(|origin| origin.line).collect();
+    assert_eq!(lines, [4, 5, 6]);
     assert_eq!(last.path.poses()[2].axis(), [0.0, 1.0, 0.0]);
     assert_eq!(
         last.path.poses()[2].tip()[0],

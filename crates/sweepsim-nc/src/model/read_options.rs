@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::machines::Machine;
+use crate::model::names::Format;
 
 /// How to read a program.
 ///
@@ -28,6 +29,8 @@ pub struct ReadOptions {
     pub law: AxisLaw,
     /// Keeps arcs and helices instead of dividing them into chords. The axis then turns at constant speed along them.
     pub exact_arcs: bool,
+    /// The format of the file. `None`: as its content says.
+    pub format: Option<Format>,
     /// The control that the program is written for. `None`: as the text says.
     pub controller: Option<Controller>,
     /// Whether to go on after problems, and to list what was left out as notes instead of rejecting the program.
@@ -58,6 +61,7 @@ impl Default for ReadOptions {
             machine: Machine::default(),
             law: AxisLaw::Slerp,
             exact_arcs: false,
+            format: None,
             controller: None,
             lenient: false,
             block_delete: false,

@@ -1,0 +1,129 @@
+//! Options about programs.
+
+use super::values::stock;
+use clap::Args;
+use clap::ValueHint;
+use std::path::{Path, PathBuf};
+use sweepsim_formats::{DraftOptions, DraftStock};
+use sweepsim_nc::{Controller, Format, Machine, ReadOptions};
+
+/// How a program is read.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Programs")]
+pub(crate) struct DialectOptions {
+    /// The control that the program is written for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: as the program says].
+    #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
+    pub controller: Option<String>,
+    /// The machine: a machine.ron, or the name of a ready one, like trunnion-ac.
+    #[arg(long, value_name = "FILE")]
+    pub machine: Option<String>,
+    /// The format of the program: gcode, apt, table or rows [default: as its content says].
+    #[arg(long = "as", value_name = "FORMAT", value_parser = known(|name| Format::named(name).is_some(), &Format::NAMES))]
+    pub format: Option<String>,
+    /// Goes on after problems of the program, and lists what was left out.
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+/// What a job says, given with a program instead.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Programs")]
+pub(crate) struct ProgramOptions {
+    /// The tools: a library of Fusion 360 (.json) or FreeCAD (.fctl), a tool table (.tbl), or a project of CAMotics.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub tools: Option<PathBuf>,
+    /// The stock: auto, block:X0,Y0,Z0,X1,Y1,Z1, or a mesh [default: auto, as the program says or a block around its path].
+    #[arg(long, value_name = "STOCK", value_parser = stock, allow_hyphen_values = true)]
+    pub stock: Option<DraftStock>,
+    /// The design part: a mesh.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub target: Option<PathBuf>,
+    #[command(flatten)]
+    pub dialect: DialectOptions,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewOptions {
+    /// The program (.nc .cls …), or a project of CAMotics.
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub program: PathBuf,
+    /// The folder of the job [default: that of the program].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub options: ProgramOptions,
+    /// The number of dexels, like 300x200 [default: from the smallest tool and the size of the stock].
+    #[arg(long, value_name = "NXxNY", value_parser = super::values::cells)]
+    pub cells: Option<[usize; 2]>,
+    /// Overwrites the job if there is one.
+    #[arg(long)]
+    pub force: bool,
+    /// Prints no summary.
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InspectOptions {
+    /// A job (.ron), program (.nc .cls .csv …), tool library (.json .fctl .tbl), mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv
+    /// .dexels .npz).
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub dialect: DialectOptions,
+}
+
+/// Accepts the names that a function knows.
+fn known(knows: fn(&str) -> bool, names: &'static [&'static str]) -> impl Fn(&str) -> Result<String, String> + Clone {
+    move |name| {
+        if knows(name) {
+            Ok(name.to_owned())
+        } else {
+            Err(format!("expected one of {}", names.join(", ")))
+        }
+    }
+}
+
+impl DialectOptions {
+    /// How to read a program.
+    pub fn reading(&self) -> Result<ReadOptions, String> {
+        let mut options = ReadOptions::default();
+        options.lenient = self.lenient;
+        options.controller = self.controller.as_deref().and_then(Controller::named);
+        options.format = self.format.as_deref().and_then(Format::named);
+        if let Some(machine) = &self.machine {
+            options.machine = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
+        }
+        Ok(options)
+    }
+}
+
+impl ProgramOptions {
+    /// The first of these options that was given.
+    pub fn first(&self) -> Option<&'static str> {
+        let given = [
+            ("--tools", self.tools.is_some()),
+            ("--stock", self.stock.is_some()),
+            ("--target", self.target.is_some()),
+            ("--controller", self.dialect.controller.is_some()),
+            ("--machine", self.dialect.machine.is_some()),
+            ("--as", self.dialect.format.is_some()),
+            ("--lenient", self.dialect.lenient),
+        ];
+        given.iter().find(|(_, given)| *given).map(|(name, _)| *name)
+    }
+
+    /// For a job in a folder.
+    pub fn draft(&self, folder: &Path) -> DraftOptions {
+        let mut options = DraftOptions::default();
+        options.tools.clone_from(&self.tools);
+        options.stock = self.stock.clone().unwrap_or_default();
+        options.target.clone_from(&self.target);
+        options.controller.clone_from(&self.dialect.controller);
+        options.machine.clone_from(&self.dialect.machine);
+        options.format.clone_from(&self.dialect.format);
+        options.lenient = self.dialect.lenient;
+        options.folder = folder.to_owned();
+        options
+    }
+}

@@ -1,0 +1,170 @@
+//! Jobs for programs: what a program, a tool library and the user say becomes the text of a job, and what nobody says is guessed, and
+//! said to be.
+
+mod guesses;
+mod words;
+
+use std::path::{Path as FilePath, PathBuf};
+
+use sweepsim_nc::tools::{ToolLibrary, read_library};
+use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units, read_file};
+
+use crate::error::{FormatError, Problem};
+
+/// The stock of a draft.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum DraftStock {
+    /// As the program or its project says; otherwise a block around its feed moves.
+    #[default]
+    Auto,
+    /// A block between two corners, in millimetres.
+    Block {
+        /// The lower corner.
+        min: [f64; 3],
+        /// The upper corner.
+        max: [f64; 3],
+    },
+    /// A mesh.
+    Mesh(PathBuf),
+}
+
+/// What the user says about a program.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DraftOptions {
+    /// A tool library.
+    pub tools: Option<PathBuf>,
+    /// The stock.
+    pub stock: DraftStock,
+    /// The design part: a mesh.
+    pub target: Option<PathBuf>,
+    /// The control.
+    pub controller: Option<String>,
+    /// The machine: a file, or the name of a ready one.
+    pub machine: Option<String>,
+    /// The format of the program.
+    pub format: Option<String>,
+    /// Whether to go on after problems of the program.
+    pub lenient: bool,
+    /// Whether to invent tools of which nothing is known, for the user to correct.
+    pub invent: bool,
+    /// The number of dexels.
+    pub cells: Option<[usize; 2]>,
+    /// The folder of the job: files in it are named without their folder.
+    pub folder: PathBuf,
+}
+
+/// A job for a program.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Draft {
+    /// The text of the job, with what was guessed in its comments.
+    pub text: String,
+    /// The program: the given file, or that of a project.
+    pub program: PathBuf,
+    /// What the program or a library says.
+    pub found: Vec<String>,
+    /// What nobody says.
+    pub guessed: Vec<String>,
+}
+
+/// Writes a job for a program, or for a project of CAMotics that names one.
+///
+/// ```
+/// use sweepsim_formats::{DraftOptions, Job, draft};
+/// let folder = tempfile::tempdir()?;
+/// let file = folder.path().join("part.cls");
+/// std::fs::write(&file, "UNITS/MM\nCUTTER/10,0,5,0,0,0,40\nLOAD/TOOL,3\nRAPID\nGOTO/0,0,5\nFEDRAT/200,MMPM\nGOTO/0,0,-1\nGOTO/30,0,-1\n")?;
+/// let draft = draft(&file, &DraftOptions::default())?;
+/// let job = Job::parse(&draft.text, &file)?;
+/// assert_eq!((job.tools.len(), job.moves(), job.paths[0].rapid_moves()), (1, 2, 0));
+/// assert!(draft.guessed[0].starts_with("stock: a block around the feed moves"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`FormatError`]: the program or a library cannot be read, or a tool's measures are missing: all of them, by name.
+pub fn draft(file: &FilePath, options: &DraftOptions) -> Result<Draft, FormatError> {
+    let mut drafter = Drafter::new(file, options)?;
+    let stock = drafter.stock()?;
+    let tools = drafter.tools(stock.map(|[_, high]| high[2]))?;
+    drafter.write(stock, &tools)
+}
+
+/// A draft in the making.
+struct Drafter<'a> {
+    options: &'a DraftOptions,
+    file: PathBuf,
+    program: Program,
+    library: ToolLibrary,
+    found: Vec<String>,
+    guessed: Vec<String>,
+}
+
+fn refuse(file: &FilePath, message: String) -> FormatError {
+    FormatError::new(Problem::syntax(message), None).in_file(file)
+}
+
+impl<'a> Drafter<'a> {
+    fn new(file: &FilePath, options: &'a DraftOptions) -> Result<Self, FormatError> {
+        let mut library = ToolLibrary::default();
+        let mut file = file.to_owned();
+        if file
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("camotics"))
+        {
+            library = read_library(&file, false)?;
+            let folder = file.parent().unwrap_or(FilePath::new("")).to_owned();
+            let program = library
+                .programs
+                .iter()
+                .map(|name| folder.join(name))
+                .find(|program| program.is_file());
+            let Some(program) = program else {
+                let names = library.programs.join(", ");
+                return Err(refuse(
+                    &file,
+                    format!("this project names no program beside it ({names}): expected one"),
+                ));
+            };
+            file = program;
+        }
+        let mut read = ReadOptions::default();
+        read.lenient = options.lenient;
+        // Extents need no finer chords.
+        read.arc_tolerance = 0.01;
+        let unknown = |what: &str, name: &str, names: &[&str]| {
+            refuse(
+                &file,
+                format!("the {what} is {name:?}, but must be one of {}", names.join(", ")),
+            )
+        };
+        if let Some(name) = &options.format {
+            let named = Format::named(name);
+            read.format = Some(named.ok_or_else(|| unknown("format", name, &Format::NAMES))?);
+        }
+        if let Some(name) = &options.controller {
+            let named = Controller::named(name);
+            read.controller = Some(named.ok_or_else(|| unknown("controller", name, &Controller::NAMES))?);
+        }
+        if let Some(name) = &options.machine {
+            let name = FilePath::new(name);
+            read.machine = Machine::read_file(name).map_err(|error| refuse(name, format!("machine: {error}")))?;
+        }
+        let program = read_file(&file, &read)?;
+        if let Some(tools) = &options.tools {
+            let stock = library.stock;
+            library = read_library(tools, program.units == Units::Inch)?;
+            library.stock = library.stock.or(stock);
+        }
+        Ok(Self {
+            options,
+            file,
+            program,
+            library,
+            found: Vec::new(),
+            guessed: Vec::new(),
+        })
+    }
+}
