@@ -16,7 +16,9 @@ use sweepsim_nc::{Note, read_file};
 pub(crate) fn inspect(options: &InspectOptions) -> Result<(), Failure> {
     let file = &*options.file;
     let mut text = Lines::default();
-    let reading = options.dialect.reading().map_err(Failure::message)?;
+    let mut reading = options.dialect.reading().map_err(Failure::message)?;
+    // An arc is one move, as in the program.
+    reading.exact_arcs = true;
     match Kind::of(file)? {
         Kind::Job => job(&mut text, &Job::read(file)?),
         Kind::Mesh => mesh(&mut text, &read_mesh_file(file)?),

@@ -3,5 +3,6 @@
 mod command;
 mod directions;
 mod exchange;
+mod programs;
 mod support;
 mod verify;

@@ -74,7 +74,7 @@ impl Drafter<'_> {
             return Ok(tools);
         }
         let message = format!(
-            "{}: expected a tool library (`--tools`) or comments in the program that say it",
+            "{}: expected a tool library (`--tools`) or comments in the program that say it; `sweepsim new` writes a job to edit",
             missing.join("; ")
         );
         Err(refuse(&self.file, message))
@@ -147,7 +147,8 @@ impl Drafter<'_> {
         let widest = self.used().into_iter().map(radius).fold(0.0, f64::max);
         let mut range: Option<[[f64; 3]; 2]> = None;
         let mut upright = true;
-        for pose in self.program.poses.iter().filter(|pose| !pose.rapid) {
+        let program = self.chords.as_ref().unwrap_or(&self.program);
+        for pose in program.poses.iter().filter(|pose| !pose.rapid) {
             let tip = pose.pose.tip();
             let [low, high] = range.unwrap_or([tip; 2]);
             range = Some([
@@ -171,7 +172,12 @@ impl Drafter<'_> {
             high[k] += margin;
         }
         // Programs of three axes usually have their zero on the stock.
-        let at_zero = upright && low[2] < 0.0 && high[2] >= 0.0;
+        let highest = program
+            .poses
+            .iter()
+            .map(|pose| pose.pose.tip()[2])
+            .fold(high[2], f64::max);
+        let at_zero = upright && low[2] < 0.0 && highest >= 0.0;
         if at_zero {
             high[2] = 0.0;
         }

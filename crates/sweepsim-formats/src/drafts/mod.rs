@@ -6,6 +6,7 @@ mod words;
 
 use std::path::{Path as FilePath, PathBuf};
 
+use sweepsim_motion::Course;
 use sweepsim_nc::tools::{ToolLibrary, read_library};
 use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units, read_file};
 
@@ -97,6 +98,8 @@ struct Drafter<'a> {
     options: &'a DraftOptions,
     file: PathBuf,
     program: Program,
+    /// The program in chords, if it has arcs.
+    chords: Option<Program>,
     library: ToolLibrary,
     found: Vec<String>,
     guessed: Vec<String>,
@@ -132,8 +135,7 @@ impl<'a> Drafter<'a> {
         }
         let mut read = ReadOptions::default();
         read.lenient = options.lenient;
-        // Extents need no finer chords.
-        read.arc_tolerance = 0.01;
+        read.exact_arcs = true;
         let unknown = |what: &str, name: &str, names: &[&str]| {
             refuse(
                 &file,
@@ -153,6 +155,17 @@ impl<'a> Drafter<'a> {
             read.machine = Machine::read_file(name).map_err(|error| refuse(name, format!("machine: {error}")))?;
         }
         let program = read_file(&file, &read)?;
+        // Extents need the arcs' points, but not many.
+        let has_arcs = program
+            .poses
+            .iter()
+            .any(|pose| matches!(pose.way.course, Course::Arc(_)));
+        let chords = if has_arcs {
+            (read.exact_arcs, read.arc_tolerance) = (false, 0.01);
+            Some(read_file(&file, &read)?)
+        } else {
+            None
+        };
         if let Some(tools) = &options.tools {
             let stock = library.stock;
             library = read_library(tools, program.units == Units::Inch)?;
@@ -162,6 +175,7 @@ impl<'a> Drafter<'a> {
             options,
             file,
             program,
+            chords,
             library,
             found: Vec::new(),
             guessed: Vec::new(),

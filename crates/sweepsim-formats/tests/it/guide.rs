@@ -76,6 +76,7 @@ fn every_example_is_read() {
     }
     fs::write(path("finish.csv"), blocks(&guide, "csv")[0]).unwrap();
     fs::write(path("roughing.nc"), blocks(&guide, "gcode")[0]).unwrap();
+    fs::write(path("tools.json"), blocks(&guide, "json")[0]).unwrap();
     fs::write(path("five-axis.nc"), "G0 X0 Y0 Z5 A0 C0\nG1 X10 A30 C45 F200\n").unwrap();
     let examples = blocks(&guide, "ron");
     let one = |begin: &str| {

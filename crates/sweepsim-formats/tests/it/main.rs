@@ -5,6 +5,7 @@ mod bad_jobs;
 mod bad_motions;
 mod bad_texts;
 mod dexels_binary;
+mod drafts;
 mod exchange;
 mod guide;
 mod jobs;
