@@ -225,10 +225,14 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     reported.path = Some(finding.path);
     reported.r#move = Some(finding.number);
     // A move belongs to the line of the pose where it ends.
-    if let Some(line) = path.lines.get(finding.number + 1) {
-        reported.file = Some(path.source.clone());
-        reported.line = Some(*line);
-        reported.text = texts.line(&path.source, *line);
+    if let Some(origin) = path.origins.get(finding.number + 1) {
+        let file = match path.files.get(origin.file).filter(|_| origin.file > 0) {
+            // A subprogram in a file of its own.
+            Some(file) => file.strip_prefix(&texts.folder).unwrap_or(file).display().to_string(),
+            None => path.source.clone(),
+        };
+        reported.text = texts.line(&file, origin.line);
+        (reported.file, reported.line) = (Some(file), Some(origin.line));
     }
     reported.time = Some(finding.time);
     (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);

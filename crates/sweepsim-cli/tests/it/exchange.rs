@@ -103,7 +103,7 @@ fn paths_become_tables() {
     assert!(
         workdir
             .bad(&["convert", "p.ngc", "p.stl"])
-            .contains("paths can only be written as tables")
+            .contains("programs can be written as tables (.csv), CLSF (.cls, .apt) and text (.txt)")
     );
 }
 
