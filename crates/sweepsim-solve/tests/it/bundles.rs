@@ -8,10 +8,10 @@ use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Enclosure, Po
 use sweepsim_spline::Bernstein;
 
 /// A rational map by its forms: numerators over a weight, then forms that must be zero.
-struct Forms<const N: usize> {
-    numerators: Vec<Bernstein>,
-    weight: Bernstein,
-    zeros: Vec<Bernstein>,
+pub struct Forms<const N: usize> {
+    pub numerators: Vec<Bernstein>,
+    pub weight: Bernstein,
+    pub zeros: Vec<Bernstein>,
 }
 
 impl<const N: usize> Forms<N> {

@@ -8,6 +8,7 @@ mod degenerate;
 mod expressions;
 mod extremes;
 mod formulas;
+mod fuzz;
 mod invariance;
 mod limits;
 mod many;
