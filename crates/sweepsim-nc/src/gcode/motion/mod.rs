@@ -5,3 +5,4 @@ pub(crate) mod compensation;
 pub(crate) mod corner;
 pub(crate) mod map;
 pub(crate) mod state;
+pub(crate) mod stroke;

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
 
-use super::compensation::Place;
+use super::stroke::Place;
 use crate::drive::{Coordinates, Driver, Sense};
 use crate::machines::{Machine, Position};
 use crate::model::event::{Event, EventKind};

@@ -1,11 +1,10 @@
 //! What a block does, in the order in which controls do it: modes, speeds, tool, spindle and coolant, offsets, the move, the end.
 
-use super::calls::Spot;
+use super::control::calls::Spot;
 use super::interpreter::{Reader, Step};
 use crate::drive::Sense;
-use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode, Turning};
+use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode};
 use crate::gcode::syntax::block::{Block, Located, Word};
-use crate::model::event::{EventKind, Spindle};
 use crate::model::program::Units;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
@@ -333,109 +332,6 @@ impl Reader {
             return fail("no code of this block uses R: expected an arc or a cycle");
         }
         Ok(())
-    }
-
-    /// Executes F, S, T and M words. What comes after the block, unless it calls.
-    fn misc(&mut self, block: &Block) -> Result<Step, Located> {
-        let whole = |problem| (problem, block.all());
-        if let Some(feed) = block.get('F') {
-            self.modes.feed = Some(feed);
-        }
-        if let Some(speed) = block.get('S') {
-            let changed = self.modes.speed.replace(speed) != Some(speed);
-            if changed && self.modes.spindle != Turning::Stopped && !block.has('M') {
-                self.spindle().map_err(whole)?;
-            }
-        }
-        if let Some(word) = block.word('T') {
-            let tool = Self::tool_number(word.value).map_err(|problem| (problem, word.span()))?;
-            self.selected_tool = Some(tool);
-            // Programs without a tool change name their tool by a T word alone.
-            if self.state.tool.is_none() {
-                self.state.tool = Some(tool);
-                self.update_map();
-            }
-        }
-        if !block.has('M') {
-            return Ok(Step::Next);
-        }
-        let mut step = Step::Next;
-        for &word in block.words().iter().filter(|word| word.letter == 'M') {
-            let at = |problem| (problem, word.span());
-            match codes::m(word.value) {
-                Misc::Harmless => {}
-                Misc::End => step = Step::End,
-                Misc::Stop => self.event(EventKind::Stop).map_err(at)?,
-                Misc::OptionalStop => self.event(EventKind::OptionalStop).map_err(at)?,
-                Misc::Spindle(turning) => {
-                    self.modes.spindle = turning;
-                    self.spindle().map_err(at)?;
-                }
-                Misc::Coolant(coolant) => self.event(EventKind::Coolant(coolant)).map_err(at)?,
-                Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
-                Misc::SetTool => {
-                    let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
-                    self.change_tool(tool).map_err(at)?;
-                }
-                Misc::TipControl(on) => self.kinematics = on,
-                Misc::Call { .. } | Misc::Return => {
-                    let several = block.words().iter().filter(|w| w.letter == 'M').count() > 1;
-                    let last = block.words().iter().rfind(|w| w.letter == 'M');
-                    if several && last != Some(&word) {
-                        return Err(at(NcProblem::syntax(format!(
-                            "{} next to another M code: expected it in a block of its own",
-                            word.name()
-                        ))));
-                    }
-                }
-                Misc::SaveModes => self.frame().modes = Some(Box::new(self.modes.clone())),
-                Misc::SaveModesForCall => {
-                    let modes = Some(Box::new(self.modes.clone()));
-                    let frame = self.frame();
-                    frame.modes = modes;
-                    frame.restore_modes = true;
-                }
-                Misc::ForgetModes => {
-                    let frame = self.frame();
-                    frame.modes = None;
-                    frame.restore_modes = false;
-                }
-                Misc::RestoreModes => match self.frame().modes.clone() {
-                    Some(modes) => self.modes = *modes,
-                    None => {
-                        return Err(at(NcProblem::syntax(
-                            "M72 without M70 before it: there are no saved modes",
-                        )));
-                    }
-                },
-                Misc::Refused(what) => {
-                    let what = format!("{}: {what}", word.name());
-                    return Err(at(NcProblem::unsupported(what, "expected a program without them")));
-                }
-                Misc::Unknown => self.state.note(format!("{} is not understood: ignored", word.name())),
-            }
-        }
-        Ok(step)
-    }
-
-    fn spindle(&mut self) -> Result<(), NcProblem> {
-        let rpm = self.modes.speed;
-        self.event(EventKind::Spindle(match self.modes.spindle {
-            Turning::Stopped => Spindle::Stopped,
-            Turning::Clockwise => Spindle::Clockwise { rpm },
-            Turning::CounterClockwise => Spindle::CounterClockwise { rpm },
-        }))
-    }
-
-    /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.
-    fn dwell(&mut self, block: &Block) -> Result<(), NcProblem> {
-        let fanuc = matches!(self.controller, Some(Controller::Fanuc | Controller::Haas));
-        let seconds = match block.word('P') {
-            Some(word) if fanuc && word.whole => word.value / 1000.0,
-            Some(word) => word.value,
-            None => block.get('X').unwrap_or(0.0),
-        };
-        self.rest(seconds)
     }
 }
 

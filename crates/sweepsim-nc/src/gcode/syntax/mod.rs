@@ -3,5 +3,6 @@
 pub(crate) mod block;
 pub(crate) mod cursor;
 pub(crate) mod expression;
+pub(crate) mod functions;
 pub(crate) mod title;
 pub(crate) mod words;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::interpreter::Reader;
+use super::super::interpreter::Reader;
 use crate::gcode::codes::MotionMode;
 use crate::gcode::offsets::Placed;
 use crate::gcode::syntax::block::Target;

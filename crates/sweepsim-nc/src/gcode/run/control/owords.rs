@@ -2,8 +2,8 @@
 //!
 //! Source: *LinuxCNC G-code reference, O Codes*.
 
+use super::super::interpreter::{Reader, Step};
 use super::calls::{FrameKind, Spot};
-use super::interpreter::{Reader, Step};
 use crate::gcode::flow::keywords::{Keyword, Label, after_letter, keyword, label};
 use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;

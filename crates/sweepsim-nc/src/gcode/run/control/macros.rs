@@ -2,8 +2,8 @@
 //!
 //! Source: Fanuc Series 30i operator's manual B-63944EN, *Custom macro*.
 
+use super::super::interpreter::{Reader, Step};
 use super::calls::Spot;
-use super::interpreter::{Reader, Step};
 use crate::gcode::flow::labels::loop_number;
 use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;

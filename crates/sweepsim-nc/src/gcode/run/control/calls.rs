@@ -1,13 +1,10 @@
 //! Subprograms: where they are, and how they are called and left.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
-use super::interpreter::{Reader, Step};
+use super::super::interpreter::{Reader, Step};
 use super::variables::Locals;
 use crate::gcode::flow::keywords::{Keyword, Label};
-use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::modes::Modes;
 use crate::gcode::syntax::block::Block;
 use crate::model::program::Call;
@@ -15,8 +12,6 @@ use crate::text::error::NcProblem;
 
 /// Calls within calls, at most.
 const DEEPEST: usize = 100;
-/// Files of subprograms, at most.
-const MOST_FILES: usize = 500;
 
 /// A line of one of the texts, both from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -346,97 +341,4 @@ impl Reader {
             }
         }
     }
-
-    /// Where a label is, in the texts that have been read.
-    fn find_in_texts(&self, label: &Label, source: usize) -> Option<(Spot, Option<Keyword>)> {
-        let order = std::iter::once(source).chain(0..self.sources.len());
-        for source in order {
-            let lines = self.sources[source].labels().lines(label);
-            let found = lines
-                .iter()
-                .find(|found| matches!(found.keyword, None | Some(Keyword::Sub)));
-            if let Some(found) = found {
-                let spot = Spot {
-                    source,
-                    line: found.line,
-                };
-                return Some((spot, found.keyword));
-            }
-        }
-        None
-    }
-
-    /// Where a subroutine or a program begins: in these texts, or in a file.
-    fn find(&mut self, label: &Label, source: usize, keyword: Option<Keyword>) -> Result<Spot, NcProblem> {
-        if self.find_in_texts(label, source).is_none() {
-            self.load(label)?;
-        }
-        match (self.find_in_texts(label, source), keyword) {
-            (Some((spot, found)), keyword) if found == keyword => Ok(spot),
-            (Some(_), None) => Err(NcProblem::syntax(format!(
-                "`{label} sub` begins a subroutine of LinuxCNC: expected `{label} call`"
-            ))),
-            (Some(_), Some(_)) => Err(NcProblem::syntax(format!(
-                "{label} is a subprogram without `sub`: expected M98 P to call it"
-            ))),
-            (None, _) => Err(NcProblem::syntax(format!(
-                "the subprogram {label} is missing: expected it in this program, or in a file of its name beside it"
-            ))),
-        }
-    }
-
-    /// Reads the file of a subprogram, if there is one.
-    fn load(&mut self, label: &Label) -> Result<(), NcProblem> {
-        if !self.looked_for.insert(label.clone()) || self.sources.len() > MOST_FILES {
-            return Ok(());
-        }
-        let names = match label {
-            // No way out of the folder.
-            Label::Name(name) if name.contains(['/', '\\', '\0']) || name.starts_with('.') => return Ok(()),
-            Label::Name(name) => vec![name.clone()],
-            Label::Number(number) => vec![
-                format!("{number}"),
-                format!("O{number:04}"),
-                format!("o{number:04}"),
-                format!("O{number}"),
-                format!("o{number}"),
-                format!("{number:04}"),
-            ],
-        };
-        let extensions = [".ngc", ".nc", ".NC", ".NGC", ".tap", ".cnc", ".txt", ""];
-        for folder in &self.folders {
-            for (name, extension) in names.iter().flat_map(|name| extensions.iter().map(move |e| (name, e))) {
-                let path = folder.join(format!("{name}{extension}"));
-                if path.is_file() {
-                    let source = read(&path, self.files.len())?;
-                    self.files.push(path);
-                    self.sources.push(Rc::new(source));
-                    return Ok(());
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-fn read(path: &Path, file: usize) -> Result<Source, NcProblem> {
-    let size = std::fs::metadata(path).map_err(NcProblem::Read)?.len();
-    if size > LONGEST as u64 {
-        return Err(NcProblem::value(
-            "the size of a file of subprograms",
-            size,
-            "less than 2 GB",
-        ));
-    }
-    let bytes = std::fs::read(path).map_err(NcProblem::Read)?;
-    Ok(Source::new(file, String::from_utf8_lossy(&bytes).into_owned()))
-}
-
-/// The folders in which to look for subprograms.
-pub(crate) fn folders(file: Option<&Path>, further: &[PathBuf]) -> Vec<PathBuf> {
-    let own = file.map(|file| match file.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    });
-    own.into_iter().chain(further.iter().cloned()).collect()
 }
