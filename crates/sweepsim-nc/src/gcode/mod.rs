@@ -1,9 +1,7 @@
 //! G-code (RS-274): what the tool does in the part's frame.
 //!
-//! Supported: `G0 G1 G2 G3` (arcs and helices in `G17 G18 G19`, by centre or radius, with `P` turns), `G90 G91`,
-//! `G90.1 G91.1`, `G20 G21`, `G70 G71`, work offsets (`G54`…`G59.3`, `G10 L2/L20`, `G52`, `G92`), tip control (`M428`, `M128`, `G43.4`; off with
-//! `M429`, `M129`, `G49`) for tables with A/C or B/C axes ([`RotaryTable`](crate::RotaryTable)), tool changes, comments, block numbers,
-//! titles, `%`, `/`, `M2 M30 M99`. Speeds, coolant, dwell and high-speed modes do not affect the geometry and are skipped.
+//! For LinuxCNC, Fanuc, Haas and Grbl: motion, offsets, cutter compensation, drilling cycles, subprograms, loops, variables and expressions.
+//! The guide (`docs/programs.md`) lists the words.
 //!
 //! Each of these decisions is reported as a [`Note`](crate::Note):
 //!
@@ -11,8 +9,8 @@
 //! - Between two blocks the tip moves straight, and the axis turns according to [`ReadOptions::law`]: by default by SLERP, whatever the
 //!   machine's rotary axes do in between. Intermediate poses of the rotary axes are inserted only where the axis turns by more than
 //!   90° in one block.
-//! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame: the path breaks there and resumes once all
-//!   coordinates are known.
+//! - A move in machine coordinates (`G53`, `G28`, `G30`) leaves the part's frame, unless [`ReadOptions::variables`] tells where that is: the path
+//!   breaks there and resumes once all coordinates are known.
 //! - If a feed move comes before X, Y and Z are all known, the unknown ones are taken as 0.
 //! - Unknown words and codes are ignored if they cannot move the tool.
 //!
@@ -20,8 +18,7 @@
 //!   where absolute coordinates are, so they are errors.
 //! - `K` in a helix of `G17` (`J` in `G18`, `I` in `G19`) must agree with its end, as pitch or as rise.
 //!
-//! Anything that could move the tool in a way that is not supported (splines, cycles, cutter compensation, rotated frames, subroutines,
-//! variables) is an error with its position.
+//! Anything that could move the tool in a way that is not supported is an error with its position.
 
 mod codes;
 mod dialect;

@@ -151,7 +151,10 @@ fn titles_and_tapes() {
 #[test]
 fn unclosed_subroutines() {
     for (text, message) in [
-        ("O100 sub", "1:1: there is no `O100 endsub` after this line"),
+        (
+            "O100 sub",
+            "1:1: there is no `O100 endsub` after the line where it begins",
+        ),
         ("o100 if [1 gt 2]", "1:1: there is no `O100 endif` after this line"),
         (
             "o<a> call",
