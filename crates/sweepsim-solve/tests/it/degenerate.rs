@@ -19,7 +19,7 @@ fn polynomial(text: &str, n: usize) -> Polynomial {
 fn solve(polynomials: &[Polynomial], side: [f64; 2]) -> Points {
     let domain = vec![Enclosure::new(side[0], side[1]).unwrap(); polynomials.len()];
     let equations = polynomials.iter().map(|p| p.equation(&domain));
-    let system = System::new(&domain, equations).unwrap();
+    let system = System::mapped(&domain, equations).unwrap();
     let points = PointSolver::default().solve(&system, &()).unwrap();
     assert!(points.unresolved.len() <= SolveOptions::default().unresolved);
     points
