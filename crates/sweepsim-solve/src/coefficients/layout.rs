@@ -70,6 +70,10 @@ pub(crate) struct Layout {
     /// The original coefficients, and their noise.
     pub first: Vec<f64>,
     pub first_noise: RowList,
+    /// The second parts of the original coefficients, as many as the first ones; empty if all of them are 0.
+    pub second: Vec<f64>,
+    /// A bound on each row's second parts: they are missing from cells until they are recomputed.
+    pub missing: RowList,
     /// The factor by which each equation was multiplied: a power of two.
     pub factor: RowList,
     /// How rows are combined into equations; `None` if each row is an equation.
@@ -117,15 +121,20 @@ impl Layout {
         self.remainder.resize(rows);
         self.slope_remainder.resize(rows);
         self.first_noise.resize(rows);
+        self.missing.resize(rows);
         self.factor.resize(rows);
     }
 
     /// A cell with the original coefficients.
     pub(crate) fn root(&self) -> Cell {
+        let mut noise = self.first_noise.clone();
+        for e in 0..self.rows() {
+            noise[e] += self.missing[e];
+        }
         let mut cell = Cell {
             lo: [0.0; MAX_UNKNOWNS],
             hi: [1.0; MAX_UNKNOWNS],
-            noise: self.first_noise.clone(),
+            noise,
             scale: RowList::filled(0.0, self.rows()),
             c: self.first.clone(),
         };

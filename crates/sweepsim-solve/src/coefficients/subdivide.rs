@@ -90,6 +90,11 @@ impl Layout {
     pub(super) fn originals(&self, part: &Summand, out: &mut Vec<Double>) {
         out.clear();
         out.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
+        if !self.second.is_empty() {
+            for (x, low) in out.iter_mut().zip(part.of(&self.second)) {
+                x.lo = *low;
+            }
+        }
     }
 
     /// The equations' values at a point of the domain, with bounds of their errors; `None` if rows are combined by a tape, or outside.

@@ -35,6 +35,12 @@ impl Double {
         Self { hi: x, lo: 0.0 }
     }
 
+    /// The sum of two numbers, of which neither need be the larger one.
+    pub(crate) fn of_sum(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_sum(a, b);
+        Self { hi, lo }
+    }
+
     pub(crate) fn add(self, other: Self) -> Self {
         let (s, e) = two_sum(self.hi, other.hi);
         let (t, f) = two_sum(self.lo, other.lo);

@@ -61,6 +61,15 @@ pub(crate) fn add(layout: &mut Layout, row: usize, equation: usize, given: &Equa
         let coefficients: Vec<f64> = term.coefficients().iter().map(|c| scaled(*c)).collect();
         noise += scaled(term.error());
         degrees += term.degrees().iter().sum::<usize>();
+        if let Some(low) = &given.low {
+            // Neither split nor rounded: a part of its own.
+            append(layout, row, term.degrees(), &coefficients);
+            layout.second.resize(layout.first.len() - coefficients.len(), 0.0);
+            layout.second.extend(low.coefficients().iter().map(|c| scaled(*c)));
+            let (lo, hi) = crate::coefficients::tensor::range(low.coefficients());
+            layout.missing[row] += scaled(lo.abs().max(hi.abs()));
+            continue;
+        }
         let separated = separate(term.degrees(), coefficients);
         // The residual is one of coefficients; slightly beyond the domain it is at most (1 + 1/32)^(degrees) times as large.
         let top = term.degrees().iter().copied().max().unwrap_or(0) as f64;
@@ -104,7 +113,11 @@ fn push(layout: &mut Layout, equation: usize, degrees: &[usize], block: &[f64]) 
     for axis in &part.axes {
         own[axis.variable] = axis.degree;
     }
-    let old: Vec<f64> = layout.first.drain(part.offset..part.offset + part.len).collect();
+    let place = part.offset..part.offset + part.len;
+    let old: Vec<f64> = layout.first.drain(place.clone()).collect();
+    if !layout.second.is_empty() {
+        layout.second.drain(place);
+    }
     for other in &mut layout.parts {
         if other.offset > part.offset {
             other.offset -= part.len;
@@ -142,6 +155,9 @@ fn append(layout: &mut Layout, equation: usize, degrees: &[usize], block: &[f64]
     });
     layout.first.extend_from_slice(block);
     layout.len = layout.first.len();
+    if !layout.second.is_empty() {
+        layout.second.resize(layout.len, 0.0);
+    }
 }
 
 /// A tensor as a sum of tensors in disjoint variables.

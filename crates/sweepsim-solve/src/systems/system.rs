@@ -3,9 +3,9 @@
 use super::expression::{Expression, Rows};
 use crate::Enclosure;
 use crate::coefficients::{Blend, Cell, Layout};
-use crate::numbers::{EPSILON, MAX_UNKNOWNS, Place, Row};
+use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Place, Row};
 use smallvec::SmallVec;
-use sweepsim_spline::{Bernstein, RationalBernstein};
+use sweepsim_spline::{Bernstein, BernsteinError, RationalBernstein};
 use thiserror::Error;
 
 /// The maximum number of coefficients of a system.
@@ -20,6 +20,8 @@ pub struct Equation {
     pub(crate) terms: Vec<Bernstein>,
     pub(crate) remainder: f64,
     pub(crate) slope_remainder: f64,
+    /// The coefficients' second parts, for the only term.
+    pub(crate) low: Option<Bernstein>,
     /// Instead of terms: a combination of equations.
     pub(crate) expression: Option<Expression>,
 }
@@ -32,8 +34,44 @@ impl Equation {
             terms,
             remainder: 0.0,
             slope_remainder: 0.0,
+            low: None,
             expression: None,
         }
+    }
+
+    /// A form whose coefficients are sums `high + low` of two numbers, each within `error` of the one meant: for polynomials whose expansion
+    /// cancels, such as one with many roots close together. Coefficients are in the order of [`Bernstein::new`]. The search recomputes small boxes
+    /// from both parts, in double-double precision.
+    ///
+    /// ```
+    /// use sweepsim_solve::{Enclosure, Equation, PointSolver, System};
+    ///
+    /// // (x − 1/3)² − 2⁻⁶⁰ has coefficients 1/9 − 2⁻⁶⁰, −2/9 − 2⁻⁶⁰ and 4/9 − 2⁻⁶⁰, which a single number cannot hold well enough.
+    /// let ninth = (1.0 / 9.0, 1.0 / 9.0 * 2f64.powi(-54));
+    /// let pair = |k: f64| (k * ninth.0, k * ninth.1 - 2f64.powi(-60));
+    /// let equation = Equation::of_pairs(&[2], &[pair(1.0), pair(-2.0), pair(4.0)], 1e-31)?;
+    /// let system = System::new(&[Enclosure::UNIT], [equation])?;
+    /// let points = PointSolver::default().solve(&system, &())?;
+    /// assert_eq!((points.roots.len(), points.unresolved.len()), (2, 0));
+    /// let apart = points.roots[1].point[0] - points.roots[0].point[0];
+    /// assert!((apart / 2f64.powi(-29) - 1.0).abs() < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Bernstein::with_error`].
+    pub fn of_pairs(degrees: &[usize], coefficients: &[(f64, f64)], error: f64) -> Result<Self, BernsteinError> {
+        let whole: Vec<Double> = coefficients
+            .iter()
+            .map(|(high, low)| Double::of_sum(*high, *low))
+            .collect();
+        let high = whole.iter().map(|c| c.hi).collect();
+        let low = whole.iter().map(|c| c.lo).collect();
+        Ok(Self {
+            low: Some(Bernstein::new(degrees, low)?),
+            ..Self::sum(vec![Bernstein::with_error(degrees, high, error)?])
+        })
     }
 
     /// `f` is any continuously differentiable function that differs from the forms' sum by at most `remainder` on the domain, and

@@ -15,6 +15,7 @@ mod many;
 mod many_surfaces;
 mod misuse;
 mod monitors;
+mod pairs;
 mod parallel;
 mod pieces;
 mod places;

@@ -257,6 +257,32 @@ impl Polynomial {
 
     /// The polynomial in coordinates in which the box is `[0,1]ⁿ`, as Bernstein coefficients, exact until they are rounded once.
     pub fn bernstein(&self, bounds: &[Enclosure]) -> Bernstein {
+        let (degrees, c) = self.exact_bernstein(bounds);
+        let rounded: Vec<f64> = c.iter().map(|x| x.to_f64().value()).collect();
+        let error = c.iter().zip(&rounded).fold(0.0, |worst: f64, (x, r)| {
+            let difference = (x - exact(*r)).to_f64().value().abs();
+            worst.max(difference * (1.0 + 1e-12))
+        });
+        Bernstein::with_error(&degrees, rounded, error).unwrap()
+    }
+
+    /// The same with coefficients rounded to pairs of numbers.
+    pub fn pairs(&self, bounds: &[Enclosure]) -> Equation {
+        let (degrees, c) = self.exact_bernstein(bounds);
+        let mut error: f64 = 0.0;
+        let mut pair = |x: &RBig| {
+            let high = x.to_f64().value();
+            let rest = x - exact(high);
+            let low = rest.to_f64().value();
+            error = error.max((rest - exact(low)).to_f64().value().abs() * (1.0 + 1e-12));
+            (high, low)
+        };
+        let pairs: Vec<(f64, f64)> = c.iter().map(&mut pair).collect();
+        Equation::of_pairs(&degrees, &pairs, error).unwrap()
+    }
+
+    /// Degrees and exact Bernstein coefficients.
+    fn exact_bernstein(&self, bounds: &[Enclosure]) -> (Vec<usize>, Vec<RBig>) {
         let n = bounds.len();
         let degrees: Vec<usize> = (0..n)
             .map(|j| self.0.keys().map(|e| e[j]).max().unwrap_or(0) as usize)
@@ -292,12 +318,7 @@ impl Polynomial {
             }
             stride *= d + 1;
         }
-        let rounded: Vec<f64> = c.iter().map(|x| x.to_f64().value()).collect();
-        let error = c.iter().zip(&rounded).fold(0.0, |worst: f64, (x, r)| {
-            let difference = (x - exact(*r)).to_f64().value().abs();
-            worst.max(difference * (1.0 + 1e-12))
-        });
-        Bernstein::with_error(&degrees, rounded, error).unwrap()
+        (degrees, c)
     }
 
     /// The same as a sum of forms in disjoint variables.
