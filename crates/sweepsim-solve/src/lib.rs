@@ -35,7 +35,9 @@ pub use curves::{Curve, CurveEnd, CurvePiece, CurvePoint, CurveShape, CurveSolve
 pub use formulas::{Formula, FormulaError, FormulaProblem};
 pub use numbers::{CUT, Enclosure, EnclosureError, MAX_UNKNOWNS};
 pub use points::{PointSolver, Points, Root, RootLocation};
-pub use search::{CancelOnly, Cause, Fate, Monitor, Picture, SolveError, SolveOptions, SolveStatistics, UnresolvedBox};
+pub use search::{
+    CancelOnly, Cause, Fate, Monitor, Picture, RootCount, SolveError, SolveOptions, SolveStatistics, UnresolvedBox,
+};
 pub use surfaces::{Surface, SurfaceSolver};
 pub use systems::{Equation, Expression, MAX_STEPS, MAX_SYSTEM, Pieces, PiecesError, System, SystemError};
 

@@ -1,6 +1,6 @@
 //! From inner coordinates, in which a side of the domain is `[0, 1]`, to the domain's own: `lo + s (hi − lo)`, rounded to the side asked for.
 //!
-//! The sum is computed in double-double precision, after scaling by a power of two that makes the larger end about 1. It differs from the exact
+//! The sum is computed in double-double precision, at extreme scales after multiplication by a power of two that makes the larger end about 1. It differs from the exact
 //! one by less than [`SLACK`] of the larger end, so a step to the neighbouring number on either side bounds it. The bounds are within two units
 //! in the last place, wherever the side lies and however wide it is.
 
@@ -13,7 +13,7 @@ const SLACK: f64 = f64::from_bits((1023 - 90) << 52);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     side: Enclosure,
-    /// Factors to a scale of about 1 (two, since one may overflow), and back.
+    /// Factors to a scale that neither overflows nor underflows (two, since one may overflow), and back.
     down: [f64; 2],
     up: [f64; 2],
     slack: f64,
@@ -21,14 +21,23 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn new(side: Enclosure) -> Self {
-        let exponent = side.magnitude().max(f64::MIN_POSITIVE).log2().floor() as i32;
+        let magnitude = side.magnitude();
+        if (1e-200..1e200).contains(&magnitude) {
+            return Self {
+                side,
+                down: [1.0; 2],
+                up: [1.0; 2],
+                slack: 4.0 * SLACK * magnitude,
+            };
+        }
+        let exponent = magnitude.max(f64::MIN_POSITIVE).log2().floor() as i32;
         let (half, rest) = (exponent / 2, exponent - exponent / 2);
         Self {
             side,
             down: [2f64.powi(-half), 2f64.powi(-rest)],
             up: [2f64.powi(half), 2f64.powi(rest)],
             // The scaled magnitude is below 4, since the logarithm rounds.
-            slack: 4.0 * SLACK,
+            slack: 16.0 * SLACK,
         }
     }
 

@@ -4,7 +4,7 @@ use crate::coefficients::{Affine, Cell, Layout};
 use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
 
 /// Roots that are known less well than this, in sides of the cell, are refined in double-double precision.
-const BLUNT: f64 = 1e-10;
+const BLUNT: f64 = 1e-8;
 
 /// A certified root in inner coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -141,10 +141,14 @@ pub(crate) fn unique_root(
             let Some((value, value_errors)) = layout.residual(&better, doubles) else {
                 break;
             };
-            if let Some(own) = distances(&k, &rest, contraction, &value, &value_errors, n)
-                && errors.is_none_or(|old| (0..n).all(|i| own[i] <= old[i]))
+            let own = distances(&k, &rest, contraction, &value, &value_errors, n);
+            if let (Some(own), Some(old)) = (own, errors)
+                && !(0..n).any(|i| own[i] < 0.5 * old[i])
             {
-                (errors, point) = (Some(own), better);
+                break;
+            }
+            if own.is_some() {
+                (errors, point) = (own, better);
             }
             let step = apply(&k, &value, n);
             for i in 0..n {

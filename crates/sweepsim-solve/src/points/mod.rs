@@ -15,6 +15,7 @@
 //! only root in a box `C` that contains the other, never because they are close.
 
 mod certify;
+mod count;
 mod drowned;
 mod flood;
 #[cfg(feature = "rayon")]

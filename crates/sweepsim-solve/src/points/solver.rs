@@ -6,7 +6,7 @@ use super::flood::{COARSE, CROWD};
 use crate::coefficients::{Cell, pop, push};
 use crate::numbers::{Double, Row};
 use crate::search::{
-    Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, Watch, cluster_box, clusters, unite,
+    Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, UnresolvedBox, Watch, cluster_box, clusters, unite,
 };
 use crate::{Monitor, System};
 use std::time::Instant;
@@ -145,9 +145,15 @@ impl PointSolver {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         let roots = self.represent(system);
-        let unresolved = clusters(&self.open, n, self.options.unresolved)
+        let clusters = clusters(&self.open, n, self.options.unresolved);
+        let counts = self.counts(system, &clusters);
+        let unresolved = clusters
             .iter()
-            .map(|c| cluster_box(system, &self.open, c))
+            .zip(counts)
+            .map(|(c, count)| UnresolvedBox {
+                count,
+                ..cluster_box(system, &self.open, c)
+            })
             .collect();
         Points {
             roots,

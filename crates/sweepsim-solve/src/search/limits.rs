@@ -155,6 +155,22 @@ pub struct UnresolvedBox {
     pub boxes: usize,
     /// The merged boxes; empty if there is only one, or if the solver does not keep them. Outside of them, `bounds` holds no solution.
     pub parts: Vec<Vec<Enclosure>>,
+    /// What is known of the number of roots in and next to it; `None` if nothing is.
+    pub count: Option<RootCount>,
+}
+
+/// What is proved of the number of roots in a box, for every system within the coefficients' error bounds.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RootCount {
+    /// The box: an unresolved box with a margin. It meets no other unresolved box and no certified root.
+    pub within: Vec<Enclosure>,
+    /// One unknown: the number of complex zeros, with multiplicity, in the disc with the box as a diameter. Real roots are at most as many, and
+    /// differ from it by an even number.
+    pub zeros: Option<u32>,
+    /// Two unknowns: the Brouwer degree, the sum of the orientations of the roots in the box (of a root of multiplicity `m`: between `−m` and `m`). If it is not
+    /// 0, there is a root. If it is 0, there may or may not be.
+    pub degree: Option<i32>,
 }
 
 impl UnresolvedBox {
@@ -164,6 +180,7 @@ impl UnresolvedBox {
             cause,
             boxes,
             parts: Vec::new(),
+            count: None,
         }
     }
 }

@@ -8,10 +8,10 @@ mod open;
 mod picture;
 mod spread;
 
-pub(crate) use cluster::{cluster_box, clusters};
+pub(crate) use cluster::{Cluster, cluster_box, clusters};
 pub use error::SolveError;
 pub(crate) use limits::Watch;
-pub use limits::{Cause, Fate, SolveOptions, SolveStatistics, UnresolvedBox};
+pub use limits::{Cause, Fate, RootCount, SolveOptions, SolveStatistics, UnresolvedBox};
 pub use monitor::{CancelOnly, Monitor};
 pub(crate) use open::{Open, open_box, unite};
 pub use picture::Picture;

@@ -3,6 +3,7 @@
 mod bad_input;
 mod budgets;
 mod bundles;
+mod counts;
 mod curves;
 mod degenerate;
 mod expressions;
