@@ -38,7 +38,7 @@ mod text;
 pub mod tools;
 pub mod write;
 
-pub use controls::siemens;
+pub use controls::{heidenhain, siemens};
 pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, check, post};
 pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::content::Content;
-use crate::controls::siemens;
+use crate::controls::{heidenhain, siemens};
 use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
@@ -14,15 +14,15 @@ use crate::{apt, gcode, table};
 /// Millimetres per inch.
 const INCH: f64 = 25.4;
 /// The supported formats, for messages.
-const EXPECTED: &str = "G-code, a program of Siemens, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
-/// The advice for formats that are only recognised.
-const INSTEAD: &str = "expected G-code, APT or CLSF, or its poses as a table with the columns x,y,z,i,j,k";
+const EXPECTED: &str =
+    "G-code, a program of Siemens or Heidenhain, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
 
 /// Reads a program from a file: G-code, APT or CLSF, or a table of poses.
 ///
 /// `.csv` is a table. For all other extensions (`.nc`, `.tap`, `.txt`, `.h`, `.8`…) the content decides; files with the usual extensions of
 /// G-code (`.nc`, `.ngc`, `.gcode`, `.tap`, `.mpf`) or APT (`.apt`, `.cls`, `.clsf`, `.ncl`) are read as such if the content is not
-/// distinctive; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Heidenhain's Klartext is recognised but not read yet.
+/// distinctive; [`ReadOptions::format`] overrides both. Rows of six numbers without a header are poses. Siemens's and Heidenhain's
+/// programs call others that lie beside them.
 ///
 /// # Errors
 /// [`NcError`]: the file cannot be read, or its content is invalid, not supported or not recognised.
@@ -64,19 +64,23 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
             Some(TextPosition::in_line(line, whole, 1, width)),
         ))
     };
+    let read_siemens = || {
+        siemens::read_with(&text, options, &|name| {
+            beside(file, name, &["SPF", "spf", "MPF", "mpf"])
+        })
+    };
+    let read_heidenhain = || heidenhain::read_with(&text, options, &|name| beside(file, name, &["H", "h"]));
     match options.controller {
-        Some(Controller::Siemens) => return siemens::read_with(&text, options, &|name| siemens_subprogram(file, name)),
+        Some(Controller::Siemens) => return read_siemens(),
+        Some(Controller::Heidenhain) => return read_heidenhain(),
         _ => {}
     }
     match Content::of(&text) {
-        Content::Siemens => siemens::read_with(&text, options, &|name| siemens_subprogram(file, name)),
+        Content::Siemens => read_siemens(),
         Content::Table => read_table(),
         Content::Gcode => gcode::read_at(&text, Some(file), options),
         Content::Apt { .. } => apt::read(&text, options),
-        Content::Heidenhain { line } => fail(
-            NcProblem::unsupported("programs in Heidenhain's Klartext are", INSTEAD),
-            line,
-        ),
+        Content::Heidenhain { .. } => read_heidenhain(),
         // The G-code reader reports what is wrong with the line.
         _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => {
             gcode::read_at(&text, Some(file), options)
@@ -98,11 +102,14 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
     }
 }
 
-/// A subprogram of a Siemens program: `NAME.spf` or `NAME.mpf` beside it, in capitals or not.
-fn siemens_subprogram(file: &Path, name: &str) -> Option<(PathBuf, String)> {
-    // Names are letters, digits and underscores: they lead nowhere else.
+/// A program of this name beside another, in capitals or not.
+fn beside(file: &Path, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
+    // Names that could lead elsewhere are none.
+    if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
+        return None;
+    }
     for name in [name.to_owned(), name.to_ascii_lowercase()] {
-        for extension in ["SPF", "spf", "MPF", "mpf"] {
+        for extension in extensions {
             let beside = file.with_file_name(format!("{name}.{extension}"));
             if let Ok(bytes) = std::fs::read(&beside) {
                 return Some((beside, String::from_utf8_lossy(&bytes).into_owned()));

@@ -1,3 +1,4 @@
 //! Languages of controls that are more than dialects of G-code.
 
+pub mod heidenhain;
 pub mod siemens;

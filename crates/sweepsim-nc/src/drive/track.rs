@@ -10,9 +10,7 @@ use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcProblem;
 
-/// The most poses of one program: bounds the memory that a file of a few bytes can demand.
-const MOST_POSES: usize = 20_000_000;
-/// The most events and calls, for the same reason.
+/// The most events and calls: bounds the memory that a file of a few bytes can demand.
 const MOST_EVENTS: usize = 5_000_000;
 /// The most chords per arc.
 const MOST_CHORDS: f64 = 1e6;
@@ -55,14 +53,17 @@ pub(crate) struct Track {
     /// The tip, where its axes' coordinates are not known, until an axis moves.
     parked: Option<([f64; 3], [f64; 3])>,
     joined: bool,
+    most_poses: usize,
     arc_tolerance: f64,
     exact_arcs: bool,
 }
 
 impl Track {
     pub fn new(options: &ReadOptions, sense: Sense) -> Self {
-        let mut program = Program::default();
-        program.machine = options.machine.clone();
+        let program = Program {
+            machine: options.machine.clone(),
+            ..Program::default()
+        };
         Self {
             driver: Driver::new(options, sense),
             notes: NoteList::default(),
@@ -82,6 +83,7 @@ impl Track {
             },
             parked: None,
             joined: false,
+            most_poses: options.most_poses,
             arc_tolerance: options.arc_tolerance,
             exact_arcs: options.exact_arcs,
         }
@@ -169,10 +171,6 @@ impl Track {
         self.frame = frame;
     }
 
-    pub fn coordinates(&self) -> Coordinates {
-        self.coordinates
-    }
-
     /// Switches tip control: the tool stays where it is.
     pub fn set_coordinates(&mut self, coordinates: Coordinates) {
         if coordinates == self.coordinates {
@@ -206,11 +204,6 @@ impl Track {
             }
         }
         self.parked = None;
-        self.joined = false;
-    }
-
-    /// Breaks the path without moving.
-    pub fn cut(&mut self) {
         self.joined = false;
     }
 
@@ -412,7 +405,7 @@ impl Track {
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
         let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| last.pose == pose);
         if !same {
-            if self.program.poses.len() >= MOST_POSES {
+            if self.program.poses.len() >= self.most_poses {
                 return Err(NcProblem::value(
                     "the number of poses",
                     self.program.poses.len(),

@@ -121,10 +121,6 @@ impl WorkFrame {
         self.origin.into()
     }
 
-    pub(crate) fn matrix(&self) -> &Matrix3<f64> {
-        &self.matrix
-    }
-
     /// Whether it is neither turned, scaled nor mirrored.
     #[must_use]
     pub fn is_shift(&self) -> bool {

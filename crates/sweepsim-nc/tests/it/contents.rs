@@ -56,20 +56,19 @@ fn rows_of_six_numbers_are_poses() {
 }
 
 #[test]
-fn what_is_recognised_but_not_read() {
-    let instead = "expected G-code, APT or CLSF, or its poses as a table with the columns x,y,z,i,j,k";
+fn klartext_is_read_whatever_the_extension() {
     for name in NAMES {
         assert_eq!(
             read(name, b"0 BEGIN PGM 12 MM\n1 BLK FORM 0.1 Z X+0 Y+0 Z-20\n").unwrap_err(),
-            format!("{name}:1:1: programs in Heidenhain's Klartext are not supported yet: {instead}")
+            format!("{name}:2:1: this program has no move: expected at least one with X, Y and Z known")
         );
+        assert!(read(name, b"0 BEGIN PGM 12 MM\n1 L X+0 Y+0 Z+5 FMAX\n").is_ok());
     }
 }
 
 #[test]
 fn what_is_not_recognised() {
-    let expected =
-        "but must be G-code, a program of Siemens, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
+    let expected = "but must be G-code, a program of Siemens or Heidenhain, APT or CLSF, or a table of poses with the columns x,y,z,i,j,k";
     assert_eq!(
         read("a.txt", b"-20.1 -18.5 1.6 0 0 1 7\n").unwrap_err(),
         format!(

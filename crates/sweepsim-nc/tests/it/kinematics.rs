@@ -75,11 +75,13 @@ fn machine() -> impl Strategy<Value = Kinematics> {
             let head = rotary.split_off(in_table);
             let mut skew = LinearAxis::new('Y');
             skew.direction = Some([0.1 * vectors[3][0], 1.0, 0.1 * vectors[3][1]]);
-            let mut description = MachineDescription::default();
-            description.table = rotary;
-            description.head = head;
-            description.linear = vec![skew];
-            description.part_zero = vectors[2].map(|c| 200.0 * c);
+            let description = MachineDescription {
+                table: rotary,
+                head,
+                linear: vec![skew],
+                part_zero: vectors[2].map(|c| 200.0 * c),
+                ..MachineDescription::default()
+            };
             Kinematics::new(description).ok()
         })
 }
@@ -159,11 +161,13 @@ proptest! {
 fn formulas_of_the_books() {
     // LinuxCNC's trtfuncs: j = p + D + Rx(−A) [Rz(−C)(w − p) − D], with D from a point of C to a point of A.
     let (p, d) = (Vector3::new(3.0, -4.0, 5.0), Vector3::new(0.0, 7.0, -11.0));
-    let mut description = MachineDescription::default();
-    description.table = vec![
-        RotaryAxis::new('C', [0.0, 0.0, 1.0], p.into()),
-        RotaryAxis::new('A', [1.0, 0.0, 0.0], (p + d).into()),
-    ];
+    let description = MachineDescription {
+        table: vec![
+            RotaryAxis::new('C', [0.0, 0.0, 1.0], p.into()),
+            RotaryAxis::new('A', [1.0, 0.0, 0.0], (p + d).into()),
+        ],
+        ..MachineDescription::default()
+    };
     let machine = Kinematics::new(description).unwrap();
     for (w, a, c) in [([10.0, 20.0, 30.0], 25.0, 130.0), ([-5.0, 0.0, 2.0], -80.0, 300.0)] {
         let (rx, rz) = (about([1.0, 0.0, 0.0], -a), about([0.0, 0.0, 1.0], -c));

@@ -2,8 +2,10 @@
 
 mod apt;
 mod contents;
+mod controls_fuzz;
 mod gcode;
 mod harmless;
+mod heidenhain;
 mod kinematics;
 mod machines;
 mod posted;

@@ -46,8 +46,11 @@ fn options(machine: Machine) -> ReadOptions {
     options
 }
 
+/// X, Y, Z and A, B, C.
+type Axes = ([f64; 3], [f64; 3]);
+
 /// A machine by its index, positions within its limits, and a length of the tool.
-fn runs() -> impl Strategy<Value = (usize, Vec<([f64; 3], [f64; 3])>, f64)> {
+fn runs() -> impl Strategy<Value = (usize, Vec<Axes>, f64)> {
     let position = (
         prop::array::uniform3(-200.0..200.0_f64),
         prop::array::uniform3(-100.0..100.0_f64),

@@ -85,7 +85,9 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
     let mut errors: Vec<NcError> = Vec::new();
     let mut messages = BTreeSet::new();
-    let most_blocks = MOST_BLOCKS + BLOCKS_PER_LINE * text.lines().count();
+    let most_blocks = usize::try_from(options.most_blocks)
+        .unwrap_or(usize::MAX)
+        .min(MOST_BLOCKS + BLOCKS_PER_LINE * text.lines().count());
     let mut blocks = 0_usize;
     while !reader.ended && errors.len() <= MOST_FURTHER {
         blocks += 1;

@@ -1,0 +1,117 @@
+//! Blocks of Klartext: words in order, each a name with what is written on it.
+
+use std::ops::Range;
+
+use crate::text::error::NcProblem;
+
+/// A problem, and the bytes of the line that it is about.
+pub(super) type Located = (NcProblem, Range<usize>);
+
+/// A word of a block: `X+10`, `IX-5`, `R0`, `FMAX`, `Q5=`, `+Q1`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Token {
+    /// In capitals.
+    pub text: String,
+    pub span: Range<usize>,
+}
+
+/// A block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Line {
+    pub skipped: bool,
+    pub tokens: Vec<Token>,
+}
+
+/// Divides a line into words, without its number and comment.
+pub(super) fn line(text: &str) -> Line {
+    let mut quoted = false;
+    let mut code = text;
+    for (at, c) in text.char_indices() {
+        match c {
+            '"' => quoted = !quoted,
+            ';' if !quoted => {
+                code = &text[..at];
+                break;
+            }
+            _ => {}
+        }
+    }
+    let mut line = Line::default();
+    let bytes = code.as_bytes();
+    let mut at = 0;
+    while at < bytes.len() {
+        if bytes[at].is_ascii_whitespace() || !code.is_char_boundary(at) {
+            at += 1;
+            continue;
+        }
+        let start = at;
+        if bytes[at] == b'"' {
+            at = code[at + 1..].find('"').map_or(code.len(), |end| at + 1 + end + 1);
+        } else {
+            while at < bytes.len() && !bytes[at].is_ascii_whitespace() {
+                at += 1;
+            }
+        }
+        let text = code[start..at].trim_matches('\u{feff}').to_ascii_uppercase();
+        if text == "/" {
+            line.skipped = true;
+        } else if let Some(rest) = text.strip_prefix('/').filter(|_| line.tokens.is_empty()) {
+            line.skipped = true;
+            push(&mut line, rest.to_owned(), start + 1..at);
+        } else if !text.is_empty() {
+            push(&mut line, text, start..at);
+        }
+    }
+    // The number of the block.
+    if line
+        .tokens
+        .first()
+        .is_some_and(|token| token.text.bytes().all(|b| b.is_ascii_digit()))
+    {
+        line.tokens.remove(0);
+    }
+    line
+}
+
+fn push(line: &mut Line, text: String, span: Range<usize>) {
+    line.tokens.push(Token { text, span });
+}
+
+impl Line {
+    pub fn word(&self, index: usize) -> &str {
+        self.tokens.get(index).map_or("", |token| token.text.as_str())
+    }
+
+    /// Whether the block begins with these words.
+    pub fn begins(&self, words: &[&str]) -> bool {
+        words.iter().enumerate().all(|(index, word)| self.word(index) == *word)
+    }
+
+    pub fn span(&self, index: usize) -> Range<usize> {
+        self.tokens.get(index).map_or(0..0, |token| token.span.clone())
+    }
+
+    /// The bytes from the first word to the last.
+    pub fn all(&self) -> Range<usize> {
+        match (self.tokens.first(), self.tokens.last()) {
+            (Some(first), Some(last)) => first.span.start..last.span.end,
+            _ => 0..0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words() {
+        let found = line("12 L X+10 iy-5 R0 FMAX M3 ; a comment");
+        let words: Vec<&str> = found.tokens.iter().map(|token| token.text.as_str()).collect();
+        assert_eq!(words, ["L", "X+10", "IY-5", "R0", "FMAX", "M3"]);
+        assert_eq!(found.span(1), 5..9);
+        assert!(line("/3 L X1").skipped && line("/ L X1").skipped);
+        assert_eq!(line("TOOL CALL \"MILL 10\" Z").word(2), "\"MILL 10\"");
+        assert_eq!(line("Ø L").tokens.len(), 2);
+    }
+}

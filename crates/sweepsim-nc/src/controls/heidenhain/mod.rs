@@ -1,0 +1,50 @@
+//! Programs of Heidenhain's controls in Klartext.
+//!
+//! Read: `BEGIN PGM … MM|INCH`, `BLK FORM` of blocks (the stock), `TOOL CALL` by number or name, `L LP LN C CC CP CR CT` in Cartesian and polar,
+//! absolute and incremental coordinates, `RND` and `CHF` between lines, `FMAX`, labels with calls and repeats, `CALL PGM`, `Q` parameters with
+//! `FN 0` to `FN 13` and formulas, datum shift, mirror, rotation, scale and one preset (cycles 7, 8, 10, 11, 247), dwell (9), drilling cycles
+//! 200, 201, 203, 205, 206, 207, 209 by `CYCL CALL` or `M99`, `PLANE SPATIAL | EULER | VECTOR | RESET`, and tip control (`M128`, `FUNCTION TCPM`)
+//! with rotary axes or with tool vectors `TX TY TZ`. Moves with `M91` and `M92` are left out: the path breaks.
+//!
+//! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Cutter compensation (`RL`, `RR`) and other
+//! cycles are errors with their position.
+
+mod cycles;
+mod interpreter;
+mod line;
+mod moves;
+mod planes;
+mod values;
+
+pub use interpreter::Library;
+
+use crate::model::program::Program;
+use crate::model::read_options::ReadOptions;
+use crate::text::error::NcError;
+
+/// Reads a program without programs that it calls.
+///
+/// # Errors
+/// [`NcError`] with line and column at the first problem; [`NcError::further`] has the others.
+///
+/// ```
+/// use sweepsim_nc::{ReadOptions, heidenhain};
+/// let text = "0 BEGIN PGM 1 MM\n1 TOOL CALL 3 Z S2000\n2 L X+0 Y+0 Z+5 R0 FMAX\n3 PLANE SPATIAL SPA+0 SPB+90 SPC+0 TURN FMAX\n\
+///             4 L X+1 Y+2 Z+3 FMAX\n5 END PGM 1 MM";
+/// let program = heidenhain::read(text, &ReadOptions::default())?;
+/// let last = program.poses.last().ok_or("no pose")?;
+/// // The plane's z is the part's x.
+/// assert_eq!((last.pose.tip(), last.pose.axis()), ([3.0, 2.0, -1.0], [1.0, 0.0, 0.0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
+    interpreter::read(text, options, &|_| None)
+}
+
+/// Reads a program; `library` finds those that it calls by their names in capitals, without `.H`.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_with(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
+    interpreter::read(text, options, library)
+}

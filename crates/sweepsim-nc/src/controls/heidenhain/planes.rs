@@ -1,0 +1,270 @@
+//! Frames: datum shifts, rotation, scale, mirror and tilted planes.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::interpreter::Reader;
+use super::line::{Line, Located};
+use crate::machines::WorkFrame;
+use crate::text::error::NcProblem;
+
+/// The frames in effect.
+#[derive(Clone, Debug)]
+pub(super) struct Frames {
+    /// `CYCL DEF 7`, before the plane is tilted and after.
+    shift: [f64; 3],
+    tilted_shift: [f64; 3],
+    /// `PLANE`.
+    tilt: Option<WorkFrame>,
+    /// `CYCL DEF 8`, 10, 11.
+    mirror: [bool; 3],
+    rotation: f64,
+    scale: f64,
+    preset: Option<f64>,
+}
+
+impl Default for Frames {
+    fn default() -> Self {
+        Self {
+            shift: [0.0; 3],
+            tilted_shift: [0.0; 3],
+            tilt: None,
+            mirror: [false; 3],
+            rotation: 0.0,
+            scale: 1.0,
+            preset: None,
+        }
+    }
+}
+
+impl Frames {
+    pub fn tilted(&self) -> bool {
+        self.tilt.is_some()
+    }
+
+    /// Whether arcs and lengths are turned or scaled within the plane.
+    fn total(&self, plane: [usize; 3]) -> WorkFrame {
+        let mut frame = WorkFrame::shifted(self.shift);
+        if let Some(tilt) = &self.tilt {
+            frame = frame.then(tilt).then(&WorkFrame::shifted(self.tilted_shift));
+        }
+        let mirror = self.mirror.map(|mirrored| if mirrored { -1.0 } else { 1.0 });
+        if self.mirror.contains(&true) {
+            frame = frame.then(&WorkFrame::scaled(mirror));
+        }
+        if self.rotation != 0.0 {
+            frame = frame.then(&WorkFrame::turned(plane[2], self.rotation));
+        }
+        if self.scale != 1.0 {
+            frame = frame.then(&WorkFrame::scaled([self.scale; 3]));
+        }
+        frame
+    }
+}
+
+/// The cycles of frames, by their first part (`7.1` is part 1 of 7).
+pub(super) fn is_frame_cycle(number: u32) -> bool {
+    matches!(number, 7 | 8 | 10 | 11 | 247)
+}
+
+impl Reader<'_> {
+    fn apply_frames(&mut self) {
+        let frame = self.frames.total(self.plane);
+        self.track.set_frame(frame);
+        // Centres are of the old frame.
+        self.centre = None;
+        self.direction = None;
+    }
+
+    pub(super) fn frame_cycle(&mut self, number: u32, part: &str, line: &Line) -> Result<(), Located> {
+        let words = line.tokens.get(3..).unwrap_or(&[]);
+        if part == "0" {
+            return Ok(());
+        }
+        match number {
+            7 => {
+                for token in words {
+                    let here = |problem| (problem, token.span.clone());
+                    let (relative, rest) = match token.text.strip_prefix('I') {
+                        Some(rest) => (true, rest),
+                        None => (false, token.text.as_str()),
+                    };
+                    let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
+                        let problem = NcProblem::unsupported(
+                            format!("{} in a datum shift is", token.text),
+                            "expected X, Y or Z with a value",
+                        );
+                        return Err(here(problem));
+                    };
+                    let value = self.parameters.value(&rest[1..]).map_err(here)? * self.unit();
+                    let shift = if self.frames.tilted() {
+                        &mut self.frames.tilted_shift[k]
+                    } else {
+                        &mut self.frames.shift[k]
+                    };
+                    *shift = if relative { *shift + value } else { value };
+                }
+            }
+            8 => {
+                self.frames.mirror = [false; 3];
+                for token in words {
+                    match ["X", "Y", "Z"].iter().position(|axis| token.text == *axis) {
+                        Some(k) => self.frames.mirror[k] = true,
+                        None => {
+                            let problem = NcProblem::value("a mirrored axis", &token.text, "X, Y or Z");
+                            return Err((problem, token.span.clone()));
+                        }
+                    }
+                }
+            }
+            10 => {
+                for token in words {
+                    let here = |problem| (problem, token.span.clone());
+                    let (relative, rest) = match token.text.strip_prefix('I') {
+                        Some(rest) => (true, rest),
+                        None => (false, token.text.as_str()),
+                    };
+                    let Some(angle) = rest.strip_prefix("ROT") else {
+                        return Err(here(NcProblem::syntax(format!(
+                            "{} here: expected ROT with an angle",
+                            token.text
+                        ))));
+                    };
+                    let angle = self.parameters.value(angle).map_err(here)?;
+                    self.frames.rotation = if relative { self.frames.rotation + angle } else { angle };
+                }
+            }
+            11 => {
+                // `SCL0.99` and `SCL 0.99`.
+                let text: String = words.iter().map(|token| token.text.as_str()).collect();
+                let whole = |problem| (problem, line.all());
+                let Some(factor) = text.strip_prefix("SCL") else {
+                    return Err(whole(NcProblem::syntax(format!(
+                        "{text:?} here: expected SCL with a factor"
+                    ))));
+                };
+                let factor = self.parameters.value(factor).map_err(whole)?;
+                if !(factor > 0.0 && factor < 100.0) {
+                    return Err(whole(NcProblem::value("SCL", factor, "above 0 and below 100")));
+                }
+                self.frames.scale = factor;
+            }
+            _ => {
+                let preset = line
+                    .tokens
+                    .iter()
+                    .find_map(|token| token.text.strip_prefix("Q339=").map(str::to_owned));
+                let whole = |problem| (problem, line.all());
+                let number = match preset {
+                    Some(text) => self.parameters.value(&text).map_err(whole)?,
+                    None => {
+                        return Err(whole(NcProblem::syntax(
+                            "cycle 247 without Q339: expected the number of the preset",
+                        )));
+                    }
+                };
+                let first = *self.frames.preset.get_or_insert(number);
+                if first != number {
+                    return Err(whole(NcProblem::unsupported(
+                        format!("preset {number} after preset {first} is"),
+                        "only the machine knows the distance between them; expected one preset",
+                    )));
+                }
+            }
+        }
+        self.apply_frames();
+        Ok(())
+    }
+
+    /// `PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX`, `PLANE EULER`, `PLANE VECTOR`, `PLANE RESET`.
+    pub(super) fn plane_block(&mut self, line: &Line) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        let named = |reader: &Self, name: &str| -> Result<f64, Located> {
+            let token = line.tokens.iter().find(|token| {
+                token
+                    .text
+                    .strip_prefix(name)
+                    .is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit() || "+-Q.".contains(c)))
+            });
+            let Some(token) = token else {
+                return Err(whole(NcProblem::syntax(format!(
+                    "PLANE {} without {name}: expected {name} with a number",
+                    line.word(1)
+                ))));
+            };
+            reader
+                .parameters
+                .value(&token.text[name.len()..])
+                .map_err(|problem| (problem, token.span.clone()))
+        };
+        let three = |reader: &Self, names: [&str; 3]| -> Result<[f64; 3], Located> {
+            Ok([
+                named(reader, names[0])?,
+                named(reader, names[1])?,
+                named(reader, names[2])?,
+            ])
+        };
+        let tilt = match line.word(1) {
+            "SPATIAL" => Some(WorkFrame::spatial(three(self, ["SPA", "SPB", "SPC"])?)),
+            "EULER" => Some(WorkFrame::euler_zxz(
+                [0.0; 3],
+                three(self, ["EULPR", "EULNU", "EULROT"])?,
+            )),
+            "VECTOR" => {
+                let base = Vector3::from(three(self, ["BX", "BY", "BZ"])?);
+                let normal = Vector3::from(three(self, ["NX", "NY", "NZ"])?);
+                // The base vector is turned into the plane, if it is not quite there.
+                let y = normal.cross(&base);
+                if !(y.norm() > 1e-9 * normal.norm() * base.norm()) {
+                    return Err(whole(NcProblem::syntax(
+                        "the base vector and the normal are parallel, or 0: expected two directions",
+                    )));
+                }
+                let (y, z) = (y.normalize(), normal.normalize());
+                Some(WorkFrame::with_matrix(
+                    Matrix3::from_columns(&[y.cross(&z), y, z]),
+                    Vector3::zeros(),
+                ))
+            }
+            "RESET" => None,
+            word => {
+                let problem = NcProblem::unsupported(
+                    format!("PLANE {word} is"),
+                    "expected PLANE SPATIAL, EULER, VECTOR or RESET",
+                );
+                return Err((problem, line.span(1)));
+            }
+        };
+        let turns = line
+            .tokens
+            .iter()
+            .any(|token| matches!(token.text.as_str(), "TURN" | "MOVE"));
+        self.frames.tilted_shift = [0.0; 3];
+        match tilt {
+            Some(_) => {
+                // Coordinates become the tip's first: the frame is the part's.
+                self.frames.tilt = tilt;
+                self.control(self.tip_control);
+                self.apply_frames();
+            }
+            None => {
+                self.frames.tilt = None;
+                self.apply_frames();
+                if turns && self.track.turn_to([0.0, 0.0, 1.0]).map_err(whole)? {
+                    self.track.note("PLANE turns the rotary axes: the path breaks here");
+                }
+                self.control(self.tip_control);
+                return Ok(());
+            }
+        }
+        if turns {
+            let normal = self.frames.total(self.plane).direction([0.0, 0.0, 1.0]);
+            if self.track.turn_to(normal).map_err(whole)? {
+                self.track.note("PLANE turns the rotary axes: the path breaks here");
+            }
+        } else {
+            self.track
+                .note("PLANE … STAY turns no axis: the tool keeps its direction");
+        }
+        Ok(())
+    }
+}

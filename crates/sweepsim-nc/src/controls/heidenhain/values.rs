@@ -1,0 +1,332 @@
+//! Numbers, Q parameters and FN functions.
+
+use std::collections::BTreeMap;
+
+use super::line::{Line, Located};
+use crate::text::error::NcProblem;
+
+/// The most Q parameters.
+const MOST: usize = 100_000;
+
+/// Q parameters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Parameters(BTreeMap<String, f64>);
+
+impl Parameters {
+    /// A number, or a parameter with or without a sign: `+10.5`, `-Q12`, `QL3`.
+    pub fn value(&self, text: &str) -> Result<f64, NcProblem> {
+        let (sign, rest) = match text.strip_prefix('-') {
+            Some(rest) => (-1.0, rest),
+            None => (1.0, text.strip_prefix('+').unwrap_or(text)),
+        };
+        if rest.starts_with('Q') {
+            let value = self.0.get(rest).copied().ok_or_else(|| {
+                NcProblem::syntax(format!(
+                    "{rest} has no value here: expected {rest} = a number before it"
+                ))
+            })?;
+            return Ok(sign * value);
+        }
+        // Decimal commas are as good as points.
+        let plain = rest.replace(',', ".");
+        let digits = plain.bytes().all(|b| b.is_ascii_digit() || b == b'.');
+        match plain.parse::<f64>() {
+            Ok(value) if digits && value.is_finite() => Ok(sign * value),
+            _ => Err(NcProblem::value(
+                "this",
+                format!("{text:?}"),
+                "a number or a Q parameter",
+            )),
+        }
+    }
+
+    pub fn set(&mut self, name: &str, value: f64) -> Result<(), NcProblem> {
+        if !is_name(name) {
+            return Err(NcProblem::value(
+                "this",
+                format!("{name:?}"),
+                "the name of a Q parameter: Q1, QL1, QR1",
+            ));
+        }
+        if !value.is_finite() {
+            return Err(NcProblem::value(format!("the value of {name}"), value, "finite"));
+        }
+        if self.0.len() < MOST || self.0.contains_key(name) {
+            self.0.insert(name.to_owned(), value);
+        }
+        Ok(())
+    }
+
+    /// `Q1 = +5`, with any of `+ - * / ^ ( )` and functions, as newer controls have it.
+    pub fn formula(&mut self, line: &Line) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        let text: String = line
+            .tokens
+            .iter()
+            .map(|token| token.text.as_str())
+            .collect::<Vec<_>>()
+            .join(" ");
+        let Some((name, formula)) = text.split_once('=') else {
+            return Err(whole(NcProblem::syntax(format!("{text:?}: expected Q1 = a value"))));
+        };
+        let mut parser = Parser {
+            text: formula,
+            parameters: self,
+            depth: 0,
+        };
+        let value = parser.sum().map_err(whole)?;
+        if !parser.text.trim().is_empty() {
+            let problem = NcProblem::syntax(format!(
+                "{:?} here: expected an operator or the end of the block",
+                parser.text.trim()
+            ));
+            return Err(whole(problem));
+        }
+        self.set(name.trim(), value).map_err(whole)
+    }
+
+    /// `FN 1: Q1 = +Q2 + +3`. For jumps, whether to go, and the label.
+    pub fn function(&mut self, line: &Line) -> Result<Option<String>, Located> {
+        let whole = |problem| (problem, line.all());
+        let fail = |message: &str| Err((NcProblem::syntax(message.to_owned()), line.all()));
+        let mut words: Vec<String> = Vec::new();
+        for token in &line.tokens[1..] {
+            // `Q1=+5` and `1:` may stand without blanks.
+            for piece in token.text.split_inclusive(['=', ':']) {
+                let (head, mark) = match piece.char_indices().next_back() {
+                    Some((at, mark @ ('=' | ':'))) => (&piece[..at], Some(mark)),
+                    _ => (piece, None),
+                };
+                if !head.is_empty() {
+                    words.push(head.to_owned());
+                }
+                words.extend(mark.map(String::from));
+            }
+        }
+        let number: u32 = match words.first().and_then(|word| word.parse().ok()) {
+            Some(number) if words.get(1).is_some_and(|word| word == ":") => number,
+            _ => return fail("FN without its number: expected FN 0: to FN 12:"),
+        };
+        let rest: Vec<&str> = words[2..].iter().map(String::as_str).collect();
+        let value = |text: &str| self.value(text).map_err(whole);
+        if (9..=12).contains(&number) {
+            let ["IF", a, operator, b, "GOTO", "LBL", label] = rest[..] else {
+                return fail("expected FN 9: IF +Q1 EQU +0 GOTO LBL 1");
+            };
+            let (a, b) = (value(a)?, value(b)?);
+            let goes = match (number, operator) {
+                (9, "EQU") => a == b,
+                (10, "NE") => a != b,
+                (11, "GT") => a > b,
+                (12, "LT") => a < b,
+                _ => return fail("expected EQU with FN 9, NE with 10, GT with 11, LT with 12"),
+            };
+            return Ok(goes.then(|| label.to_owned()));
+        }
+        let result = match (number, &rest[..]) {
+            (0, [_, "=", a]) => value(a)?,
+            (1, [_, "=", a, "+", b]) => value(a)? + value(b)?,
+            (2, [_, "=", a, "-", b]) => value(a)? - value(b)?,
+            (3, [_, "=", a, "*", b]) => value(a)? * value(b)?,
+            (4, [_, "=", a, "DIV" | "/", b]) => {
+                let divisor = value(b)?;
+                if divisor == 0.0 {
+                    return fail("a division by 0");
+                }
+                value(a)? / divisor
+            }
+            (5, [_, "=", "SQRT", a]) if value(a)? >= 0.0 => value(a)?.sqrt(),
+            (6, [_, "=", "SIN", a]) => value(a)?.to_radians().sin(),
+            (7, [_, "=", "COS", a]) => value(a)?.to_radians().cos(),
+            (8, [_, "=", a, "LEN", b]) => value(a)?.hypot(value(b)?),
+            (13, [_, "=", a, "ANG", b]) => value(a)?.atan2(value(b)?).to_degrees(),
+            (0..=8 | 13, _) => return fail("this FN has other words: expected such as FN 1: Q1 = +Q2 + +3"),
+            _ => {
+                let problem = NcProblem::unsupported(format!("FN {number} is"), "expected FN 0 to FN 13");
+                return Err(whole(problem));
+            }
+        };
+        let name = rest[0].to_owned();
+        self.set(&name, result).map_err(whole)?;
+        Ok(None)
+    }
+}
+
+fn is_name(name: &str) -> bool {
+    let rest = name.strip_prefix('Q').unwrap_or("");
+    let digits = rest.trim_start_matches(['L', 'R']);
+    !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()) && rest.len() - digits.len() <= 1
+}
+
+/// The deepest nesting of a formula.
+const DEEPEST: usize = 60;
+
+struct Parser<'a> {
+    text: &'a str,
+    parameters: &'a Parameters,
+    depth: usize,
+}
+
+impl Parser<'_> {
+    fn take(&mut self, symbol: char) -> bool {
+        self.text = self.text.trim_start();
+        match self.text.strip_prefix(symbol) {
+            Some(rest) => {
+                self.text = rest;
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn sum(&mut self) -> Result<f64, NcProblem> {
+        let mut sum = self.product()?;
+        loop {
+            if self.take('+') {
+                sum += self.product()?;
+            } else if self.take('-') {
+                sum -= self.product()?;
+            } else {
+                return Ok(sum);
+            }
+        }
+    }
+
+    fn product(&mut self) -> Result<f64, NcProblem> {
+        let mut product = self.power()?;
+        loop {
+            if self.take('*') {
+                product *= self.power()?;
+            } else if self.take('/') {
+                let divisor = self.power()?;
+                if divisor == 0.0 {
+                    return Err(NcProblem::syntax("a division by 0"));
+                }
+                product /= divisor;
+            } else {
+                return Ok(product);
+            }
+        }
+    }
+
+    fn power(&mut self) -> Result<f64, NcProblem> {
+        let base = self.atom()?;
+        Ok(if self.take('^') { base.powf(self.atom()?) } else { base })
+    }
+
+    fn atom(&mut self) -> Result<f64, NcProblem> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(NcProblem::syntax("a formula that is nested too deeply"));
+        }
+        let value = self.nested();
+        self.depth -= 1;
+        value
+    }
+
+    fn nested(&mut self) -> Result<f64, NcProblem> {
+        if self.take('-') {
+            return Ok(-self.atom()?);
+        }
+        if self.take('+') {
+            return self.atom();
+        }
+        if self.take('(') {
+            let value = self.sum()?;
+            return if self.take(')') {
+                Ok(value)
+            } else {
+                Err(NcProblem::syntax("a parenthesis that is not closed: expected `)`"))
+            };
+        }
+        let end = self
+            .text
+            .find(|c: char| !(c.is_ascii_alphanumeric() || c == '.'))
+            .unwrap_or(self.text.len());
+        let (word, rest) = self.text.split_at(end);
+        self.text = rest;
+        let angle = |x: f64| x.to_radians();
+        Ok(match word {
+            "PI" => std::f64::consts::PI,
+            "SIN" => angle(self.atom()?).sin(),
+            "COS" => angle(self.atom()?).cos(),
+            "TAN" => angle(self.atom()?).tan(),
+            "ASIN" => self.atom()?.asin().to_degrees(),
+            "ACOS" => self.atom()?.acos().to_degrees(),
+            "ATAN" => self.atom()?.atan().to_degrees(),
+            "SQRT" => self.atom()?.sqrt(),
+            "SQ" => self.atom()?.powi(2),
+            "ABS" => self.atom()?.abs(),
+            "NEG" => -self.atom()?,
+            "INT" => self.atom()?.trunc(),
+            "FRAC" => self.atom()?.fract(),
+            "" => {
+                return Err(NcProblem::syntax(
+                    "the formula ends too early, or has a sign that is not understood",
+                ));
+            }
+            word => self.parameters.value(word)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::line::line;
+    use super::*;
+
+    #[test]
+    fn functions_and_formulas() {
+        let mut parameters = Parameters::default();
+        for (text, name, expected) in [
+            ("FN 0: Q1 = +5", "Q1", 5.0),
+            ("FN0: Q2=-Q1", "Q2", -5.0),
+            ("FN 1: Q3 = +Q1 + +7", "Q3", 12.0),
+            ("FN 2: Q3 = +Q1 - -7", "Q3", 12.0),
+            ("FN 3: Q3 = +Q1 * +Q1", "Q3", 25.0),
+            ("FN 4: Q3 = +Q1 DIV +2", "Q3", 2.5),
+            ("FN 5: Q3 = SQRT +16", "Q3", 4.0),
+            ("FN 6: Q3 = SIN +30", "Q3", 0.5),
+            ("FN 8: Q3 = +3 LEN +4", "Q3", 5.0),
+            ("Q4 = (Q1 + 1) * SIN 30 - 2 ^ 3", "Q4", -5.0),
+            ("QL7 = -Q1/2", "QL7", -2.5),
+        ] {
+            let block = line(&text.replace("FN0:", "FN 0:"));
+            if text.starts_with("FN") {
+                assert_eq!(parameters.function(&block).unwrap(), None);
+            } else {
+                parameters.formula(&block).unwrap();
+            }
+            assert!((parameters.value(name).unwrap() - expected).abs() < 1e-12, "{text}");
+        }
+        assert_eq!(
+            parameters
+                .function(&line("FN 9: IF +Q1 EQU +5 GOTO LBL 3"))
+                .unwrap()
+                .as_deref(),
+            Some("3")
+        );
+        assert_eq!(
+            parameters.function(&line("FN 11: IF +Q1 GT +9 GOTO LBL 3")).unwrap(),
+            None
+        );
+        for (text, message) in [
+            ("FN 4: Q1 = +1 DIV +0", "a division by 0"),
+            (
+                "FN 1: Q1 = +Q99 + +1",
+                "Q99 has no value here: expected Q99 = a number before it",
+            ),
+            (
+                "FN 18: SYSREAD Q1 = ID20",
+                "FN 18 is not supported yet: expected FN 0 to FN 13",
+            ),
+        ] {
+            assert_eq!(parameters.function(&line(text)).unwrap_err().0.to_string(), message);
+        }
+        assert!(
+            parameters
+                .formula(&line(&format!("Q1 = {}1", "-".repeat(9999))))
+                .is_err()
+        );
+    }
+}
