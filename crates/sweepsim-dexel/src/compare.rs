@@ -152,8 +152,9 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
     Ok(Comparison::sum(parts))
 }
 
-/// Compares dexels with a closed mesh directly: each end with the nearest point within `reach` on triangles that face roughly the same way. If
-/// that point is inside a triangle, the distance is along its normal.
+/// Compares dexels with a closed mesh directly: each end with the nearest point of the mesh, however far it is.
+///
+/// What of the target is missing altogether has no ends near it: see [`DistanceTo::most_missing`].
 ///
 /// # Errors
 /// [`StockError`](crate::StockError): the mesh is not closed, or intersects itself.
@@ -163,12 +164,12 @@ pub fn compare(dexels: &Dexels, target: &Dexels, reach: f64) -> Result<Compariso
 /// let ball = Stock::Ball { centre: [0.0; 3], radius: 4.0 };
 /// let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?.surface().unwrap();
 /// let grid = Grid::new([-5.0; 2], [5.0; 2], [60, 60])?;
-/// let found = compare_with_mesh(&ball.dexels(&grid)?, &mesh.soup().ok_or("no mesh")?, 1.0)?;
+/// let found = compare_with_mesh(&ball.dexels(&grid)?, &mesh.soup().ok_or("no mesh")?)?;
 /// // What the triangles of a fifth of a millimetre are off from the ball.
 /// assert!(found.rms() < 2e-3 && found.unmatched() == 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> Result<Comparison, StockError> {
+pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup) -> Result<Comparison, StockError> {
     let grid = *dexels.grid();
     // All in the frame of the grid: distances are the same.
     let target = target.seen_from(grid.frame());
@@ -185,7 +186,7 @@ pub fn compare_with_mesh(dexels: &Dexels, target: &TriangleSoup, reach: f64) -> 
                 part.volumes(line, goal.intervals(i, j), dx * dy);
                 for (number, end) in line.iter().flat_map(|i| [i.lower, i.upper]).enumerate() {
                     let place = [grid.x(i), grid.y(j), end.z];
-                    let nearest = tree.nearest_facing(place, end.normal.map(f64::from), reach);
+                    let nearest = tree.nearest(place);
                     part.deviations.push(Deviation {
                         line: grid.number(i, j) as u32,
                         end: number as u32,

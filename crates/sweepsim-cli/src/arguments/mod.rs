@@ -151,9 +151,6 @@ pub(crate) struct CompareOptions {
     /// Distances up to this count as 0, in millimetres.
     #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance)]
     pub tolerance: f64,
-    /// The largest distance, in millimetres, at which counterparts are sought [default: a tenth of the part's diagonal].
-    #[arg(long, value_name = "MM", value_parser = tolerance)]
-    pub reach: Option<f64>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub range: Option<f64>,

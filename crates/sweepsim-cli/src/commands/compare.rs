@@ -4,7 +4,7 @@ use crate::arguments::{CompareOptions, Output};
 use crate::session::{Failure, Lines, Outputs, Solid, bounds, output_folder, picture, print, soup, words};
 use std::io::Write as _;
 use std::time::Instant;
-use sweepsim_dexel::{Comparison, DistanceTo, Grid, Mesh, Nearest};
+use sweepsim_dexel::{Comparison, Dexels, DistanceTo, Grid, Mesh, Nearest};
 use sweepsim_formats::{ComparisonReport, DeviationSummary, Furthest, HistogramBar};
 
 /// Bars of the histogram.
@@ -34,14 +34,23 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     };
     report.seconds.insert("read".to_owned(), start.elapsed().as_secs_f64());
     let start = Instant::now();
-    let found = differences(options, &grid, [&part, &target], [&mesh, &goal])?;
+    let found = differences(options, &grid, [&part, &target], &goal)?;
     describe(&mut report, options, &found);
     report.cells = grid.cells();
     let tree = DistanceTo::new(&soup(&goal))?;
     let [dx, dy] = grid.spacing();
-    let furthest = |tree: &DistanceTo, of: &Mesh| tree.furthest(&soup(of), dx.min(dy)).map(furthest_of);
-    report.furthest_of_part = furthest(&tree, &mesh);
-    report.furthest_of_target = furthest(&DistanceTo::new(&soup(&mesh))?, &goal);
+    let spacing = dx.min(dy);
+    // Of dexels only the ends are exact, not the triangles between them.
+    report.furthest_of_part = match &part {
+        Solid::Mesh(_) => tree.furthest(&soup(&mesh), spacing).map(furthest_of),
+        Solid::Dexels(dexels) => furthest_end(dexels, |place, _| tree.nearest(place)),
+    };
+    let own = DistanceTo::new(&soup(&mesh))?;
+    report.furthest_of_target = match &target {
+        Solid::Mesh(_) => own.most_missing(&soup(&goal), &tree, spacing).map(furthest_of),
+        Solid::Dexels(dexels) => furthest_end(dexels, |place, normal| own.missing_at(place, normal, &tree)),
+    };
+    worst(&mut report, options.tolerance);
     report
         .seconds
         .insert("compare".to_owned(), start.elapsed().as_secs_f64());
@@ -56,14 +65,14 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
         .range
         .unwrap_or(round(f64::from(largest).max(options.tolerance)));
     let png = picture(&options.view, &mesh, Some((&values, range)))?;
-    outputs.write("part.png", |file| file.write_all(&png))?;
+    outputs.write("comparison.png", |file| file.write_all(&png))?;
     report
         .seconds
         .insert("picture".to_owned(), start.elapsed().as_secs_f64());
     let json = report
         .to_json()
         .map_err(|error| Failure::message(format!("cannot make the report: {error}")))?;
-    outputs.write("report.json", |file| file.write_all(json.as_bytes()))?;
+    outputs.write("comparison.json", |file| file.write_all(json.as_bytes()))?;
     if options.json {
         print(&json)
     } else if options.quiet {
@@ -102,25 +111,58 @@ fn differences(
     options: &CompareOptions,
     grid: &Grid,
     [part, target]: [&Solid; 2],
-    [mesh, goal]: [&Mesh; 2],
+    goal: &Mesh,
 ) -> Result<Comparison, Failure> {
-    let diagonal = bounds(mesh).map_or(1.0, |[low, high]| {
-        (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt()
-    });
-    let reach = options.reach.unwrap_or(0.1 * diagonal);
     let dexels = part.dexels(&options.part, grid)?;
     let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
-    match target {
-        Solid::Dexels(target) if target.grid() == grid => {
-            sweepsim_dexel::compare(&dexels, target, reach).map_err(|error| failed(&error))
-        }
-        Solid::Dexels(_) => {
-            sweepsim_dexel::compare_with_mesh(&dexels, &soup(goal), reach).map_err(|error| failed(&error))
-        }
-        Solid::Mesh(target) => {
-            sweepsim_dexel::compare_with_mesh(&dexels, &soup(target), reach).map_err(|error| failed(&error))
+    let target = match target {
+        Solid::Dexels(_) => soup(goal),
+        Solid::Mesh(target) => soup(target),
+    };
+    sweepsim_dexel::compare_with_mesh(&dexels, &target).map_err(|error| failed(&error))
+}
+
+/// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has no counterpart.
+fn worst(report: &mut ComparisonReport, tolerance: f64) {
+    let of_part = report.furthest_of_part.map(|furthest| furthest.distance);
+    // A point of the target outside the part: there the part is missing.
+    let of_target = report.furthest_of_target.map(|furthest| -furthest.distance);
+    for distance in [of_part, of_target].into_iter().flatten() {
+        let side = if distance < 0.0 {
+            &mut report.gouge
+        } else {
+            &mut report.excess
+        };
+        if distance.abs() > tolerance {
+            side.max = side.max.max(distance.abs());
         }
     }
+}
+
+/// The end of dexels that is farthest from another surface: `of` gets its place and its normal.
+fn furthest_end(dexels: &Dexels, of: impl Fn([f64; 3], [f64; 3]) -> Option<Nearest> + Sync) -> Option<Furthest> {
+    use rayon::prelude::*;
+    let (grid, frame) = (dexels.grid(), dexels.grid().frame());
+    let lines: Vec<usize> = dexels.iter().map(|(line, _)| line).collect();
+    let of_line = |line: &usize| {
+        let (i, j) = grid.place(*line);
+        let ends = dexels
+            .at(*line)
+            .iter()
+            .flat_map(|interval| [interval.lower, interval.upper]);
+        let found = ends.filter_map(|end| {
+            let place = frame.to_world([grid.x(i), grid.y(j), end.z]);
+            let near = of(place, frame.turn_to_world(end.normal.map(f64::from)))?;
+            Some(furthest_of((place, near)))
+        });
+        found.reduce(further)
+    };
+    let found: Vec<Option<Furthest>> = lines.par_iter().map(of_line).collect();
+    found.into_iter().flatten().reduce(further)
+}
+
+fn further(a: Furthest, b: Furthest) -> Furthest {
+    if b.distance.abs() > a.distance.abs() { b } else { a }
 }
 
 fn furthest_of((place, near): ([f64; 3], Nearest)) -> Furthest {
@@ -243,7 +285,7 @@ fn length(value: f64) -> String {
 }
 
 fn words_of(deviation: &DeviationSummary) -> String {
-    if deviation.count == 0 {
+    if deviation.count == 0 && deviation.max == 0.0 {
         return "nothing beyond the tolerance".to_owned();
     }
     let [max, mean] = [deviation.max, deviation.mean].map(length);

@@ -7,13 +7,10 @@
 
 use super::{MeshError, TriangleSoup};
 use crate::vector::{cross, dot, sub};
-use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Triangles of a leaf of the tree.
 const LEAF: usize = 4;
-/// The maximum number of samples of [`DistanceTo::furthest`].
-const SAMPLES: f64 = 2e6;
 
 /// A triangle surface, prepared for distance queries.
 ///
@@ -117,6 +114,26 @@ impl TreeNode {
         (0..3)
             .map(|k| (self.low[k] - p[k]).max(p[k] - self.high[k]).max(0.0).powi(2))
             .sum()
+    }
+}
+
+impl TreeNode {
+    /// Whether a ray may meet the box nearer than `reach`.
+    fn meets(&self, p: [f64; 3], direction: [f64; 3], reach: f64) -> bool {
+        let (mut from, mut to) = (0.0_f64, reach);
+        for k in 0..3 {
+            if direction[k] == 0.0 {
+                if p[k] < self.low[k] || p[k] > self.high[k] {
+                    return false;
+                }
+                continue;
+            }
+            let ends = [self.low[k], self.high[k]].map(|end| (end - p[k]) / direction[k]);
+            from = from.max(ends[0].min(ends[1]));
+            to = to.min(ends[0].max(ends[1]));
+        }
+        // Boxes of flat faces have no thickness.
+        from <= to * (1.0 + 1e-12)
     }
 }
 
@@ -274,56 +291,42 @@ impl DistanceTo {
         })
     }
 
-    /// The point of another surface that is furthest from this one, with the nearest point here: the one-sided Hausdorff distance, estimated
-    /// from samples. Samples are taken at all vertices, and at most `spacing` apart on triangles; a larger spacing is used where this would
-    /// take more than two million. `None` if either surface has no triangles.
+    /// The distance from `p` along the unit vector `direction` to the first triangle, if it is farther than `least`.
     #[must_use]
-    pub fn furthest(&self, other: &TriangleSoup, spacing: f64) -> Option<([f64; 3], Nearest)> {
-        let area: f64 = other
-            .triangles
-            .iter()
-            .map(|[a, b, c]| {
-                let n = cross(sub(*b, *a), sub(*c, *a));
-                0.5 * dot(n, n).sqrt()
-            })
-            .sum();
-        let spacing = spacing.max((area / SAMPLES).sqrt());
-        let of = |p: [f64; 3]| Some((p, self.nearest(p)?));
-        let mesh = other.indexed().ok()?;
-        let corners: Vec<_> = mesh.vertices.par_iter().map(|p| of(*p)).collect();
-        // Between the corners: in rows along the longest side, fewer and fewer towards the corner opposite.
-        let of_triangle = |t: &[u32; 3]| {
-            let p = t.map(|v| mesh.vertices[v as usize]);
-            let sides = [0, 1, 2].map(|k| sub(p[(k + 1) % 3], p[k]));
-            let k = (0..3).fold(0, |a, k| {
-                if dot(sides[k], sides[k]) > dot(sides[a], sides[a]) {
-                    k
-                } else {
-                    a
+    pub(super) fn first_hit(&self, p: [f64; 3], direction: [f64; 3], least: f64) -> Option<f64> {
+        let mut best = f64::INFINITY;
+        let mut open = smallvec::SmallVec::<[u32; 64]>::new();
+        open.extend(self.nodes.first().map(|_| 0));
+        while let Some(number) = open.pop() {
+            let node = &self.nodes[number as usize];
+            if !node.meets(p, direction, best) {
+                continue;
+            }
+            if node.count == 0 {
+                open.extend([node.first, number + 1]);
+                continue;
+            }
+            for face in &self.faces[node.first as usize..(node.first + node.count) as usize] {
+                let corners = face.corners.map(|v| self.vertices[v as usize]);
+                let slope = dot(face.normal, direction);
+                let away = dot(face.normal, sub(corners[0], p)) / slope;
+                if slope == 0.0 || !(away > least && away < best) {
+                    continue;
                 }
-            });
-            let (from, side, back) = (p[k], sides[k], sides[(k + 2) % 3]);
-            let (length, twice) = (dot(side, side).sqrt(), cross(side, back));
-            // Long sides of thin triangles have samples without end: bounded, too.
-            let steps = |length: f64| (length / spacing).ceil().clamp(1.0, 4096.0) as usize;
-            let rows = steps(dot(twice, twice).sqrt() / length);
-            let samples = (0..rows).flat_map(|row| {
-                let up = row as f64 / rows as f64;
-                let begin = along(from, -up, back);
-                let columns = steps((1.0 - up) * length);
-                let first = usize::from(row == 0);
-                (first..=columns - first).map(move |c| along(begin, (1.0 - up) * c as f64 / columns as f64, side))
-            });
-            samples.filter_map(of).reduce(further)
-        };
-        let inner: Vec<_> = mesh.triangles.par_iter().map(of_triangle).collect();
-        corners.into_iter().chain(inner).flatten().reduce(further)
+                let hit = along(p, away, direction);
+                // Rather in both triangles of an edge than in neither.
+                let inside = |k: usize| {
+                    let (side, to) = (sub(corners[(k + 1) % 3], corners[k]), sub(hit, corners[k]));
+                    let slack = 1e-9 * dot(side, side).sqrt() * dot(to, to).sqrt();
+                    dot(cross(side, to), face.normal) >= -slack
+                };
+                if (0..3).all(inside) {
+                    best = away;
+                }
+            }
+        }
+        best.is_finite().then_some(best)
     }
-}
-
-/// The one whose distance is larger; of equal ones the first.
-fn further(a: ([f64; 3], Nearest), b: ([f64; 3], Nearest)) -> ([f64; 3], Nearest) {
-    if b.1.distance.abs() > a.1.distance.abs() { b } else { a }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Triangles, going in and coming out.
 
 mod distance;
+mod furthest;
 mod thicken;
 
 use crate::grid::Frame;

@@ -104,7 +104,7 @@ proptest! {
         let exact = 4.0 / 3.0 * 27.0;
         // The rule of the midpoint on a grid of a tenth, with sharp edges.
         prop_assert!((dexels.volume() - exact).abs() < 0.02 * exact, "{}", dexels.volume());
-        let found = compare_with_mesh(&dexels, &soup, 1.0).unwrap();
+        let found = compare_with_mesh(&dexels, &soup).unwrap();
         prop_assert_eq!(found.unmatched(), 0);
         // Lines for meshes are 1e-9 of their distance aside; normals are kept to 6.5e-5, and near edges another face is nearest.
         prop_assert!(found.range().unwrap().iter().all(|d| d.abs() < 1e-8), "{:?}", found.range());

@@ -210,7 +210,7 @@ proptest! {
             let _ = distance.furthest(&soup, spacing);
         }
         let grid = Grid::new([0.0; 2], [3.0, 3.0], [3, 3]).unwrap();
-        let _ = compare_with_mesh(&Dexels::empty(grid), &soup, reach);
+        let _ = compare_with_mesh(&Dexels::empty(grid), &soup);
     }
 }
 

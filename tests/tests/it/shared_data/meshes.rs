@@ -56,7 +56,7 @@ fn volumes_of_dexels_become_those_of_the_mesh() {
             errors.push(error / exact);
             if cells == 100 {
                 // Its ends are on the mesh, as exactly as numbers are.
-                let found = compare_with_mesh(&dexels, &soup, step).unwrap();
+                let found = compare_with_mesh(&dexels, &soup).unwrap();
                 let size = max.iter().chain(&min).fold(0.0_f64, |a, c| a.max(c.abs()));
                 let [low, high] = found.range().unwrap();
                 assert!(low > -1e-9 * size && high < 1e-9 * size, "{name}: {low} {high}");
