@@ -90,7 +90,7 @@ fn power_range(argument: Range, exponent: u32) -> Range {
     }
     if argument.divided() {
         let least = argument.least();
-        return if exponent % 2 == 0 {
+        return if exponent.is_multiple_of(2) {
             Range::from(power(least, exponent) * (1.0 - 128.0 * EPSILON))
         } else {
             Range::WHOLE
@@ -102,7 +102,7 @@ fn power_range(argument: Range, exponent: u32) -> Range {
         let value = power(x, exponent);
         (value - error * value.abs(), value + error * value.abs())
     };
-    if exponent % 2 == 1 {
+    if !exponent.is_multiple_of(2) {
         return Range::outward(padded(argument.lo).0, padded(argument.hi).1);
     }
     let range = Range::outward(padded(argument.least()).0, padded(argument.magnitude()).1);

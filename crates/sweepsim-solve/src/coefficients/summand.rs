@@ -7,6 +7,7 @@ use sweepsim_spline::kernel;
 
 /// Range of `c − Σ slope (I/d − ½)`: the part less an affine function, by coefficients (affine functions have their values
 /// at `I/d` as coefficients).
+#[inline(always)]
 pub(crate) fn rest_range(part: &Summand, c: &[f64], slope: &Row) -> (f64, f64) {
     match part.axes.first() {
         None => (c[0], c[0]),
@@ -104,6 +105,7 @@ pub(crate) fn hull_zeros(low: &[f64], high: &[f64], window: &mut (f64, f64)) {
 }
 
 /// Value and gradient (one entry an axis) of a part.
+#[inline(always)]
 pub(crate) fn evaluate_part(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (f64, Row) {
     let mut gradient = [0.0; MAX_UNKNOWNS];
     let count = part.axes.len();

@@ -80,6 +80,7 @@ pub(crate) fn envelope(c: &[f64], degree: usize, inner: usize, low: &mut [f64], 
 }
 
 /// Minimum and maximum difference of neighbours along an axis (times the degree: the derivative's coefficients).
+#[inline(always)]
 pub(crate) fn slopes(c: &[f64], degree: usize, inner: usize) -> (f64, f64) {
     if degree == 0 {
         return (0.0, 0.0);

@@ -33,6 +33,9 @@ pub(super) struct OpenCell {
     pub crossings: Vec<usize>,
 }
 
+/// The crossings of the lower and of the upper part of a cell.
+pub(super) type Halves = (Vec<usize>, Vec<usize>);
+
 /// Where cells are cut, in order of preference.
 const CUTS: [f64; 9] = [CUT, 0.443, 0.557, 0.388, 0.612, 0.331, 0.669, 0.279, 0.727];
 /// No side shrinks below this fraction at once.
@@ -116,7 +119,7 @@ impl Search<'_> {
         depth: u32,
         crossings: Vec<usize>,
         monitor: &dyn Monitor,
-    ) -> (Fate, Option<(Vec<usize>, Vec<usize>)>) {
+    ) -> (Fate, Option<Halves>) {
         self.statistics.boxes += 1;
         self.statistics.depth = self.statistics.depth.max(depth);
         let (fate, children) = match self.settle(cell, &crossings) {
@@ -305,7 +308,7 @@ impl Search<'_> {
         depth: u32,
         crossings: Vec<usize>,
         monitor: &dyn Monitor,
-    ) -> Option<(Vec<usize>, Vec<usize>)> {
+    ) -> Option<Halves> {
         let layout = &self.system.layout;
         let n = layout.n;
         let width = |j: usize| cell.hi[j] - cell.lo[j];

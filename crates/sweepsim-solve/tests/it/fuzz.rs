@@ -344,9 +344,12 @@ fn charts(random: &mut Random) -> bool {
     true
 }
 
+/// One call; whether its input was valid.
+type Call = fn(&mut Random) -> bool;
+
 /// So many calls of each solver; prints how many were valid, and the longest.
 fn run(calls: u64, seed: u64) {
-    let solvers: [(&str, fn(&mut Random) -> bool); 8] = [
+    let solvers: [(&str, Call); 8] = [
         ("points", points),
         ("curves", curves),
         ("surfaces", surfaces),
