@@ -64,7 +64,7 @@ impl Reader<'_> {
         let is_axis = |v: Vector| (norm(v) - 1.0).abs() < 0.1;
         // Behind a CIRCLE there may be several points on the arc, of which the last is its end (Creo).
         let several = self.arc.is_some() && triples.len() > 1 && !(triples.len() == 2 && is_axis(triples[1]));
-        if list.is_empty() || list.len() % 3 != 0 || (triples.len() > 2 && !several) {
+        if list.is_empty() || !list.len().is_multiple_of(3) || (triples.len() > 2 && !several) {
             let expected = "3 (x, y, z) or 6 (with the tool axis)";
             return Err(whole(NcProblem::value(
                 "the number of coordinates of GOTO",

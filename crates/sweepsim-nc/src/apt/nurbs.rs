@@ -47,7 +47,7 @@ impl Nurbs {
         if statement.is("KNOT") {
             self.knots.extend(numbers);
         } else if statement.is("CNTRL") {
-            if numbers.len() % 3 != 0 {
+            if !numbers.len().is_multiple_of(3) {
                 let expected = "a multiple of 3: the coordinates of control points";
                 return Err(NcProblem::value(
                     "the number of numbers of CNTRL",

@@ -1,6 +1,7 @@
 //! Tool libraries from files.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use serde_json::Value;
@@ -35,11 +36,14 @@ pub struct ToolLibrary {
 impl ToolLibrary {
     /// Adds a tool. The first one of a number is kept.
     pub(super) fn add(&mut self, number: u32, tool: ToolDescription) {
-        if self.tools.contains_key(&number) {
-            let note = format!("a second tool {number}: ignored");
-            self.notes.push(Note::new(tool.line, note));
-        } else {
-            self.tools.insert(number, tool);
+        match self.tools.entry(number) {
+            Entry::Occupied(_) => {
+                let note = format!("a second tool {number}: ignored");
+                self.notes.push(Note::new(tool.line, note));
+            }
+            Entry::Vacant(place) => {
+                place.insert(tool);
+            }
         }
     }
 }

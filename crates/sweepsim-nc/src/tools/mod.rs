@@ -11,6 +11,7 @@
 //!
 //! Nothing is guessed: [`ToolDescription::build`](crate::ToolDescription::build) names the measure that is missing.
 
+mod bodies;
 mod build;
 mod camotics;
 pub(crate) mod comments;

@@ -103,7 +103,7 @@ impl ToolDescription {
     pub fn bodies_ron(&self) -> Result<Vec<String>, ToolProblem> {
         self.build()?;
         let outlines = self.outlines()?;
-        let body = |outline: &super::build::Outline| {
+        let body = |outline: &super::bodies::Outline| {
             let segments: Vec<String> = outline.to.iter().map(|to| format!("Line({})", pair(*to))).collect();
             let kind = if outline.kind == BodyKind::Shank {
                 "Shank"
