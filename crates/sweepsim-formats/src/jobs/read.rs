@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 
 use sweepsim_motion::{AptWarning, Body, BodyKind, Tool};
+use sweepsim_nc::Note;
 use sweepsim_nc::tools::read_library;
-use sweepsim_nc::{Note, ToolDescription};
 
 use super::job::{Job, Limits, Target, Units};
-use super::tool_box::ToolBox;
+use super::tool_box::{Library, ToolBox};
 use super::tools::{self, Step};
 use super::{paths, schema, surface_tool};
 use crate::error::{FormatError, Problem, TextPosition};
@@ -171,7 +171,7 @@ impl JobReader<'_> {
     }
 
     /// The tools of a library, and its name.
-    fn library(&self, name: Option<&str>) -> Result<Option<(BTreeMap<u32, ToolDescription>, String)>, FormatError> {
+    fn library(&self, name: Option<&str>) -> Result<Option<Library>, FormatError> {
         let Some(name) = name else { return Ok(None) };
         let file = paths::beside(self.file, name);
         let read = read_library(&file, self.unit != 1.0).map_err(FormatError::from);

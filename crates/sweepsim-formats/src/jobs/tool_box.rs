@@ -7,6 +7,9 @@ use sweepsim_nc::{Note, ToolDescription};
 
 use crate::error::Problem;
 
+/// The tools of a library, and its name.
+pub(crate) type Library = (BTreeMap<u32, ToolDescription>, String);
+
 /// Tools by number, with their shanks and holders.
 pub(crate) struct ToolBox {
     pub tools: BTreeMap<u32, Tool>,
@@ -14,7 +17,7 @@ pub(crate) struct ToolBox {
     /// Warnings about the tools.
     pub notes: Vec<Note>,
     /// The library, and its name.
-    library: Option<(BTreeMap<u32, ToolDescription>, String)>,
+    library: Option<Library>,
     /// Tools built from descriptions, and the file that describes them.
     described: BTreeMap<u32, (ToolDescription, String)>,
 }
@@ -24,7 +27,7 @@ impl ToolBox {
     pub fn new(
         (tools, notes): (BTreeMap<u32, Tool>, Vec<Note>),
         bodies: BTreeMap<u32, Vec<Body>>,
-        library: Option<(BTreeMap<u32, ToolDescription>, String)>,
+        library: Option<Library>,
     ) -> Self {
         Self {
             tools,

@@ -81,7 +81,7 @@ fn a_job_can_name_the_program_alone() {
         "Job({stock}, tools: {{3: Ball(radius: 4, length: 30)}}, paths: [Path(file: \"plate.cls\")])"
     ))
     .unwrap();
-    assert!(job.tools[&3].profile().unwrap().segments().len() == 3 && job.bodies.get(&3).is_none());
+    assert!(job.tools[&3].profile().unwrap().segments().len() == 3 && !job.bodies.contains_key(&3));
     let bad = |text: &str| {
         let message = read(text).unwrap_err().to_string();
         message[message.find("job.ron").unwrap_or(0)..].to_owned()

@@ -63,7 +63,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
         prop_oneof![
             (place.clone(), any::<bool>()).prop_map(|(place, rapid)| Step::Line(place, rapid)),
             (place, prop::array::uniform2(-0.5..0.5_f64)).prop_map(|(place, tilt)| Step::Tilted(place, tilt)),
-            (0.5..50.0_f64, 0.001..6.28_f64, -3.0..3.0_f64).prop_map(|(r, turn, rise)| Step::Arc(r, turn, rise)),
+            (0.5..50.0_f64, 0.001..6.2_f64, -3.0..3.0_f64).prop_map(|(r, turn, rise)| Step::Arc(r, turn, rise)),
             any::<u8>().prop_map(Step::Tool),
             (1.0..5000.0_f64).prop_map(Step::Feed),
             Just(Step::Home),
