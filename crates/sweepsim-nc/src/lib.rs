@@ -17,6 +17,7 @@
 //! | --- | --- | --- |
 //! | G-code (`.nc`, `.ngc`, `.tap`, `.txt`…) | [`gcode::read`] | |
 //! | APT, CLSF, NCL (`.apt`, `.cls`, `.ncl`…) | [`apt::read`] | [`write::clsf`] |
+//! | Siemens 840D (`.mpf`), Heidenhain Klartext (`.h`) | [`siemens::read`], [`heidenhain::read`] | |
 //! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
 //! | one line per move, to read | | [`write::canonical`] |
 //! | any of them, by content | [`read_file`] | |

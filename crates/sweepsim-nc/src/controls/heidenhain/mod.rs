@@ -9,11 +9,15 @@
 //! Rotary axes turn the tool relative to the part by the right-hand rule, unless a machine is given. Cutter compensation (`RL`, `RR`) and other
 //! cycles are errors with their position.
 
+mod arcs;
+mod calls;
 mod cycles;
 mod interpreter;
 mod line;
 mod moves;
 mod planes;
+mod settings;
+mod unit;
 mod values;
 
 pub use interpreter::Library;

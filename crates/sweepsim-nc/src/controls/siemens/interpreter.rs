@@ -8,6 +8,7 @@ use super::cursor::Located;
 use super::expression::{self, Expression, Value};
 use super::frames::Frames;
 use super::unit::{Unit, parts};
+use super::variables::{DEEPEST_CALL, MOST_VARIABLES};
 use super::words::Modes;
 use crate::drive::{Sense, Track};
 use crate::model::program::Program;
@@ -19,16 +20,12 @@ const MOST_FURTHER: usize = 100;
 /// The most blocks that a program runs, repeats included, and more for each of its lines: programs that run for ever end here.
 const MOST_BLOCKS: usize = 1_000_000;
 const BLOCKS_PER_LINE: usize = 10;
-/// The most calls within each other. The control has 11 or 15 levels.
-const DEEPEST_CALL: usize = 32;
-/// The most variables.
-const MOST_VARIABLES: usize = 100_000;
 
 /// Finds the text of a subprogram by its name in capitals, with the file it came from.
 pub type Library<'a> = &'a dyn Fn(&str) -> Option<(PathBuf, String)>;
 
 /// A part of a program that is repeated.
-struct Section {
+pub(super) struct Section {
     from: usize,
     end: usize,
     times: usize,
@@ -36,13 +33,13 @@ struct Section {
 }
 
 /// A program or subprogram on its way.
-struct Level {
-    unit: usize,
-    next: usize,
-    locals: BTreeMap<String, Value>,
-    sections: Vec<Section>,
+pub(super) struct Level {
+    pub(super) unit: usize,
+    pub(super) next: usize,
+    pub(super) locals: BTreeMap<String, Value>,
+    pub(super) sections: Vec<Section>,
     /// How often it starts again.
-    times: usize,
+    pub(super) times: usize,
 }
 
 pub(super) struct Reader<'a> {
@@ -50,11 +47,11 @@ pub(super) struct Reader<'a> {
     pub modes: Modes,
     pub frames: Frames,
     pub options: &'a ReadOptions,
-    library: Library<'a>,
-    units: Vec<Unit>,
-    names: BTreeMap<String, usize>,
-    stack: Vec<Level>,
-    globals: BTreeMap<String, Value>,
+    pub(super) library: Library<'a>,
+    pub(super) units: Vec<Unit>,
+    pub(super) names: BTreeMap<String, usize>,
+    pub(super) stack: Vec<Level>,
+    pub(super) globals: BTreeMap<String, Value>,
     /// After a problem: what the program has said so far is not fully known.
     pub uncertain: bool,
     pub ended: bool,
@@ -148,7 +145,7 @@ fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<
 }
 
 impl Level {
-    fn new(unit: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
+    pub(super) fn new(unit: usize, locals: BTreeMap<String, Value>, times: usize) -> Self {
         Self {
             unit,
             next: 0,
@@ -161,7 +158,7 @@ impl Level {
 
 impl Reader<'_> {
     /// Adds the programs of a text. The first is the main one.
-    fn add(&mut self, text: &str, file: usize) {
+    pub(super) fn add(&mut self, text: &str, file: usize) {
         for (name, first_line, lines) in parts(text) {
             self.names.entry(name).or_insert(self.units.len());
             self.units.push(Unit::new(file, first_line, lines));
@@ -376,130 +373,5 @@ impl Reader<'_> {
 
     fn whole(&self, unit: usize, index: usize) -> std::ops::Range<usize> {
         0..self.units[unit].texts[index].len()
-    }
-
-    /// The counter of a FOR loop.
-    fn count(&self, first: &[Item]) -> Result<f64, Located> {
-        match first {
-            [
-                Item::Set {
-                    name, indices, span, ..
-                },
-            ] => {
-                let key = expression::key(name, indices, &|name| self.lookup(name))?;
-                match self.lookup(&key).map_err(|problem| (problem, span.clone()))? {
-                    Value::Number(number) => Ok(number),
-                    Value::Text(_) => Err((
-                        NcProblem::syntax("a text as a counter: expected a number"),
-                        span.clone(),
-                    )),
-                }
-            }
-            [Item::Word { span, .. } | Item::Key { span, .. }] => {
-                Err((NcProblem::syntax("expected a variable as the counter"), span.clone()))
-            }
-            _ => Ok(0.0),
-        }
-    }
-
-    pub fn number(&self, expression: &Expression) -> Result<f64, Located> {
-        expression.as_number(&|name| self.lookup(name))
-    }
-
-    pub fn lookup(&self, name: &str) -> Result<Value, NcProblem> {
-        let local = self.stack.iter().rev().find_map(|level| level.locals.get(name));
-        if let Some(value) = local.or_else(|| self.globals.get(name)) {
-            return Ok(value.clone());
-        }
-        if name.starts_with('$') {
-            return Err(NcProblem::unsupported(
-                format!("the system variable {name} is"),
-                "only the control knows it; expected a number",
-            ));
-        }
-        // R parameters are 0 unless set; elements of arrays too.
-        let parameter = name
-            .strip_prefix('R')
-            .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()));
-        if parameter {
-            return Ok(Value::Number(0.0));
-        }
-        if let Some((array, _)) = name.split_once('[')
-            && let Some(value) = self.stack.iter().rev().find_map(|level| level.locals.get(array))
-        {
-            return Ok(value.clone());
-        }
-        Err(NcProblem::syntax(format!(
-            "the variable {name} has no value here: expected DEF and a value before it"
-        )))
-    }
-
-    pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
-        if name.starts_with('$') {
-            return Err(NcProblem::unsupported(
-                format!("setting the system variable {name} is"),
-                "it could move frames or axes; expected a program without it",
-            ));
-        }
-        let array = name.split_once('[').map(|(array, _)| array.to_owned());
-        let known = |level: &Level| {
-            level.locals.contains_key(&name) || array.as_ref().is_some_and(|array| level.locals.contains_key(array))
-        };
-        let place = match self.stack.iter_mut().rev().find(|level| known(level)) {
-            Some(level) => &mut level.locals,
-            None => &mut self.globals,
-        };
-        if place.len() >= MOST_VARIABLES && !place.contains_key(&name) {
-            return Err(NcProblem::value("the number of variables", MOST_VARIABLES, "smaller"));
-        }
-        place.insert(name, value);
-        Ok(())
-    }
-
-    /// Whether there is a subprogram of this name, read if need be.
-    pub fn knows(&mut self, name: &str) -> bool {
-        if self.names.contains_key(name) {
-            return true;
-        }
-        let Some((file, text)) = (self.library)(name) else {
-            return false;
-        };
-        // Text without a file is the main program's own, at index 0.
-        let files = &mut self.track.program.files;
-        if files.is_empty() {
-            files.push(PathBuf::new());
-        }
-        files.push(file);
-        let index = files.len() - 1;
-        self.names.insert(name.to_owned(), self.units.len());
-        self.add(&text, index);
-        true
-    }
-
-    fn call(&mut self, name: &str, arguments: Vec<Value>, times: usize) -> Result<(), NcProblem> {
-        let Some(&unit) = self.names.get(name) else {
-            return Ok(());
-        };
-        if self.stack.len() > DEEPEST_CALL {
-            return Err(NcProblem::syntax(format!(
-                "{name} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels"
-            )));
-        }
-        let parameters =
-            self.units[unit]
-                .lines
-                .iter()
-                .find_map(|line| match line.as_ref().map(|line| &line.statement) {
-                    Ok(Statement::Proc(parameters)) => Some(parameters.clone()),
-                    _ => None,
-                });
-        let mut values = arguments.into_iter();
-        let locals = parameters.unwrap_or_default().into_iter();
-        let locals = locals
-            .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
-            .collect();
-        self.track.calls()?;
-        self.stack.push(Level::new(unit, locals, times));
-        Ok(())
     }
 }

@@ -10,13 +10,16 @@
 //! Cutter compensation, splines, polar coordinates, synchronous actions and other cycles are errors with their position.
 
 mod block;
+mod codes;
 mod cursor;
 mod cycles;
 mod expression;
 mod frames;
 mod interpreter;
 mod moves;
+mod structures;
 mod unit;
+mod variables;
 mod words;
 
 pub use interpreter::Library;

@@ -1,0 +1,111 @@
+//! Calls and jumps.
+
+use std::path::PathBuf;
+
+use super::interpreter::{Level, LevelKind, Reader};
+use super::line::{Line, Located};
+use super::unit::Unit;
+use crate::text::error::NcProblem;
+
+/// The most calls within each other.
+const DEEPEST_CALL: usize = 32;
+
+impl Reader<'_> {
+    pub(super) fn push(&mut self, level: Level, line: &Line) -> Result<(), Located> {
+        let whole = |problem| (problem, line.all());
+        if self.stack.len() > DEEPEST_CALL {
+            return Err(whole(NcProblem::syntax(format!(
+                "calls within calls: nested too deeply, expected at most {DEEPEST_CALL}"
+            ))));
+        }
+        self.track.calls().map_err(whole)?;
+        self.stack.push(level);
+        Ok(())
+    }
+
+    /// `CALL LBL 1`, `CALL LBL 1 REP 2`.
+    pub(super) fn call_label(&mut self, line: &Line, unit: usize, index: usize) -> Result<(), Located> {
+        let label = line.word(2).to_owned();
+        let from = self.units[unit].labels.get(&label).copied().ok_or_else(|| {
+            (
+                NcProblem::syntax(format!("there is no LBL {label} in this program")),
+                line.span(2),
+            )
+        })?;
+        let repeats = match line.word(3) {
+            "" => None,
+            "REP" => Some(line.word(4).split('/').next().unwrap_or("")),
+            word => Some(word.strip_prefix("REP").unwrap_or(word).split('/').next().unwrap_or("")),
+        };
+        let kind = match repeats {
+            None => LevelKind::Subprogram,
+            Some(text) => {
+                let times = self.parameters.value(text).map_err(|problem| (problem, line.all()))?;
+                if !(0.0..=65_534.0).contains(&times) || times.fract() != 0.0 {
+                    return Err((
+                        NcProblem::value("REP", times, "a whole number from 0 to 65534"),
+                        line.all(),
+                    ));
+                }
+                if times == 0.0 || from >= index {
+                    return Ok(());
+                }
+                LevelKind::Section {
+                    from,
+                    end: index,
+                    times: times as usize,
+                }
+            }
+        };
+        self.push(Level { unit, next: from, kind }, line)
+    }
+
+    pub(super) fn call_program(&mut self, line: &Line) -> Result<(), Located> {
+        let name = line.word(2).trim_matches('"').trim_end_matches(".H").to_owned();
+        let unit = match self.names.get(&name) {
+            Some(&unit) => unit,
+            None => {
+                let Some((file, text)) = (self.library)(&name) else {
+                    let problem = NcProblem::unsupported(
+                        format!("CALL PGM {name} is"),
+                        format!("there is no {name}.H beside this file"),
+                    );
+                    return Err((problem, line.all()));
+                };
+                let files = &mut self.track.program.files;
+                if files.is_empty() {
+                    files.push(PathBuf::new());
+                }
+                files.push(file);
+                let unit = Unit::new(files.len() - 1, &text);
+                self.units.push(unit);
+                self.names.insert(name, self.units.len() - 1);
+                self.units.len() - 1
+            }
+        };
+        let level = Level {
+            unit,
+            next: 0,
+            kind: LevelKind::Program,
+        };
+        self.push(level, line)
+    }
+
+    pub(super) fn jump(&mut self, label: &str, unit: usize) -> Result<(), NcProblem> {
+        let to = self.units[unit].labels.get(label).copied();
+        let to = to.ok_or_else(|| NcProblem::syntax(format!("there is no LBL {label} in this program")))?;
+        // A jump out of a repeated section ends it.
+        while let Some(Level {
+            kind: LevelKind::Section { from, end, .. },
+            ..
+        }) = self.stack.last()
+            && !(*from..*end).contains(&to)
+        {
+            self.back();
+        }
+        if let Some(level) = self.stack.last_mut() {
+            level.next = to;
+        }
+        Ok(())
+    }
+}

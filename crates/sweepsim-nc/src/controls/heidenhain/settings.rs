@@ -1,0 +1,183 @@
+//! Tools, stock and M codes.
+
+use super::interpreter::Reader;
+use super::line::{Line, Located};
+use crate::drive::Coordinates;
+use crate::model::event::{Coolant, EventKind, Spindle};
+use crate::text::error::NcProblem;
+
+impl Reader<'_> {
+    /// `BLK FORM 0.1 Z X-50 Y-50 Z-20`, `BLK FORM 0.2 X+50 Y+50 Z+0`.
+    pub(super) fn stock_corner(&mut self, line: &Line) -> Result<(), Located> {
+        let corner = match line.word(2) {
+            "0.1" => 0,
+            "0.2" => 1,
+            _ => {
+                self.track.note("a stock other than a block is left out");
+                return Ok(());
+            }
+        };
+        for token in &line.tokens[3..] {
+            let (relative, rest) = match token.text.strip_prefix('I') {
+                Some(rest) => (true, rest),
+                None => (false, token.text.as_str()),
+            };
+            let Some(k) = ["X", "Y", "Z"].iter().position(|axis| rest.starts_with(axis)) else {
+                continue;
+            };
+            if rest.len() == 1 {
+                // The axis of the spindle.
+                continue;
+            }
+            let value = self
+                .parameters
+                .value(&rest[1..])
+                .map_err(|problem| (problem, token.span.clone()))?;
+            let base = if relative { self.stock[0][k].unwrap_or(0.0) } else { 0.0 };
+            self.stock[corner][k] = Some(base + value * self.unit());
+        }
+        Ok(())
+    }
+
+    /// `TOOL CALL 5 Z S3000 F500`, `TOOL CALL "MILL" Z S3000`, `TOOL CALL Z S3000`.
+    pub(super) fn tool_call(&mut self, line: &Line) -> Result<(), Located> {
+        let mut tool = None;
+        for (position, token) in line.tokens[2..].iter().enumerate() {
+            let here = |problem| (problem, token.span.clone());
+            let text = token.text.as_str();
+            match text {
+                "X" | "Y" | "Z" => {
+                    self.plane = match text {
+                        "X" => [1, 2, 0],
+                        "Y" => [2, 0, 1],
+                        _ => [0, 1, 2],
+                    };
+                }
+                _ if position == 0 && text.starts_with('"') => {
+                    let name = text.trim_matches('"').to_owned();
+                    let next = self.tools.len() as u32 + 1;
+                    let number = *self.tools.entry(name.clone()).or_insert(next);
+                    if number == next {
+                        self.track.note(format!("tool {name:?} is taken as T{number}"));
+                    }
+                    tool = Some(number);
+                }
+                _ if position == 0 && text.starts_with(|c: char| c.is_ascii_digit() || c == 'Q') => {
+                    let value = self.parameters.value(text).map_err(here)?;
+                    if !(0.0..=f64::from(u32::MAX)).contains(&value) {
+                        return Err(here(NcProblem::value("a tool number", value, "a whole number")));
+                    }
+                    // 5.1 is the first indexed offset of tool 5.
+                    tool = Some(value as u32);
+                }
+                _ if text.starts_with('S') => self.speed = Some(self.parameters.value(&text[1..]).map_err(here)?),
+                _ if text.starts_with('F') && text.len() > 1 => {
+                    if let Ok(feed) = self.parameters.value(&text[1..]) {
+                        self.track.feed = Some(feed);
+                    }
+                }
+                _ if text.starts_with("DL") || text.starts_with("DR") => {
+                    let value = self.parameters.value(&text[2..]).map_err(here)?;
+                    if value != 0.0 {
+                        self.track.note(
+                            "oversizes of tools (DL, DR) are left out: the path is that of the tip as programmed",
+                        );
+                    }
+                }
+                _ => {
+                    let problem =
+                        NcProblem::syntax(format!("{text} in TOOL CALL: expected the tool, its axis, S and F"));
+                    return Err(here(problem));
+                }
+            }
+        }
+        self.track
+            .change_tool(tool.filter(|tool| *tool > 0))
+            .map_err(|problem| (problem, line.all()))
+    }
+
+    /// The M codes of a block. Whether the cycle is called (M99).
+    pub(super) fn codes(&mut self, line: &Line) -> Result<bool, Located> {
+        let mut calls = false;
+        for token in &line.tokens {
+            let Some(code) = token
+                .text
+                .strip_prefix('M')
+                .and_then(|digits| digits.parse::<u32>().ok())
+            else {
+                continue;
+            };
+            let rpm = self.speed;
+            match code {
+                0 | 1 => self.event(
+                    if code == 0 {
+                        EventKind::Stop
+                    } else {
+                        EventKind::OptionalStop
+                    },
+                    line,
+                )?,
+                2 | 30 => self.ended = true,
+                3 | 13 => self.turn_spindle(Spindle::Clockwise { rpm }, line)?,
+                4 | 14 => self.turn_spindle(Spindle::CounterClockwise { rpm }, line)?,
+                5 => self.turn_spindle(Spindle::Stopped, line)?,
+                6 => {}
+                7 => self.event(EventKind::Coolant(Coolant::Mist), line)?,
+                8 => self.event(EventKind::Coolant(Coolant::Flood), line)?,
+                9 => self.event(EventKind::Coolant(Coolant::Off), line)?,
+                99 => calls = true,
+                126 => self.shortest = true,
+                127 => self.shortest = false,
+                128 => self.control(true),
+                129 => self.control(false),
+                94 => {
+                    let reduced = self.track.abc.map(|angle| angle % 360.0);
+                    self.track.abc = reduced;
+                }
+                89 | 97 | 98 | 101..=104 | 107 | 108 | 130 | 138 | 140 | 141 => {
+                    let problem =
+                        NcProblem::unsupported(format!("M{code} is"), "the path of the tool would be unknown");
+                    return Err((problem, token.span.clone()));
+                }
+                // Machine coordinates are read with the move; others change no geometry.
+                90..=92 | 109..=118 | 120 | 124 | 134..=137 | 144 | 145 | 148 | 149 | 197 => {}
+                _ => self.track.note(format!("M{code} is not understood: ignored")),
+            }
+            if matches!(code, 13 | 14) {
+                self.event(EventKind::Coolant(Coolant::Flood), line)?;
+            }
+        }
+        Ok(calls)
+    }
+
+    pub(super) fn turn_spindle(&mut self, spindle: Spindle, line: &Line) -> Result<(), Located> {
+        if spindle == self.spindle {
+            return Ok(());
+        }
+        self.spindle = spindle;
+        self.event(EventKind::Spindle(spindle), line)
+    }
+
+    pub(super) fn control(&mut self, on: bool) {
+        self.tip_control = on;
+        let tip = on || self.frames.tilted();
+        self.track
+            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes });
+    }
+
+    pub(super) fn function_block(&mut self, line: &Line) -> Result<(), Located> {
+        match (line.word(1), line.word(2)) {
+            ("TCPM", _) => self.control(true),
+            ("RESET", "TCPM") => self.control(false),
+            ("MODE" | "FEED" | "DWELL" | "S-PULSE", _) => {}
+            (word, _) => {
+                let problem = NcProblem::unsupported(
+                    format!("FUNCTION {word} is"),
+                    "expected FUNCTION TCPM or FUNCTION RESET TCPM",
+                );
+                return Err((problem, line.all()));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,286 @@
+//! G codes and keywords.
+
+use std::ops::Range;
+
+use super::cursor::Located;
+use super::cycles::Cycle;
+use super::expression::{Expression, Value};
+use super::frames::Operation;
+use super::interpreter::Reader;
+use super::words::{Action, Modal, Motion, Words};
+use crate::drive::Coordinates;
+use crate::model::event::EventKind;
+use crate::model::program::FeedMode;
+use crate::text::error::NcProblem;
+
+impl Reader<'_> {
+    /// A G code.
+    pub(super) fn code(&mut self, value: f64, action: &mut Action) -> Result<(), NcProblem> {
+        let refuse = |what: &str| {
+            Err(NcProblem::unsupported(
+                format!("G{value}: {what}"),
+                "the path of the tool would be unknown; expected G0, G1, G2 or G3",
+            ))
+        };
+        if value.fract() != 0.0 || !(0.0..=9999.0).contains(&value) {
+            return refuse("this code is");
+        }
+        match value as u32 {
+            0 => self.modes.motion = Motion::Rapid,
+            1 => self.modes.motion = Motion::Feed,
+            2 => {
+                self.modes.motion = Motion::Arc {
+                    counter_clockwise: false,
+                }
+            }
+            3 => {
+                self.modes.motion = Motion::Arc {
+                    counter_clockwise: true,
+                }
+            }
+            4 => action.dwell = true,
+            17 => self.modes.plane = [0, 1, 2],
+            18 => self.modes.plane = [2, 0, 1],
+            19 => self.modes.plane = [1, 2, 0],
+            25 | 26 => action.other = true,
+            53 | 153 => action.machine = true,
+            54..=57 => self.frames.active = value as u32 - 53,
+            500 => self.frames.active = 0,
+            505..=599 => self.frames.active = value as u32 - 500,
+            70 | 700 => self.modes.inch = true,
+            71 | 710 => self.modes.inch = false,
+            74 | 75 => action.home = true,
+            90 => self.modes.absolute = true,
+            91 => self.modes.absolute = false,
+            93 => self.track.feed_mode = FeedMode::InverseTime,
+            94 => self.track.feed_mode = FeedMode::PerMinute,
+            95 => self.track.feed_mode = FeedMode::PerRevolution,
+            40 => {}
+            41 | 42 => return refuse("cutter compensation is"),
+            33..=35 | 63 | 331 | 332 => return refuse("threading is"),
+            58 | 59 => return refuse("shifting frames axis by axis is"),
+            110..=112 => return refuse("polar coordinates are"),
+            // Exact stop and continuous-path modes, corners of compensated contours, soft approach off, speeds.
+            9 | 60 | 64 | 96 | 97 | 450..=453 | 458..=461 | 601..=603 | 621 | 641..=645 | 961 | 962 | 971..=973 => {}
+            140..=143 | 147 | 148 | 247 | 248 | 340 | 341 | 347 | 348 => {
+                return refuse("smooth approach and retraction are");
+            }
+            _ => return refuse("this code is"),
+        }
+        Ok(())
+    }
+
+    pub(super) fn keyword(
+        &mut self,
+        name: &str,
+        arguments: Option<&[Option<Expression>]>,
+        words: &Words,
+        action: &mut Action,
+        span: &Range<usize>,
+    ) -> Result<(), Located> {
+        let here = |problem: NcProblem| (problem, span.clone());
+        if let Some(operation) = Operation::named(name) {
+            action.operation = Some((operation, span.clone()));
+            return Ok(());
+        }
+        match name {
+            "SUPA" => action.machine = true,
+            "TRAORI" => {
+                self.modes.tip_control = true;
+                self.track.set_coordinates(Coordinates::Tip);
+            }
+            "TRAFOOF" => {
+                self.modes.tip_control = false;
+                self.plane_coordinates();
+            }
+            "CIP" => self.modes.motion = Motion::Through,
+            "CT" => self.modes.motion = Motion::Tangential,
+            "MSG" => {
+                let text = arguments
+                    .and_then(|arguments| arguments.first())
+                    .and_then(Option::as_ref);
+                let text = text.map(|text| text.value(&|name| self.lookup(name))).transpose()?;
+                self.event(
+                    EventKind::Message(text.map_or_else(String::new, |text| text.text())),
+                    span.clone(),
+                )?;
+            }
+            "RET" => self.back(),
+            "MCALL" => self.modes.modal_call = None,
+            "CYCLE800" => {
+                // Names of swivel data are texts.
+                let values: Vec<Option<f64>> = arguments
+                    .unwrap_or(&[])
+                    .iter()
+                    .map(
+                        |argument| match argument.as_ref().map(|value| value.value(&|name| self.lookup(name))) {
+                            Some(Ok(Value::Number(number))) => Ok(Some(number)),
+                            Some(Ok(Value::Text(_))) => Ok(Some(0.0)),
+                            Some(Err(error)) => Err(error),
+                            None => Ok(None),
+                        },
+                    )
+                    .collect::<Result<_, _>>()?;
+                self.swivel(&values).map_err(here)?;
+            }
+            "CYCLE832" | "WORKPIECE" | "SETMS" | "STOPRE" | "EXTCALL" if name != "EXTCALL" => {}
+            _ if HARMLESS.contains(&name) => {}
+            _ if REFUSED.contains(&name) => {
+                let instead = "the path of the tool would be unknown; expected G0, G1, G2, G3 or CIP";
+                return Err(here(NcProblem::unsupported(format!("{name} is"), instead)));
+            }
+            _ => return self.call_or_cycle(name, arguments, words, span),
+        }
+        Ok(())
+    }
+
+    /// A cycle, a subprogram, or nothing known.
+    pub(super) fn call_or_cycle(
+        &mut self,
+        name: &str,
+        arguments: Option<&[Option<Expression>]>,
+        words: &Words,
+        span: &Range<usize>,
+    ) -> Result<(), Located> {
+        let here = |problem: NcProblem| (problem, span.clone());
+        let (name, arguments, modal) = match name {
+            "CALL" | "PCALL" => {
+                return Err(here(NcProblem::unsupported(
+                    "CALL is",
+                    "expected the name of the subprogram alone",
+                )));
+            }
+            _ => (name, arguments, self.modal_word(span)),
+        };
+        let values = arguments
+            .unwrap_or(&[])
+            .iter()
+            .map(|argument| {
+                argument
+                    .as_ref()
+                    .map(|value| value.value(&|name| self.lookup(name)))
+                    .transpose()
+            })
+            .collect::<Result<Vec<Option<Value>>, _>>()?;
+        if name.starts_with("CYCLE") {
+            let numbers: Vec<Option<f64>> = values
+                .iter()
+                .map(|value| match value {
+                    Some(Value::Number(number)) => Some(*number),
+                    _ => None,
+                })
+                .collect();
+            let cycle = Cycle::new(name, &numbers, self.modes.unit()).map_err(here)?;
+            if modal {
+                self.modes.modal_call = Some((self.depth(), Modal::Cycle(cycle)));
+                return Ok(());
+            }
+            return self.drill(&cycle).map_err(here);
+        }
+        if !self.knows(name) {
+            return Err(here(NcProblem::unsupported(
+                format!("{name} is"),
+                format!("it is neither known nor a subprogram beside this file; expected a file {name}.SPF"),
+            )));
+        }
+        let values: Vec<Value> = values
+            .into_iter()
+            .map(|value| value.unwrap_or(Value::Number(0.0)))
+            .collect();
+        if modal {
+            self.modes.modal_call = Some((self.depth(), Modal::Program(name.to_owned(), values)));
+        } else {
+            let times = words.plain("P").unwrap_or(1.0);
+            if !(1.0..=9999.0).contains(&times) || times.fract() != 0.0 {
+                return Err((
+                    NcProblem::value("the number of calls P", times, "a whole number from 1 to 9999"),
+                    words.span("P"),
+                ));
+            }
+            self.pending = Some((name.to_owned(), values, times as usize));
+        }
+        Ok(())
+    }
+
+    /// Whether this call follows `MCALL`, which stands right before it.
+    pub(super) fn modal_word(&self, span: &Range<usize>) -> bool {
+        let before = self
+            .current_text()
+            .get(..span.start)
+            .unwrap_or("")
+            .trim_end()
+            .to_ascii_uppercase();
+        before.ends_with("MCALL")
+    }
+}
+
+/// Keywords that change no programmed point.
+const HARMLESS: [&str; 62] = [
+    "FNORM",
+    "FLIN",
+    "FCUB",
+    "COMPOF",
+    "COMPON",
+    "COMPCURV",
+    "COMPCAD",
+    "COMPSURF",
+    "SOFT",
+    "BRISK",
+    "DRIVE",
+    "FFWON",
+    "FFWOF",
+    "DIAMOF",
+    "DIAMON",
+    "STOPRE",
+    "ORIWKS",
+    "ORIMKS",
+    "ORIAXES",
+    "ORIVECT",
+    "ORIPLANE",
+    "ORIROTA",
+    "ORIC",
+    "ORID",
+    "ORISON",
+    "ORISOF",
+    "OSC",
+    "OSD",
+    "OSOF",
+    "OSS",
+    "OSSE",
+    "UPATH",
+    "SPATH",
+    "DISPLON",
+    "DISPLOF",
+    "SAVE",
+    "SBLON",
+    "SBLOF",
+    "WALIMON",
+    "WALIMOF",
+    "STARTFIFO",
+    "STOPFIFO",
+    "FIFOCTRL",
+    "CFC",
+    "CFTCP",
+    "CFIN",
+    "NORM",
+    "KONT",
+    "CDON",
+    "CDOF",
+    "CDOF2",
+    "RTLION",
+    "RTLIOF",
+    "FENDNORM",
+    "G1COMP",
+    "OEMIPO1",
+    "SETMS",
+    "TOWSTD",
+    "CP",
+    "EXECUTE",
+    "PAROTOF",
+    "TOROTOF",
+];
+/// Keywords that change the path.
+const REFUSED: [&str; 21] = [
+    "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",
+    "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON",
+];

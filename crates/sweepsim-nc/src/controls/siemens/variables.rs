@@ -1,0 +1,141 @@
+//! Variables, and calls of subprograms.
+
+use std::path::PathBuf;
+
+use super::block::{Item, Statement};
+use super::cursor::Located;
+use super::expression::{self, Expression, Value};
+use super::interpreter::{Level, Reader};
+use crate::text::error::NcProblem;
+
+/// The most variables.
+pub(super) const MOST_VARIABLES: usize = 100_000;
+/// The most calls within each other. The control has 11 or 15 levels.
+pub(super) const DEEPEST_CALL: usize = 32;
+
+impl Reader<'_> {
+    /// The counter of a FOR loop.
+    pub(super) fn count(&self, first: &[Item]) -> Result<f64, Located> {
+        match first {
+            [
+                Item::Set {
+                    name, indices, span, ..
+                },
+            ] => {
+                let key = expression::key(name, indices, &|name| self.lookup(name))?;
+                match self.lookup(&key).map_err(|problem| (problem, span.clone()))? {
+                    Value::Number(number) => Ok(number),
+                    Value::Text(_) => Err((
+                        NcProblem::syntax("a text as a counter: expected a number"),
+                        span.clone(),
+                    )),
+                }
+            }
+            [Item::Word { span, .. } | Item::Key { span, .. }] => {
+                Err((NcProblem::syntax("expected a variable as the counter"), span.clone()))
+            }
+            _ => Ok(0.0),
+        }
+    }
+
+    pub fn number(&self, expression: &Expression) -> Result<f64, Located> {
+        expression.as_number(&|name| self.lookup(name))
+    }
+
+    pub fn lookup(&self, name: &str) -> Result<Value, NcProblem> {
+        let local = self.stack.iter().rev().find_map(|level| level.locals.get(name));
+        if let Some(value) = local.or_else(|| self.globals.get(name)) {
+            return Ok(value.clone());
+        }
+        if name.starts_with('$') {
+            return Err(NcProblem::unsupported(
+                format!("the system variable {name} is"),
+                "only the control knows it; expected a number",
+            ));
+        }
+        // R parameters are 0 unless set; elements of arrays too.
+        let parameter = name
+            .strip_prefix('R')
+            .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()));
+        if parameter {
+            return Ok(Value::Number(0.0));
+        }
+        if let Some((array, _)) = name.split_once('[')
+            && let Some(value) = self.stack.iter().rev().find_map(|level| level.locals.get(array))
+        {
+            return Ok(value.clone());
+        }
+        Err(NcProblem::syntax(format!(
+            "the variable {name} has no value here: expected DEF and a value before it"
+        )))
+    }
+
+    pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
+        if name.starts_with('$') {
+            return Err(NcProblem::unsupported(
+                format!("setting the system variable {name} is"),
+                "it could move frames or axes; expected a program without it",
+            ));
+        }
+        let array = name.split_once('[').map(|(array, _)| array.to_owned());
+        let known = |level: &Level| {
+            level.locals.contains_key(&name) || array.as_ref().is_some_and(|array| level.locals.contains_key(array))
+        };
+        let place = match self.stack.iter_mut().rev().find(|level| known(level)) {
+            Some(level) => &mut level.locals,
+            None => &mut self.globals,
+        };
+        if place.len() >= MOST_VARIABLES && !place.contains_key(&name) {
+            return Err(NcProblem::value("the number of variables", MOST_VARIABLES, "smaller"));
+        }
+        place.insert(name, value);
+        Ok(())
+    }
+
+    /// Whether there is a subprogram of this name, read if need be.
+    pub fn knows(&mut self, name: &str) -> bool {
+        if self.names.contains_key(name) {
+            return true;
+        }
+        let Some((file, text)) = (self.library)(name) else {
+            return false;
+        };
+        // Text without a file is the main program's own, at index 0.
+        let files = &mut self.track.program.files;
+        if files.is_empty() {
+            files.push(PathBuf::new());
+        }
+        files.push(file);
+        let index = files.len() - 1;
+        self.names.insert(name.to_owned(), self.units.len());
+        self.add(&text, index);
+        true
+    }
+
+    pub(super) fn call(&mut self, name: &str, arguments: Vec<Value>, times: usize) -> Result<(), NcProblem> {
+        let Some(&unit) = self.names.get(name) else {
+            return Ok(());
+        };
+        if self.stack.len() > DEEPEST_CALL {
+            return Err(NcProblem::syntax(format!(
+                "{name} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels"
+            )));
+        }
+        let parameters =
+            self.units[unit]
+                .lines
+                .iter()
+                .find_map(|line| match line.as_ref().map(|line| &line.statement) {
+                    Ok(Statement::Proc(parameters)) => Some(parameters.clone()),
+                    _ => None,
+                });
+        let mut values = arguments.into_iter();
+        let locals = parameters.unwrap_or_default().into_iter();
+        let locals = locals
+            .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
+            .collect();
+        self.track.calls()?;
+        self.stack.push(Level::new(unit, locals, times));
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! Arcs of the tip, in any frame.
+
+use nalgebra::{Rotation3, Unit, Vector3};
+use sweepsim_motion::{Course, Move, TipArc, Turning};
+
+use super::driver::Coordinates;
+use super::track::Track;
+use crate::machines::Position;
+use crate::text::error::NcProblem;
+
+/// The most chords per arc.
+const MOST_CHORDS: f64 = 1e6;
+
+/// An arc in the coordinates of the frame: from the current position about `centre` to `end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Arc {
+    pub end: [f64; 3],
+    pub centre: [f64; 3],
+    /// A coordinate axis or another unit vector.
+    pub normal: [f64; 3],
+    /// In radians, right-handed about the normal.
+    pub sweep: f64,
+}
+
+impl Track {
+    /// A feed move along an arc, while the rotary axes turn to `abc`.
+    pub fn arc(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
+        let Some(start) = self.known() else {
+            return Err(NcProblem::syntax(
+                "an arc from an unknown position: expected a move before it",
+            ));
+        };
+        let Some(scale) = self.frame.scale() else {
+            return Err(NcProblem::unsupported(
+                "arcs under a scale that is not the same in all directions are",
+                "they would be ellipses; expected short lines",
+            ));
+        };
+        self.begin(false)?;
+        if self.exact_arcs && abc == self.abc {
+            return self.exact_arc(arc, scale);
+        }
+        let normal = Vector3::from(arc.normal);
+        let centre = Vector3::from(arc.centre);
+        let across = |point: [f64; 3]| {
+            let out = Vector3::from(point) - centre;
+            out - normal * normal.dot(&out)
+        };
+        let (from, to) = (across(start), across(arc.end));
+        let radius = from.norm().max(to.norm()) * scale.abs();
+        // A chord over 2h leaves r (1 − cos h) = 2 r sin²(h/2).
+        let half = 2.0 * (self.arc_tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
+        let chords = (arc.sweep.abs() / (2.0 * half)).ceil().max(1.0);
+        if !(chords <= MOST_CHORDS) {
+            return Err(NcProblem::syntax(format!(
+                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {} mm, more than {MOST_CHORDS}",
+                self.arc_tolerance
+            )));
+        }
+        self.note(format!("arcs are divided into chords within {} mm", self.arc_tolerance));
+        let axis = Unit::new_normalize(normal);
+        let height = |point: [f64; 3]| normal.dot(&(Vector3::from(point) - centre));
+        let (low, high) = (height(start), height(arc.end));
+        let angles = self.abc;
+        for chord in 1..chords as usize {
+            let s = chord as f64 / chords;
+            let growth = 1.0 + s * (to.norm() / from.norm() - 1.0);
+            let out = Rotation3::from_axis_angle(&axis, s * arc.sweep) * from * growth;
+            let point = centre + out + normal * (low + s * (high - low));
+            let between = Position::new([0.0; 3], angles).towards(&Position::new([0.0; 3], abc), s);
+            self.line(point.into(), between.abc, false)?;
+        }
+        self.line(arc.end, abc, false)
+    }
+
+    fn exact_arc(&mut self, arc: &Arc, scale: f64) -> Result<(), NcProblem> {
+        let abc = self.abc;
+        let frame = self.frame;
+        let part = |xyz: [f64; 3]| match self.coordinates {
+            Coordinates::Tip => Ok(frame.point(xyz)),
+            Coordinates::Axes => self.driver.tip(&Position::new(frame.point(xyz), abc)),
+        };
+        let centre = part(arc.centre)?;
+        let above = part(std::array::from_fn(|k| arc.centre[k] + arc.normal[k]))?;
+        let normal: [f64; 3] = std::array::from_fn(|k| above[k] - centre[k]);
+        let normal = if self.coordinates == Coordinates::Tip {
+            frame.direction(arc.normal)
+        } else {
+            normal
+        };
+        let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
+            .map_err(|error| NcProblem::syntax(error.to_string()))?;
+        let way = Move {
+            course: Course::Arc(exact),
+            turning: Turning::Even,
+        };
+        self.push(Position::new(frame.point(arc.end), abc), way, false)?;
+        self.arrive(arc.end, abc);
+        Ok(())
+    }
+}
