@@ -18,6 +18,10 @@ pub(crate) enum MotionMode {
     Cycle(u8),
     /// G33.1: down and back, with the spindle.
     RigidTap,
+    /// G5 and G5.1: Bézier curves in the plane XY, of degree 3 and 2.
+    Curve {
+        cubic: bool,
+    },
 }
 
 /// How G43 and its kin set the length offset.
@@ -114,13 +118,15 @@ pub(crate) fn g_in(value: f64, block: &Block) -> Code {
     const HIGH_SPEED: Code = Code::Ignored("high-speed modes (G5 P10000, G5.1 Q1) change no programmed point: ignored");
     let given = |letters: &str| letters.chars().any(|letter| block.has(letter));
     match g(value) {
-        Code::SplineOrMode if given("XYZABCIJKQ") || !given("P") => Code::Refused("splines are"),
+        Code::SplineOrMode if given("XY") => Code::Motion(MotionMode::Curve { cubic: true }),
+        Code::SplineOrMode if given("ZABCIJKQ") || !given("P") => Code::Refused("splines without X and Y are"),
         // P10001 and on call high-speed cycles, which move axes.
         Code::SplineOrMode => match block.get('P') {
             Some(0.0 | 10_000.0) if !given("LR") => HIGH_SPEED,
             _ => Code::Refused("high-speed modes other than P0 and P10000 are"),
         },
-        Code::SplineOrContouring if given("XYZABCIJK") || !given("Q") => Code::Refused("splines are"),
+        Code::SplineOrContouring if given("XY") => Code::Motion(MotionMode::Curve { cubic: false }),
+        Code::SplineOrContouring if given("ZABCIJK") || !given("Q") => Code::Refused("splines without X and Y are"),
         // Q2 is smooth interpolation: it changes the path. R is a level of precision.
         Code::SplineOrContouring => match block.get('Q') {
             Some(0.0 | 1.0) if !given("LP") => HIGH_SPEED,
@@ -147,7 +153,7 @@ fn g(value: f64) -> Code {
         40 => Code::Dwell,
         50 => Code::SplineOrMode,
         51 => Code::SplineOrContouring,
-        52 | 53 => Code::Refused("splines are"),
+        52 | 53 => Code::Refused("NURBS are"),
         100 => Code::SetOffsets,
         120 | 130 | 1500 => Code::Refused("pocket cycles are"),
         150 => Code::Polar(false),

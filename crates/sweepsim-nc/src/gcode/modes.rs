@@ -31,6 +31,8 @@ pub(crate) struct Modes {
     pub feed: Option<f64>,
     pub speed: Option<f64>,
     pub spindle: Turning,
+    /// Where the last cubic curve came from, relative to its end: the next one may go on smoothly.
+    pub curve_tangent: Option<[f64; 2]>,
     /// G99: cycles retract to their plane R.
     pub retract_to_plane: bool,
     pub cycle: CycleWords,
@@ -59,6 +61,7 @@ impl Modes {
             feed: None,
             speed: None,
             spindle: Turning::Stopped,
+            curve_tangent: None,
             retract_to_plane: false,
             cycle: CycleWords::default(),
             polar: false,

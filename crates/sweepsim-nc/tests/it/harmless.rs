@@ -46,24 +46,22 @@ fn high_speed_modes() {
     );
     // Splines, cycles and smoothing move the tool.
     refused(
-        "G5 X1 Y1 I1 J0 P0 Q0",
-        &format!("1: G5: splines are not supported yet: {PATH}"),
+        "G5 P0 X1",
+        "1: a spline without its control points: expected I and J (unless it goes on from another one), P and Q",
     );
-    refused("G5 P0 X1", &format!("1: G5: splines are not supported yet: {PATH}"));
-    refused("G5", &format!("1: G5: splines are not supported yet: {PATH}"));
+    refused(
+        "G5",
+        &format!("1: G5: splines without X and Y are not supported yet: {PATH}"),
+    );
     refused(
         "G05 P10001 L2",
         &format!("1: G5: high-speed modes other than P0 and P10000 are not supported yet: {PATH}"),
     );
     refused(
-        "G5.1 X1 Y1 I1 J1",
-        &format!("1: G5.1: splines are not supported yet: {PATH}"),
-    );
-    refused(
         "G5.1 Q2",
         &format!("1: G5.1: high-speed modes other than Q0 and Q1 are not supported yet: {PATH}"),
     );
-    refused("G5.2 P1", &format!("1: G5.2: splines are not supported yet: {PATH}"));
+    refused("G5.2 P1", &format!("1: G5.2: NURBS are not supported yet: {PATH}"));
 }
 
 #[test]

@@ -175,6 +175,9 @@ impl Reader {
             return Ok(());
         };
         let end = [x, y, z];
+        if !matches!(motion, MotionMode::Curve { .. }) {
+            self.modes.curve_tangent = None;
+        }
         if cuts && self.known_position().is_none() {
             self.state
                 .note("the start of this feed move is unknown: the path begins at its end");
@@ -193,6 +196,7 @@ impl Reader {
                     sweep: arc.sweep,
                 });
             }
+            (MotionMode::Curve { cubic }, Some(start)) => return self.curve(cubic, start, stroke, block),
             (MotionMode::RigidTap, Some(start)) => {
                 self.give(stroke)?;
                 let back = self.stroke_to(start, abc, false);
@@ -206,6 +210,77 @@ impl Reader {
             _ => {}
         }
         self.give(stroke)
+    }
+
+    /// G5 and G5.1: a Bézier curve, divided into chords within the tolerance of arcs.
+    ///
+    /// Source: *LinuxCNC G-code reference, Cubic Spline, Quadratic Spline*. A chord over 1/n of a curve leaves it by at most |B″| / (8 n²).
+    fn curve(&mut self, cubic: bool, start: [f64; 3], stroke: Stroke, block: &Block) -> Result<(), NcProblem> {
+        self.refuse_compensation("a spline")?;
+        let name = if cubic { "G5" } else { "G5.1" };
+        if self.modes.plane != [0, 1, 2] || block.has('Z') || stroke.abc != self.state.abc {
+            return Err(NcProblem::unsupported(
+                format!("{name} outside of the plane XY is"),
+                "expected X and Y in G17",
+            ));
+        }
+        let length = |letter: char| block.get(letter).map(|value| value * self.unit());
+        let [ij, pq] = [('I', 'J'), ('P', 'Q')].map(|(a, b)| match (length(a), length(b)) {
+            (Some(a), Some(b)) => Some([a, b]),
+            (None, None) => None,
+            (a, b) if !cubic => Some([a.unwrap_or(0.0), b.unwrap_or(0.0)]),
+            _ => None,
+        });
+        let before = self.modes.curve_tangent.take();
+        let end = [stroke.end[0], stroke.end[1]];
+        let from = [start[0], start[1]];
+        let plus = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+        let points = match (cubic, ij.or(before.map(|[x, y]| [-x, -y])), pq) {
+            (true, Some(ij), Some(pq)) => {
+                self.modes.curve_tangent = Some(pq);
+                vec![from, plus(from, ij), plus(end, pq), end]
+            }
+            (false, Some(_), _) if ij.is_some() => vec![from, plus(from, ij.unwrap_or_default()), end],
+            (true, ..) => {
+                return Err(NcProblem::syntax(
+                    "a spline without its control points: expected I and J (unless it goes on from another one), P and Q",
+                ));
+            }
+            _ => return Err(NcProblem::syntax("a spline without its control point: expected I or J")),
+        };
+        let degree = points.len() - 1;
+        let bend = points
+            .windows(3)
+            .map(|p| (p[0][0] - 2.0 * p[1][0] + p[2][0]).hypot(p[0][1] - 2.0 * p[1][1] + p[2][1]))
+            .fold(0.0, f64::max);
+        let second = (degree * (degree - 1)) as f64 * bend;
+        let chords = (second / (8.0 * self.arc_tolerance)).sqrt().ceil().max(1.0);
+        if chords > 1e6 {
+            return Err(NcProblem::value(
+                "the number of chords of this spline",
+                chords,
+                "at most 1000000",
+            ));
+        }
+        self.state
+            .note("splines are divided into chords within the tolerance of arcs");
+        for k in 1..=chords as usize {
+            let t = k as f64 / chords;
+            let mut level = points.clone();
+            // De Casteljau.
+            while level.len() > 1 {
+                level = level
+                    .windows(2)
+                    .map(|p| [p[0][0] + t * (p[1][0] - p[0][0]), p[0][1] + t * (p[1][1] - p[0][1])])
+                    .collect();
+            }
+            let mut piece = stroke;
+            if k < chords as usize {
+                piece.end = [level[0][0], level[0][1], start[2]];
+            }
+            self.give(piece)?;
+        }
+        Ok(())
     }
 
     /// Whether a straight move has words of an arc.

@@ -169,3 +169,47 @@ fn the_start_can_be_given() {
         [[1.0, 2.0, 3.0], [2.0, 2.0, 3.0]]
     );
 }
+
+#[test]
+fn bezier_curves() {
+    let bezier = |p: [[f64; 2]; 4], t: f64| -> [f64; 2] {
+        let s = 1.0 - t;
+        std::array::from_fn(|k| {
+            s.powi(3) * p[0][k] + 3.0 * s * s * t * p[1][k] + 3.0 * s * t * t * p[2][k] + t.powi(3) * p[3][k]
+        })
+    };
+    // The second curve goes on smoothly.
+    let found = program("F100\nG0 X0 Y0 Z1\nG5 X20 Y10 I5 J10 P-4 Q8\nG5 X40 Y0 P-5 Q5\nG1 X50");
+    let curves = [
+        [[0.0, 0.0], [5.0, 10.0], [16.0, 18.0], [20.0, 10.0]],
+        [[20.0, 10.0], [24.0, 2.0], [35.0, 5.0], [40.0, 0.0]],
+    ];
+    for (line, curve) in [(3, curves[0]), (4, curves[1])] {
+        let points: Vec<[f64; 3]> = found
+            .poses
+            .windows(2)
+            .filter(|pair| pair[1].line == line)
+            .flat_map(|pair| {
+                let (a, b): ([f64; 3], [f64; 3]) = (pair[0].pose.tip(), pair[1].pose.tip());
+                [a, std::array::from_fn(|k| 0.5 * (a[k] + b[k])), b]
+            })
+            .collect();
+        assert!(points.len() > 100);
+        for point in &points {
+            let off = (0..=20_000)
+                .map(|k| {
+                    let [x, y] = bezier(curve, f64::from(k) / 20_000.0);
+                    (point[0] - x).hypot(point[1] - y)
+                })
+                .fold(f64::MAX, f64::min);
+            assert!(off < 2e-3, "{point:?} is {off} from the curve");
+        }
+        assert_eq!([points[0][0], points[0][1]], curve[0]);
+        assert_near(&points[points.len() - 1..], &[[curve[3][0], curve[3][1], 1.0]]);
+    }
+    let quadratic = program("F100\nG0 X-2 Y4 Z0\nG5.1 X2 I2 J-8");
+    for tip in tips(&quadratic) {
+        // The parabola y = x².
+        assert!((tip[1] - tip[0] * tip[0]).abs() < 1e-9);
+    }
+}
