@@ -3,7 +3,9 @@
 use super::subdivide::{OpenCell, Search};
 use super::trace::Vertex;
 use super::{Curve, CurveEnd, CurvePoint, Curves, Singular};
+use crate::Enclosure;
 use crate::numbers::{MAX_UNKNOWNS, Row};
+use crate::search::Cause;
 
 /// Open cells close to one another, with a box around them.
 struct Cluster {
@@ -146,6 +148,8 @@ impl Search<'_> {
                 points.pop();
             }
             if skin > 0.0 && self.only_in_skin(&chain) {
+                // The curve may still touch the region.
+                singular.extend(self.touch(&points));
                 continue;
             }
             if let (Some(a), Some(b)) = (at_group[ends[0]], at_group[ends[1]]) {
@@ -174,6 +178,24 @@ impl Search<'_> {
             skin,
             statistics: self.statistics,
         }
+    }
+
+    /// The part of the region that a polyline in the skin may touch: within the tolerance of its hull.
+    fn touch(&self, points: &[CurvePoint]) -> Option<Singular> {
+        let region = self.system.outward(&self.system.region.0, &self.system.region.1);
+        let side = |(j, side): (usize, &Enclosure)| {
+            let hull = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
+                (lo.min(p.point[j]), hi.max(p.point[j]))
+            });
+            let pad = self.tracer.tolerance * (1.0 + 1e-12) + 4.0 * f64::EPSILON * side.magnitude();
+            Enclosure::hull(hull.0 - pad, hull.1 + pad).intersection(*side)
+        };
+        let bounds = region.iter().enumerate().map(side).collect::<Option<Vec<_>>>()?;
+        Some(Singular {
+            bounds,
+            cause: Cause::Skin,
+            branches: Vec::new(),
+        })
     }
 
     /// Whether no vertex of the chain and no midpoint of its segments lies in the region itself.

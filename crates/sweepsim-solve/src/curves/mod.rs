@@ -10,7 +10,7 @@
 //! boxes open (at a tangency, or at a singular point on it).
 //!
 //! Where the curve is tangent to the region's own boundary, or passes through one of its edges or corners, the region is enlarged by a skin
-//! (see [`Curves::skin`]); pieces that lie only in the skin are dropped.
+//! (see [`Curves::skin`]); pieces that lie only in the skin are replaced by boxes of [`Cause::Skin`] where they may touch the region.
 //!
 //! Cells at the smallest size stay open. They are singular points (nodes, cusps, isolated points), whose branches are the crossings of their outer faces.
 

@@ -65,7 +65,7 @@ const HOPELESS: f64 = 16.0;
 
 pub(crate) struct Tracer<'a> {
     system: &'a System,
-    tolerance: f64,
+    pub(super) tolerance: f64,
     shape: CurveShape,
     monitor: &'a dyn Monitor,
     watch: Watch,

@@ -126,6 +126,8 @@ pub enum Cause {
     Vertices,
     /// The [`Monitor`] asked to stop.
     Cancelled,
+    /// A curve may touch the boundary of the region in it, from outside.
+    Skin,
 }
 
 impl std::fmt::Display for Cause {
@@ -139,6 +141,7 @@ impl std::fmt::Display for Cause {
             Self::Time => "time used up",
             Self::Vertices => "budget of vertices used up",
             Self::Cancelled => "cancelled",
+            Self::Skin => "a curve may touch the region's boundary from outside",
         })
     }
 }

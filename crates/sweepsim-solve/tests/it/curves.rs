@@ -390,3 +390,29 @@ fn cubics_have_the_topology_of_chords() {
     let error = CurveSolver::new(1e-3).cubics().solve(&wave, &()).unwrap_err();
     assert_eq!(error, sweepsim_solve::SolveError::Cubics);
 }
+
+#[test]
+fn zeros_on_the_skin_of_the_region_are_named() {
+    let side = [Enclosure::new(-1.0, 1.0).unwrap(); 2];
+    // The circle through the corners, and one that touches a side from outside.
+    let corners: &[[f64; 2]] = &[[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
+    for (equation, zeros) in [("x^2 + y^2 = 2", corners), ("(x - 2)^2 + y^2 = 1", &[[1.0, 0.0]])] {
+        let system = System::parse(&[equation], &["x", "y"], &side).unwrap();
+        let curves = CurveSolver::new(1e-3).solve(&system, &()).unwrap();
+        for zero in zeros {
+            let named = |b: &[Enclosure]| b.iter().zip(zero).all(|(b, x)| b.contains(*x));
+            let found = curves.singular.iter().filter(|s| named(&s.bounds)).count();
+            let on = |p: &sweepsim_solve::CurvePoint| (p.point[0] - zero[0]).hypot(p.point[1] - zero[1]) < 1e-3;
+            let traced = curves.curves.iter().any(|c| c.points.iter().any(on));
+            assert!(found == 1 || traced, "{equation}: {zero:?} {curves:?}");
+        }
+        // Nothing else is, and the boxes are no larger than the tolerance makes them.
+        assert!(curves.singular.len() <= zeros.len(), "{equation}: {curves:?}");
+        assert!(
+            curves
+                .singular
+                .iter()
+                .all(|s| s.bounds.iter().all(|b| b.radius() < 3e-3))
+        );
+    }
+}

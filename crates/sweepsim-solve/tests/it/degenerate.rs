@@ -328,9 +328,9 @@ fn lines_that_are_almost_parallel() {
         );
         assert!(found == 1 || k > 40, "{texts:?}: {points:?}");
         if found == 1 {
-            // The enclosure is as sharp as that of any other root.
+            // The enclosure is sharp, although the inverse magnifies by up to 2⁴⁰.
             assert!(
-                widest(&points.roots[0].enclosure) < 1e-9,
+                widest(&points.roots[0].enclosure) < 1e-7,
                 "2^-{k}: {:?}",
                 points.roots[0]
             );
