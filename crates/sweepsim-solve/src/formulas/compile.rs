@@ -126,8 +126,7 @@ impl Compiler<'_> {
     }
 
     fn forms(&self, polynomial: &Polynomial) -> Result<Equation, SystemError> {
-        let forms = polynomial.forms().ok_or_else(|| self.not_finite())?;
-        Ok(Equation::sum(forms))
+        polynomial.equation().ok_or_else(|| self.not_finite())
     }
 
     /// The part as one step of the expression.

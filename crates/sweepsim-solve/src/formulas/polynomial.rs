@@ -5,9 +5,9 @@
 //! by the sizes of the factors only.
 
 use super::numbers::{ROUNDING, Real};
-use crate::Enclosure;
 use crate::coefficients::MAX_DEGREE;
 use crate::numbers::Double;
+use crate::{Enclosure, Equation};
 use sweepsim_spline::Bernstein;
 
 /// Products with more coefficients than this, or that take more multiplications, are left unexpanded.
@@ -160,10 +160,9 @@ impl Block {
         finite.then_some(self)
     }
 
-    /// The coefficients rounded to one number each, with the error of that.
-    fn form(&self) -> Option<Bernstein> {
+    /// The unscaled coefficients, with a bound of their error.
+    fn unscaled(&self) -> (Vec<Double>, f64) {
         let rows: Vec<Vec<Double>> = self.degrees.iter().map(|d| binomials(*d)).collect();
-        let mut rounded: f64 = 0.0;
         let mut index = vec![0usize; self.degrees.len()];
         let mut coefficients = Vec::with_capacity(self.scaled.len());
         for c in &self.scaled {
@@ -173,8 +172,7 @@ impl Block {
                     value = value.div(row[*i]);
                 }
             }
-            rounded = rounded.max(value.lo.abs());
-            coefficients.push(value.hi);
+            coefficients.push(value);
             for (i, d) in index.iter_mut().zip(&self.degrees) {
                 *i += 1;
                 if i <= &mut d.clone() {
@@ -184,8 +182,26 @@ impl Block {
             }
         }
         let steps = (2 * self.degrees.len() + 4) as f64;
-        let error = (self.error + rounded + steps * (ROUNDING * self.size + UNDERFLOW)) * (1.0 + 4.0 * f64::EPSILON);
-        Bernstein::with_error(&self.degrees, coefficients, error).ok()
+        let error = (self.error + steps * (ROUNDING * self.size + UNDERFLOW)) * (1.0 + 4.0 * f64::EPSILON);
+        (coefficients, error)
+    }
+
+    /// The form with coefficients of one number each.
+    fn form(&self) -> Option<Bernstein> {
+        let (coefficients, error) = self.unscaled();
+        let rounded = coefficients.iter().fold(0.0, |m: f64, c| m.max(c.lo.abs()));
+        let whole = coefficients.iter().map(|c| c.hi).collect();
+        Bernstein::with_error(&self.degrees, whole, (error + rounded) * (1.0 + 4.0 * f64::EPSILON)).ok()
+    }
+
+    /// The equation with coefficients of two numbers each, unless one suffices.
+    fn pairs(&self) -> Option<Equation> {
+        let (coefficients, error) = self.unscaled();
+        if coefficients.iter().all(|c| c.lo == 0.0) {
+            return self.form().map(Equation::from);
+        }
+        let pairs: Vec<(f64, f64)> = coefficients.iter().map(|c| (c.hi, c.lo)).collect();
+        Equation::of_pairs(&self.degrees, &pairs, error).ok()
     }
 }
 
@@ -297,8 +313,15 @@ impl Polynomial {
         self.multiply(&Self::constant(self.variables, inverse))
     }
 
-    /// As forms over the domain; `None` if a number is not finite.
-    pub(super) fn forms(&self) -> Option<Vec<Bernstein>> {
-        self.blocks.iter().map(Block::form).collect()
+    /// As an equation over the domain; `None` if a number is not finite. A single form keeps all digits of its coefficients, since clusters of roots
+    /// may need them; sums of forms in different variables are rounded.
+    pub(super) fn equation(&self) -> Option<Equation> {
+        let (constants, others): (Vec<&Block>, Vec<&Block>) = self.blocks.iter().partition(|b| b.is_constant());
+        if let [form] = &others[..] {
+            let whole = constants.iter().try_fold((*form).clone(), |sum, c| sum.add(c))?;
+            return whole.pairs();
+        }
+        let forms: Option<Vec<Bernstein>> = self.blocks.iter().map(Block::form).collect();
+        forms.map(Equation::sum)
     }
 }
