@@ -99,8 +99,14 @@ fn assemblies(job: &Job) -> BTreeMap<u32, Assembly> {
 }
 
 fn states(path: &JobPath) -> Vec<MoveState> {
-    let state = |rapid: &bool| if *rapid { MoveState::RAPID } else { MoveState::FEED };
-    path.rapid.iter().map(state).collect()
+    let is = |list: &[bool], number: usize| list.get(number).copied().unwrap_or_default();
+    let state = |(number, rapid): (usize, &bool)| {
+        let state = if *rapid { MoveState::RAPID } else { MoveState::FEED };
+        state
+            .with_spindle_stopped(is(&path.spindle_stopped, number))
+            .with_no_feed(is(&path.no_feed, number))
+    };
+    path.rapid.iter().enumerate().map(state).collect()
 }
 
 fn target(session: &JobSession) -> Result<Option<Target>, Failure> {

@@ -130,3 +130,23 @@ fn too_little_is_found_as_well() {
     assert_eq!((excess.kind.as_str(), excess.line), ("excess", None));
     assert!((excess.depth - 0.2).abs() < 1e-3 && (report.excess.unwrap().max - 0.2).abs() < 1e-3);
 }
+
+#[test]
+fn cuts_with_a_stopped_spindle_or_without_a_feed() {
+    let folder = workdir(&job("", 12.0, LIMITS));
+    let lines = |program: String| -> Vec<(String, Option<usize>)> {
+        fs::write(folder.path("part.nc"), program).unwrap();
+        let (_, findings) = verified(&folder, 1, &[]);
+        findings.into_iter().map(|f| (f.kind, f.line)).collect()
+    };
+    let spindle = |line| ("spindle".to_owned(), Some(line));
+    // Stopped after the first pass.
+    assert_eq!(lines(PROGRAM.replace("\nZ3\n", "\nZ3 M5\n")), [spindle(8)]);
+    // It starts too late: when it has cut already.
+    let late = PROGRAM.replace("S8000 M3\n", "").replace("\nZ3\n", "\nZ3 S8000 M3\n");
+    assert_eq!(lines(late), [spindle(5)]);
+    // A program that never mentions it does not control it.
+    let silent = PROGRAM.replace("S8000 M3\n", "");
+    fs::write(folder.path("part.nc"), silent).unwrap();
+    assert_eq!(verified(&folder, 0, &[]).1, []);
+}

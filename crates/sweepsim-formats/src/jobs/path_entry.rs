@@ -50,6 +50,8 @@ impl JobReader<'_> {
             vec![JobPath {
                 tool,
                 rapid: vec![false; path.moves()],
+                spindle_stopped: Vec::new(),
+                no_feed: Vec::new(),
                 path,
                 source,
                 origins: Vec::new(),

@@ -4,7 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
-use sweepsim_nc::{Call, Note, Program, ProgramPose};
+use sweepsim_nc::{Call, Event, EventKind, Note, Program, ProgramPose, Spindle};
 
 use super::schema;
 use super::tool_box::ToolBox;
@@ -22,6 +22,10 @@ pub struct JobPath {
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Vec<bool>,
+    /// Whether the spindle stands still in each move; empty if the program never mentions the spindle.
+    pub spindle_stopped: Vec<bool>,
+    /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
+    pub no_feed: Vec<bool>,
     /// Where each pose comes from; empty for poses in the job itself.
     pub origins: Vec<Origin>,
     /// The files of the program, the main program first.
@@ -98,9 +102,14 @@ pub(crate) fn of_program(
         line: pose.line,
         call: pose.call,
     };
+    let stopped = stopped_spindle(&program);
+    let has_feed = program.poses.iter().any(|pose| pose.feed.is_some());
     let mut paths = Vec::new();
+    let mut begin = 0;
     for section in program.sections() {
         let first = section[0];
+        let ends = begin + 1..begin + section.len();
+        begin += section.len();
         let number = match (tool, first.tool) {
             (Some(tool), _) | (None, Some(tool)) => tool,
             (None, None) => {
@@ -135,6 +144,13 @@ pub(crate) fn of_program(
             path,
             source: shown.to_owned(),
             rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
+            spindle_stopped: stopped.get(ends).unwrap_or_default().to_vec(),
+            no_feed: if has_feed {
+                let missing = |pose: &ProgramPose| !pose.rapid && pose.feed.is_none();
+                section[1..].iter().map(missing).collect()
+            } else {
+                Vec::new()
+            },
             origins: section.iter().map(origin).collect(),
             files: files.clone(),
             calls: calls.clone(),
@@ -142,6 +158,28 @@ pub(crate) fn of_program(
         });
     }
     Ok(paths)
+}
+
+/// Whether the spindle stands still at each pose; empty if it never turns, so that the program does not control it.
+fn stopped_spindle(program: &Program) -> Vec<bool> {
+    let spindle = |event: &Event| match event.kind {
+        EventKind::Spindle(spindle) => Some((event.pose, spindle == Spindle::Stopped)),
+        _ => None,
+    };
+    let switched: Vec<(usize, bool)> = program.events.iter().filter_map(spindle).collect();
+    if switched.iter().all(|(_, stopped)| *stopped) {
+        return Vec::new();
+    }
+    let mut next = switched.into_iter().peekable();
+    let mut stopped = true;
+    let mut all = Vec::with_capacity(program.poses.len());
+    for pose in 0..program.poses.len() {
+        while let Some((_, now)) = next.next_if(|(at, _)| *at <= pose) {
+            stopped = now;
+        }
+        all.push(stopped);
+    }
+    all
 }
 
 fn second_tool(program: &Program) -> Option<&ProgramPose> {
