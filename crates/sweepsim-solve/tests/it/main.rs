@@ -4,6 +4,7 @@ mod bad_input;
 mod budgets;
 mod bundles;
 mod counts;
+mod cubics;
 mod curves;
 mod degenerate;
 mod expressions;
