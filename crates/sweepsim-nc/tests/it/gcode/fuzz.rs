@@ -16,7 +16,7 @@ impl Random {
     }
 
     fn below(&mut self, bound: usize) -> usize {
-        (u64::from(self.next()) * bound.max(1) as u64 >> 32) as usize
+        ((u64::from(self.next()) * bound.max(1) as u64) >> 32) as usize
     }
 
     fn one<'a>(&mut self, of: &[&'a str]) -> &'a str {
