@@ -104,7 +104,8 @@ fn derivatives_follow_the_rules() {
 
 #[test]
 fn models_of_functions_enclose_them() {
-    let functions: [(Function, fn(f64) -> f64); 9] = [
+    type Example = (Function, fn(f64) -> f64);
+    let functions: [Example; 9] = [
         (Function::Sine, f64::sin),
         (Function::Cosine, f64::cos),
         (Function::Tangent, f64::tan),

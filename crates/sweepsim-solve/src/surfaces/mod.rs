@@ -110,6 +110,9 @@ pub struct SurfaceSolver {
     pub tolerance: f64,
 }
 
+/// The part of a time budget that is left for the search and the mesh: naming what is left, and releasing the tree, takes up to a third as long again.
+const SEARCH: f64 = 0.75;
+
 impl SurfaceSolver {
     /// Creates a solver with the default limits and this tolerance for the mesh.
     #[must_use]
@@ -188,7 +191,10 @@ impl SurfaceSolver {
             nodes: Vec::new(),
             statistics: SolveStatistics::default(),
             doubles: Vec::new(),
-            watch: Watch::new(&self.options),
+            watch: Watch::new(&SolveOptions {
+                time: self.options.time.map(|time| time.mul_f64(SEARCH)),
+                ..self.options.clone()
+            }),
             stopped: None,
             open: 0,
         };

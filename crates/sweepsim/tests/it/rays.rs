@@ -47,7 +47,8 @@ proptest! {
                 prop_assert!((a.z - b.z).abs() * steep < 2e-6, "{} {}", a.z, b.z);
                 if steep > 0.1 {
                     let back = turn.inverse() * Vector3::from(b.normal.map(f64::from));
-                    prop_assert!((back - normal).norm() < 1e-4);
+                    // Each is stored to 6.5e-5.
+                    prop_assert!((back - normal).norm() < 1.4e-4);
                 }
             }
         }

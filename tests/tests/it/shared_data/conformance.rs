@@ -92,9 +92,10 @@ fn tool_table(text: &str) -> Vec<(u32, ToolOffset)> {
             };
             let number = get('T')?.parse().ok()?;
             let length = |letter| get(letter).and_then(|value| value.parse::<f64>().ok()).unwrap_or(0.0);
-            let mut tool = ToolOffset::default();
-            tool.length = 25.4 * length('Z');
-            tool.diameter = 25.4 * length('D');
+            let tool = ToolOffset {
+                length: 25.4 * length('Z'),
+                diameter: 25.4 * length('D'),
+            };
             Some((number, tool))
         })
         .collect()

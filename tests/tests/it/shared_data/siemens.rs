@@ -107,18 +107,18 @@ fn near(found: [f64; 3], expected: [f64; 3]) {
 fn poses_by_hand() {
     let program = read("Achskreuz.mpf");
     // N370 G2 X0.0 Y20. I0.0 J-7.495 from X0 Y34.99: half a circle in the plane of G54.
-    let half = at(&program, 37);
+    let half = at(&program, 38);
     near(half.pose.tip(), [0.0, 20.0, -2.0 + 1.0]);
     let Course::Arc(arc) = half.way.course else {
         panic!("{half:?}")
     };
     near(arc.centre(), [0.0, 27.495, -1.0]);
     assert!((arc.angle().abs() - std::f64::consts::PI).abs() < 1e-12);
-    // B90 C0, AROT Y90: N10360 X31 Y-15.001 Z-1. Ry(90) (x, y, z) = (z, y, −x), and the tool points along +X.
+    // B90 C0, AROT Y90: N10350, at X31 Y-15.001 Z-1. Ry(90) (x, y, z) = (z, y, −x), and the tool points along +X.
     let pose = at(&program, 1036).pose;
     near(pose.tip(), [-1.0, -15.001, -31.0]);
     near(pose.axis(), [1.0, 0.0, 0.0]);
-    // B90 C90, AROT X-90, AROT Z90: Rx(−90) Rz(90) (x, y, z) = (−y, z, −x); N16040 X12 Y46.001 Z52. The tool points along +Y.
+    // B90 C90, AROT X-90, AROT Z90: Rx(−90) Rz(90) (x, y, z) = (−y, z, −x); N16030, at X12 Y46.001 Z52. The tool points along +Y.
     let pose = at(&program, 1604).pose;
     near(pose.tip(), [-46.001, 52.0, -12.0]);
     near(pose.axis(), [0.0, 1.0, 0.0]);
