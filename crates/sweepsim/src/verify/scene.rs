@@ -78,7 +78,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Options of [`verify`].
+/// Options of [`verify`](fn@crate::verify::verify).
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct VerifyOptions {
@@ -130,7 +130,7 @@ pub struct MoveRemoval {
     pub depth: f64,
 }
 
-/// The result of [`verify`].
+/// The result of [`verify`](fn@crate::verify::verify).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Verification {
