@@ -103,8 +103,9 @@ impl Drafter<'_> {
         } else {
             "millimetres"
         };
+        let pieces = if sections == 1 { "piece" } else { "pieces" };
         let mut said = vec![format!(
-            "program: {moves} moves, {rapids} of them rapids, in {sections} pieces, written in {units}"
+            "program: {moves} moves, {rapids} of them rapids, in {sections} {pieces}, written in {units}"
         )];
         for (number, tool) in tools {
             let name = tool
