@@ -90,9 +90,14 @@ pub fn verify(
     };
     let total = program.iter().map(|tool| tool.path.moves()).sum();
     let mut before = 0;
-    'program: for (number, toolpath) in program.iter().enumerate() {
-        let source = u32::try_from(number).unwrap_or(u32::MAX);
-        work.options = options.sweep.clone().path_number(source);
+    for (number, toolpath) in program.iter().enumerate() {
+        if work.done.stopped {
+            break;
+        }
+        work.options = options
+            .sweep
+            .clone()
+            .path_number(u32::try_from(number).unwrap_or(u32::MAX));
         let solids = Solids::new(toolpath, &work)?;
         for moves in runs(toolpath) {
             let seen = work.done.findings.len();
@@ -103,11 +108,11 @@ pub fn verify(
                     .partial_cmp(&(b.number, b.time, b.kind))
                     .unwrap_or(std::cmp::Ordering::Equal)
             });
-            for finding in &work.done.findings[seen..] {
-                if receive(finding).is_break() {
-                    work.done.stopped = true;
-                    break 'program;
-                }
+            let mut found = work.done.findings[seen..].iter();
+            if let Some(last) = found.position(|finding| receive(finding).is_break()) {
+                work.done.findings.truncate(seen + last + 1);
+                work.done.stopped = true;
+                break;
             }
         }
         before += toolpath.path.moves();
@@ -198,16 +203,6 @@ impl Work<'_> {
         }
         self.remove(path, &cut);
         Ok(())
-    }
-
-    fn arena<'a>(&'a self, grid: &'a Grid) -> Arena<'a> {
-        Arena {
-            grid,
-            options: &self.options,
-            monitor: self.monitor,
-            unresolved: Vec::new(),
-            undecided: Vec::new(),
-        }
     }
 
     /// What a solid sweeps of the lines whose material it comes near.
@@ -303,7 +298,13 @@ impl Work<'_> {
         if material.is_empty() {
             return Ok(());
         }
-        let mut arena = self.arena(grid);
+        let mut arena = Arena {
+            grid,
+            options: &self.options,
+            monitor: self.monitor,
+            unresolved: Vec::new(),
+            undecided: Vec::new(),
+        };
         let mut touches = Vec::new();
         arena.touches(touching, moves, material, &mut touches)?;
         let Arena {
