@@ -3,11 +3,13 @@
 //! This library exists only for the command's binary. In your own code, use the crates below it: [`sweepsim`],
 //! `sweepsim_dexel`, `sweepsim_formats`, `sweepsim_motion`, `sweepsim_nc`, `sweepsim_picture`.
 //!
-//! `arguments` parses the command line, `session` holds the code shared by the commands, and `commands` has a module for each command.
+//! `arguments` parses the command line, `session` holds the code shared by the commands, `warnings` finds what is odd about a job, and `commands` has
+//! a module for each command.
 
 mod arguments;
 mod commands;
 mod session;
+mod warnings;
 
 use arguments::{Arguments, Command};
 use clap::Parser;

@@ -30,13 +30,13 @@ struct Inner {
 #[non_exhaustive]
 pub enum Problem {
     /// The file could not be read.
-    #[error("cannot read this file: {0}")]
+    #[error("cannot read this file: {}", io_reason(.0))]
     Read(#[source] io::Error),
     /// The file could not be written.
-    #[error("cannot write this file: {0}")]
+    #[error("cannot write this file: {}", io_reason(.0))]
     Write(#[source] io::Error),
     /// A file that this one refers to could not be read.
-    #[error("cannot read the {what} file {}: {source}", .file.display())]
+    #[error("cannot read the {what} file {}: {}", .file.display(), io_reason(.source))]
     Named {
         /// What the file is for.
         what: &'static str,
@@ -110,6 +110,23 @@ pub enum Problem {
     /// A frame is invalid.
     #[error("{0}")]
     Frame(#[source] FrameError),
+}
+
+/// Why the system could not read or write, in words for those whose disk it is.
+#[must_use]
+pub fn io_reason(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file or folder",
+        io::ErrorKind::PermissionDenied => "permission denied: expected a place that you may read and write",
+        io::ErrorKind::StorageFull => "the disk is full: expected room for the whole file; nothing of it was kept",
+        io::ErrorKind::QuotaExceeded => {
+            "your share of the disk is used up: expected room for the whole file; nothing of it was kept"
+        }
+        io::ErrorKind::FileTooLarge => "the file would be larger than this disk or process allows",
+        io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only",
+        _ => return error.to_string(),
+    }
+    .to_owned()
 }
 
 fn list(numbers: &[u32]) -> String {

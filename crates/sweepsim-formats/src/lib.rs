@@ -56,7 +56,7 @@ pub use dexels::{
     write_dexels_npz, write_dexels_vtu,
 };
 pub use drafts::{Draft, DraftOptions, DraftStock, draft};
-pub use error::{FormatError, Problem, TextPosition};
+pub use error::{FormatError, Problem, TextPosition, io_reason};
 pub use jobs::{Job, JobPath, Limits, Origin, Target, Units};
 pub use meshes::{
     MeshFormat, parse_stl, read_3mf, read_glb, read_mesh_file, read_ply, read_stl, read_vtp, write_3mf, write_glb,

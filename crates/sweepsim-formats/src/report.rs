@@ -48,6 +48,9 @@ pub struct Report {
     /// What each path removes (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paths: Option<Vec<PathSummary>>,
+    /// What is odd about the job although it could be run: each in one sentence.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// What was ignored or decided while reading the job and its files.
     pub notes: Vec<String>,
 }
@@ -189,6 +192,9 @@ pub struct ComparisonReport {
     pub cells: [usize; 2],
     /// Distances up to this count as 0.
     pub tolerance: f64,
+    /// What of the request could not be done, each in one sentence.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// The duration of each phase, in order.
     pub seconds: IndexMap<String, f64>,
     /// The volume of the part.

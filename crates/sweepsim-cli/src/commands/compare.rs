@@ -64,7 +64,8 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let range = options
         .range
         .unwrap_or(round(f64::from(largest).max(options.tolerance)));
-    let png = picture(&options.view, &mesh, Some((&values, range)))?;
+    let (png, missed) = picture(&options.view, &mesh, Some((&values, range)))?;
+    report.warnings = missed;
     outputs.write("comparison.png", |file| file.write_all(&png))?;
     report
         .seconds
@@ -274,6 +275,9 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
                 words::counted(report.unmatched as u64, "end")
             ),
         );
+    }
+    for warning in &report.warnings {
+        line("warning", warning);
     }
     line("out", &outputs.listed());
     lines

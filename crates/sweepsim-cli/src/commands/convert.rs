@@ -50,7 +50,10 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     let (input, output) = (&options.input, &options.output);
     let extension = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if extension.as_deref() == Some("png") {
-        let png = picture(&options.view, &solid.surface()?, None)?;
+        let (png, missed) = picture(&options.view, &solid.surface()?, None)?;
+        if let Some(first) = missed.into_iter().next() {
+            return Err(Failure::message(first));
+        }
         return Ok(write_atomically(output, |file| file.write_all(&png))?);
     }
     if let Some(format) = MeshFormat::of(output) {

@@ -7,6 +7,7 @@ use super::tri_surface;
 use super::verify::verified;
 use crate::arguments::{Output, RunOptions};
 use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
+use crate::warnings;
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -46,7 +47,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
     let threads = pool.current_num_threads();
     let outcome = pool.install(|| work(task, &mut session, options, first, &mut report));
     session.progress.finish();
-    let outcome = outcome?;
+    let outcome = outcome.map_err(|failure| failure.after(&session.outputs))?;
     let page = Page {
         task,
         job: &session.job,
@@ -104,7 +105,7 @@ fn work(
 ) -> Result<Outcome, Failure> {
     let mut outcome = compute(task, session, options, first, report)?;
     session.progress.check()?;
-    describe(report, session, options, &outcome);
+    describe(task, report, session, options, &outcome);
     write_dexels(&outcome, session, report)?;
     if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
         let mesh = mesh(task, session, options, &mut outcome, report)?;
@@ -178,7 +179,7 @@ fn compute(
 }
 
 /// Describes the result in the report.
-fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, outcome: &Outcome) {
+fn describe(task: Task, report: &mut Report, session: &JobSession, options: &RunOptions, outcome: &Outcome) {
     let job = &session.job;
     report.job.clone_from(&job.name);
     report.method = options.method.to_string();
@@ -195,6 +196,13 @@ fn describe(report: &mut Report, session: &JobSession, options: &RunOptions, out
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
     report.notes.splice(0..0, session.notes());
+    report.warnings = warnings::before(job, task.uses());
+    if task != Task::Sweep {
+        let paths = report.paths.as_ref();
+        let removed: Option<Vec<f64>> = paths.map(|paths| paths.iter().map(|path| path.removed).collect());
+        let more = warnings::after(job, &outcome.dexels, report.volume_removed, removed.as_deref());
+        report.warnings.extend(more);
+    }
     if options.boundary == BoundaryOperator::Paper {
         let note = "intervals were found by the paper's boundary operator, which fails where a sweep overlaps itself; nothing was audited";
         report.notes.push(note.to_owned());
@@ -252,10 +260,12 @@ fn write_mesh(options: &RunOptions, mesh: &Mesh, session: &mut JobSession, repor
     progress.check()?;
     if outputs.wants(Output::Picture) {
         progress.phase("picture");
-        phase(report, "picture", || {
-            let png = picture(&options.view, mesh, None)?;
-            outputs.write("part.png", |file| file.write_all(&png))
+        let missed = phase(report, "picture", || {
+            let (png, missed) = picture(&options.view, mesh, None)?;
+            outputs.write("part.png", |file| file.write_all(&png))?;
+            Ok::<_, Failure>(missed)
         })?;
+        report.warnings.extend(missed);
     }
     Ok(())
 }

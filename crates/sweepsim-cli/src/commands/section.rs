@@ -2,10 +2,20 @@
 
 use crate::arguments::{Output, SectionOptions};
 use crate::session::{Failure, JobSession, Lines, read_job, words};
+use crate::warnings::{self, Use};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::process::ExitCode;
+use sweepsim::systems::Plane;
 use sweepsim::{BoundaryPiece, Monitor, Options, Section, section as cut_by_plane};
+
+/// What of a job it looks at.
+const USE: Use = Use {
+    command: "`section`",
+    stock: false,
+    grid: false,
+    judges: false,
+};
 
 /// Cuts the swept volume by the plane, and writes `section.svg` and `section.csv`.
 pub(crate) fn section(options: &SectionOptions) -> Result<ExitCode, Failure> {
@@ -27,13 +37,38 @@ pub(crate) fn section(options: &SectionOptions) -> Result<ExitCode, Failure> {
     outputs.write("section.svg", |file| file.write_all(found.svg().as_bytes()))?;
     outputs.write("section.csv", |file| file.write_all(table(&found).as_bytes()))?;
     if !options.quiet {
-        summary(&found, &session).print()?;
+        let mut warnings = warnings::before(&session.job, USE);
+        warnings.extend(missed(&options.plane, &found, &session));
+        summary(&found, &warnings, &session).print()?;
     }
     Ok(if found.open.is_empty() {
         ExitCode::SUCCESS
     } else {
         ExitCode::from(3)
     })
+}
+
+/// A plane that does not meet what the tools sweep, and where that is.
+fn missed(plane: &Plane, section: &Section, session: &JobSession) -> Option<String> {
+    if !section.curves.is_empty() {
+        return None;
+    }
+    let normal = plane.normal();
+    let boxes = session.cuts().into_iter().filter_map(|cut| cut.bounds());
+    // The range of ⟨p, normal⟩ over a box.
+    let ranges = boxes.map(|[low, high]| {
+        let ends = [0, 1, 2].map(|k| [normal[k] * low[k], normal[k] * high[k]]);
+        let sum = |pick: fn(f64, f64) -> f64| ends.iter().map(|[a, b]| pick(*a, *b)).sum::<f64>();
+        [sum(f64::min), sum(f64::max)]
+    });
+    let [from, to] = ranges.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+    let [x, y, z] = normal.map(words::length);
+    Some(format!(
+        "the section is empty: the plane lies at {}, what the tools sweep at {} … {} along ({x}, {y}, {z})",
+        words::length(plane.offset()),
+        words::length(from),
+        words::length(to),
+    ))
 }
 
 /// The name of a piece in `section.csv`.
@@ -69,7 +104,7 @@ fn table(section: &Section) -> String {
 }
 
 /// The summary for the user.
-fn summary(section: &Section, session: &JobSession) -> Lines {
+fn summary(section: &Section, warnings: &[String], session: &JobSession) -> Lines {
     let mut lines = Lines::default();
     let points: usize = section.curves.iter().map(|curve| curve.points.len()).sum();
     lines.line(
@@ -81,6 +116,9 @@ fn summary(section: &Section, session: &JobSession) -> Lines {
             words::counted(section.outline().len() as u64, "part"),
         ),
     );
+    for warning in warnings {
+        lines.line("warning", warning);
+    }
     for note in session.notes() {
         lines.line("note", &note);
     }

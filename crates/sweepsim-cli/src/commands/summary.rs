@@ -2,6 +2,8 @@
 
 use super::task::Task;
 use crate::session::{JobSession, Lines, words};
+use crate::warnings::is_covered;
+
 use sweepsim_formats::{Report, ReportedFinding, Verdict};
 
 /// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
@@ -34,10 +36,15 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
     let volume = report.volume.unwrap_or_default();
     match report.volume_removed {
         Some(removed) => {
+            let stock = if is_covered(&session.job) {
+                "the stock"
+            } else {
+                "the stock on the grid"
+            };
             let part = 100.0 * removed / (removed + volume).max(f64::MIN_POSITIVE);
             line(
                 "removed",
-                &format!("{} mm³, {part:.1} % of the stock", words::measure(removed)),
+                &format!("{} mm³, {part:.1} % of {stock}", words::measure(removed)),
             );
             line("left", &format!("{} mm³", words::measure(volume)));
         }
@@ -67,6 +74,9 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
             words::seconds(sweep),
         ),
     );
+    for warning in &report.warnings {
+        line("warning", warning);
+    }
     for note in &report.notes {
         line("note", note);
     }

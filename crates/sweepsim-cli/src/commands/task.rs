@@ -1,6 +1,7 @@
 //! What `simulate` and `sweep` compute, and with which options.
 
 use crate::arguments::RunOptions;
+use crate::warnings::Use;
 use sweepsim::Options;
 use sweepsim_formats::Job;
 
@@ -13,6 +14,23 @@ pub(crate) enum Task {
     Sweep,
     /// The remaining stock, and all that is wrong with the program.
     Verify,
+}
+
+impl Task {
+    /// What of a job it looks at.
+    pub fn uses(self) -> Use {
+        let command = match self {
+            Self::Simulate => "`simulate`",
+            Self::Sweep => "`sweep`",
+            Self::Verify => "`verify`",
+        };
+        Use {
+            command,
+            stock: self != Self::Sweep,
+            grid: true,
+            judges: self == Self::Verify,
+        }
+    }
 }
 
 /// The options of the sweep.

@@ -1,5 +1,6 @@
 //! Failures of a command, and its exit status.
 
+use super::Outputs;
 use std::fmt;
 use std::process::ExitCode;
 use sweepsim_formats::FormatError;
@@ -13,8 +14,11 @@ const MOST_FURTHER: usize = 9;
 pub(crate) enum Failure {
     /// Bad input or usage.
     Bad(String),
-    /// The user interrupted the run.
-    Interrupted,
+    /// The user, or the system, interrupted the run.
+    Interrupted {
+        /// The output files that were complete by then.
+        written: Vec<&'static str>,
+    },
 }
 
 impl Failure {
@@ -24,11 +28,24 @@ impl Failure {
         Self::Bad(format!("{bold}error{reset}: {text}"))
     }
 
+    /// An interruption, with nothing written yet.
+    pub fn interrupted() -> Self {
+        Self::Interrupted { written: Vec::new() }
+    }
+
+    /// Names the outputs that were complete when the run was interrupted.
+    pub fn after(mut self, outputs: &Outputs) -> Self {
+        if let Self::Interrupted { written } = &mut self {
+            *written = outputs.written.iter().map(|(name, _)| *name).collect();
+        }
+        self
+    }
+
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Bad(_) => 2,
             // What shells report for a process ended by SIGINT.
-            Self::Interrupted => 130,
+            Self::Interrupted { .. } => 130,
         })
     }
 }
@@ -65,7 +82,15 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bad(text) => f.write_str(text),
-            Self::Interrupted => f.write_str("interrupted: nothing was written"),
+            Self::Interrupted { written } if written.is_empty() => f.write_str("interrupted: nothing was written"),
+            Self::Interrupted { written } => write!(
+                f,
+                "interrupted: {} complete, nothing else was written",
+                match written.as_slice() {
+                    [one] => format!("{one} is"),
+                    several => format!("{} are", several.join(", ")),
+                }
+            ),
         }
     }
 }

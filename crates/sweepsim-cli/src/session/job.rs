@@ -91,7 +91,7 @@ impl JobSession {
     /// The message for the user if a sweep fails.
     pub fn failed(&self, error: SweepError) -> Failure {
         match error {
-            SweepError::Cancelled => Failure::Interrupted,
+            SweepError::Cancelled => Failure::interrupted(),
             error => self.failure(error),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::Failure;
 use std::fmt::Write as _;
+use sweepsim_formats::io_reason;
 
 /// Labelled lines, in two columns.
 #[derive(Debug, Default)]
@@ -24,9 +25,10 @@ impl Lines {
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     use std::io::{ErrorKind, Write};
     match anstream::stdout().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::message(format!("cannot write to standard output: {error}")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::message(format!(
+            "cannot write to standard output: {}",
+            io_reason(&error)
+        ))),
         _ => Ok(()),
     }
 }

@@ -5,7 +5,7 @@ use crate::arguments::Output;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use sweepsim_formats::{AtomicFile, write_atomically};
+use sweepsim_formats::{AtomicFile, io_reason, write_atomically};
 
 /// The output folder, and the files to write to it.
 #[derive(Debug)]
@@ -19,8 +19,13 @@ pub(crate) struct Outputs {
 impl Outputs {
     /// Creates the folder, and checks that files can be written to it.
     pub fn new(folder: PathBuf, only: &[Output]) -> Result<Self, Failure> {
-        let refused =
-            |error: io::Error| Failure::message(format!("cannot write to the folder {}: {error}", folder.display()));
+        let refused = |error: io::Error| {
+            Failure::message(format!(
+                "cannot write to the folder {}: {}",
+                folder.display(),
+                io_reason(&error)
+            ))
+        };
         fs::create_dir_all(&folder).map_err(refused)?;
         // Dropped without a commit, it leaves no file.
         drop(AtomicFile::create(&folder.join("report.json"))?);

@@ -1,4 +1,4 @@
-//! The progress bar, and interruption by Ctrl-C.
+//! The progress bar, and interruption by Ctrl-C or by the system (SIGTERM, SIGHUP).
 
 use super::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -52,7 +52,7 @@ impl Progress {
     pub fn check(&self) -> Result<(), Failure> {
         if self.cancelled() {
             self.finish();
-            return Err(Failure::Interrupted);
+            return Err(Failure::interrupted());
         }
         Ok(())
     }

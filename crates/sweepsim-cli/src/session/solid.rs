@@ -1,12 +1,12 @@
 //! Parts from files, as meshes or dexels, and pictures of them.
 
 use super::Failure;
-use super::words::measure;
+use super::words::length;
 use crate::arguments::{GridOptions, ViewOptions};
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriangleSoup};
 use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
-use sweepsim_picture::{Drawing, legend};
+use sweepsim_picture::{CuttingPlane, Drawing, legend};
 
 /// The default number of dexels along the longer side of a mesh.
 const CELLS: f64 = 300.0;
@@ -155,21 +155,17 @@ impl GridOptions {
 }
 
 /// The picture of a part as PNG: coloured by what made its faces, or by a value per vertex on a scale of plus and minus a range.
-pub(crate) fn picture(options: &ViewOptions, mesh: &Mesh, values: Option<(&[f32], f64)>) -> Result<Vec<u8>, Failure> {
-    if let Some([low, high]) = bounds(mesh) {
-        for section in &options.section {
-            let (from, to) = (low[section.axis.index()], high[section.axis.index()]);
-            if !(from < section.at && section.at < to) {
-                let axis = ["x", "y", "z"][section.axis.index()];
-                let [at, from, to] = [section.at, from, to].map(measure);
-                let message = format!("--section {axis}={at} does not meet the part, which is from {from} to {to}");
-                return Err(Failure::message(message));
-            }
-        }
-    }
+///
+/// A section that does not meet the part is left out, and said in the list.
+pub(crate) fn picture(
+    options: &ViewOptions,
+    mesh: &Mesh,
+    values: Option<(&[f32], f64)>,
+) -> Result<(Vec<u8>, Vec<String>), Failure> {
+    let (sections, missed) = meeting(&options.section, mesh);
     let mut view = options.camera;
     view.size = options.size;
-    let mut drawing = Drawing::new(mesh).sections(&options.section);
+    let mut drawing = Drawing::new(mesh).sections(&sections);
     if let Some((values, range)) = values {
         view.legend = legend::WIDTH;
         drawing = drawing.values(values, range as f32);
@@ -178,7 +174,28 @@ pub(crate) fn picture(options: &ViewOptions, mesh: &Mesh, values: Option<(&[f32]
     if let Some((_, range)) = values {
         legend::draw(&mut image, range as f32);
     }
-    image
-        .png()
-        .map_err(|error| Failure::message(format!("cannot make the picture: {error}")))
+    let png = image.png();
+    let png = png.map_err(|error| Failure::message(format!("cannot make the picture: {error}")))?;
+    Ok((png, missed))
+}
+
+/// The sections that meet a part, and what is to be said of the others.
+fn meeting(sections: &[CuttingPlane], mesh: &Mesh) -> (Vec<CuttingPlane>, Vec<String>) {
+    let Some([low, high]) = bounds(mesh) else {
+        return (sections.to_vec(), Vec::new());
+    };
+    let (mut all, mut missed) = (Vec::new(), Vec::new());
+    for section in sections {
+        let (from, to) = (low[section.axis.index()], high[section.axis.index()]);
+        if from < section.at && section.at < to {
+            all.push(*section);
+        } else {
+            let axis = ["x", "y", "z"][section.axis.index()];
+            let [at, from, to] = [section.at, from, to].map(length);
+            missed.push(format!(
+                "--section {axis}={at} does not meet the part, which is from {from} to {to}: the picture is without it"
+            ));
+        }
+    }
+    (all, missed)
 }

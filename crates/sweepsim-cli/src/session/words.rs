@@ -38,6 +38,15 @@ pub(crate) fn measure(value: f64) -> String {
     }
 }
 
+/// A length in a sentence: as [`measure`], without zeros at the end.
+pub(crate) fn length(value: f64) -> String {
+    let text = measure(value);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 /// A duration in seconds.
 pub(crate) fn seconds(value: f64) -> String {
     if value >= 100.0 {
@@ -80,6 +89,10 @@ mod tests {
         assert_eq!(measure(12.0), "12.000");
         assert_eq!(measure(0.0), "0");
         assert_eq!(measure(f64::NAN), "NaN");
+        assert_eq!(
+            [12.0, 0.5, -90.25, 1234.0, 0.0].map(length),
+            ["12", "0.5", "−90.25", "1,234", "0"]
+        );
         assert_eq!(seconds(0.0123), "12 ms");
         assert_eq!(bytes(1_500_000), "1.5 MB");
     }

@@ -6,3 +6,4 @@ mod exchange;
 mod programs;
 mod support;
 mod verify;
+mod warnings;

@@ -87,11 +87,15 @@ pub(crate) fn of_program(
         let place = TextPosition::in_line(line, &whole, 1, whole.chars().count());
         FormatError::new(problem, Some(place)).in_file(file)
     };
-    if let (Some(tool), Some(other)) = (tool, second_tool(&program)) {
-        program.notes.push(Note::new(
-            other.line,
-            format!("the program changes tools; the job's tool {tool} is used throughout"),
-        ));
+    if let Some(tool) = tool {
+        let asked = program.poses.iter().find_map(|pose| Some((pose.tool?, pose.line)));
+        let changes = second_tool(&program).map(|other| (other.line, "the program changes tools".to_owned()));
+        let differs = asked.filter(|(number, _)| *number != tool);
+        let differs = differs.map(|(number, line)| (line, format!("the program asks for tool {number}")));
+        if let Some((line, fact)) = changes.or(differs) {
+            let note = format!("{fact}; the job's tool {tool} is used throughout");
+            program.notes.push(Note::new(line, note));
+        }
     }
     let mut notes = std::mem::take(&mut program.notes);
     let described = std::mem::take(&mut program.tools);

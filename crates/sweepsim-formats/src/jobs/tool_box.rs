@@ -1,11 +1,14 @@
 //! The tools of a job: its own, those of its library, and those that its programs describe.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use sweepsim_motion::{Body, Tool};
 use sweepsim_nc::{Note, ToolDescription};
 
 use crate::error::Problem;
+
+/// Diameters that differ by less than this part are the same, rounded.
+const SAME_DIAMETER: f64 = 1e-3;
 
 /// The tools of a library, and its name.
 pub(crate) type Library = (BTreeMap<u32, ToolDescription>, String);
@@ -20,6 +23,8 @@ pub(crate) struct ToolBox {
     library: Option<Library>,
     /// Tools built from descriptions, and the file that describes them.
     described: BTreeMap<u32, (ToolDescription, String)>,
+    /// Tools of the job itself that were compared with a description.
+    compared: BTreeSet<u32>,
 }
 
 impl ToolBox {
@@ -35,6 +40,7 @@ impl ToolBox {
             notes,
             library,
             described: BTreeMap::new(),
+            compared: BTreeSet::new(),
         }
     }
 
@@ -71,7 +77,10 @@ impl ToolBox {
             return Ok(());
         }
         // The tools of the job itself come first.
-        if self.tools.contains_key(&number) {
+        if let Some(tool) = self.tools.get(&number) {
+            if self.compared.insert(number) {
+                self.notes.extend(other_diameter(number, tool, &description, source));
+            }
             return Ok(());
         }
         let built = description.build().map_err(|problem| Problem::Described {
@@ -92,6 +101,21 @@ impl ToolBox {
         self.described.insert(number, (description, source.to_owned()));
         Ok(())
     }
+}
+
+/// A note on a tool of the job that is wider or narrower than the tool of its number in a program or library.
+fn other_diameter(number: u32, tool: &Tool, description: &ToolDescription, source: &str) -> Option<Note> {
+    let width = |tool: &Tool| 2.0 * tool.bounding_cylinder().radius;
+    let own = width(tool);
+    // Programs mostly give no more than a diameter.
+    let built = || Some(width(&description.build().ok()?.cutter));
+    let other = description.diameter.or_else(built)?;
+    let differs = (own - other).abs() > SAME_DIAMETER * own.max(other);
+    differs.then(|| {
+        let text =
+            format!("tool {number} is {own:.4} mm wide in the job and {other:.4} mm in {source}: the job's is used");
+        Note::new(description.line.max(1), text)
+    })
 }
 
 /// Whether two descriptions are of different cutters.

@@ -26,6 +26,9 @@ pub struct BoundingCylinder {
     pub z: [f64; 2],
 }
 
+/// Chords of a curve of the profile: an arc of at most half a turn deviates from its chords by 3e-5 of its radius.
+const RADIUS_CHORDS: usize = 200;
+
 /// A milling tool: a solid with an exact B-spline boundary. The origin is its tip; `+z` points along its axis to the holder.
 #[derive(Clone, Debug)]
 pub struct Tool {
@@ -138,6 +141,47 @@ impl Tool {
             }
         }
         bound
+    }
+
+    /// The largest radius of the part of the tool below `height`, to within 1e-4 of the tool's own: half the width of a groove of this depth. 0 below the tip.
+    /// For tools of patches, the largest radius of the whole tool.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Profile, ProfileSegment, Tool};
+    /// // 60° between the flanks.
+    /// let corners = [[3.0, 3.0 * 3f64.sqrt()], [3.0, 20.0], [0.0, 20.0]];
+    /// let lines = corners.map(|to| ProfileSegment::Line { to });
+    /// let engraver = Tool::from_profile(Profile::new([0.0, 0.0], lines.into())?);
+    /// assert!((engraver.radius_below(0.5) - 0.5 / 3f64.sqrt()).abs() < 1e-12);
+    /// assert!((Tool::ball(5.0, 30.0)?.radius_below(1.0) - 3.0).abs() < 3e-4);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn radius_below(&self, height: f64) -> f64 {
+        let Some(profile) = &self.profile else {
+            return self.bounding_cylinder().radius;
+        };
+        let mut radius: f64 = 0.0;
+        for curve in profile.pieces().iter().flat_map(|piece| piece.curves()) {
+            let chords = if curve.points.len() == 2 { 1 } else { RADIUS_CHORDS };
+            let place = |n: usize| curve.at(n as f64 / chords as f64);
+            for n in 0..chords {
+                let (mut low, mut high) = (place(n), place(n + 1));
+                if low.y > high.y {
+                    std::mem::swap(&mut low, &mut high);
+                }
+                if low.y <= height {
+                    radius = radius.max(low.x);
+                    let share = if high.y > height {
+                        (height - low.y) / (high.y - low.y)
+                    } else {
+                        1.0
+                    };
+                    radius = radius.max(low.x + share * (high.x - low.x));
+                }
+            }
+        }
+        radius
     }
 
     /// Whether the tool is symmetric about its axis.

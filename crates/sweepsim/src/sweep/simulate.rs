@@ -4,9 +4,13 @@ use crate::error::SweepError;
 use crate::sweep::options::Options;
 use crate::sweep::report::Statistics;
 use crate::sweep::run::sweep;
+use crate::time::swept_box::swept_box;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
+
+/// How far [`Cut::bounds`] may be larger than need be, and moves other than SLERP from their law while it is computed, in reaches of the tool.
+const BOX_MARGIN: f64 = 1e-3;
 
 /// A tool and its path.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +27,30 @@ impl<'a> Cut<'a> {
     #[must_use]
     pub fn new(tool: &'a Tool, path: &'a Path) -> Self {
         Self { tool, path }
+    }
+
+    /// A box along the axes of the world that holds all that the tool sweeps: its lowest and highest corner. `None` for a path without moves.
+    ///
+    /// Straight moves without rotation have the box of the tool's [bounding cylinder](Tool::bounding_cylinder) at their ends; others may have a larger one.
+    ///
+    /// ```
+    /// use sweepsim::prelude::*;
+    /// let up = [0.0, 0.0, 1.0];
+    /// let path = Path::new(vec![Pose::new([0.0; 3], up)?, Pose::new([9.0, 0.0, 0.0], up)?])?;
+    /// let [low, high] = Cut::new(&Tool::ball(2.0, 5.0)?, &path).bounds().expect("a move");
+    /// for (found, exact) in low.into_iter().chain(high).zip([-2.0, -2.0, 0.0, 11.0, 2.0, 5.0]) {
+    ///     assert!((found - exact).abs() < 1e-2);
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let cylinder = self.tool.bounding_cylinder();
+        let deviation = BOX_MARGIN * self.tool.reach();
+        let moves = (0..self.path.moves()).flat_map(|number| self.path.segments(number, self.tool.reach(), deviation));
+        let boxes = moves.map(|segment| swept_box(&segment, cylinder, deviation));
+        let whole = boxes.reduce(|a, b| [0, 1, 2].map(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]))?;
+        Some([0, 1].map(|end| whole.map(|range| range[end])))
     }
 }
 

@@ -1,4 +1,5 @@
-//! The motion: the parts of a path in generic position, each cut into pieces of `t`, and the motion at one time in the frame of a patch.
+//! The motion: the parts of a path in generic position, each cut into pieces of `t`, the motion at one time in the frame of a patch, and
+//! boxes around what a solid sweeps.
 
 pub(crate) mod arc;
 pub(crate) mod curve;
@@ -7,3 +8,4 @@ pub(crate) mod moment;
 pub(crate) mod path_parts;
 pub(crate) mod pieces;
 pub(crate) mod placement;
+pub(crate) mod swept_box;

@@ -6,11 +6,12 @@ use crate::methods::line_mask::LineMask;
 use crate::methods::workspace::Workspace;
 use crate::sweep::{CHUNK, Method, Options, Plan, SweptLines};
 use crate::time::path_parts::PathPart;
+use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{BoundingCylinder, Path, Segment, Tool};
+use sweepsim_motion::{Path, Segment, Tool};
 use sweepsim_solve::Monitor;
 
 /// A solid and its path, prepared.
@@ -20,25 +21,6 @@ pub(super) struct MovingSolid<'a> {
     /// One box for each part of the path, which holds all that the solid sweeps there.
     boxes: Vec<Box3>,
     spaces: Mutex<Vec<Workspace>>,
-}
-
-/// The control values of `A q` over all `q` of a cylinder about the tool's axis, and of the tip: they hold all positions of the cylinder.
-fn swept_box(segment: &Segment, cylinder: BoundingCylinder, margin: f64) -> Box3 {
-    let (points, weights) = segment.points();
-    let turns = segment.turns().iter().zip(segment.weights());
-    let turns: Vec<Matrix3<f64>> = turns.map(|(turn, weight)| turn / *weight).collect();
-    [0, 1, 2].map(|k| {
-        let tips = points.iter().zip(&weights).map(|(point, weight)| point[k] / weight);
-        let tip = tips.fold([f64::INFINITY, f64::NEG_INFINITY], |r, x| [r[0].min(x), r[1].max(x)]);
-        let mut own = [f64::INFINITY, f64::NEG_INFINITY];
-        for turn in &turns {
-            let across = cylinder.radius * turn[(k, 0)].hypot(turn[(k, 1)]);
-            let along = cylinder.z.map(|z| z * turn[(k, 2)]);
-            own[0] = own[0].min(along[0].min(along[1]) - across);
-            own[1] = own[1].max(along[0].max(along[1]) + across);
-        }
-        [tip[0] + own[0] - margin, tip[1] + own[1] + margin]
-    })
 }
 
 /// A bound on how far any point of the solid moves.
