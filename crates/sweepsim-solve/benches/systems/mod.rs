@@ -150,10 +150,37 @@ pub fn sphere_section() -> Named {
     }
 }
 
+/// Where a dexel line meets what a circular edge sweeps along the same motion (Eq. 7), in the degrees (2, 3) and (2, 5).
+pub fn edge_sweep() -> Named {
+    let n = 2;
+    let one = Bernstein::constant(n, 1.0);
+    let u = variable(n, 0, -1.0, 2.0);
+    let square = u.mul(&u);
+    let weight = one.add(&square);
+    let along = |c: &[f64]| Bernstein::from_fn(&[0, c.len() - 1], |i| c[i[1]]).expect("a valid form");
+    let angle: f64 = 0.8;
+    let (w, c) = (
+        along(&[1.0, (angle / 2.0).cos(), 1.0]),
+        along(&[1.0, (angle / 2.0).cos(), angle.cos()]),
+    );
+    let (x, y) = (along(&[0.0, 1.0, 2.0, 3.0]), along(&[0.0, 1.0, -0.5, 0.8]));
+    let first = u.scale(2.0).add(&x.sub(&one.scale(1.5)).mul(&weight));
+    let second = c
+        .mul(&one.sub(&square))
+        .add(&y.sub(&one.scale(0.6)).mul(&weight).mul(&w));
+    let forms = [first, second].map(Bernstein::assumed_exact);
+    Named {
+        name: "edge_sweep_eq7",
+        system: System::new(&unit(n), forms).expect("a valid system"),
+        roots: 2,
+    }
+}
+
 /// All systems with points as solutions.
 pub fn all() -> Vec<Named> {
     vec![
         sphere_sweep(),
+        edge_sweep(),
         wilkinson_grid(),
         dense_degree_8(),
         chebyshev_3d(),

@@ -5,7 +5,7 @@
 use super::layout::{Affine, Cell, Layout, MAX_DEGREE, Slopes};
 use super::models::{AffineForm, Doubt, Jet, Value};
 use super::range::Range;
-use super::summand::{evaluate_part, hull_zeros, rest_range};
+use super::summand::{evaluate_part, hull_zeros, part_value, rest_range};
 use super::tape::{Model, Tape};
 use super::tensor;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO};
@@ -67,12 +67,17 @@ impl Layout {
     }
 
     /// The mean of each derivative over the cell (not rigorous; its users bound the rest).
+    #[inline(always)]
     pub(crate) fn mean_slopes(&self, c: &[f64]) -> Square {
-        let Some(tape) = &self.tape else {
-            let mut slope = ZERO;
-            self.mean_row_slopes(c, &mut slope);
-            return slope;
-        };
+        let mut slope = ZERO;
+        match &self.tape {
+            None => self.mean_row_slopes(c, &mut slope),
+            Some(tape) => self.combined_mean_slopes(tape, c, &mut slope),
+        }
+        slope
+    }
+
+    fn combined_mean_slopes(&self, tape: &Tape, c: &[f64], slope: &mut Square) {
         let mut rows = vec![[0.0; MAX_UNKNOWNS]; tape.leaves];
         self.mean_row_slopes(c, &mut rows);
         let mut means = vec![0.0; tape.leaves];
@@ -80,7 +85,6 @@ impl Layout {
             let values = part.of(c);
             means[part.equation] += values.iter().sum::<f64>() / values.len() as f64;
         }
-        let mut slope = ZERO;
         for (e, row) in slope.iter_mut().enumerate().take(self.m) {
             let leaf = |r: usize| Value {
                 value: means[r],
@@ -88,7 +92,6 @@ impl Layout {
             };
             *row = tape.run(e, leaf).gradient;
         }
-        slope
     }
 
     #[inline(always)]
@@ -102,6 +105,7 @@ impl Layout {
     }
 
     /// An affine enclosure of each equation, with the given slopes unless equations are combined from leaves.
+    #[inline(always)]
     pub(crate) fn affine(&self, cell: &Cell, slope: Square) -> Affine {
         let mut affine = Affine {
             constant: [0.0; MAX_UNKNOWNS],
@@ -119,6 +123,11 @@ impl Layout {
             );
             return affine;
         };
+        self.combined_affine(tape, cell, &mut affine);
+        affine
+    }
+
+    fn combined_affine(&self, tape: &Tape, cell: &Cell, affine: &mut Affine) {
         let leaves = tape.leaves;
         let mut slopes = vec![[0.0; MAX_UNKNOWNS]; leaves];
         self.mean_row_slopes(&cell.c, &mut slopes);
@@ -133,7 +142,6 @@ impl Layout {
             });
             (affine.constant[e], affine.slope[e], affine.radius[e]) = (form.constant, form.slope, form.radius);
         }
-        affine
     }
 
     /// Affine enclosures of rows with these slopes; `lo` and `hi` are working memory, zero at first.
@@ -256,6 +264,18 @@ impl Layout {
                 jacobian[part.equation][axis.variable] += g;
             }
         }
+    }
+
+    /// The values of [`evaluate`](Self::evaluate) alone.
+    pub(crate) fn values(&self, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> Row {
+        if self.tape.is_some() {
+            return self.evaluate(c, s, buffer).0;
+        }
+        let mut values = [0.0; MAX_UNKNOWNS];
+        for part in &self.parts {
+            values[part.equation] += part_value(part, part.of(c), s, buffer);
+        }
+        values
     }
 
     /// A bound on the error of the values of [`evaluate`](Self::evaluate), for `s` in `[0,1]ⁿ`.

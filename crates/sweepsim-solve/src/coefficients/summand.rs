@@ -5,6 +5,9 @@ use super::tensor;
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row};
 use sweepsim_spline::kernel;
 
+/// Most parts have fewer coefficients than this along an axis, and need no larger arrays.
+const FEW: usize = 16;
+
 /// Range of `c − Σ slope (I/d − ½)`: the part less an affine function, by coefficients (affine functions have their values
 /// at `I/d` as coefficients).
 #[inline(always)]
@@ -13,6 +16,7 @@ pub(crate) fn rest_range(part: &Summand, c: &[f64], slope: &Row) -> (f64, f64) {
         None => (c[0], c[0]),
         Some(first) if first.degree < 4 => rest_range_in::<4>(part, *first, c, slope),
         Some(first) if first.degree < 8 => rest_range_in::<8>(part, *first, c, slope),
+        Some(first) if first.degree < FEW => rest_range_in::<FEW>(part, *first, c, slope),
         Some(first) => rest_range_in::<{ MAX_DEGREE + 1 }>(part, *first, c, slope),
     }
 }
@@ -58,61 +62,79 @@ fn rest_range_in<const N: usize>(part: &Summand, first: Axis, c: &[f64], slope: 
 }
 
 /// Intersects the window with where the hull of the points `(k/d, low[k])`, `(k/d, high[k])` meets 0.
+#[inline(always)]
 pub(crate) fn hull_zeros(low: &[f64], high: &[f64], window: &mut (f64, f64)) {
     let degree = low.len() - 1;
     let step = 1.0 / degree as f64;
     /// Rounding of the crossings, relative to the whole side.
     const PAD: f64 = 16.0 * EPSILON;
-    // From the left: with all on one side at the start, the first crossing of a segment between two of the points.
-    let ends = |values: &dyn Fn(usize) -> f64| -> Option<f64> {
-        // `values(0) > 0`: the least position where the lower hull reaches 0.
-        let mut best = f64::INFINITY;
-        for k in 1..=degree {
-            let v = values(k);
-            if v > 0.0 {
-                continue;
-            }
-            for i in 0..=degree {
-                let u = values(i);
-                if u > 0.0 {
-                    let at = (i as f64 + (k as f64 - i as f64) * (u / (u - v))) * step;
-                    best = tensor::lesser(best, at);
-                }
-            }
-        }
-        (best < f64::INFINITY).then_some(best)
-    };
     let left = if low[0] > 0.0 {
-        ends(&|k| low[k])
+        descent(degree, |k| low[k])
     } else if high[0] < 0.0 {
-        ends(&|k| -high[k])
+        descent(degree, |k| -high[k])
     } else {
-        Some(0.0)
+        0.0
     };
-    let right = if low[degree] > 0.0 {
-        ends(&|k| low[degree - k])
-    } else if high[degree] < 0.0 {
-        ends(&|k| -high[degree - k])
-    } else {
-        Some(0.0)
-    };
-    let (Some(left), Some(right)) = (left, right) else {
+    if left == f64::INFINITY {
         *window = (1.0, 0.0);
         return;
+    }
+    let right = if low[degree] > 0.0 {
+        descent(degree, |k| low[degree - k])
+    } else if high[degree] < 0.0 {
+        descent(degree, |k| -high[degree - k])
+    } else {
+        0.0
     };
-    window.0 = tensor::greater(window.0, left - PAD);
-    window.1 = tensor::lesser(window.1, 1.0 - right + PAD);
+    if right == f64::INFINITY {
+        *window = (1.0, 0.0);
+        return;
+    }
+    window.0 = tensor::greater(window.0, left * step - PAD);
+    window.1 = tensor::lesser(window.1, 1.0 - right * step + PAD);
+}
+
+/// The least position at which the lower hull of the points `(k, values(k))`, of which the first is positive, reaches 0; infinite if all are positive.
+///
+/// The hull crosses 0 along a segment from one of the positive points in front of the first that is not to one of those that are not.
+#[inline(always)]
+fn descent(degree: usize, values: impl Fn(usize) -> f64) -> f64 {
+    let mut best = f64::INFINITY;
+    let Some(first) = (1..=degree).find(|k| values(*k) <= 0.0) else {
+        return best;
+    };
+    for k in first..=degree {
+        let v = values(k);
+        if v > 0.0 {
+            continue;
+        }
+        for i in 0..first {
+            let u = values(i);
+            best = tensor::lesser(best, i as f64 + (k - i) as f64 * (u / (u - v)));
+        }
+    }
+    best
 }
 
 /// Value and gradient (one entry an axis) of a part.
 #[inline(always)]
 pub(crate) fn evaluate_part(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (f64, Row) {
+    if part.axes.iter().all(|a| a.degree < FEW) {
+        evaluate_part_in::<FEW>(part, c, s, buffer)
+    } else {
+        evaluate_part_in::<{ MAX_DEGREE + 1 }>(part, c, s, buffer)
+    }
+}
+
+/// The same, with room for so many coefficients along an axis.
+#[inline(always)]
+fn evaluate_part_in<const N: usize>(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> (f64, Row) {
     let mut gradient = [0.0; MAX_UNKNOWNS];
     let count = part.axes.len();
     if count == 0 {
         return (c[0], gradient);
     }
-    let (mut w, mut d) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
+    let (mut w, mut d) = ([0.0; N], [0.0; N]);
     // Contract the slowest axis first. Tensors alive: the value's, then one for each contracted axis.
     let last = part.axes[count - 1];
     let size = last.inner;
@@ -145,6 +167,29 @@ pub(crate) fn evaluate_part(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec
     (from[0], gradient)
 }
 
+/// The value of a part alone.
+#[inline(always)]
+pub(crate) fn part_value(part: &Summand, c: &[f64], s: &Row, buffer: &mut Vec<f64>) -> f64 {
+    let Some((last, others)) = part.axes.split_last() else {
+        return c[0];
+    };
+    let mut w = [0.0; MAX_DEGREE + 1];
+    if buffer.len() < 2 * last.inner {
+        buffer.resize(2 * last.inner, 0.0);
+    }
+    let (mut from, mut to) = buffer.split_at_mut(last.inner);
+    kernel::basis(last.degree, s[last.variable], &mut w);
+    tensor::contract(c, &w, &mut from[..last.inner]);
+    let mut length = last.inner;
+    for axis in others.iter().rev() {
+        kernel::basis(axis.degree, s[axis.variable], &mut w);
+        tensor::contract(&from[..length], &w, &mut to[..axis.inner]);
+        length = axis.inner;
+        std::mem::swap(&mut from, &mut to);
+    }
+    from[0]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -155,6 +200,66 @@ mod tests {
         hull_zeros(&[-1.0, 3.0], &[-1.0, 3.0], &mut window);
         assert!((window.0 - 0.25).abs() < 1e-14 && (window.1 - 0.25).abs() < 1e-14);
         assert!(window.0 < 0.25 && window.1 > 0.25);
+    }
+
+    #[test]
+    fn hulls_cross_zero_where_the_first_of_all_segments_does() {
+        let mut state = 3u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 23) - 1.0
+        };
+        for case in 0..2000 {
+            let degree = 1 + case % 9;
+            let shift = [0.0, 0.7, -0.7][case % 3];
+            let low: Vec<f64> = (0..=degree).map(|_| next() + shift).collect();
+            let high: Vec<f64> = low.iter().map(|l| l + 0.2 * (next() + 1.0)).collect();
+            // The convex hull of all points meets 0 between the ends of the segments between any two of them.
+            let points: Vec<(f64, f64)> = (0..=degree)
+                .flat_map(|k| [low[k], high[k]].map(|y| (k as f64 / degree as f64, y)))
+                .collect();
+            let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
+            for (x, y) in &points {
+                for (u, v) in &points {
+                    if y * v <= 0.0 && y != v {
+                        let at = x + (u - x) * (y / (y - v));
+                        (first, last) = (first.min(at), last.max(at));
+                    }
+                }
+            }
+            let mut window = (0.0, 1.0);
+            hull_zeros(&low, &high, &mut window);
+            if first > last {
+                assert!(window.0 > window.1, "{case}: {window:?}");
+            } else {
+                let close = (window.0.max(0.0) - first).abs() < 1e-14 && (window.1.min(1.0) - last).abs() < 1e-14;
+                assert!(
+                    close && window.0 <= first && window.1 >= last,
+                    "{case}: {window:?} {first} {last}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn values_alone_are_those_with_derivatives() {
+        let axes = [(0, 3, 1), (1, 17, 4), (3, 2, 72)].map(|(variable, degree, inner)| Axis {
+            variable,
+            degree,
+            inner,
+        });
+        let part = Summand {
+            equation: 0,
+            offset: 0,
+            len: 216,
+            axes: axes.into_iter().collect(),
+        };
+        let c: Vec<f64> = (0..216).map(|i| f64::from((i * 37 + 11) % 101) - 50.0).collect();
+        let s = [0.3, 0.8, 0.5, 0.1, 0.0, 0.0, 0.0, 0.0];
+        let (value, _) = evaluate_part(&part, &c, &s, &mut Vec::new());
+        assert_eq!(part_value(&part, &c, &s, &mut Vec::new()), value);
     }
 
     #[test]

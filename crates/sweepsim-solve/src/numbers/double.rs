@@ -62,6 +62,12 @@ impl Double {
         Self { hi, lo }
     }
 
+    pub(crate) fn times(self, factor: f64) -> Self {
+        let (p, e) = two_product(self.hi, factor);
+        let (hi, lo) = two_sum(p, e + self.lo * factor);
+        Self { hi, lo }
+    }
+
     pub(crate) fn div(self, other: Self) -> Self {
         let q = self.hi / other.hi;
         let rest = self.sub(other.mul(Self::new(q)));

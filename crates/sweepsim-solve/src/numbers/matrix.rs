@@ -16,9 +16,17 @@ pub(crate) const ZERO: Square = [[0.0; MAX_UNKNOWNS]; MAX_UNKNOWNS];
 
 /// The inverse and the sign of the determinant; `None` if the matrix is nearly singular or not finite.
 pub(crate) fn inverse(matrix: &Square, n: usize) -> Option<(Square, i8)> {
-    if n == 2 {
-        return inverse_of_two(matrix);
+    match n {
+        2 => inverse_of_two(matrix),
+        // A copy for a known number, with short loops.
+        3 => eliminated(matrix, 3),
+        _ => eliminated(matrix, n),
     }
+}
+
+/// By elimination.
+#[inline(always)]
+fn eliminated(matrix: &Square, n: usize) -> Option<(Square, i8)> {
     let mut a = *matrix;
     let mut columns = [1.0; MAX_UNKNOWNS];
     let mut rows = [1.0; MAX_UNKNOWNS];

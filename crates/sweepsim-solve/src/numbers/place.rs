@@ -13,38 +13,50 @@ const SLACK: f64 = f64::from_bits((1023 - 90) << 52);
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     side: Enclosure,
-    /// Factors to a scale that neither overflows nor underflows (two, since one may overflow), and back.
-    down: [f64; 2],
+    /// The lower end and the width, at a scale that neither overflows nor underflows.
+    lo: Double,
+    width: Double,
+    /// Factors back from that scale: two, since one may overflow.
     up: [f64; 2],
     slack: f64,
 }
 
 impl Place {
+    /// The place of `[0, 1]`, whose numbers stay as they are.
+    pub(crate) const UNIT: Self = Self {
+        side: Enclosure::UNIT,
+        lo: Double::new(0.0),
+        width: Double::new(1.0),
+        up: [1.0; 2],
+        slack: 4.0 * SLACK,
+    };
+
     pub(crate) fn new(side: Enclosure) -> Self {
         let magnitude = side.magnitude();
         if (1e-200..1e200).contains(&magnitude) {
-            return Self {
-                side,
-                down: [1.0; 2],
-                up: [1.0; 2],
-                slack: 4.0 * SLACK * magnitude,
-            };
+            return Self::scaled(side, [1.0; 2], [1.0; 2], 4.0 * SLACK * magnitude);
         }
         let exponent = magnitude.max(f64::MIN_POSITIVE).log2().floor() as i32;
         let (half, rest) = (exponent / 2, exponent - exponent / 2);
+        let down = [2f64.powi(-half), 2f64.powi(-rest)];
+        // The scaled magnitude is below 4, since the logarithm rounds.
+        Self::scaled(side, down, [2f64.powi(half), 2f64.powi(rest)], 16.0 * SLACK)
+    }
+
+    fn scaled(side: Enclosure, down: [f64; 2], up: [f64; 2], slack: f64) -> Self {
+        let [lo, hi] = [side.lo(), side.hi()].map(|x| Double::new(x * down[0] * down[1]));
         Self {
             side,
-            down: [2f64.powi(-half), 2f64.powi(-rest)],
-            up: [2f64.powi(half), 2f64.powi(rest)],
-            // The scaled magnitude is below 4, since the logarithm rounds.
-            slack: 16.0 * SLACK,
+            lo,
+            width: hi.sub(lo),
+            up,
+            slack,
         }
     }
 
     /// The scaled sum.
     fn sum(&self, s: f64) -> Double {
-        let [lo, hi] = [self.side.lo(), self.side.hi()].map(|x| Double::new(x * self.down[0] * self.down[1]));
-        lo.add(hi.sub(lo).mul(Double::new(s)))
+        self.lo.add(self.width.times(s))
     }
 
     fn back(&self, x: f64) -> f64 {
@@ -63,6 +75,7 @@ impl Place {
     /// A number that is not above `lo + s (hi − lo)`.
     pub(crate) fn below(&self, s: f64) -> f64 {
         match s {
+            _ if self.side == Enclosure::UNIT => s,
             0.0 => self.side.lo(),
             1.0 => self.side.hi(),
             _ => {
@@ -78,6 +91,7 @@ impl Place {
     /// A number that is not below it.
     pub(crate) fn above(&self, s: f64) -> f64 {
         match s {
+            _ if self.side == Enclosure::UNIT => s,
             0.0 => self.side.lo(),
             1.0 => self.side.hi(),
             _ => {

@@ -5,6 +5,8 @@ use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, in
 
 /// Roots that are known less well than this, in sides of the cell, are refined in double-double precision.
 const BLUNT: f64 = 1e-8;
+/// The most steps of that refinement: it usually takes two.
+const MORE_STEPS: u32 = 8;
 
 /// A certified root in inner coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -94,13 +96,14 @@ pub(crate) fn unique_root(
     let mut before = f64::INFINITY;
     let mut value;
     let mut steps = 0;
+    let mut newton = k;
     loop {
         let jacobian;
         (value, jacobian) = layout.evaluate(&cell.c, &s, buffer);
-        let step = match inverse(&jacobian, n) {
-            Some((k, _)) => apply(&k, &value, n),
-            None => apply(&k, &value, n),
-        };
+        if let Some((k, _)) = inverse(&jacobian, n) {
+            newton = k;
+        }
+        let step = apply(&newton, &value, n);
         let size = step[..n].iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         steps += 1;
         // Quadratic convergence: the step after one of 1e-9 would be below rounding, but the value at the end is needed.
@@ -119,7 +122,7 @@ pub(crate) fn unique_root(
             break;
         }
         if size < 1e-8 {
-            (value, _) = layout.evaluate(&cell.c, &s, buffer);
+            value = layout.values(&cell.c, &s, buffer);
             break;
         }
     }
@@ -137,7 +140,7 @@ pub(crate) fn unique_root(
     if !sharp && layout.improvable(cell) {
         // The equations are nearly singular, or their values mostly noise: values in double-double precision, from the original coefficients.
         let mut better = point;
-        for _ in 0..8 {
+        for _ in 0..MORE_STEPS {
             let Some((value, value_errors)) = layout.residual(&better, doubles) else {
                 break;
             };
@@ -150,7 +153,12 @@ pub(crate) fn unique_root(
             if own.is_some() {
                 (errors, point) = (own, better);
             }
-            let step = apply(&k, &value, n);
+            // Below what the enclosure is widened by, anyway.
+            let least = |i: usize| 2.0 * EPSILON * (better[i].abs() + side(i));
+            if own.is_some_and(|own| (0..n).all(|i| own[i] * side(i) <= least(i))) {
+                break;
+            }
+            let step = apply(&newton, &value, n);
             for i in 0..n {
                 better[i] = (better[i] - step[i] * side(i)).clamp(cell.lo[i], cell.hi[i]);
             }

@@ -86,7 +86,7 @@ impl PointSolver {
                 let face = number - corners;
                 s[face / 2] = (face % 2) as f64;
             }
-            let (value, _) = layout.evaluate(&cell.c, &s, &mut self.buffer);
+            let value = layout.values(&cell.c, &s, &mut self.buffer);
             for i in left() {
                 let sum: f64 = (0..n).map(|e| weights[i][e] * value[e]).sum();
                 above[i] |= sum.abs() > CLEAR * noise[i];

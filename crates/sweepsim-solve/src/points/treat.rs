@@ -52,7 +52,8 @@ impl PointSolver {
         let n = layout.n;
         let mut threshold = TRY;
         let mut fresh = false;
-        let (inverted, faint) = loop {
+        let mut inverted;
+        let faint = loop {
             let mut totals = layout.ranges(&mut self.cell);
             if excluded(&totals, n) {
                 return Fate::Sign;
@@ -66,7 +67,7 @@ impl PointSolver {
                 }
             }
             let affine = layout.affine(&self.cell, layout.mean_slopes(&self.cell.c));
-            let inverted = inverse(&affine.slope, n);
+            inverted = inverse(&affine.slope, n);
             let mut window = [(0.0, 1.0); MAX_UNKNOWNS];
             if let Some((k, _)) = &inverted {
                 let (centre, half) = newton_box(&affine, k, n);
@@ -126,7 +127,7 @@ impl PointSolver {
                 fresh = true;
                 continue;
             }
-            break (inverted, faint);
+            break faint;
         };
         let hidden = if faint {
             self.hidden(layout, SQUEEZED)

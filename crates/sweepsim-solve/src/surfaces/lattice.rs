@@ -51,7 +51,7 @@ impl<'a> PlaneLattice<'a> {
 
     /// The sign of the equation at a point, 0 if it is not certain.
     pub(crate) fn sign(&self, x: &Row, buffer: &mut Vec<f64>) -> i8 {
-        let (value, _) = self.system.layout.evaluate(&self.first.c, x, buffer);
+        let value = self.system.layout.values(&self.first.c, x, buffer);
         let error = self.system.layout.value_error(&self.first, 0) + 4.0 * EPSILON * value[0].abs();
         if value[0] > error {
             1

@@ -108,6 +108,7 @@ impl From<&Bernstein> for Equation {
 pub struct System {
     pub(crate) layout: Layout,
     pub(crate) domain: SmallVec<[Enclosure; 4]>,
+    places: SmallVec<[Place; 4]>,
     /// The region to search, in coordinates in which the domain is `[0,1]ⁿ`.
     pub(crate) region: (Row, Row),
     /// Whether some equation is known only on the domain.
@@ -177,6 +178,7 @@ impl System {
         Ok(Self {
             layout,
             domain: domain.into(),
+            places: domain.iter().map(|side| Place::new(*side)).collect(),
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded,
         })
@@ -228,6 +230,7 @@ impl System {
         Self {
             layout,
             domain: SmallVec::from_elem(Enclosure::UNIT, n),
+            places: SmallVec::from_elem(Place::UNIT, n),
             region: ([0.0; MAX_UNKNOWNS], [1.0; MAX_UNKNOWNS]),
             bounded: self.bounded,
         }
@@ -268,20 +271,14 @@ impl System {
 
     /// An inner box in the domain's coordinates, rounded outwards.
     pub(crate) fn outward(&self, lo: &Row, hi: &Row) -> Vec<Enclosure> {
-        let bounds = |(j, side): (usize, &Enclosure)| {
-            let place = Place::new(*side);
-            Enclosure::hull(place.below(lo[j]), place.above(hi[j]))
-        };
-        self.domain.iter().enumerate().map(bounds).collect()
+        let bounds = |(j, place): (usize, &Place)| Enclosure::hull(place.below(lo[j]), place.above(hi[j]));
+        self.places.iter().enumerate().map(bounds).collect()
     }
 
     /// An inner box in the domain's coordinates, rounded inwards; `None` if no numbers are left on some side.
     pub(crate) fn inward(&self, lo: &Row, hi: &Row) -> Option<Vec<Enclosure>> {
-        let bounds = |(j, side): (usize, &Enclosure)| {
-            let place = Place::new(*side);
-            Enclosure::new(place.above(lo[j]), place.below(hi[j])).ok()
-        };
-        self.domain.iter().enumerate().map(bounds).collect()
+        let bounds = |(j, place): (usize, &Place)| Enclosure::new(place.above(lo[j]), place.below(hi[j])).ok();
+        self.places.iter().enumerate().map(bounds).collect()
     }
 
     /// Length of a side of the domain.

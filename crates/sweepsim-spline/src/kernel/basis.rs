@@ -19,7 +19,7 @@ pub fn basis(degree: usize, x: f64, values: &mut [f64]) {
 ///
 /// # Panics
 /// If a slice is shorter than `degree + 1`.
-#[inline]
+#[inline(always)]
 pub fn basis_with_slopes(degree: usize, x: f64, values: &mut [f64], slopes: &mut [f64]) {
     let (values, slopes) = (&mut values[..=degree], &mut slopes[..=degree]);
     values[0] = 1.0;
