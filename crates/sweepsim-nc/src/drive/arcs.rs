@@ -23,8 +23,8 @@ pub(crate) struct Arc {
 }
 
 impl Track {
-    /// A feed move along an arc, while the rotary axes turn to `abc`.
-    pub fn arc(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
+    /// A feed move of the tool along an arc, while the rotary axes turn to `abc`.
+    pub(super) fn bend(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
         let Some(start) = self.known() else {
             return Err(NcProblem::syntax(
                 "an arc from an unknown position: expected a move before it",
@@ -68,9 +68,9 @@ impl Track {
             let out = Rotation3::from_axis_angle(&axis, s * arc.sweep) * from * growth;
             let point = centre + out + normal * (low + s * (high - low));
             let between = Position::new([0.0; 3], angles).towards(&Position::new([0.0; 3], abc), s);
-            self.line(point.into(), between.abc, false)?;
+            self.straight(point.into(), between.abc, false)?;
         }
-        self.line(arc.end, abc, false)
+        self.straight(arc.end, abc, false)
     }
 
     fn exact_arc(&mut self, arc: &Arc, scale: f64) -> Result<(), NcProblem> {
@@ -88,6 +88,8 @@ impl Track {
         } else {
             normal
         };
+        let shift = self.direction().map(|axis| self.driver.to_tip(axis))?;
+        let centre = std::array::from_fn(|k| centre[k] + shift[k]);
         let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
             .map_err(|error| NcProblem::syntax(error.to_string()))?;
         let way = Move {

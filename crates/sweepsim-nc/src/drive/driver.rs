@@ -49,6 +49,8 @@ pub(crate) struct Driver {
     tolerance: f64,
     tool: Option<u32>,
     tool_length: f64,
+    /// By how much the control takes the tool for longer than it is.
+    oversize: f64,
     /// The control's table of tools.
     lengths: BTreeMap<u32, ToolOffset>,
 }
@@ -74,6 +76,7 @@ impl Driver {
                 .as_ref()
                 .map_or(0.0, |kinematics| kinematics.tool_length(None)),
             tool: None,
+            oversize: 0.0,
             lengths: options.tool_offsets.clone(),
         }
     }
@@ -125,6 +128,21 @@ impl Driver {
                 self.tool_length = offset.length;
             }
         }
+    }
+
+    /// Takes the tool for longer than it is.
+    pub fn lengthen(&mut self, oversize: f64) {
+        self.oversize = oversize;
+    }
+
+    /// From where the control takes the tip to be to where it is: along the tool.
+    pub fn to_tip(&self, axis: [f64; 3]) -> [f64; 3] {
+        axis.map(|c| self.oversize * c)
+    }
+
+    /// The length that the control computes with.
+    fn length(&self) -> f64 {
+        self.tool_length + self.oversize
     }
 
     /// The rotary axes for these angles: given, or those that their letters imply.
@@ -213,7 +231,8 @@ impl Driver {
             Coordinates::Tip => at.xyz,
             Coordinates::Axes => self.tip(at)?,
         };
-        Pose::new(tip, axis).map_err(NcProblem::Pose)
+        let shift = self.to_tip(axis);
+        Pose::new(std::array::from_fn(|k| tip[k] + shift[k]), axis).map_err(NcProblem::Pose)
     }
 
     /// The tip in the part's frame at a position of the machine's axes.
@@ -229,13 +248,13 @@ impl Driver {
                  coordinates are the tip in the part's frame)",
             )
         })?;
-        Ok(kinematics.tip(at, self.tool_length).into())
+        Ok(kinematics.tip(at, self.length()).into())
     }
 
     /// X, Y, Z of the machine's axes at a tip, if they are known.
     pub fn axes_at(&self, tip: [f64; 3], abc: [f64; 3]) -> Option<[f64; 3]> {
         match &self.kinematics {
-            Some(kinematics) => Some(kinematics.linear_at(tip, abc, self.tool_length)),
+            Some(kinematics) => Some(kinematics.linear_at(tip, abc, self.length())),
             None => (abc == [0.0; 3]).then_some(tip),
         }
     }
@@ -245,7 +264,7 @@ impl Driver {
         if from.abc == to.abc {
             return Ok(1);
         }
-        let (law, tolerance, length) = (self.law, self.tolerance, self.tool_length);
+        let (law, tolerance, length) = (self.law, self.tolerance, self.length());
         self.rotaries(from.abc)?;
         let rotaries = self.rotaries(to.abc)?;
         let travel = rotaries.travel_of_tool(from.abc, to.abc);

@@ -1,7 +1,9 @@
 //! Running programs on machines: from the coordinates of blocks to poses, checks of axes, and programs for a machine from poses.
 
 mod arcs;
+mod beside;
 mod check;
+mod contour;
 mod driver;
 mod post;
 mod track;
@@ -10,5 +12,6 @@ pub use check::{AxisFault, AxisFinding, check};
 pub use post::{PostError, PostOptions, post};
 
 pub(crate) use arcs::Arc;
+pub(crate) use contour::{ArcPlane, Bend, Compensation, Corner, CornerShape, Corners, Item, Place, Side, Stroke};
 pub(crate) use driver::{Coordinates, Driver, Sense};
 pub(crate) use track::Track;

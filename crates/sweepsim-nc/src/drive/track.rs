@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 use sweepsim_motion::{Course, Move, Pose, Turning};
 
+use super::beside::Contour;
+use super::contour::Place;
 use super::driver::{Coordinates, Driver, Sense};
 use crate::machines::{Position, WorkFrame};
 use crate::model::event::{Event, EventKind};
@@ -12,14 +14,6 @@ use crate::text::error::NcProblem;
 
 /// The most events and calls: bounds the memory that a file of a few bytes can demand.
 const MOST_EVENTS: usize = 5_000_000;
-
-/// A place in the program.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Place {
-    pub file: usize,
-    pub line: usize,
-    pub call: Option<u32>,
-}
 
 /// The course of a tool.
 pub(crate) struct Track {
@@ -43,6 +37,7 @@ pub(crate) struct Track {
     pub(super) most_poses: usize,
     pub(super) arc_tolerance: f64,
     pub(super) exact_arcs: bool,
+    pub(super) contour: Contour,
 }
 
 impl Track {
@@ -73,6 +68,7 @@ impl Track {
             most_poses: options.most_poses,
             arc_tolerance: options.arc_tolerance,
             exact_arcs: options.exact_arcs,
+            contour: Contour::default(),
         }
     }
 
@@ -89,6 +85,13 @@ impl Track {
     }
 
     pub fn event(&mut self, kind: EventKind) -> Result<(), NcProblem> {
+        match self.event_waits(kind) {
+            Some(kind) => self.record(kind),
+            None => Ok(()),
+        }
+    }
+
+    pub(super) fn record(&mut self, kind: EventKind) -> Result<(), NcProblem> {
         if self.program.events.len() >= MOST_EVENTS {
             return Err(NcProblem::value(
                 "the number of events",
@@ -141,10 +144,11 @@ impl Track {
     }
 
     /// Another frame: the tool stays where it is.
-    pub fn set_frame(&mut self, frame: WorkFrame) {
+    pub fn set_frame(&mut self, frame: WorkFrame) -> Result<(), NcProblem> {
         if frame == self.frame {
-            return;
+            return Ok(());
         }
+        self.refuse_contour("another frame")?;
         self.xyz = match self.known() {
             Some(xyz) => frame
                 .inverse_point(self.frame.point(xyz))
@@ -156,13 +160,15 @@ impl Track {
             None => [None; 3],
         };
         self.frame = frame;
+        Ok(())
     }
 
     /// Switches tip control: the tool stays where it is.
-    pub fn set_coordinates(&mut self, coordinates: Coordinates) {
+    pub fn set_coordinates(&mut self, coordinates: Coordinates) -> Result<(), NcProblem> {
         if coordinates == self.coordinates {
-            return;
+            return Ok(());
         }
+        self.refuse_contour("a switch of tip control")?;
         let here = self.known().map(|xyz| self.frame.point(xyz));
         let there = match (coordinates, here) {
             (Coordinates::Tip, Some(xyz)) => self.driver.tip(&Position::new(xyz, self.abc)).ok(),
@@ -179,10 +185,12 @@ impl Track {
             self.xyz = local.map_or([None; 3], |xyz| xyz.map(Some));
         }
         self.coordinates = coordinates;
+        Ok(())
     }
 
     /// Goes somewhere that only the machine knows: the path breaks.
     pub fn leave(&mut self, axes: [bool; 3]) {
+        self.abandon_contour();
         // In a turned frame each coordinate depends on all axes.
         let any = axes.contains(&true) && !self.frame.is_shift();
         for (coordinate, moves) in self.xyz.iter_mut().zip(axes) {
@@ -196,6 +204,7 @@ impl Track {
 
     pub fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
         if let Some(number) = tool.filter(|_| tool != self.tool) {
+            self.refuse_contour("a tool change")?;
             self.event(EventKind::ToolChange(number))?;
             self.tool = tool;
             self.driver.change_tool(tool);
@@ -204,8 +213,24 @@ impl Track {
         Ok(())
     }
 
+    /// Takes the tool for longer than it is by `oversize`: the tool stays where it is, and its coordinates change.
+    pub fn lengthen(&mut self, oversize: f64) -> Result<(), NcProblem> {
+        self.refuse_contour("another length of the tool")?;
+        let axis = self.direction()?;
+        let before = self.driver.to_tip(axis);
+        self.driver.lengthen(oversize);
+        let after = self.driver.to_tip(axis);
+        if let Some(xyz) = self.known().filter(|_| before != after) {
+            let at = self.frame.point(xyz);
+            let moved = std::array::from_fn(|k| at[k] + before[k] - after[k]);
+            self.xyz = self.frame.inverse_point(moved).map_or([None; 3], |xyz| xyz.map(Some));
+        }
+        Ok(())
+    }
+
     /// Turns the rotary axes while the tip's place is not known, or by a move that only the machine knows.
     pub fn turn_unknown(&mut self, abc: [f64; 3]) -> Result<(), NcProblem> {
+        self.refuse_contour("a move that only the machine knows")?;
         self.driver.rotaries(abc)?;
         if abc != self.abc {
             self.abc = abc;
@@ -217,6 +242,7 @@ impl Track {
 
     /// Turns the tool into a direction of the part's frame by a move that only the machine knows. Whether anything turned.
     pub fn turn_to(&mut self, direction: [f64; 3]) -> Result<bool, NcProblem> {
+        self.refuse_contour("a turn of the tool")?;
         let now = Vector3::from(self.direction()?);
         if (now - Vector3::from(direction).normalize()).norm() < 1e-12 {
             return Ok(false);
@@ -241,6 +267,7 @@ impl Track {
 
     /// A straight move to coordinates in the frame, where the tool has a direction of the part's frame.
     pub fn line_towards(&mut self, target: [f64; 3], direction: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
+        self.refuse_contour("a move with a direction of the tool")?;
         if self.driver.knows_rotaries() {
             let abc = self.driver.angles(direction, self.abc)?;
             self.direct = None;
@@ -257,8 +284,8 @@ impl Track {
         Ok(())
     }
 
-    /// A straight move to coordinates in the frame and angles.
-    pub fn line(&mut self, target: [f64; 3], abc: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
+    /// A straight move of the tool to coordinates in the frame and angles.
+    pub(super) fn straight(&mut self, target: [f64; 3], abc: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
         let to = Position::new(self.frame.point(target), abc);
         self.begin(rapid)?;
         if abc != self.abc {
@@ -309,7 +336,9 @@ impl Track {
     pub(super) fn push(&mut self, to: Position, way: Move, rapid: bool) -> Result<(), NcProblem> {
         let pose = match self.direct {
             Some(direction) if self.coordinates == Coordinates::Tip => {
-                Pose::new(to.xyz, direction).map_err(NcProblem::Pose)?
+                let axis = Vector3::from(direction).normalize();
+                let tip = Vector3::from(to.xyz) + Vector3::from(self.driver.to_tip(axis.into()));
+                Pose::new(tip.into(), direction).map_err(NcProblem::Pose)?
             }
             _ => self.driver.pose(&to, self.coordinates)?,
         };

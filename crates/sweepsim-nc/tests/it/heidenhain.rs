@@ -334,7 +334,7 @@ fn bad_programs_say_where_and_what() {
     for (text, message) in [
         (
             "L X+0 Y+0 Z+0 FMAX\nL X+5 RL F100",
-            "2:7: RL: cutter compensation is not supported yet: expected R0 and the path of the tool's centre",
+            "2:1: cutter compensation without a tool: expected TOOL CALL before it",
         ),
         (
             "L X+0 Y+0 Z+0 FMAX\nL X+Q5 F100",

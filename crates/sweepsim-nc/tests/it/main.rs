@@ -2,12 +2,14 @@
 
 mod apt;
 mod contents;
-mod controls_fuzz;
+mod contours;
+mod fuzz;
 mod gcode;
 mod harmless;
 mod heidenhain;
 mod kinematics;
 mod machines;
+mod pieces;
 mod posted;
 mod programs;
 mod round_trips;

@@ -252,7 +252,7 @@ fn bad_programs_say_where_and_what() {
     for (text, message) in [
         (
             "G0 X0 Y0 Z0\nG41 X5",
-            "2:1: G41: cutter compensation is not supported yet: the path of the tool would be unknown; expected G0, G1, G2 or G3",
+            "2:1: cutter compensation without a tool: expected T before it",
         ),
         (
             "G0 X0 Y0 Z0\nX=_B",

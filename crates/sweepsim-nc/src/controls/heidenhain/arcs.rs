@@ -3,138 +3,107 @@
 use super::interpreter::Reader;
 use super::line::{Line, Located};
 use super::moves::Words;
-use crate::drive::Arc;
+use crate::drive::{Arc, Corner, CornerShape, Place};
 use crate::gcode::CircularArc;
 use crate::text::error::NcProblem;
 
-/// A corner that the next line rounds or cuts off.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Corner {
-    /// The programmed corner, where the tool does not go.
-    pub at: [f64; 3],
-    /// The radius of RND, or the length of CHF; set by that block.
-    pub size: Option<(f64, bool)>,
+/// Whether a block moves along the contour.
+fn is_contour(word: &str) -> bool {
+    matches!(word, "L" | "LP" | "C" | "CP" | "CR" | "CT")
 }
 
 impl Reader<'_> {
-    /// `RND R5`, `CHF 2`.
+    /// `RND R5`, `CHF 2`: made with the move before it.
     pub(super) fn corner_block(&mut self, line: &Line) -> Result<(), Located> {
         let whole = |problem| (problem, line.all());
-        let rounds = line.word(0) == "RND";
+        self.corner_of(line)?;
+        let refuse = |side: &str| {
+            whole(NcProblem::unsupported(
+                format!("{} {side} other than a feed move is", line.word(0)),
+                "expected it between two moves of a contour",
+            ))
+        };
+        if std::mem::take(&mut self.rounded) {
+            let mut next = self.following();
+            // CC moves nothing.
+            if next.is_some_and(|next| next.word(0) == "CC") {
+                next = self.following_after(1);
+            }
+            if next.is_some_and(|next| is_contour(next.word(0))) {
+                return Ok(());
+            }
+            return Err(refuse("before"));
+        }
+        if self.uncertain { Ok(()) } else { Err(refuse("after")) }
+    }
+
+    /// The corner of `RND` or `CHF`.
+    fn corner_of(&self, line: &Line) -> Result<Corner, Located> {
+        let whole = |problem| (problem, line.all());
+        let rounds = line.word(0).starts_with("RND");
+        let (word, name) = if rounds {
+            ("RND", "the radius of RND")
+        } else {
+            ("CHF", "the length of CHF")
+        };
         let text = line.word(1).trim_start_matches('R').to_owned();
         let size = self.parameters.value(&text).map_err(whole)? * self.unit();
         if !(size > 0.0) {
-            return Err(whole(NcProblem::value(
-                if rounds {
-                    "the radius of RND"
-                } else {
-                    "the length of CHF"
-                },
-                size,
-                "positive",
-            )));
+            return Err(whole(NcProblem::value(name, size, "positive")));
         }
-        match &mut self.corner {
-            Some(corner) => {
-                corner.size = Some((size, rounds));
-                let next_is_line = self
-                    .following()
-                    .is_some_and(|next| next.word(0) == "L" || next.word(0) == "LP");
-                if next_is_line {
-                    return Ok(());
+        let mut feed = None;
+        for token in line.tokens.iter().skip(2) {
+            match token.text.strip_prefix('F') {
+                Some("AUTO" | "") => {}
+                Some(value) => {
+                    feed = Some(
+                        self.parameters
+                            .value(value)
+                            .map_err(|problem| (problem, token.span.clone()))?,
+                    );
                 }
-                let problem = NcProblem::unsupported(
-                    format!("{} before other than a line is", line.word(0)),
-                    "expected it between two L",
-                );
-                Err(whole(problem))
-            }
-            None if self.uncertain => Ok(()),
-            None => {
-                let problem = NcProblem::unsupported(
-                    format!("{} after other than a feed line is", line.word(0)),
-                    "expected it between two L",
-                );
-                Err(whole(problem))
+                None if token.text.starts_with('M') || token.text.parse::<f64>().is_ok() => {}
+                None => {
+                    let problem = NcProblem::syntax(format!("{} in {word}: expected F or M", token.text));
+                    return Err((problem, token.span.clone()));
+                }
             }
         }
+        Ok(Corner {
+            shape: if rounds {
+                CornerShape::Round(size)
+            } else {
+                CornerShape::Cut(size)
+            },
+            plane: self.plane,
+            place: Place::default(),
+            feed,
+            word,
+            strict: true,
+        })
     }
 
-    /// Goes around a corner; gives its end, where the next line starts.
-    pub(super) fn turn_corner(
-        &mut self,
-        corner: Corner,
-        target: [f64; 3],
-        line: &Line,
-    ) -> Result<Option<[f64; 3]>, Located> {
-        let whole = |problem| (problem, line.all());
-        let (Some(start), Some((size, rounds))) = (self.track.known(), corner.size) else {
-            return Ok(self.track.known());
+    /// The corner that the next block makes at the end of this move.
+    pub(super) fn corner_ahead(&mut self, rapid: bool, abc: [f64; 3]) -> Result<(), Located> {
+        let Some((next, place)) = self.following_with_place() else {
+            return Ok(());
         };
-        let [u, v, w] = self.plane;
-        if start[w] != corner.at[w] || target[w] != corner.at[w] {
-            return Err(whole(NcProblem::unsupported(
-                "RND and CHF at corners out of the plane are",
-                "expected both lines in the plane",
-            )));
+        let corner_block = next.word(0).starts_with("RND") || next.word(0).starts_with("CHF");
+        if !corner_block || rapid || self.track.known().is_none() {
+            return Ok(());
         }
-        let back = [start[u] - corner.at[u], start[v] - corner.at[v]];
-        let on = [target[u] - corner.at[u], target[v] - corner.at[v]];
-        let (a, b) = (back[0].hypot(back[1]), on[0].hypot(on[1]));
-        let (cross, dot) = (back[0] * on[1] - back[1] * on[0], back[0] * on[0] + back[1] * on[1]);
-        if !(a > 0.0 && b > 0.0) || cross.abs() <= 1e-12 * a * b {
-            // Straight on: there is no corner.
-            let abc = self.track.abc;
-            self.track.line(corner.at, abc, false).map_err(whole)?;
-            return Ok(Some(corner.at));
+        // A bad corner is reported at its own block.
+        if let Ok(corner) = self.corner_of(&next) {
+            if abc != self.track.abc {
+                return Err((
+                    NcProblem::unsupported("rounding where rotary axes turn is", "expected a corner of lines"),
+                    next.all(),
+                ));
+            }
+            self.rounded = true;
+            self.track.corner_next(Corner { place, ..corner });
         }
-        // Half of the angle between both lines.
-        let half = 0.5 * cross.abs().atan2(dot);
-        let cut = if rounds { size / half.tan() } else { size };
-        if cut > a * (1.0 + 1e-12) || cut > b * (1.0 + 1e-12) {
-            return Err(whole(NcProblem::value(
-                if rounds {
-                    "the radius of RND"
-                } else {
-                    "the length of CHF"
-                },
-                size,
-                format!("smaller: its corner takes {cut} mm of lines of {a} and {b} mm"),
-            )));
-        }
-        let along = |way: [f64; 2], length: f64| {
-            let mut point = corner.at;
-            point[u] += way[0] * cut / length;
-            point[v] += way[1] * cut / length;
-            point
-        };
-        let (first, second) = (along(back, a), along(on, b));
-        let abc = self.track.abc;
-        self.track.line(first, abc, false).map_err(whole)?;
-        if rounds {
-            // The centre lies on the bisector.
-            let middle = [back[0] / a + on[0] / b, back[1] / a + on[1] / b];
-            let length = middle[0].hypot(middle[1]);
-            let reach = size / half.sin();
-            let mut centre = corner.at;
-            centre[u] += middle[0] / length * reach;
-            centre[v] += middle[1] / length * reach;
-            // A corner to the left is turned counter-clockwise.
-            let left = cross < 0.0;
-            let sweep = std::f64::consts::PI - 2.0 * half;
-            let mut normal = [0.0; 3];
-            normal[w] = 1.0;
-            let arc = Arc {
-                end: second,
-                centre,
-                normal,
-                sweep: if left { sweep } else { -sweep },
-            };
-            self.track.arc(&arc, abc).map_err(whole)?;
-        } else {
-            self.track.line(second, abc, false).map_err(whole)?;
-        }
-        Ok(Some(second))
+        Ok(())
     }
 
     pub(super) fn arc_block(
@@ -188,32 +157,11 @@ impl Reader<'_> {
                 CircularArc::with_radius(ends, plane, radius, sense.ok_or_else(need_sense)?, 1.0)
             }
             _ => {
-                let Some(way) = self.direction else {
-                    return Err(NcProblem::syntax(
-                        "CT without a move before it: expected a line or an arc that it continues",
-                    ));
-                };
-                let chord = [target[u] - start[u], target[v] - start[v]];
-                let length = way[0].hypot(way[1]);
-                let normal = [-way[1] / length, way[0] / length];
-                let across = normal[0] * chord[0] + normal[1] * chord[1];
-                let square = chord[0] * chord[0] + chord[1] * chord[1];
-                if !(across.abs() > 1e-9 * square.sqrt()) {
-                    let problem = "CT ends straight ahead: expected an end beside the direction of the last move";
-                    return Err(NcProblem::syntax(problem));
-                }
-                let reach = square / (2.0 * across);
-                let centre = [start[u] + normal[0] * reach, start[v] + normal[1] * reach];
-                CircularArc::about(ends, plane, centre, across > 0.0, 1.0)
+                let way = self.track.last_direction().map(|way| [way[u], way[v]]);
+                CircularArc::tangential(ends, plane, way.filter(|way| *way != [0.0; 2]), "CT")
             }
         }
         .map_err(NcProblem::syntax)?;
-        let out = [arc.end[u] - arc.centre[0], arc.end[v] - arc.centre[1]];
-        self.direction = Some(if arc.sweep > 0.0 {
-            [-out[1], out[0]]
-        } else {
-            [out[1], -out[0]]
-        });
         let mut centre = [0.0; 3];
         let mut normal = [0.0; 3];
         centre[u] = arc.centre[0];

@@ -4,13 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use super::arcs::Corner;
 use super::cycles::Cycle;
 use super::line::{self, Line, Located};
 use super::planes::Frames;
 use super::unit::Unit;
 use super::values::Parameters;
-use crate::drive::{Sense, Track};
+use crate::drive::{Place, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::program::{Program, Units};
 use crate::model::read_options::ReadOptions;
@@ -55,9 +54,14 @@ pub(super) struct Reader<'a> {
     pub shortest: bool,
     /// The centre of CC, in the frame.
     pub centre: Option<[f64; 2]>,
-    /// The direction of the last move in the plane, at its end.
-    pub direction: Option<[f64; 2]>,
-    pub corner: Option<Corner>,
+    /// The last move's end is made by the RND or CHF that follows.
+    pub rounded: bool,
+    /// The side of the contour: RL.
+    pub compensated: Option<bool>,
+    /// The radii of TOOL DEF, in mm.
+    pub radii: BTreeMap<u32, f64>,
+    /// DR of TOOL CALL, in mm.
+    pub oversize: f64,
     pub cycle: Option<Cycle>,
     pub uncertain: bool,
     pub(super) library: Library<'a>,
@@ -86,8 +90,10 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
         tip_control: options.machine.tip_control,
         shortest: false,
         centre: None,
-        direction: None,
-        corner: None,
+        rounded: false,
+        compensated: None,
+        radii: BTreeMap::new(),
+        oversize: 0.0,
         cycle: None,
         uncertain: false,
         library,
@@ -129,7 +135,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
         };
         if let Err((problem, span)) = result {
             reader.uncertain = true;
-            reader.corner = None;
+            reader.rounded = false;
             reader.track.leave([true; 3]);
             let message = problem.to_string();
             if messages.insert(message.clone()) {
@@ -139,6 +145,16 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
                     errors.push(reader.located(unit, index, problem, span));
                 }
             }
+        }
+    }
+    if let Err(problem) = reader.track.end_compensation(None) {
+        if options.lenient {
+            reader.track.note(format!("left out: {problem}"));
+        } else {
+            let line = reader.track.place.line.max(1);
+            let text = text.lines().nth(line - 1).unwrap_or("");
+            let position = TextPosition::in_line(line, text, 1, text.chars().count());
+            errors.push(NcError::new(problem, Some(position)));
         }
     }
     if let Some(error) = NcError::all(errors) {
@@ -225,13 +241,35 @@ impl Reader<'_> {
 
     /// The block after this one, without empty ones.
     pub(super) fn following(&self) -> Option<&Line> {
-        let level = self.stack.last()?;
-        let lines = &self.units[level.unit].lines;
-        lines
-            .get(level.next..)?
+        self.following_after(0)
+    }
+
+    /// A further block, without empty ones.
+    pub(super) fn following_after(&self, skipped: usize) -> Option<&Line> {
+        self.following_lines().nth(skipped).map(|(_, line)| line.as_ref())
+    }
+
+    /// The block after this one, and where it is.
+    pub(super) fn following_with_place(&self) -> Option<(Rc<Line>, Place)> {
+        let (line, found) = self.following_lines().next()?;
+        Some((
+            Rc::clone(found),
+            Place {
+                line,
+                ..self.track.place
+            },
+        ))
+    }
+
+    fn following_lines(&self) -> impl Iterator<Item = (usize, &Rc<Line>)> {
+        let level = self.stack.last();
+        let lines = level.and_then(|level| Some((level.next, self.units[level.unit].lines.get(level.next..)?)));
+        let (first, lines) = lines.unwrap_or((0, &[]));
+        let numbered = lines
             .iter()
-            .find(|line| !line.tokens.is_empty())
-            .map(Rc::as_ref)
+            .enumerate()
+            .map(move |(index, line)| (first + index + 1, line));
+        numbered.filter(|(_, line)| !line.tokens.is_empty())
     }
 
     /// Millimetres per unit of length.
@@ -260,7 +298,7 @@ impl Reader<'_> {
             "END" if line.word(1) == "PGM" => self.back(),
             "BLK" => self.stock_corner(line)?,
             "TOOL" if line.word(1) == "CALL" => self.tool_call(line)?,
-            "TOOL" if line.word(1) == "DEF" => {}
+            "TOOL" if line.word(1) == "DEF" => self.tool_definition(line)?,
             "L" | "LP" | "LN" | "C" | "CP" | "CR" | "CT" | "CC" | "RND" | "CHF" => self.path(line)?,
             "LBL" if line.word(1) == "0" => {
                 if matches!(

@@ -1,8 +1,8 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
-use super::arcs::Corner;
 use super::interpreter::Reader;
 use super::line::{Line, Located};
+use crate::drive::{Corners, Side};
 use crate::text::error::NcProblem;
 
 /// The words of a move.
@@ -18,6 +18,8 @@ pub(super) struct Words {
     pub(super) tool: [Option<f64>; 3],
     pub(super) rapid: bool,
     pub(super) machine: bool,
+    /// Cutter compensation off, to the left, or to the right: R0, RL, RR.
+    pub(super) side: Option<Option<bool>>,
 }
 
 const AXES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
@@ -50,11 +52,13 @@ impl Reader<'_> {
                 None => (false, text.clone()),
             };
             match name.as_str() {
-                "R0" => {}
-                "RL" | "RR" | "R+" | "R-" => {
+                "R0" => words.side = Some(None),
+                "RL" => words.side = Some(Some(true)),
+                "RR" => words.side = Some(Some(false)),
+                "R+" | "R-" => {
                     return Err(here(NcProblem::unsupported(
-                        format!("{name}: cutter compensation is"),
-                        "expected R0 and the path of the tool's centre",
+                        format!("{name}: compensation along one axis is"),
+                        "expected RL, RR or R0",
                     )));
                 }
                 "FMAX" => words.rapid = true,
@@ -128,6 +132,11 @@ impl Reader<'_> {
             }
         }
         let linear = [0, 1, 2].map(|k| words.axes[k].is_some());
+        if words.side == Some(None) && self.track.compensates() {
+            self.track.end_compensation(None).map_err(whole)?;
+        } else if let Some(Some(left)) = words.side {
+            self.compensate(left, &words, kind).map_err(whole)?;
+        }
         if words.machine {
             self.track
                 .note("moves in machine coordinates are left out: the path breaks here");
@@ -163,6 +172,7 @@ impl Reader<'_> {
         let Some(target) = self.target(&words, kind, line)? else {
             return Ok(());
         };
+        self.corner_ahead(words.rapid, abc)?;
         match kind {
             "L" | "LP" | "LN" => self.line_block(&words, target, abc, line)?,
             _ => self.arc_block(kind, &words, target, abc).map_err(whole)?,
@@ -187,10 +197,7 @@ impl Reader<'_> {
                 self.track.xyz[k] = Some(0.0);
             }
         }
-        let mut xyz = match self.corner {
-            Some(corner) => corner.at.map(Some),
-            None => self.track.xyz,
-        };
+        let mut xyz = self.track.xyz;
         if polar {
             let Some(centre) = self.centre else {
                 return Err(whole(NcProblem::syntax(
@@ -279,32 +286,58 @@ impl Reader<'_> {
                     "a tool vector without tip control: expected M128 or FUNCTION TCPM before it",
                 )));
             }
+            let normal = words.normal.iter().any(Option::is_some);
+            if normal && self.oversize != 0.0 {
+                return Err(whole(NcProblem::unsupported(
+                    "LN with surface normals and a tool with DR is",
+                    "expected DR+0: the path of the tool itself",
+                )));
+            }
             let direction = self.track.frame().direction(vector);
             return self.track.line_towards(target, direction, words.rapid).map_err(whole);
         }
-        let follows = self.following().map(|next| next.word(0).to_owned());
-        let start = match self.corner.take() {
-            Some(corner) => self.turn_corner(corner, target, line)?,
-            None => self.track.known(),
-        };
-        if let Some(start) = start {
-            let [u, v, _] = self.plane;
-            let way = [target[u] - start[u], target[v] - start[v]];
-            if way[0].hypot(way[1]) > 0.0 {
-                self.direction = Some(way);
-            }
-        }
-        let rounds = follows.is_some_and(|next| next.starts_with("RND") || next.starts_with("CHF"));
-        if rounds && !words.rapid && self.track.known().is_some() {
-            if abc != self.track.abc {
-                return Err(whole(NcProblem::unsupported(
-                    "rounding where rotary axes turn is",
-                    "expected a corner of lines",
-                )));
-            }
-            self.corner = Some(Corner { at: target, size: None });
+        self.track.line(target, abc, words.rapid).map_err(whole)
+    }
+
+    /// `RL` and `RR`: from this move on.
+    fn compensate(&mut self, left: bool, words: &Words, kind: &str) -> Result<(), NcProblem> {
+        if self.compensated == Some(left) && self.track.compensates() {
             return Ok(());
         }
-        self.track.line(target, abc, words.rapid).map_err(whole)
+        if !matches!(kind, "L" | "LP") || words.rapid && words.machine {
+            return Err(NcProblem::syntax(
+                "cutter compensation begins with a straight line: expected RL or RR in L or LP before this block",
+            ));
+        }
+        if self.uncertain && self.track.known().is_none() {
+            return Ok(());
+        }
+        let Some(radius) = self.cutter_radius() else {
+            let Some(tool) = self.track.tool else {
+                return Err(NcProblem::syntax(
+                    "cutter compensation without a tool: expected TOOL CALL before it",
+                ));
+            };
+            return Err(NcProblem::syntax(format!(
+                "the radius of tool {tool} for cutter compensation is not known: expected it in the tool table, or TOOL DEF {tool} L… R…"
+            )));
+        };
+        self.compensated = Some(left);
+        let side = Side {
+            left: left == (radius >= 0.0),
+            radius: radius.abs(),
+            corners: Corners::Arcs,
+            beside_next: true,
+            round_ends: false,
+            tangent: 1e-6,
+        };
+        self.track.compensate(side, self.plane)
+    }
+
+    /// The radius of the tool with the oversize of its call.
+    fn cutter_radius(&self) -> Option<f64> {
+        let tool = self.track.tool?;
+        let table = self.options.tool_offsets.get(&tool).map(|offset| 0.5 * offset.diameter);
+        Some(self.radii.get(&tool).copied().or(table)? + self.oversize)
     }
 }

@@ -67,12 +67,10 @@ pub(super) fn is_frame_cycle(number: u32) -> bool {
 }
 
 impl Reader<'_> {
-    fn apply_frames(&mut self) {
-        let frame = self.frames.total(self.plane);
-        self.track.set_frame(frame);
+    fn apply_frames(&mut self) -> Result<(), NcProblem> {
         // Centres are of the old frame.
         self.centre = None;
-        self.direction = None;
+        self.track.set_frame(self.frames.total(self.plane))
     }
 
     pub(super) fn frame_cycle(&mut self, number: u32, part: &str, line: &Line) -> Result<(), Located> {
@@ -171,8 +169,7 @@ impl Reader<'_> {
                 }
             }
         }
-        self.apply_frames();
-        Ok(())
+        self.apply_frames().map_err(|problem| (problem, line.all()))
     }
 
     /// `PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX`, `PLANE EULER`, `PLANE VECTOR`, `PLANE RESET`.
@@ -243,16 +240,16 @@ impl Reader<'_> {
             Some(_) => {
                 // Coordinates become the tip's first: the frame is the part's.
                 self.frames.tilt = tilt;
-                self.control(self.tip_control);
-                self.apply_frames();
+                self.control(self.tip_control).map_err(whole)?;
+                self.apply_frames().map_err(whole)?;
             }
             None => {
                 self.frames.tilt = None;
-                self.apply_frames();
+                self.apply_frames().map_err(whole)?;
                 if turns && self.track.turn_to([0.0, 0.0, 1.0]).map_err(whole)? {
                     self.track.note("PLANE turns the rotary axes: the path breaks here");
                 }
-                self.control(self.tip_control);
+                self.control(self.tip_control).map_err(whole)?;
                 return Ok(());
             }
         }

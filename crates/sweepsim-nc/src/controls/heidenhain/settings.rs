@@ -42,6 +42,7 @@ impl Reader<'_> {
     /// `TOOL CALL 5 Z S3000 F500`, `TOOL CALL "MILL" Z S3000`, `TOOL CALL Z S3000`.
     pub(super) fn tool_call(&mut self, line: &Line) -> Result<(), Located> {
         let mut tool = None;
+        let (mut longer, mut larger) = (None, None);
         for (position, token) in line.tokens[2..].iter().enumerate() {
             let here = |problem| (problem, token.span.clone());
             let text = token.text.as_str();
@@ -77,11 +78,17 @@ impl Reader<'_> {
                     }
                 }
                 _ if text.starts_with("DL") || text.starts_with("DR") => {
-                    let value = self.parameters.value(&text[2..]).map_err(here)?;
-                    if value != 0.0 {
-                        self.track.note(
-                            "oversizes of tools (DL, DR) are left out: the path is that of the tip as programmed",
-                        );
+                    let rest = text[2..].trim_start_matches(':').trim_start_matches('=');
+                    // DR2 is the oversize of a corner radius: it moves nothing but LN with normals.
+                    let corner = rest
+                        .strip_prefix('2')
+                        .filter(|rest| rest.starts_with([':', '=', '+', '-']));
+                    let rest = corner.map_or(rest, |rest| rest.trim_start_matches([':', '=']));
+                    let value = self.parameters.value(rest).map_err(here)? * self.unit();
+                    match (corner, text.starts_with("DL")) {
+                        (Some(_), _) => {}
+                        (None, true) => longer = Some(value),
+                        (None, false) => larger = Some(value),
                     }
                 }
                 _ => {
@@ -91,9 +98,34 @@ impl Reader<'_> {
                 }
             }
         }
-        self.track
-            .change_tool(tool.filter(|tool| *tool > 0))
-            .map_err(|problem| (problem, line.all()))
+        let whole = |problem| (problem, line.all());
+        self.track.change_tool(tool.filter(|tool| *tool > 0)).map_err(whole)?;
+        // Oversizes last until the next call of a tool, and are 0 there unless it says otherwise.
+        if tool.is_some() || longer.is_some() {
+            self.track.lengthen(longer.unwrap_or(0.0)).map_err(whole)?;
+        }
+        if tool.is_some() || larger.is_some() {
+            self.oversize = larger.unwrap_or(0.0);
+        }
+        Ok(())
+    }
+
+    /// `TOOL DEF 5 L+10 R+5`: the tool's measures, if it has them.
+    pub(super) fn tool_definition(&mut self, line: &Line) -> Result<(), Located> {
+        let Some(number) = line.word(2).parse::<u32>().ok() else {
+            return Ok(());
+        };
+        for token in line.tokens.iter().skip(3) {
+            if let Some(radius) = token.text.strip_prefix('R') {
+                let radius = self
+                    .parameters
+                    .value(radius)
+                    .map_err(|problem| (problem, token.span.clone()))?;
+                let radius = radius * self.unit();
+                self.radii.insert(number, radius);
+            }
+        }
+        Ok(())
     }
 
     /// The M codes of a block. Whether the cycle is called (M99).
@@ -128,8 +160,8 @@ impl Reader<'_> {
                 99 => calls = true,
                 126 => self.shortest = true,
                 127 => self.shortest = false,
-                128 => self.control(true),
-                129 => self.control(false),
+                128 => self.control(true).map_err(|problem| (problem, token.span.clone()))?,
+                129 => self.control(false).map_err(|problem| (problem, token.span.clone()))?,
                 94 => {
                     let reduced = self.track.abc.map(|angle| angle % 360.0);
                     self.track.abc = reduced;
@@ -158,17 +190,17 @@ impl Reader<'_> {
         self.event(EventKind::Spindle(spindle), line)
     }
 
-    pub(super) fn control(&mut self, on: bool) {
+    pub(super) fn control(&mut self, on: bool) -> Result<(), NcProblem> {
         self.tip_control = on;
         let tip = on || self.frames.tilted();
         self.track
-            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes });
+            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes })
     }
 
     pub(super) fn function_block(&mut self, line: &Line) -> Result<(), Located> {
         match (line.word(1), line.word(2)) {
-            ("TCPM", _) => self.control(true),
-            ("RESET", "TCPM") => self.control(false),
+            ("TCPM", _) => self.control(true).map_err(|problem| (problem, line.all()))?,
+            ("RESET", "TCPM") => self.control(false).map_err(|problem| (problem, line.all()))?,
             ("MODE" | "FEED" | "DWELL" | "S-PULSE", _) => {}
             (word, _) => {
                 let problem = NcProblem::unsupported(

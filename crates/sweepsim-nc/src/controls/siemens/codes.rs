@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use super::cursor::Located;
+use super::contours::PoleFrom;
 use super::cycles::Cycle;
-use super::expression::{Expression, Value};
 use super::frames::Operation;
 use super::interpreter::Reader;
+use super::language::cursor::Located;
+use super::language::expression::{Expression, Value};
 use super::words::{Action, Modal, Motion, Words};
-use crate::drive::Coordinates;
+use crate::drive::{Coordinates, Corners};
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
@@ -55,13 +56,18 @@ impl Reader<'_> {
             93 => self.track.feed_mode = FeedMode::InverseTime,
             94 => self.track.feed_mode = FeedMode::PerMinute,
             95 => self.track.feed_mode = FeedMode::PerRevolution,
-            40 => {}
-            41 | 42 => return refuse("cutter compensation is"),
+            40 => action.side = Some(None),
+            41 => action.side = Some(Some(true)),
+            42 => action.side = Some(Some(false)),
+            450 => self.modes.corners = Corners::Arcs,
+            451 => self.modes.corners = Corners::Meetings,
             33..=35 | 63 | 331 | 332 => return refuse("threading is"),
             58 | 59 => return refuse("shifting frames axis by axis is"),
-            110..=112 => return refuse("polar coordinates are"),
-            // Exact stop and continuous-path modes, corners of compensated contours, soft approach off, speeds.
-            9 | 60 | 64 | 96 | 97 | 450..=453 | 458..=461 | 601..=603 | 621 | 641..=645 | 961 | 962 | 971..=973 => {}
+            110 => action.pole = Some(PoleFrom::Position),
+            111 => action.pole = Some(PoleFrom::Zero),
+            112 => action.pole = Some(PoleFrom::Pole),
+            // Exact stop and continuous-path modes, corner feeds, approach behind the contour, speeds.
+            9 | 60 | 64 | 96 | 97 | 452 | 453 | 458..=461 | 601..=603 | 621 | 641..=645 | 961 | 962 | 971..=973 => {}
             140..=143 | 147 | 148 | 247 | 248 | 340 | 341 | 347 | 348 => {
                 return refuse("smooth approach and retraction are");
             }
@@ -87,12 +93,14 @@ impl Reader<'_> {
             "SUPA" => action.machine = true,
             "TRAORI" => {
                 self.modes.tip_control = true;
-                self.track.set_coordinates(Coordinates::Tip);
+                self.track.set_coordinates(Coordinates::Tip).map_err(here)?;
             }
             "TRAFOOF" => {
                 self.modes.tip_control = false;
-                self.plane_coordinates();
+                self.plane_coordinates().map_err(here)?;
             }
+            "NORM" => self.modes.round_ends = false,
+            "KONT" => self.modes.round_ends = true,
             "CIP" => self.modes.motion = Motion::Through,
             "CT" => self.modes.motion = Motion::Tangential,
             "MSG" => {
@@ -215,7 +223,7 @@ impl Reader<'_> {
 }
 
 /// Keywords that change no programmed point.
-const HARMLESS: [&str; 62] = [
+const HARMLESS: [&str; 60] = [
     "FNORM",
     "FLIN",
     "FCUB",
@@ -262,8 +270,6 @@ const HARMLESS: [&str; 62] = [
     "CFC",
     "CFTCP",
     "CFIN",
-    "NORM",
-    "KONT",
     "CDON",
     "CDOF",
     "CDOF2",
@@ -280,7 +286,7 @@ const HARMLESS: [&str; 62] = [
     "TOROTOF",
 ];
 /// Keywords that change the path.
-const REFUSED: [&str; 21] = [
+const REFUSED: [&str; 23] = [
     "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW", "INVCCW", "TRACYL", "TRANSMIT", "TRAANG", "TCARR", "TCOABS",
-    "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON",
+    "TCOFR", "PAROT", "TOROT", "TOROTX", "TOROTY", "TOFRAME", "PTP", "PTPG0", "CUT3DC", "CONTPRON", "KONTC", "KONTT",
 ];

@@ -1,7 +1,7 @@
 //! Frames: work offsets, programmable frames and swivelled planes.
 
-use super::cursor::Located;
 use super::interpreter::Reader;
+use super::language::cursor::Located;
 use super::words::Words;
 use crate::drive::Coordinates;
 use crate::machines::WorkFrame;
@@ -56,8 +56,8 @@ impl Operation {
 
 impl Reader<'_> {
     /// Brings all frames into effect.
-    pub(super) fn apply_frames(&mut self) {
-        self.track.set_frame(self.frames.swivel.then(&self.frames.programmed));
+    pub(super) fn apply_frames(&mut self) -> Result<(), NcProblem> {
+        self.track.set_frame(self.frames.swivel.then(&self.frames.programmed))
     }
 
     /// Before a move in the part's frame: the distance between two work offsets is not known.
@@ -111,8 +111,7 @@ impl Reader<'_> {
         } else {
             change
         };
-        self.apply_frames();
-        Ok(())
+        self.apply_frames().map_err(|problem| (problem, words.whole()))
     }
 
     /// `CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, …)`: a swivelled plane.
@@ -121,9 +120,8 @@ impl Reader<'_> {
         if arguments.iter().all(Option::is_none) {
             self.frames.swivel = WorkFrame::default();
             self.frames.swivelled = false;
-            self.apply_frames();
-            self.plane_coordinates();
-            return Ok(());
+            self.apply_frames()?;
+            return self.plane_coordinates();
         }
         let mode = get(3);
         if mode.fract() != 0.0 || !(0.0..=255.0).contains(&mode) {
@@ -168,8 +166,8 @@ impl Reader<'_> {
         self.frames.programmed = WorkFrame::default();
         // Coordinates become those of the tip first: the frame is the part's.
         self.frames.swivelled = true;
-        self.plane_coordinates();
-        self.apply_frames();
+        self.plane_coordinates()?;
+        self.apply_frames()?;
         if get(13) == 0.0 {
             self.track
                 .note("CYCLE800 without a direction turns no axis: the tool keeps its direction");
@@ -183,9 +181,9 @@ impl Reader<'_> {
     }
 
     /// In a swivelled plane coordinates are those of the tip, as under tip control.
-    pub(super) fn plane_coordinates(&mut self) {
+    pub(super) fn plane_coordinates(&mut self) -> Result<(), NcProblem> {
         let tip = self.frames.swivelled || self.modes.tip_control;
         self.track
-            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes });
+            .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes })
     }
 }

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
-use super::block::{Item, Statement};
-use super::cursor::Located;
-use super::expression::{self, Expression, Value};
 use super::frames::Frames;
-use super::unit::{Unit, parts};
+use super::language::block::{Item, Statement};
+use super::language::cursor::Located;
+use super::language::expression::{self, Expression, Value};
+use super::language::unit::{Unit, parts};
 use super::variables::{DEEPEST_CALL, MOST_VARIABLES};
 use super::words::Modes;
 use crate::drive::{Sense, Track};
@@ -112,6 +112,16 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
                     errors.push(located(unit, index, problem, span, &reader.track.program.files));
                 }
             }
+        }
+    }
+    if let Err(problem) = reader.track.end_compensation(None) {
+        let place = reader.track.place;
+        if options.lenient {
+            reader.track.note(format!("left out: {problem}"));
+        } else {
+            let line = text.lines().nth(place.line.saturating_sub(1)).unwrap_or("");
+            let position = TextPosition::in_line(place.line.max(1), line, 1, line.chars().count());
+            errors.push(NcError::new(problem, Some(position)));
         }
     }
     if let Some(error) = NcError::all(errors) {
@@ -244,7 +254,7 @@ impl Reader<'_> {
 
     fn line(&mut self, unit: usize, index: usize) -> Result<(), Located> {
         let Ok(line) = self.units[unit].lines[index].clone() else {
-            return super::block::line(&self.units[unit].texts[index]).map(|_| ());
+            return super::language::block::line(&self.units[unit].texts[index]).map(|_| ());
         };
         if line.skipped {
             if self.options.block_delete {
@@ -325,9 +335,9 @@ impl Reader<'_> {
                 }
             }
             Statement::RepeatLabel { from, to, times, block } => {
-                let start = self.units[unit].find(from, index, super::block::Search::Backward)?;
+                let start = self.units[unit].find(from, index, super::language::block::Search::Backward)?;
                 let end = match to {
-                    Some(to) => self.units[unit].find(to, start, super::block::Search::Forward)? + 1,
+                    Some(to) => self.units[unit].find(to, start, super::language::block::Search::Forward)? + 1,
                     None if *block => start + 1,
                     None => index,
                 };

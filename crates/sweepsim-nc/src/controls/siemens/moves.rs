@@ -1,12 +1,8 @@
 //! The moves of a block.
 
-use nalgebra::Vector3;
-
-use super::cursor::Located;
 use super::interpreter::Reader;
+use super::language::cursor::Located;
 use super::words::{Action, Meaning, Modal, Motion, Word, Words};
-use crate::drive::Arc;
-use crate::gcode::CircularArc;
 use crate::text::error::NcProblem;
 
 const LINEAR: [&str; 3] = ["X", "Y", "Z"];
@@ -41,9 +37,18 @@ impl Reader<'_> {
         }
         let moves = |names: [&str; 3]| names.map(|name| words.get(name).is_some());
         let linear = moves(LINEAR);
+        if let Some(kind) = action.pole {
+            return self.set_pole(kind, words);
+        }
+        self.switch_compensation(action, words)?;
         let Some(first) = words.any(&[
-            "X", "Y", "Z", "A", "B", "C", "A3", "B3", "C3", "I", "J", "K", "CR", "AR", "I1", "J1", "K1",
+            "X", "Y", "Z", "A", "B", "C", "A3", "B3", "C3", "I", "J", "K", "CR", "AR", "I1", "J1", "K1", "AP", "RP",
         ]) else {
+            if action.side == Some(None) {
+                self.track
+                    .end_compensation(None)
+                    .map_err(|problem| (problem, words.whole()))?;
+            }
             if action.home {
                 return Err((
                     NcProblem::syntax("G74 or G75 without an axis: expected X, Y, Z …"),
@@ -88,6 +93,7 @@ impl Reader<'_> {
         }
         let direction = self.vector(words)?;
         if !linear.contains(&true)
+            && words.any(&["AP", "RP"]).is_none()
             && direction.is_none()
             && self.track.known().is_none()
             && words.any(&["I", "J", "K", "CR", "AR"]).is_none()
@@ -97,10 +103,15 @@ impl Reader<'_> {
         }
         self.use_offset().map_err(here)?;
         let cuts = self.modes.motion != Motion::Rapid;
+        let polar = words.any(&["AP", "RP"]).is_some();
         let Some(target) = self.target(words, cuts)? else {
             self.track.abc = abc;
             return Ok(());
         };
+        if action.side == Some(None) {
+            self.track.end_compensation(Some(target)).map_err(here)?;
+        }
+        self.corner_at_end(action);
         match (self.modes.motion, direction) {
             (Motion::Arc { .. } | Motion::Through | Motion::Tangential, None) => self.arc(words, target, abc)?,
             (Motion::Arc { .. } | Motion::Through | Motion::Tangential, Some(_)) => {
@@ -117,7 +128,7 @@ impl Reader<'_> {
             (_, Some(direction)) => self.track.line_towards(target, direction, !cuts).map_err(here)?,
             (_, None) => self.track.line(target, abc, !cuts).map_err(here)?,
         }
-        if linear.contains(&true) || rotary {
+        if linear.contains(&true) || polar || rotary {
             match self.modes.modal_call.clone() {
                 Some((depth, _)) if depth != self.depth() => {}
                 Some((_, Modal::Cycle(cycle))) => self.drill(&cycle).map_err(here)?,
@@ -186,6 +197,7 @@ impl Reader<'_> {
     /// Where the block ends, in the frame; `None` if it is not known yet.
     fn target(&mut self, words: &Words, cuts: bool) -> Result<Option<[f64; 3]>, Located> {
         let mut xyz = self.track.xyz;
+        let polar = self.polar(words)?;
         for (k, name) in LINEAR.into_iter().enumerate() {
             let word = words.get(name);
             if word
@@ -196,6 +208,7 @@ impl Reader<'_> {
             }
             let relative = word.is_some_and(|word| self.relative(word));
             if self.track.xyz[k].is_none()
+                && polar[k].is_none()
                 && (relative || cuts && (word.is_none() || !matches!(self.modes.motion, Motion::Feed)))
                 && !self.uncertain
             {
@@ -203,6 +216,9 @@ impl Reader<'_> {
                 self.track.note(format!("{name} is not known here: taken as 0"));
                 self.track.xyz[k] = Some(0.0);
                 xyz[k] = Some(0.0);
+            }
+            if polar[k].is_some() {
+                xyz[k] = polar[k];
             }
             if let Some(word) = word {
                 let value = word.value * self.modes.unit();
@@ -229,134 +245,7 @@ impl Reader<'_> {
         Ok(None)
     }
 
-    fn relative(&self, word: &Word) -> bool {
+    pub(super) fn relative(&self, word: &Word) -> bool {
         word.meaning == Meaning::Incremental || word.meaning == Meaning::Plain && !self.modes.absolute
-    }
-
-    fn arc(&mut self, words: &Words, target: [f64; 3], abc: [f64; 3]) -> Result<(), Located> {
-        let whole = words
-            .any(&["X", "Y", "Z", "I", "J", "K", "CR", "AR", "I1"])
-            .map_or(0..0, |word| word.span.clone());
-        let fail = |message: String| (NcProblem::syntax(message), whole.clone());
-        let Some(start) = self.track.known() else { return Ok(()) };
-        let plane = self.modes.plane;
-        let [u, v, w] = plane;
-        let unit = self.modes.unit();
-        let turns = words.plain("TURN").unwrap_or(0.0);
-        if turns.fract() != 0.0 || !(0.0..=999.0).contains(&turns) {
-            return Err((
-                NcProblem::value("TURN", turns, "a whole number from 0 to 999"),
-                words.span("TURN"),
-            ));
-        }
-        let ends = (start, target);
-        let Motion::Arc { counter_clockwise } = self.modes.motion else {
-            if self.modes.motion == Motion::Tangential {
-                let problem = NcProblem::unsupported("CT is", "expected G2 or G3 with a centre");
-                return Err((problem, whole));
-            }
-            return self.through(words, start, target, abc, whole);
-        };
-        let centre_words = ["I", "J", "K"];
-        let centre = |k: usize| {
-            words.get(centre_words[k]).map(|word| {
-                let value = word.value * unit;
-                // Centres are from the start, also in G90.
-                if word.meaning == Meaning::Absolute {
-                    value
-                } else {
-                    start[k] + value
-                }
-            })
-        };
-        let arc = if let Some(radius) = words.plain("CR") {
-            CircularArc::with_radius(ends, plane, radius * unit, counter_clockwise, 1.0 + turns)
-        } else if words.any(&centre_words).is_some() {
-            let at = [centre(u).unwrap_or(start[u]), centre(v).unwrap_or(start[v])];
-            if let Some(angle) = words.plain("AR") {
-                // An opening angle with a centre gives the end.
-                if !(angle > 0.0 && angle < 360.0) {
-                    return Err((NcProblem::value("AR", angle, "between 0 and 360"), words.span("AR")));
-                }
-                let sweep = if counter_clockwise { angle } else { -angle }.to_radians();
-                let (sin, cos) = sweep.sin_cos();
-                let from = [start[u] - at[0], start[v] - at[1]];
-                let mut end = target;
-                end[u] = at[0] + cos * from[0] - sin * from[1];
-                end[v] = at[1] + sin * from[0] + cos * from[1];
-                CircularArc::about((start, end), plane, at, counter_clockwise, 1.0 + turns)
-            } else {
-                CircularArc::about(ends, plane, at, counter_clockwise, 1.0 + turns)
-            }
-        } else if let Some(angle) = words.plain("AR") {
-            if !(angle > 0.0 && angle < 360.0) {
-                return Err((NcProblem::value("AR", angle, "between 0 and 360"), words.span("AR")));
-            }
-            let chord = (target[u] - start[u]).hypot(target[v] - start[v]);
-            let radius = 0.5 * chord / (0.5 * angle.to_radians()).sin();
-            let signed = if angle > 180.0 { -radius } else { radius };
-            CircularArc::with_radius(ends, plane, signed, counter_clockwise, 1.0 + turns)
-        } else {
-            return Err(fail(format!(
-                "this arc has no centre: expected {} and {}, CR= or AR=",
-                centre_words[u], centre_words[v]
-            )));
-        }
-        .map_err(fail)?;
-        let mut centre = [0.0; 3];
-        let mut normal = [0.0; 3];
-        centre[u] = arc.centre[0];
-        centre[v] = arc.centre[1];
-        centre[w] = start[w];
-        normal[w] = 1.0;
-        let arc = Arc {
-            end: arc.end,
-            centre,
-            normal,
-            sweep: arc.sweep,
-        };
-        self.track.arc(&arc, abc).map_err(|problem| (problem, whole))
-    }
-
-    /// An arc through an intermediate point (`CIP` with `I1`, `J1`, `K1`), in any plane.
-    fn through(
-        &mut self,
-        words: &Words,
-        start: [f64; 3],
-        end: [f64; 3],
-        abc: [f64; 3],
-        whole: std::ops::Range<usize>,
-    ) -> Result<(), Located> {
-        let unit = self.modes.unit();
-        let middle: [f64; 3] = std::array::from_fn(|k| match words.get(["I1", "J1", "K1"][k]) {
-            Some(word) if self.relative(word) => start[k] + word.value * unit,
-            Some(word) => word.value * unit,
-            None => start[k],
-        });
-        let (a, b, c) = (Vector3::from(start), Vector3::from(middle), Vector3::from(end));
-        let (p, q) = (b - a, c - a);
-        let normal = p.cross(&q);
-        let size = normal.norm();
-        if !(size > 1e-9 * p.norm() * q.norm()) {
-            let problem =
-                NcProblem::syntax("the three points of CIP lie on a line: expected an intermediate point beside it");
-            return Err((problem, whole));
-        }
-        // The circumcentre of the triangle.
-        let to_centre = (q * p.norm_squared() - p * q.norm_squared()).cross(&normal) / (2.0 * size * size);
-        let centre = a + to_centre;
-        let unit_normal = normal / size;
-        let (from, to) = (a - centre, c - centre);
-        let sweep = unit_normal
-            .dot(&from.cross(&to))
-            .atan2(from.dot(&to))
-            .rem_euclid(std::f64::consts::TAU);
-        let arc = Arc {
-            end,
-            centre: centre.into(),
-            normal: unit_normal.into(),
-            sweep,
-        };
-        self.track.arc(&arc, abc).map_err(|problem| (problem, whole))
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::block::{Item, Statement};
-use super::cursor::Located;
-use super::expression::{self, Expression, Value};
 use super::interpreter::{Level, Reader};
+use super::language::block::{Item, Statement};
+use super::language::cursor::Located;
+use super::language::expression::{self, Expression, Value};
 use crate::text::error::NcProblem;
 
 /// The most variables.
@@ -71,7 +71,8 @@ impl Reader<'_> {
     }
 
     pub fn assign(&mut self, name: String, value: Value) -> Result<(), NcProblem> {
-        if name.starts_with('$') {
+        // The radius of a tool's edge moves nothing by itself.
+        if name.starts_with('$') && !name.starts_with("$TC_DP6[") {
             return Err(NcProblem::unsupported(
                 format!("setting the system variable {name} is"),
                 "it could move frames or axes; expected a program without it",

@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::block::Item;
-use super::cursor::Located;
+use super::contours::PoleFrom;
 use super::cycles::Cycle;
-use super::expression::{self, Expression, Kind, Value};
 use super::frames::Operation;
 use super::interpreter::Reader;
+use super::language::block::Item;
+use super::language::cursor::Located;
+use super::language::expression::{self, Expression, Kind, Value};
+use crate::drive::{CornerShape, Corners};
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcProblem;
@@ -39,6 +41,22 @@ pub(super) struct Modes {
     pub(super) without_length: bool,
     /// A cycle or subprogram at each position of the program at this depth.
     pub modal_call: Option<(usize, Modal)>,
+    /// The tool's edge (`D`).
+    pub edge: u32,
+    /// An allowance of compensated contours (`OFFN`), in mm.
+    pub allowance: f64,
+    pub corners: Corners,
+    /// `DISC`.
+    pub distortion: f64,
+    /// `KONT`.
+    pub round_ends: bool,
+    /// The radius of `RNDM`, in mm, and the feed of `FRCM`.
+    pub rounding: Option<f64>,
+    pub corner_feed: Option<f64>,
+    /// The pole in the plane, in mm, and the last `AP` and `RP`.
+    pub pole: [f64; 2],
+    pub polar_angle: Option<f64>,
+    pub polar_radius: Option<f64>,
     pub spindle: Spindle,
     pub(super) speed: Option<f64>,
     pub(super) selected: Option<u32>,
@@ -63,6 +81,16 @@ impl Modes {
             tip_control: options.machine.tip_control,
             without_length: false,
             modal_call: None,
+            edge: 1,
+            allowance: 0.0,
+            corners: Corners::Arcs,
+            distortion: 0.0,
+            round_ends: false,
+            rounding: None,
+            corner_feed: None,
+            pole: [0.0; 2],
+            polar_angle: None,
+            polar_radius: None,
             spindle: Spindle::Stopped,
             speed: None,
             selected: None,
@@ -120,7 +148,7 @@ impl Words {
         self.0.iter().find(|word| names.contains(&word.name.as_str()))
     }
 
-    fn whole(&self) -> Range<usize> {
+    pub fn whole(&self) -> Range<usize> {
         match (self.0.first(), self.0.last()) {
             (Some(first), Some(last)) => first.span.start..last.span.end,
             _ => 0..0,
@@ -140,6 +168,13 @@ pub(super) struct Action {
     /// Words that are no coordinates: G25, G26, oriented spindle stops.
     pub other: bool,
     pub tool_change: bool,
+    /// Cutter compensation off, to the left, or to the right: G40, G41, G42.
+    pub side: Option<Option<bool>>,
+    /// A new pole: G110, G111, G112.
+    pub pole: Option<PoleFrom>,
+    /// The corner at the end of the move, with its word, and its feed.
+    pub corner: Option<(&'static str, CornerShape)>,
+    pub corner_feed: Option<f64>,
 }
 
 impl Reader<'_> {
@@ -157,6 +192,10 @@ impl Reader<'_> {
                 } => {
                     let key = expression::key(name, indices, &|name| self.lookup(name))?;
                     let value = value.value(&|name| self.lookup(name))?;
+                    if let ("OFFN", Value::Number(allowance)) = (name.as_str(), &value) {
+                        self.modes.allowance = allowance * self.modes.unit();
+                        continue;
+                    }
                     if matches!(
                         name.as_str(),
                         "FA" | "ACC" | "OVRA" | "VELOLIM" | "JERKLIM" | "FGREF" | "FXST"
@@ -284,6 +323,7 @@ impl Reader<'_> {
         }
         if let Some(offset) = words.plain("D") {
             self.modes.without_length = offset == 0.0;
+            self.modes.edge = offset as u32;
         }
         if let Some(word) = words.get("T") {
             if !(0.0..=f64::from(u32::MAX)).contains(&word.value) || word.value.fract() != 0.0 {
@@ -295,13 +335,7 @@ impl Reader<'_> {
             self.select(word.value as u32)
                 .map_err(|problem| (problem, word.span.clone()))?;
         }
-        if let Some(word) = words
-            .any(&["RND", "RNDM", "CHF", "CHR", "ANG", "AP", "RP"])
-            .filter(|word| word.value != 0.0)
-        {
-            let problem = NcProblem::unsupported(format!("{} is", word.name), "expected the contour by lines and arcs");
-            return Err((problem, word.span.clone()));
-        }
+        self.corner_words(words, action)?;
         if let Some(speed) = words.get("S").filter(|_| !action.dwell) {
             self.modes.speed = Some(speed.value);
         }

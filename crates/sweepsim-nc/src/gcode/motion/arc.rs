@@ -8,9 +8,7 @@ use std::f64::consts::TAU;
 use sweepsim_motion::{ArcError, TipArc};
 
 use super::map::Map;
-
-/// The plane of arcs: its axes `[u, v, w]` as indices of XYZ.
-pub(crate) type ArcPlane = [usize; 3];
+pub(crate) use crate::drive::ArcPlane;
 
 /// A circular arc or helix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +108,34 @@ impl CircularArc {
             start[v] + 0.5 * chord[1] + side * height * chord[0],
         ];
         Self::about((start, end), plane, centre, counter_clockwise, turns)
+    }
+
+    /// The arc that continues a move that ended along `way`, in the plane; `name` is its word, for messages.
+    pub(crate) fn tangential(
+        (start, end): ([f64; 3], [f64; 3]),
+        plane: ArcPlane,
+        way: Option<[f64; 2]>,
+        name: &str,
+    ) -> Result<Self, String> {
+        let [u, v, _] = plane;
+        let Some(way) = way else {
+            return Err(format!(
+                "{name} without a move before it: expected a line or an arc that it continues"
+            ));
+        };
+        let chord = [end[u] - start[u], end[v] - start[v]];
+        let length = way[0].hypot(way[1]);
+        let normal = [-way[1] / length, way[0] / length];
+        let across = normal[0] * chord[0] + normal[1] * chord[1];
+        let square = chord[0] * chord[0] + chord[1] * chord[1];
+        if !(across.abs() > 1e-9 * square.sqrt()) {
+            return Err(format!(
+                "{name} ends straight ahead: expected an end beside the direction of the last move"
+            ));
+        }
+        let reach = square / (2.0 * across);
+        let centre = [start[u] + normal[0] * reach, start[v] + normal[1] * reach];
+        Self::about((start, end), plane, centre, across > 0.0, 1.0)
     }
 
     /// The arc's image under a map: `None` if that is no arc.

@@ -6,8 +6,7 @@ use std::borrow::Cow;
 
 use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
 
-use super::stroke::Place;
-use crate::drive::{Coordinates, Driver, Sense};
+use crate::drive::{Coordinates, Driver, Place, Sense};
 use crate::machines::{Machine, Position};
 use crate::model::event::{Event, EventKind};
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};

@@ -1,9 +1,9 @@
 //! The moves of a block.
 
 use super::interpreter::Reader;
+use crate::drive::{Bend, Stroke};
 use crate::gcode::codes::MotionMode;
 use crate::gcode::motion::arc::CircularArc;
-use crate::gcode::motion::stroke::{Bend, Stroke};
 use crate::gcode::syntax::block::{Block, Word};
 use crate::text::error::NcProblem;
 

@@ -4,10 +4,9 @@ use std::f64::consts::TAU;
 
 use super::interpreter::Reader;
 use super::tools::ToolRow;
+use crate::drive::{Bend, Compensation, Corners, Item, Side, Stroke};
 use crate::gcode::motion::arc::CircularArc;
-use crate::gcode::motion::compensation::Compensation;
 use crate::gcode::motion::state::MoveEnd;
-use crate::gcode::motion::stroke::{Bend, Item, Side, Stroke};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::trace::Canonical;
@@ -172,7 +171,9 @@ impl Reader {
         let side = Side {
             left: left != (diameter < 0.0),
             radius: 0.5 * diameter.abs(),
-            fanuc: self.fanuc(),
+            corners: if self.fanuc() { Corners::Lines } else { Corners::Arcs },
+            beside_next: self.fanuc(),
+            round_ends: false,
             tangent: if linuxcnc { 0.05 } else { 1e-6 },
         };
         self.actual = at;
@@ -185,7 +186,8 @@ impl Reader {
         if let Some(compensation) = self.compensation.take() {
             self.straight_next =
                 compensation.side.radius > 0.0 && Some(compensation.current()) != self.known_position();
-            self.emit_all(compensation.finish())?;
+            let items = compensation.finish()?;
+            self.emit_all(items)?;
         }
         Ok(())
     }

@@ -3,7 +3,6 @@
 mod arcs;
 mod cycles;
 mod errors;
-mod fuzz;
 mod statements;
 mod tools;
 

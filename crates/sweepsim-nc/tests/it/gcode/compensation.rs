@@ -1,89 +1,11 @@
 //! Cutter compensation against offsets computed independently.
 
-use std::f64::consts::TAU;
-
 use proptest::prelude::*;
 use sweepsim_motion::Course;
-use sweepsim_nc::{Controller, Program, ReadOptions, ToolOffset, gcode};
+use sweepsim_nc::{Controller, ReadOptions, ToolOffset, gcode};
 
 use super::{assert_near, options, program, program_with, tips};
-
-/// A piece of a programmed contour.
-#[derive(Clone, Copy, Debug)]
-enum Piece {
-    Line([f64; 2], [f64; 2]),
-    /// From, to, centre, counter-clockwise.
-    Arc([f64; 2], [f64; 2], [f64; 2], bool),
-}
-
-fn distance_to_point(p: [f64; 2], q: [f64; 2]) -> f64 {
-    (p[0] - q[0]).hypot(p[1] - q[1])
-}
-
-impl Piece {
-    fn distance(&self, p: [f64; 2]) -> f64 {
-        match *self {
-            Self::Line(a, b) => {
-                let d = [b[0] - a[0], b[1] - a[1]];
-                let t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);
-                let t = t.clamp(0.0, 1.0);
-                distance_to_point(p, [a[0] + t * d[0], a[1] + t * d[1]])
-            }
-            Self::Arc(a, b, c, ccw) => {
-                let angle = |q: [f64; 2]| (q[1] - c[1]).atan2(q[0] - c[0]);
-                let (from, to) = if ccw {
-                    (angle(a), angle(b))
-                } else {
-                    (angle(b), angle(a))
-                };
-                let span = (to - from).rem_euclid(TAU);
-                let span = if span < 1e-9 { TAU } else { span };
-                if (angle(p) - from).rem_euclid(TAU) <= span {
-                    (distance_to_point(p, c) - distance_to_point(a, c)).abs()
-                } else {
-                    distance_to_point(p, a).min(distance_to_point(p, b))
-                }
-            }
-        }
-    }
-
-    fn block(&self) -> String {
-        match *self {
-            Self::Line(_, b) => format!("G1 X{:.9} Y{:.9}\n", b[0], b[1]),
-            Self::Arc(a, b, c, ccw) => format!(
-                "G{} X{:.9} Y{:.9} I{:.9} J{:.9}\n",
-                if ccw { 3 } else { 2 },
-                b[0],
-                b[1],
-                c[0] - a[0],
-                c[1] - a[1]
-            ),
-        }
-    }
-}
-
-/// Points of the moves of a program from one pose to another, densely.
-fn samples(program: &Program, poses: std::ops::Range<usize>) -> Vec<[f64; 2]> {
-    let mut points = Vec::new();
-    for pair in program.poses[poses].windows(2) {
-        let (a, b): ([f64; 3], [f64; 3]) = (pair[0].pose.tip(), pair[1].pose.tip());
-        for k in 0..=20 {
-            let s = f64::from(k) / 20.0;
-            points.push(match pair[1].way.course {
-                Course::Arc(arc) => {
-                    let (c, turn) = (arc.centre(), s * arc.angle() * arc.normal()[2].signum());
-                    let (x, y) = (a[0] - c[0], a[1] - c[1]);
-                    [
-                        c[0] + x * turn.cos() - y * turn.sin(),
-                        c[1] + x * turn.sin() + y * turn.cos(),
-                    ]
-                }
-                _ => [a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1])],
-            });
-        }
-    }
-    points
-}
+use crate::pieces::{Piece, distance_to_point, polygon, rounded_rectangle, samples, star};
 
 /// The program of a closed contour with a tangential entry and exit of 10 mm.
 fn contour_program(contour: &[Piece], left: bool, diameter: f64) -> String {
@@ -140,27 +62,6 @@ fn check_distance(contour: &[Piece], left: bool, radius: f64, controller: Option
     Ok(())
 }
 
-/// A closed polygon, from the middle of its first side.
-fn polygon(points: &[[f64; 2]]) -> Vec<Piece> {
-    let n = points.len();
-    let middle = [0, 1].map(|k| 0.5 * (points[0][k] + points[1][k]));
-    let mut pieces = vec![Piece::Line(middle, points[1])];
-    pieces.extend((1..n).map(|k| Piece::Line(points[k], points[(k + 1) % n])));
-    pieces.push(Piece::Line(points[0], middle));
-    pieces
-}
-
-/// A polygon round the origin, not convex in general.
-fn star(radii: &[f64]) -> Vec<[f64; 2]> {
-    let n = radii.len() as f64;
-    let point = |(k, r): (usize, &f64)| {
-        let (sin, cos) = (TAU * k as f64 / n).sin_cos();
-        // As the program says it.
-        [r * cos, r * sin].map(|x| (x * 1e9).round() / 1e9)
-    };
-    radii.iter().enumerate().map(point).collect()
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
@@ -190,28 +91,7 @@ proptest! {
         bulge in any::<bool>(),
         radius in 0.1..1.4_f64,
     ) {
-        let corner = (corner * 1e6).round() / 1e6;
-        let (w, h, r) = (40.0, 30.0, corner);
-        // Counter-clockwise; a notch with corners to the right where `bulge`.
-        let arc = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| Piece::Arc(a, b, c, true);
-        let mut pieces = vec![
-            Piece::Line([20.0, 0.0], [w - r, 0.0]),
-            arc([w - r, 0.0], [w, r], [w - r, r]),
-            Piece::Line([w, r], [w, h - r]),
-            arc([w, h - r], [w - r, h], [w - r, h - r]),
-            Piece::Line([w - r, h], [r, h]),
-            arc([r, h], [0.0, h - r], [r, h - r]),
-            Piece::Line([0.0, h - r], [0.0, r]),
-            arc([0.0, r], [r, 0.0], [r, r]),
-        ];
-        if bulge {
-            // A half circle with sharp corners on both sides.
-            pieces.push(Piece::Line([r, 0.0], [12.0, 0.0]));
-            pieces.push(Piece::Arc([12.0, 0.0], [18.0, 0.0], [15.0, 0.0], outside));
-            pieces.push(Piece::Line([18.0, 0.0], [20.0, 0.0]));
-        } else {
-            pieces.push(Piece::Line([r, 0.0], [20.0, 0.0]));
-        }
+        let pieces = rounded_rectangle(corner, bulge.then_some(outside));
         let result = check_distance(&pieces, left, radius, None);
         prop_assert!(result.is_ok(), "{}", result.unwrap_err());
     }

@@ -6,7 +6,6 @@ mod errors;
 mod events;
 mod flow;
 mod frames;
-mod fuzz;
 mod speed;
 
 use sweepsim_nc::gcode::read;

@@ -10,20 +10,20 @@ const DEEPEST: usize = 60;
 
 /// A value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Value {
+pub(crate) enum Value {
     Number(f64),
     Text(String),
 }
 
 /// An expression, with its bytes in the line.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Expression {
+pub(crate) struct Expression {
     pub kind: Kind,
     pub span: Range<usize>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(crate) enum Kind {
     Number(f64),
     Text(String),
     /// A variable with its indices.
@@ -213,7 +213,7 @@ impl Value {
 }
 
 /// The name of a variable with the values of its indices.
-pub(super) fn key(
+pub(crate) fn key(
     name: &str,
     indices: &[Expression],
     lookup: &dyn Fn(&str) -> Result<Value, NcProblem>,

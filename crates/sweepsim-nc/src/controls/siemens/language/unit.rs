@@ -8,7 +8,7 @@ use super::cursor::Located;
 use crate::text::error::NcProblem;
 
 /// A program or subprogram.
-pub(super) struct Unit {
+pub(crate) struct Unit {
     /// An index of the program's files.
     pub file: usize,
     /// The text line of each entry of `lines`, from 1.
@@ -21,7 +21,7 @@ pub(super) struct Unit {
 }
 
 /// The parts of a text by their headers `%_N_NAME_MPF` or `%_N_NAME_SPF`, each with its first line; without headers one part without a name.
-pub(super) fn parts(text: &str) -> Vec<(String, usize, Vec<String>)> {
+pub(crate) fn parts(text: &str) -> Vec<(String, usize, Vec<String>)> {
     let mut parts: Vec<(String, usize, Vec<String>)> = vec![(String::new(), 1, Vec::new())];
     for (index, line) in text.lines().enumerate() {
         let trimmed = line.trim().trim_start_matches('\u{feff}').to_ascii_uppercase();

@@ -2,27 +2,7 @@
 
 use sweepsim_nc::{Controller, ReadOptions, gcode};
 
-/// A seeded generator (PCG-XSH-RR, O'Neill 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u32 {
-        let state = self.0;
-        self.0 = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        let xorshifted = (((state >> 18) ^ state) >> 27) as u32;
-        xorshifted.rotate_right((state >> 59) as u32)
-    }
-
-    fn below(&mut self, bound: usize) -> usize {
-        ((u64::from(self.next()) * bound.max(1) as u64) >> 32) as usize
-    }
-
-    fn one<'a>(&mut self, of: &[&'a str]) -> &'a str {
-        of[self.below(of.len())]
-    }
-}
+use super::{Random, number, seeds};
 
 /// Programs that are mutated.
 const SEEDS: [&str; 8] = [
@@ -103,49 +83,6 @@ const WORDS: [&str; 64] = [
     "N5",
 ];
 
-fn mutated(random: &mut Random) -> Vec<u8> {
-    let mut text = SEEDS[random.below(SEEDS.len())].as_bytes().to_vec();
-    for _ in 0..=random.below(6) {
-        let at = random.below(text.len() + 1);
-        match random.below(6) {
-            0 if at < text.len() => {
-                text.remove(at);
-            }
-            1 => text.insert(at, random.next() as u8),
-            2 => {
-                let other = SEEDS[random.below(SEEDS.len())].as_bytes();
-                let from = random.below(other.len());
-                let to = (from + random.below(40)).min(other.len());
-                text.splice(at..at, other[from..to].iter().copied());
-            }
-            3 => {
-                let to = (at + random.below(20)).min(text.len());
-                text.drain(at..to);
-            }
-            4 => {
-                let number = random.one(&[
-                    "0",
-                    "-1",
-                    "1e9",
-                    "99999999999",
-                    "1.",
-                    ".",
-                    "#",
-                    "[",
-                    "]",
-                    "\n",
-                    "0.0001",
-                    "-0",
-                ]);
-                text.splice(at..at, number.bytes());
-            }
-            _ if at < text.len() => text[at] = b"GXYZMOo#[]<>()/%;:\n 0123456789.-+*"[random.below(34)],
-            _ => {}
-        }
-    }
-    text
-}
-
 fn made(random: &mut Random) -> Vec<u8> {
     let mut text = String::new();
     for _ in 0..random.below(14) {
@@ -158,7 +95,10 @@ fn made(random: &mut Random) -> Vec<u8> {
     text.into_bytes()
 }
 
+const CHARACTERS: &str = "GXYZMOo#[]<>()/%;:\n 0123456789.-+*";
+
 fn run(from: u64, count: u64) -> (u64, u64) {
+    let real = seeds(&["nc", "ngc", "gcode"]);
     let (mut read, mut poses) = (0, 0);
     let controllers = [
         None,
@@ -168,9 +108,9 @@ fn run(from: u64, count: u64) -> (u64, u64) {
         Some(Controller::Grbl),
     ];
     for seed in from..from + count {
-        let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1);
+        let mut random = Random::new(seed);
         let bytes = if random.below(2) == 0 {
-            mutated(&mut random)
+            random.mutated(&SEEDS, &real, CHARACTERS)
         } else {
             made(&mut random)
         };
@@ -216,16 +156,10 @@ fn no_program_breaks_the_reader() {
     );
 }
 
-/// `cargo test -p sweepsim-nc --test it ten_million_programs -- --ignored --nocapture`; `FUZZ_FROM` and `FUZZ_COUNT` choose a part.
+/// `cargo test -p sweepsim-nc --test it ten_million_programs -- --ignored --nocapture`; see [`super::number`].
 #[test]
 #[ignore = "takes minutes"]
 fn ten_million_programs() {
-    let number = |name: &str, default: u64| {
-        std::env::var(name)
-            .ok()
-            .and_then(|text| text.parse().ok())
-            .unwrap_or(default)
-    };
     let (from, count) = (number("FUZZ_FROM", 0), number("FUZZ_COUNT", 10_000_000));
     let start = std::time::Instant::now();
     let (read, poses) = run(from, count);

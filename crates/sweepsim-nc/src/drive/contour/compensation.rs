@@ -1,23 +1,25 @@
 //! Cutter compensation (G41, G42): the tool's centre beside the programmed contour, at the distance of its radius.
 //!
 //! Each programmed line or arc is offset exactly: lines to lines, arcs to concentric arcs. At outside corners the tool goes round the corner
-//! on an arc, as on LinuxCNC, or on straight lines to the meeting of the offsets and no farther than one radius beyond the corner's
-//! normals, as on Fanuc. At inside corners both offsets end where they meet. So each move can be given out only when the next one is
+//! on an arc, as on LinuxCNC, Heidenhain and Siemens (`G450`), on straight lines to the meeting of the offsets and no farther than one radius
+//! beyond the corner's normals, as on Fanuc, or to the meeting itself (Siemens's `G451`). At inside corners both offsets end where they meet. So each move can be given out only when the next one is
 //! known. The tool's centre is checked against neighbouring moves only, as controls do: a slot narrower than the tool is not noticed where
 //! more than two moves make it.
 //!
 //! The rules at the ends are LinuxCNC's (*LinuxCNC G-code reference, Cutter Compensation*): the entry move ends beside its own end, a
 //! lead-in arc is fitted between its start and its offset end; after G40, the tool moves straight to the next programmed point. On
-//! Fanuc, the entry move ends beside the start of the next move.
+//! Fanuc, Siemens and Heidenhain, the entry move ends beside the start of the next move.
 
 use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 
-use super::arc::ArcPlane;
-use super::corner::{Curve, Flat, cross, dot, inside_corner, length, minus, plus};
-use super::stroke::{Bend, Item, Place, Side, Stroke};
+use super::corner::{Curve, Flat, arc_tangent, cross, dot, inside_corner, length, minus, outside_corner, plus};
+use super::stroke::{ArcPlane, Bend, Corners, Item, Place, Side, Stroke, flat, set};
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
+
+/// The largest turn at which the tool goes to the meeting of the offsets: Siemens's usual machine data.
+const LARGEST_MEETING: f64 = 100.0 / 180.0 * PI + 1e-9;
 
 /// Compensation while it is on.
 #[derive(Clone, Debug)]
@@ -26,8 +28,10 @@ pub(crate) struct Compensation {
     plane: ArcPlane,
     /// No move has been compensated yet.
     first: bool,
-    /// The waiting move is the entry: its end is still free (Fanuc).
+    /// The waiting move is the entry: its end is still free.
     entry: bool,
+    /// The waiting move begins before its programmed start, where an outside corner extends it.
+    extended: bool,
     /// Where the waiting moves start,
     start: [f64; 3],
     /// and where the tool is after them.
@@ -41,26 +45,6 @@ pub(crate) struct Compensation {
     waiting: VecDeque<Item>,
 }
 
-fn flat(plane: ArcPlane, point: [f64; 3]) -> Flat {
-    [point[plane[0]], point[plane[1]]]
-}
-
-fn set(plane: ArcPlane, point: &mut [f64; 3], at: Flat) {
-    point[plane[0]] = at[0];
-    point[plane[1]] = at[1];
-}
-
-/// The direction of an arc about `centre` at `at`.
-fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Flat {
-    let [x, y] = minus(at, centre);
-    let r = length([x, y]);
-    if counter_clockwise {
-        [-y / r, x / r]
-    } else {
-        [y / r, -x / r]
-    }
-}
-
 impl Compensation {
     pub(crate) fn new(side: Side, plane: ArcPlane, at: [f64; 3]) -> Self {
         Self {
@@ -68,6 +52,7 @@ impl Compensation {
             plane,
             first: true,
             entry: false,
+            extended: false,
             start: at,
             current: at,
             tangent: [1.0, 0.0],
@@ -90,14 +75,50 @@ impl Compensation {
         self.waiting.push_back(Item::Event(kind, place));
     }
 
+    /// The plane of the contour.
+    pub(crate) fn plane(&self) -> ArcPlane {
+        self.plane
+    }
+
     /// Whether nothing waits.
     pub(crate) fn is_idle(&self) -> bool {
         self.waiting.is_empty()
     }
 
+    /// Checks that the tool gets to `target` from the end of the contour without going round it (Siemens's `KONT`).
+    pub(crate) fn check_exit(&self, target: [f64; 3]) -> Result<(), NcProblem> {
+        if !self.side.round_ends || self.first || self.side.radius == 0.0 {
+            return Ok(());
+        }
+        let at = plus(
+            flat(self.plane, self.current),
+            -self.side.radius,
+            self.normal(self.tangent),
+        );
+        self.check_front(at, self.tangent, flat(self.plane, target))
+    }
+
+    /// Whether `point` is on the tool's side of the contour at `at`, along `t`. From there `KONT` moves straight, as `NORM` does.
+    fn check_front(&self, at: Flat, t: Flat, point: Flat) -> Result<(), NcProblem> {
+        if dot(self.normal(t), minus(point, at)) < -1e-9 {
+            return Err(NcProblem::unsupported(
+                "KONT from or to a point behind the contour is",
+                "expected NORM, or a point on the tool's side of the contour",
+            ));
+        }
+        Ok(())
+    }
+
     /// What still waits, at the end.
-    pub(crate) fn finish(mut self) -> VecDeque<Item> {
-        std::mem::take(&mut self.waiting)
+    pub(crate) fn finish(mut self) -> Result<Vec<Item>, NcProblem> {
+        let mut out = Vec::new();
+        self.flush(&mut out)?;
+        Ok(out)
+    }
+
+    /// What still waits, as it is, after a problem.
+    pub(crate) fn abandon(self) -> VecDeque<Item> {
+        self.waiting
     }
 
     /// The unit normal towards the tool of a direction.
@@ -128,14 +149,14 @@ impl Compensation {
             let n = self.normal(t);
             let end = plus(q, radius, n);
             if self.first {
-                if distance <= radius && !self.side.fanuc {
+                if distance <= radius && !self.side.beside_next {
                     return Err(NcProblem::value(
                         "the length of the move that begins the cutter compensation",
                         format!("{distance} mm"),
                         format!("more than the tool's radius, {radius} mm"),
                     ));
                 }
-                self.entry = self.side.fanuc;
+                self.entry = self.side.beside_next;
             } else {
                 let start = plus(p, radius, n);
                 let curve = Curve::Line {
@@ -205,7 +226,7 @@ impl Compensation {
 
     /// The arc from `start`, uncompensated, that ends in `end` along `last`.
     fn lead_in(&self, start: Flat, end: Flat, last: Flat, counter_clockwise: bool) -> Result<Bend, NcProblem> {
-        if self.side.fanuc {
+        if self.side.beside_next {
             return Err(NcProblem::syntax(
                 "an arc cannot begin cutter compensation on this control: expected a straight move",
             ));
@@ -244,13 +265,13 @@ impl Compensation {
     }
 
     /// Gives out what waits.
-    fn flush(&mut self, out: &mut Vec<Item>) {
-        out.extend(self.waiting.drain(..));
-        self.start = self.current;
+    fn flush(&mut self, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        let end = flat(self.plane, self.current);
+        self.flush_to(end, false, out)
     }
 
-    /// Gives out what waits, with its end moved.
-    fn flush_to(&mut self, at: Flat, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+    /// Gives out what waits, with its end moved. Moves may become longer only where they are to be extended.
+    fn flush_to(&mut self, at: Flat, extends: bool, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let plane = self.plane;
         let (start, direction) = (flat(plane, self.start), self.tangent);
         for item in &mut self.waiting {
@@ -266,7 +287,7 @@ impl Compensation {
                     let reversed = sweep * bend.sweep < 0.0 && sweep.abs() * length(b) > 1e-6;
                     let longer = (sweep.abs() - bend.sweep.abs()) * length(b) > 0.0254;
                     bend.sweep = sweep;
-                    reversed || longer
+                    reversed || longer && !extends && !self.extended
                 }
             };
             if too_far {
@@ -279,7 +300,9 @@ impl Compensation {
         }
         set(plane, &mut self.current, at);
         self.entry = false;
-        self.flush(out);
+        self.extended = extends;
+        out.extend(self.waiting.drain(..));
+        self.start = self.current;
         Ok(())
     }
 
@@ -294,15 +317,17 @@ impl Compensation {
         out: &mut Vec<Item>,
     ) -> Result<(), NcProblem> {
         if self.entry {
-            return self.flush_to(start, out);
+            if self.side.round_ends {
+                self.check_front(p, t, flat(self.plane, self.start))?;
+            }
+            return self.flush_to(start, false, out);
         }
         let toward = if self.side.left { 1.0 } else { -1.0 };
         // Positive at inside corners.
         let angle = (toward * cross(self.tangent, t)).atan2(dot(self.tangent, t));
         let small = self.side.tangent;
         if angle.abs() <= small {
-            self.flush(out);
-            return Ok(());
+            return self.flush(out);
         }
         // Where the contour turns back, the tool goes round its tip, unless the moves part from each other towards the tool's side: then it
         // is a wedge. Their curvatures decide.
@@ -314,18 +339,24 @@ impl Compensation {
         let reversed = angle.abs() > PI - small;
         let goes_round = if reversed { !wedge } else { angle < 0.0 };
         if goes_round {
-            self.flush(out);
             let turn = if angle < 0.0 { -angle } else { TAU - angle };
+            if self.side.corners == Corners::Meetings && turn <= LARGEST_MEETING {
+                let end = flat(self.plane, self.current);
+                return match outside_corner(&self.curve, end, curve, start, p) {
+                    Some(at) => self.flush_to(at, true, out),
+                    None => Err(NcProblem::syntax(
+                        "the offsets of both moves do not meet outside of this corner: expected G450",
+                    )),
+                };
+            }
+            self.flush(out)?;
             self.outside(p, start, t, turn, stroke, out);
             return Ok(());
         }
         let end = flat(self.plane, self.current);
         match inside_corner(&self.curve, end, curve, start, p) {
-            Some(at) => self.flush_to(at, out),
-            None if angle < 0.05 && length(minus(end, start)) < 0.05 * self.side.radius => {
-                self.flush(out);
-                Ok(())
-            }
+            Some(at) => self.flush_to(at, false, out),
+            None if angle < 0.05 && length(minus(end, start)) < 0.05 * self.side.radius => self.flush(out),
             None => Err(NcProblem::syntax(format!(
                 "the tool of radius {} mm does not fit into this inside corner",
                 self.side.radius
@@ -343,7 +374,7 @@ impl Compensation {
             this.current = end;
             out.push(Item::Stroke(Stroke { end, bend, ..*stroke }));
         };
-        if !self.side.fanuc {
+        if self.side.corners != Corners::Lines {
             let sweep = if self.side.left { -turn } else { turn };
             go(self, start, Some(Bend { centre: p, sweep }));
         } else if turn <= PI / 2.0 + 1e-9 {

@@ -1,4 +1,4 @@
-//! Inside corners of compensated contours: where two offset curves meet.
+//! Corners of compensated contours: where two offset curves meet.
 
 /// A point or a direction in a plane.
 pub(crate) type Flat = [f64; 2];
@@ -56,7 +56,7 @@ impl Curve {
 }
 
 /// The points where two curves meet.
-fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
+pub(crate) fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
     match (*a, *b) {
         (
             Curve::Line { point, direction },
@@ -112,6 +112,17 @@ fn meetings(a: &Curve, b: &Curve) -> Vec<Flat> {
     }
 }
 
+/// The direction of an arc about `centre` at `at`.
+pub(crate) fn arc_tangent(at: Flat, centre: Flat, counter_clockwise: bool) -> Flat {
+    let [x, y] = minus(at, centre);
+    let r = length([x, y]);
+    if counter_clockwise {
+        [-y / r, x / r]
+    } else {
+        [y / r, -x / r]
+    }
+}
+
 /// Where the tool leaves the first curve for the second one, at an inside corner near `corner`. `end` is where the first one would end,
 /// `start` where the second one would start. `None` if they do not meet.
 pub(crate) fn inside_corner(first: &Curve, end: Flat, second: &Curve, start: Flat, corner: Flat) -> Option<Flat> {
@@ -122,6 +133,16 @@ pub(crate) fn inside_corner(first: &Curve, end: Flat, second: &Curve, start: Fla
     let shortens = |point: &&Flat| first.behind(end, **point) >= -slack && second.behind(start, **point) <= slack;
     let best = |points: &mut dyn Iterator<Item = &Flat>| points.min_by(|a, b| near(a).total_cmp(&near(b))).copied();
     best(&mut points.iter().filter(shortens)).or_else(|| best(&mut points.iter()))
+}
+
+/// Where the tool leaves the first curve for the second one, at an outside corner near `corner`, if both are extended.
+pub(crate) fn outside_corner(first: &Curve, end: Flat, second: &Curve, start: Flat, corner: Flat) -> Option<Flat> {
+    let slack = 1e-9;
+    let near = |point: &Flat| length(minus(*point, corner));
+    meetings(first, second)
+        .into_iter()
+        .filter(|point| first.behind(end, *point) <= slack && second.behind(start, *point) >= -slack)
+        .min_by(|a, b| near(a).total_cmp(&near(b)))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::text::error::NcProblem;
 
 /// A part of a block.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Item {
+pub(crate) enum Item {
     /// An address with its value: `X10`, `X=R1+2`, `CR=5`, `I=AC(3)`.
     Word {
         name: String,
@@ -33,7 +33,7 @@ pub(super) enum Item {
 
 /// Where a jump looks for its label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Search {
+pub(crate) enum Search {
     Forward,
     Backward,
     /// Forward first, then from the beginning.
@@ -42,7 +42,7 @@ pub(super) enum Search {
 
 /// What a line does.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Statement {
+pub(crate) enum Statement {
     Block(Vec<Item>),
     Goto(Search, String),
     /// A jump under a condition.
@@ -75,7 +75,7 @@ pub(super) enum Statement {
 
 /// A line.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// The number after N, and the label.
     pub labels: Vec<String>,
     pub skipped: bool,
@@ -101,7 +101,7 @@ fn is_address(name: &str) -> bool {
 }
 
 /// Reads a line.
-pub(super) fn line(text: &str) -> Result<Line, Located> {
+pub(crate) fn line(text: &str) -> Result<Line, Located> {
     let code = without_comment(text.trim_end().trim_start_matches('\u{feff}'));
     // Bytes count from the line's own beginning.
     let offset = text.len() - text.trim_start_matches('\u{feff}').len();

@@ -4,7 +4,7 @@ use super::block::Statement;
 use super::cursor::{Cursor, Located};
 use super::expression::Expression;
 
-pub(super) fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
+pub(crate) fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
     let block = cursor.name().is_some_and(|(name, _)| name == "REPEATB");
     let mut labels = Vec::new();
     let mut times = None;
@@ -29,7 +29,7 @@ pub(super) fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
     })
 }
 
-pub(super) fn define(cursor: &mut Cursor) -> Result<Statement, Located> {
+pub(crate) fn define(cursor: &mut Cursor) -> Result<Statement, Located> {
     cursor.name();
     let kind = loop {
         match cursor.name() {

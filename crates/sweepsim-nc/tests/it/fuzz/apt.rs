@@ -1,7 +1,9 @@
 //! No text makes the reader panic, hang, or take memory without bound.
 
 use proptest::prelude::*;
-use sweepsim_nc::{ReadOptions, apt, tools};
+use sweepsim_nc::{ReadOptions, apt};
+
+use super::{Random, number, seeds};
 
 /// Words of the language, in any order.
 const WORDS: [&str; 64] = [
@@ -104,38 +106,35 @@ proptest! {
         try_all(&text);
         try_all(&format!("{noise}{text}"));
     }
+}
 
-    #[test]
-    fn no_tool_file_panics(noise in ".{0,60}", keys in prop::collection::vec(0..12_usize, 0..12), value in -1e3..1e3_f64) {
-        let names = ["data", "tools", "parameter", "geometry", "DC", "LCF", "type", "shape", "units", "length", "diameter", "post-process"];
-        let fields: Vec<String> = keys.iter().map(|&k| format!("{:?}: {}", names[k], if k < 4 { "[{}]".into() } else { value.to_string() })).collect();
-        for text in [noise.clone(), format!("T1 {noise}"), format!("{{{}}}", fields.join(", ")), format!("{{\"data\": [{{{}}}]}}", fields.join(", "))] {
-            let _ = tools::parse(&text, std::path::Path::new("t.json"), false);
+/// Programs that are mutated.
+const SEEDS: [&str; 5] = [
+    "PARTNO A\nUNITS/MM\nCUTTER/12.,0,6.,0,0,0,63.\nLOADTL/1\nSPINDL/RPM,900,CLW\nRAPID\nGOTO/0,0,5\nFEDRAT/100,MMPM\nGOTO/0,0,-1\nCIRCLE/5,0,-1,0,0,1,5\nGOTO/10,0,-1\nFINI\n",
+    "TOOL PATH/A,TOOL,B\nTLDATA/MILL,10.0,1.0,50.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\n$$ comment\nLOAD/TOOL,2,ADJUST,2\nFROM/0,0,50,0,0,1\nGOTO/1,2,3,0.6,0,0.8\nGODLTA/1,1,$\n1\nEND-OF-PATH\n",
+    "CYCLE/DRILL,DEPTH,3.5,CLEAR,1.,MMPM,50.\nGOTO/0,0,0\nGOTO/5,0,0\nCYCLE/OFF\nCYCLE/DEEP,RAPTO,3.0,FEDTO,-9.0,STEP,2.,RTRCTO,AUTO,MMPM,250.\nGOTO/1,1,0\nCYCLE/OFF\n",
+    "GOTO/0,0,0\nNURBS\nKNOT/0,0,0,0,1,1,1,1\nCNTRL/0,0,0\nCNTRL/1,0,0\nCNTRL/2,1,0\nCNTRL/3,1,0\nMOVARC/0,1,0,0,0,1,3,ANGLE,720\nTRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\n",
+    "$$-> CUTTER / 3.000000\nINSERT/Stock Size X10. Y20. Z5.\nCSI_SET_FLUTE_LENGTH/4.\nCSI_SET_EXTENSION_LENGTH/31.5\nCUTCOM/LEFT,XYPLAN\nDELAY/2\nGOHOME\nMULTAX/ON\nGOTO/1,1,1,0,1,0\n",
+];
+
+const CHARACTERS: &str = "GOT/,.$-\n 0123456789eE=()ACDILMNRSUY";
+
+/// `cargo test -p sweepsim-nc --test it ten_million_cl_files -- --ignored --nocapture`; see [`super::number`].
+#[test]
+#[ignore = "takes minutes"]
+fn ten_million_cl_files() {
+    let (from, count) = (number("FUZZ_FROM", 0), number("FUZZ_COUNT", 10_000_000));
+    let real = seeds(&["apt", "cls", "ncl"]);
+    let start = std::time::Instant::now();
+    for seed in from..from + count {
+        let mut random = Random::new(seed);
+        if random.below(2) == 0 {
+            let length = 2 * random.below(24);
+            let bytes: Vec<u8> = (0..length).map(|_| (random.next() >> 8) as u8).collect();
+            try_all(&text(&bytes));
+        } else {
+            try_all(&String::from_utf8_lossy(&random.mutated(&SEEDS, &real, CHARACTERS)));
         }
     }
-}
-
-/// A small generator: no input is the same, and each can be made again.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        // xorshift64* (Vigna 2016).
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
-    }
-}
-
-/// Ten million inputs: `cargo test -p sweepsim-nc --release --test it ten_million_cl -- --ignored`.
-#[test]
-#[ignore = "minutes"]
-fn ten_million_cl_files() {
-    let mut random = Random(0x5eed);
-    for _ in 0..10_000_000_u64 {
-        let length = 2 * (random.next() % 24) as usize;
-        let bytes: Vec<u8> = (0..length).map(|_| (random.next() >> 32) as u8).collect();
-        try_all(&text(&bytes));
-    }
+    println!("{count} programs from {from}: {:?}", start.elapsed());
 }

@@ -5,11 +5,11 @@ use std::ops::Range;
 use crate::text::error::NcProblem;
 
 /// A problem, and the bytes of the line that it is about.
-pub(super) type Located = (NcProblem, Range<usize>);
+pub(crate) type Located = (NcProblem, Range<usize>);
 
 /// A position in a line without its comment.
 #[derive(Clone, Debug)]
-pub(super) struct Cursor<'a> {
+pub(crate) struct Cursor<'a> {
     text: &'a str,
     pub at: usize,
 }
@@ -141,7 +141,7 @@ impl<'a> Cursor<'a> {
 }
 
 /// The part of a line before its comment.
-pub(super) fn without_comment(line: &str) -> &str {
+pub(crate) fn without_comment(line: &str) -> &str {
     let mut quoted = false;
     for (at, c) in line.char_indices() {
         match c {

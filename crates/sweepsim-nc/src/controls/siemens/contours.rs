@@ -1,0 +1,210 @@
+//! Contours: cutter compensation, rounded corners and chamfers, polar coordinates.
+
+use super::interpreter::Reader;
+use super::language::cursor::Located;
+use super::language::expression::Value;
+use super::words::{Action, Meaning, Motion, Words};
+use crate::drive::{Corner, CornerShape, Corners, Side};
+use crate::text::error::NcProblem;
+
+/// What a pole is measured from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PoleFrom {
+    /// The last programmed position (`G110`).
+    Position,
+    /// The zero of the frame (`G111`).
+    Zero,
+    /// The last pole (`G112`).
+    Pole,
+}
+
+impl Reader<'_> {
+    /// `G41` and `G42`, and `G40` in a block that does not move in the part's frame.
+    pub(super) fn switch_compensation(&mut self, action: &Action, words: &Words) -> Result<(), Located> {
+        let whole = |problem| (problem, words.whole());
+        let Some(side) = action.side else { return Ok(()) };
+        let Some(left) = side else {
+            if action.home || action.machine || self.without_length() {
+                self.track.end_compensation(None).map_err(whole)?;
+            }
+            return Ok(());
+        };
+        if self.uncertain && self.track.known().is_none() {
+            return Ok(());
+        }
+        let radius = self.cutter_radius().map_err(whole)?;
+        if self.modes.corners == Corners::Arcs && self.modes.distortion != 0.0 {
+            return Err(whole(NcProblem::value(
+                "DISC",
+                self.modes.distortion,
+                "0: other corners than arcs are not read",
+            )));
+        }
+        let side = Side {
+            left: left == (radius >= 0.0),
+            radius: radius.abs(),
+            corners: self.modes.corners,
+            beside_next: true,
+            round_ends: self.modes.round_ends,
+            tangent: 1e-6,
+        };
+        self.track.compensate(side, self.modes.plane).map_err(whole)
+    }
+
+    /// The radius of the tool's edge, with its allowance.
+    fn cutter_radius(&self) -> Result<f64, NcProblem> {
+        let edge = self.modes.edge;
+        if edge == 0 {
+            return Ok(self.modes.allowance);
+        }
+        let Some(tool) = self.track.tool else {
+            return Err(NcProblem::syntax(
+                "cutter compensation without a tool: expected T before it",
+            ));
+        };
+        let own = self.globals.get(&format!("$TC_DP6[{tool}][{edge}]"));
+        let table = self.options.tool_offsets.get(&tool).filter(|_| edge == 1);
+        let radius = match (own, table) {
+            (Some(Value::Number(radius)), _) => *radius,
+            (_, Some(offset)) => 0.5 * offset.diameter,
+            _ => {
+                return Err(NcProblem::syntax(format!(
+                    "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table, or \
+                     $TC_DP6[{tool},{edge}]= before it"
+                )));
+            }
+        };
+        Ok(radius + self.modes.allowance)
+    }
+
+    /// Words of corners.
+    pub(super) fn corner_words(&mut self, words: &Words, action: &mut Action) -> Result<(), Located> {
+        let unit = self.modes.unit();
+        for word in &words.0 {
+            let size = word.value * unit;
+            let made = match word.name.as_str() {
+                "RND" => Some(("RND", CornerShape::Round(size))),
+                "CHR" => Some(("CHR", CornerShape::Cut(size))),
+                "CHF" => Some(("CHF", CornerShape::Edge(size))),
+                "RNDM" => {
+                    self.modes.rounding = (size > 0.0).then_some(size);
+                    None
+                }
+                "FRC" => {
+                    action.corner_feed = Some(word.value).filter(|feed| *feed > 0.0);
+                    None
+                }
+                "FRCM" => {
+                    self.modes.corner_feed = Some(word.value).filter(|feed| *feed > 0.0);
+                    None
+                }
+                "DISC" => {
+                    self.modes.distortion = word.value;
+                    None
+                }
+                "ANG" if word.value != 0.0 => {
+                    let problem = NcProblem::unsupported("ANG is", "expected the contour by lines and arcs");
+                    return Err((problem, word.span.clone()));
+                }
+                _ => continue,
+            };
+            if size < 0.0 {
+                return Err((
+                    NcProblem::value(word.name.clone(), word.value, "0 or positive"),
+                    word.span.clone(),
+                ));
+            }
+            if let Some(made) = made.filter(|_| size > 0.0) {
+                action.corner = Some(made);
+            }
+        }
+        Ok(())
+    }
+
+    /// The corner at the end of the move of this block, if it has one.
+    pub(super) fn corner_at_end(&mut self, action: &Action) {
+        let modal = self.modes.rounding.map(|radius| ("RNDM", CornerShape::Round(radius)));
+        let Some((word, shape)) = action.corner.or(modal.filter(|_| self.modes.motion != Motion::Rapid)) else {
+            return;
+        };
+        self.track.corner_next(Corner {
+            shape,
+            plane: self.modes.plane,
+            place: self.track.place,
+            feed: action.corner_feed.or(self.modes.corner_feed),
+            word,
+            strict: false,
+        });
+    }
+
+    /// `G110`, `G111` and `G112`: the pole, in Cartesian or polar coordinates.
+    pub(super) fn set_pole(&mut self, from: PoleFrom, words: &Words) -> Result<(), Located> {
+        let [u, v, _] = self.modes.plane;
+        let unit = self.modes.unit();
+        let base = match (from, self.track.xyz[u], self.track.xyz[v]) {
+            (PoleFrom::Position, Some(a), Some(b)) => [a, b],
+            (PoleFrom::Position, ..) if self.uncertain => return Ok(()),
+            (PoleFrom::Position, ..) => {
+                let problem = NcProblem::syntax("G110 at an unknown position: expected a move before it");
+                return Err((problem, words.whole()));
+            }
+            (PoleFrom::Zero, ..) => [0.0; 2],
+            (PoleFrom::Pole, ..) => self.modes.pole,
+        };
+        let by = match (words.plain("AP"), words.plain("RP")) {
+            (Some(angle), Some(radius)) => {
+                let (sin, cos) = angle.to_radians().sin_cos();
+                [radius * unit * cos, radius * unit * sin]
+            }
+            (None, None) => [u, v].map(|k| words.plain(["X", "Y", "Z"][k]).unwrap_or(0.0) * unit),
+            _ => {
+                let problem = NcProblem::syntax("a pole by AP or RP alone: expected both");
+                return Err((problem, words.whole()));
+            }
+        };
+        self.modes.pole = [base[0] + by[0], base[1] + by[1]];
+        (self.modes.polar_angle, self.modes.polar_radius) = (None, None);
+        Ok(())
+    }
+
+    /// The coordinates in the plane that `AP` and `RP` give. Both keep their values from block to block.
+    pub(super) fn polar(&mut self, words: &Words) -> Result<[Option<f64>; 3], Located> {
+        let (angle, radius) = (words.get("AP"), words.get("RP"));
+        let Some(first) = angle.or(radius) else {
+            return Ok([None; 3]);
+        };
+        let span = first.span.clone();
+        let [u, v, _] = self.modes.plane;
+        if let Some(word) = [u, v].iter().find_map(|&k| words.get(["X", "Y", "Z"][k])) {
+            let problem = NcProblem::syntax(format!(
+                "{} beside polar coordinates: expected only the axis across the plane with them",
+                word.name
+            ));
+            return Err((problem, word.span.clone()));
+        }
+        if let Some(word) = angle {
+            self.modes.polar_angle = Some(match self.modes.polar_angle {
+                Some(before) if self.relative(word) => before + word.value,
+                None if self.relative(word) => {
+                    let problem = NcProblem::syntax("an incremental AP without an angle before it: expected AP=AC(…)");
+                    return Err((problem, span));
+                }
+                _ => word.value,
+            });
+        }
+        if let Some(word) = radius {
+            let value = word.value * self.modes.unit();
+            let before = self.modes.polar_radius.filter(|_| word.meaning == Meaning::Incremental);
+            self.modes.polar_radius = Some(before.unwrap_or(0.0) + value);
+        }
+        let (Some(angle), Some(radius)) = (self.modes.polar_angle, self.modes.polar_radius) else {
+            let problem = NcProblem::syntax("polar coordinates without AP and RP: expected both since the last pole");
+            return Err((problem, span));
+        };
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let mut xyz = [None; 3];
+        xyz[u] = Some(self.modes.pole[0] + radius * cos);
+        xyz[v] = Some(self.modes.pole[1] + radius * sin);
+        Ok(xyz)
+    }
+}

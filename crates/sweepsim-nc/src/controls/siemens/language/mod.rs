@@ -1,0 +1,7 @@
+//! The language: lines as words, assignments, keywords and control structures, with their expressions.
+
+pub(crate) mod block;
+pub(crate) mod cursor;
+pub(crate) mod expression;
+mod structures;
+pub(crate) mod unit;

@@ -1,0 +1,323 @@
+//! From programmed moves to those of the tool: rounded corners and chamfers first, then cutter compensation.
+
+use super::arcs::Arc;
+use super::contour::{ArcPlane, Bend, Compensation, Corner, Item, Outcome, Place, Side, Stroke, blend};
+use super::track::Track;
+use crate::model::event::EventKind;
+use crate::text::error::NcProblem;
+
+/// What is between the program and the tool.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Contour {
+    compensation: Option<Compensation>,
+    /// Where the tool is, if not at the programmed point: beside a contour, and until the move after it.
+    actual: Option<[f64; 3]>,
+    /// A move whose end becomes a corner with the next one, and where it starts.
+    waiting: Option<([f64; 3], Stroke, Corner)>,
+    /// What happens after that move.
+    events: Vec<(EventKind, Place)>,
+    /// A corner at the end of the next move.
+    next: Option<Corner>,
+    /// The direction in which the last move ended.
+    direction: Option<[f64; 3]>,
+}
+
+impl Track {
+    /// Whether cutter compensation is on.
+    pub fn compensates(&self) -> bool {
+        self.contour.compensation.is_some()
+    }
+
+    /// The direction of the last programmed move at its end, in the frame.
+    pub fn last_direction(&self) -> Option<[f64; 3]> {
+        self.contour.direction
+    }
+
+    /// Switches cutter compensation on: from the next move on.
+    pub fn compensate(&mut self, side: Side, plane: ArcPlane) -> Result<(), NcProblem> {
+        if self.compensates() {
+            return Err(NcProblem::unsupported(
+                "a change of cutter compensation without its end is",
+                "expected G40 or R0, and a move, between them",
+            ));
+        }
+        let Some(at) = self.known() else {
+            return Err(NcProblem::syntax(
+                "cutter compensation from an unknown position: expected a move to X, Y and Z before it",
+            ));
+        };
+        if self.frame.scale().is_none_or(|scale| (scale.abs() - 1.0).abs() > 1e-12) {
+            return Err(NcProblem::unsupported(
+                "cutter compensation in scaled coordinates is",
+                "expected a scale of 1",
+            ));
+        }
+        self.settle()?;
+        self.contour.actual = Some(at);
+        self.contour.compensation = Some(Compensation::new(side, plane, at));
+        Ok(())
+    }
+
+    /// Ends cutter compensation: the next move goes straight from where the tool is.
+    pub fn end_compensation(&mut self, next: Option<[f64; 3]>) -> Result<(), NcProblem> {
+        self.settle()?;
+        if let Some(compensation) = self.contour.compensation.take() {
+            let exit = next.map_or(Ok(()), |next| compensation.check_exit(next));
+            let items = compensation.finish()?;
+            self.emit_all(items)?;
+            exit?;
+            if self.contour.actual == self.known() {
+                self.contour.actual = None;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes a corner at the end of the next move.
+    pub fn corner_next(&mut self, corner: Corner) {
+        self.contour.next = Some(corner);
+    }
+
+    /// Before something that cannot be done beside a contour; a waiting move is not waiting any more.
+    pub fn refuse_contour(&mut self, what: &str) -> Result<(), NcProblem> {
+        if self.compensates() {
+            return Err(NcProblem::unsupported(
+                format!("{what} while cutter compensation is on is"),
+                "expected its end (G40, R0) before it",
+            ));
+        }
+        self.settle()
+    }
+
+    /// Gives out what waits, after a problem, as far as it goes.
+    pub(super) fn abandon_contour(&mut self) {
+        let settled = self.settle();
+        if let (Ok(()), Some(compensation)) = (settled, self.contour.compensation.take()) {
+            let _ = self.emit_all(compensation.abandon());
+        }
+        self.contour = Contour::default();
+    }
+
+    /// Takes an event that happens after moves that wait; gives it back if none does.
+    pub(super) fn event_waits(&mut self, kind: EventKind) -> Option<EventKind> {
+        if self.contour.waiting.is_some() {
+            self.contour.events.push((kind, self.place));
+            return None;
+        }
+        match &mut self.contour.compensation {
+            Some(compensation) if !compensation.is_idle() => {
+                compensation.event(kind, self.place);
+                None
+            }
+            _ => Some(kind),
+        }
+    }
+
+    /// A straight programmed move to coordinates in the frame and angles.
+    pub fn line(&mut self, target: [f64; 3], abc: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
+        let from = self.known();
+        match from {
+            Some(from) if self.contour.is_busy() => {
+                let stroke = self.stroke(target, abc, rapid, None, [0, 1, 2]);
+                self.programmed(from, stroke)?;
+            }
+            _ => {
+                self.contour.next = None;
+                self.straight(target, abc, rapid)?;
+            }
+        }
+        let way = from.map(|from| std::array::from_fn(|k| target[k] - from[k]));
+        if way.is_none_or(|way| way != [0.0; 3]) {
+            self.contour.direction = way;
+        }
+        Ok(())
+    }
+
+    /// A programmed feed move along an arc, while the rotary axes turn to `abc`.
+    pub fn arc(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
+        match self.known() {
+            Some(from) if self.contour.is_busy() => {
+                let Some(w) = (0..3).find(|&w| arc.normal[w].abs() == 1.0) else {
+                    return Err(NcProblem::unsupported(
+                        "arcs out of the plane, beside a contour or at a corner, are",
+                        "expected G2 or G3",
+                    ));
+                };
+                let (u, v) = ((w + 1) % 3, (w + 2) % 3);
+                let bend = Bend {
+                    centre: [arc.centre[u], arc.centre[v]],
+                    sweep: arc.sweep * arc.normal[w],
+                };
+                let stroke = self.stroke(arc.end, abc, false, Some(bend), [u, v, w]);
+                self.programmed(from, stroke)?;
+            }
+            _ => self.bend(arc, abc)?,
+        }
+        let out: [f64; 3] = std::array::from_fn(|k| arc.end[k] - arc.centre[k]);
+        let n = arc.normal;
+        let along: [f64; 3] = std::array::from_fn(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            (n[i] * out[j] - n[j] * out[i]) * arc.sweep.signum()
+        });
+        self.contour.direction = Some(along);
+        Ok(())
+    }
+
+    fn stroke(&self, end: [f64; 3], abc: [f64; 3], rapid: bool, bend: Option<Bend>, plane: ArcPlane) -> Stroke {
+        Stroke {
+            end,
+            abc,
+            rapid,
+            bend,
+            plane,
+            place: self.place,
+            feed: self.feed,
+            feed_mode: self.feed_mode,
+        }
+    }
+
+    /// A programmed move where the tool may not follow it at once.
+    fn programmed(&mut self, from: [f64; 3], mut stroke: Stroke) -> Result<(), NcProblem> {
+        let corner = self.contour.next.take();
+        if let (Some(_), Some(compensated)) = (stroke.bend, self.compensated_plane())
+            && stroke.plane != compensated
+        {
+            return Err(NcProblem::unsupported(
+                "arcs out of the plane of the cutter compensation are",
+                "expected arcs in its plane",
+            ));
+        }
+        let mut from = from;
+        if let Some((start, first, corner)) = self.contour.waiting.take() {
+            match blend(start, &first, &stroke, &corner)? {
+                Outcome::Made(made) => {
+                    self.give(start, made.first)?;
+                    self.flush_events()?;
+                    self.give(made.first.end, made.between)?;
+                    (from, stroke) = (made.from, made.second);
+                }
+                outcome => {
+                    self.give(start, first)?;
+                    self.flush_events()?;
+                    if outcome == Outcome::OutOfPlane {
+                        self.note(format!("{} is not made: the moves leave the plane", corner.word));
+                    }
+                }
+            }
+        }
+        match corner {
+            Some(corner) => self.contour.waiting = Some((from, stroke, corner)),
+            None => self.give(from, stroke)?,
+        }
+        self.arrive(stroke.end, stroke.abc);
+        Ok(())
+    }
+
+    fn compensated_plane(&self) -> Option<ArcPlane> {
+        self.contour.compensation.as_ref().map(Compensation::plane)
+    }
+
+    fn flush_events(&mut self) -> Result<(), NcProblem> {
+        for (kind, place) in std::mem::take(&mut self.contour.events) {
+            let here = std::mem::replace(&mut self.place, place);
+            let result = self.event(kind);
+            self.place = here;
+            result?;
+        }
+        Ok(())
+    }
+
+    /// Gives out a move that waits for a corner, without it.
+    fn settle(&mut self) -> Result<(), NcProblem> {
+        self.contour.next = None;
+        let Some((start, stroke, corner)) = self.contour.waiting.take() else {
+            return Ok(());
+        };
+        let programmed = self.xyz;
+        self.give(start, stroke)?;
+        self.xyz = programmed;
+        self.note(format!("{} is not made: no move in the plane follows", corner.word));
+        self.flush_events()
+    }
+
+    /// A move of the contour, of which its corners are made.
+    fn give(&mut self, from: [f64; 3], stroke: Stroke) -> Result<(), NcProblem> {
+        let Some(compensation) = &mut self.contour.compensation else {
+            if self.contour.actual.is_none() {
+                self.contour.actual = Some(from);
+            } else if stroke.bend.is_some() {
+                return Err(NcProblem::syntax(
+                    "an arc right after the end of cutter compensation: expected a straight move first",
+                ));
+            }
+            self.emit(&stroke)?;
+            self.contour.actual = None;
+            return Ok(());
+        };
+        if stroke.abc != self.abc {
+            return Err(NcProblem::unsupported(
+                "rotary moves while cutter compensation is on are",
+                "expected its end (G40, R0) before them",
+            ));
+        }
+        let mut items = Vec::new();
+        let result = compensation.add(from, stroke, &mut items);
+        self.emit_all(items)?;
+        result
+    }
+
+    fn emit_all(&mut self, items: impl IntoIterator<Item = Item>) -> Result<(), NcProblem> {
+        let programmed = self.xyz;
+        for item in items {
+            match item {
+                Item::Stroke(stroke) => self.emit(&stroke)?,
+                Item::Event(kind, place) => {
+                    let here = std::mem::replace(&mut self.place, place);
+                    let result = self.record(kind);
+                    self.place = here;
+                    result?;
+                }
+            }
+        }
+        self.xyz = programmed;
+        Ok(())
+    }
+
+    /// A move of the tool from where it is.
+    fn emit(&mut self, stroke: &Stroke) -> Result<(), NcProblem> {
+        if let Some(actual) = self.contour.actual {
+            self.xyz = actual.map(Some);
+        }
+        let place = std::mem::replace(&mut self.place, stroke.place);
+        let feed = std::mem::replace(&mut self.feed, stroke.feed);
+        let mode = std::mem::replace(&mut self.feed_mode, stroke.feed_mode);
+        let result = match (stroke.bend, self.known()) {
+            (Some(bend), Some(start)) => {
+                let [u, v, w] = stroke.plane;
+                let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
+                centre[u] = bend.centre[0];
+                centre[v] = bend.centre[1];
+                centre[w] = start[w];
+                normal[w] = 1.0;
+                let arc = Arc {
+                    end: stroke.end,
+                    centre,
+                    normal,
+                    sweep: bend.sweep,
+                };
+                self.bend(&arc, stroke.abc)
+            }
+            _ => self.straight(stroke.end, stroke.abc, stroke.rapid),
+        };
+        (self.place, self.feed, self.feed_mode) = (place, feed, mode);
+        self.contour.actual = Some(stroke.end);
+        result
+    }
+}
+
+impl Contour {
+    /// Whether a move does not simply go from one programmed point to the next.
+    fn is_busy(&self) -> bool {
+        self.compensation.is_some() || self.actual.is_some() || self.waiting.is_some() || self.next.is_some()
+    }
+}

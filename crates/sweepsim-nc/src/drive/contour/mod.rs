@@ -1,0 +1,10 @@
+//! Programmed contours and the tool beside them: cutter compensation, rounded corners and chamfers.
+
+mod blend;
+mod compensation;
+mod corner;
+mod stroke;
+
+pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
+pub(crate) use compensation::Compensation;
+pub(crate) use stroke::{ArcPlane, Bend, Corners, Item, Place, Side, Stroke};
