@@ -84,6 +84,9 @@ pub(crate) struct RunOptions {
     /// The number of threads [default: one per core]. It does not affect the results.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// The number of moments at which report.html shows the workpiece, 0 for none [default: 120, up to 50,000 moves].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=2000))]
+    pub frames: Option<u16>,
     #[command(flatten)]
     pub view: ViewOptions,
     /// Prints neither progress nor a summary.

@@ -1,6 +1,6 @@
 //! `simulate` and `sweep`: from a job to its output files.
 
-use super::page::Page;
+use super::page::{self, PageSource};
 use super::summary::{NAMED, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
@@ -11,6 +11,7 @@ use crate::warnings;
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
+use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh};
 use sweepsim_formats::{Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_ply};
@@ -25,6 +26,10 @@ struct Outcome {
     volume_removed: Option<f64>,
     /// The number of uncertified dexels along x and y, of which the mesh is made.
     uncertified: usize,
+    /// The target that the result was compared with.
+    target: Option<Target>,
+    /// part.png.
+    picture: Option<Vec<u8>>,
 }
 
 /// Runs a job and writes its outputs.
@@ -46,18 +51,25 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
         .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
     let threads = pool.current_num_threads();
     let outcome = pool.install(|| work(task, &mut session, options, first, &mut report));
-    session.progress.finish();
-    let outcome = outcome.map_err(|failure| failure.after(&session.outputs))?;
-    let page = Page {
-        task,
-        job: &session.job,
-        report: &report,
-        threads,
-        total: start.elapsed().as_secs_f64(),
-        picture: session.outputs.wants(Output::Picture),
-    };
+    let outcome = outcome.map_err(|failure| {
+        session.progress.finish();
+        failure.after(&session.outputs)
+    })?;
     if session.outputs.wants(Output::Report) {
-        let html = page.html();
+        let source = PageSource {
+            task,
+            session: &session,
+            report: &report,
+            dexels: &outcome.dexels,
+            target: outcome.target.as_ref(),
+            sweeping: sweeping(&session.job, options),
+            frames: options.frames,
+            threads,
+            total: start.elapsed().as_secs_f64(),
+            picture: outcome.picture,
+        };
+        session.progress.phase("page");
+        let html = pool.install(|| page::html(&source)).inspect_err(|_| session.progress.finish())?;
         session
             .outputs
             .write("report.html", |file| file.write_all(html.as_bytes()))?;
@@ -66,6 +78,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
             .outputs
             .write("report.json", |file| file.write_all(text.as_bytes()))?;
     }
+    session.progress.finish();
     if options.json {
         print(&json(&report)?)?;
     } else if !options.quiet {
@@ -109,7 +122,7 @@ fn work(
     write_dexels(&outcome, session, report)?;
     if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
         let mesh = mesh(task, session, options, &mut outcome, report)?;
-        write_mesh(options, &mesh, session, report)?;
+        outcome.picture = write_mesh(options, &mesh, session, report)?;
     }
     if task == Task::Sweep && options.method == Method::Surface && session.outputs.wants(Output::Mesh) {
         write_envelope(session, report)?;
@@ -151,6 +164,8 @@ fn compute(
                 dexels: done.remaining,
                 statistics: done.statistics,
                 uncertified: 0,
+                target: None,
+                picture: None,
             })
         }
         Task::Verify => {
@@ -160,6 +175,8 @@ fn compute(
                 statistics: done.statistics,
                 volume_removed: Some(done.volume_removed),
                 uncertified: 0,
+                target: done.target,
+                picture: None,
             })
         }
         Task::Sweep => {
@@ -173,6 +190,8 @@ fn compute(
                 statistics: done.statistics,
                 volume_removed: None,
                 uncertified: 0,
+                target: None,
+                picture: None,
             })
         }
     }
@@ -249,8 +268,13 @@ fn mesh(
     Ok(surface.mesh)
 }
 
-/// Writes the mesh and the picture.
-fn write_mesh(options: &RunOptions, mesh: &Mesh, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
+/// Writes the mesh and the picture, and returns the latter.
+fn write_mesh(
+    options: &RunOptions,
+    mesh: &Mesh,
+    session: &mut JobSession,
+    report: &mut Report,
+) -> Result<Option<Vec<u8>>, Failure> {
     let JobSession { outputs, progress, .. } = session;
     if outputs.wants(Output::Mesh) {
         phase(report, "mesh", || {
@@ -258,16 +282,17 @@ fn write_mesh(options: &RunOptions, mesh: &Mesh, session: &mut JobSession, repor
         })?;
     }
     progress.check()?;
-    if outputs.wants(Output::Picture) {
-        progress.phase("picture");
-        let missed = phase(report, "picture", || {
-            let (png, missed) = picture(&options.view, mesh, None)?;
-            outputs.write("part.png", |file| file.write_all(&png))?;
-            Ok::<_, Failure>(missed)
-        })?;
-        report.warnings.extend(missed);
+    if !outputs.wants(Output::Picture) {
+        return Ok(None);
     }
-    Ok(())
+    progress.phase("picture");
+    let (png, missed) = phase(report, "picture", || {
+        let (png, missed) = picture(&options.view, mesh, None)?;
+        outputs.write("part.png", |file| file.write_all(&png))?;
+        Ok::<_, Failure>((png, missed))
+    })?;
+    report.warnings.extend(missed);
+    Ok(Some(png))
 }
 
 /// Writes the whole envelope, and the part of it that bounds the swept volume.

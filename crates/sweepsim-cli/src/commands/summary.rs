@@ -107,27 +107,7 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
     if verdict == Verdict::Pass {
         line("verdict", "PASS: nothing was found that does harm");
     } else {
-        let mut counts: Vec<(&str, u64)> = Vec::new();
-        for finding in findings {
-            match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
-                Some((_, count)) => *count += 1,
-                None => counts.push((&finding.kind, 1)),
-            }
-        }
-        let counts: Vec<String> = counts
-            .iter()
-            .map(|(kind, count)| match *kind {
-                "collision" => words::counted(*count, "collision"),
-                "rapid" => format!("{} through material", words::counted(*count, "rapid move")),
-                "fixture" => format!("{} into a fixture", words::counted(*count, "move")),
-                "gouge" => words::counted(*count, "gouging move"),
-                "excess" => format!("{} with material left", words::counted(*count, "place")),
-                "spindle" => format!("{} with the spindle stopped", words::counted(*count, "cut")),
-                "feed" => format!("{} without a feed", words::counted(*count, "cut")),
-                kind => words::counted(*count, kind),
-            })
-            .collect();
-        line("verdict", &format!("FAIL: {}", counts.join(", ")));
+        line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
     }
     for finding in findings.iter().take(NAMED) {
         line(&finding.kind, &sentence(finding));
@@ -145,6 +125,30 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
             line(name, &format!("at most {} mm", words::measure(max)));
         }
     }
+}
+
+/// How many of each kind were found, in words.
+pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
+    let mut counts: Vec<(&str, u64)> = Vec::new();
+    for finding in findings {
+        match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((&finding.kind, 1)),
+        }
+    }
+    counts
+        .iter()
+        .map(|(kind, count)| match *kind {
+            "collision" => words::counted(*count, "collision"),
+            "rapid" => format!("{} through material", words::counted(*count, "rapid move")),
+            "fixture" => format!("{} into a fixture", words::counted(*count, "move")),
+            "gouge" => words::counted(*count, "gouging move"),
+            "excess" => format!("{} with material left", words::counted(*count, "place")),
+            "spindle" => format!("{} with the spindle stopped", words::counted(*count, "cut")),
+            "feed" => format!("{} without a feed", words::counted(*count, "cut")),
+            kind => words::counted(*count, kind),
+        })
+        .collect()
 }
 
 /// A finding in one line.

@@ -25,6 +25,7 @@ pub(super) struct Verified {
     pub remaining: Dexels,
     pub statistics: Statistics,
     pub volume_removed: f64,
+    pub target: Option<Target>,
 }
 
 /// Verifies the job of a session, and describes the findings in the report.
@@ -84,6 +85,7 @@ pub(super) fn verified(
         volume_removed: stock.volume() - done.remaining.volume(),
         remaining: done.remaining,
         statistics,
+        target,
     })
 }
 

@@ -1,0 +1,335 @@
+//! The program's course: where the tools are, and what is left of the stock at a number of moments.
+//!
+//! The moments are for show: between two of them, moves are followed as chords, and large grids are thinned. What the report says does not depend on them.
+
+use super::PageSource;
+use super::program::Programs;
+use crate::commands::task::Task;
+use crate::session::Failure;
+use std::ops::ControlFlow;
+use sweepsim::motion::{Assembly, Path, Pose, Segment, Tool};
+use sweepsim::verify::{Scene, ToolPath, VerifyOptions, verify};
+use sweepsim::Monitor;
+use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_report::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Track, TrackPoint};
+
+/// The most lines of the grid of the moments.
+const LINES: usize = 40_000;
+/// The most points of the track.
+const POINTS: usize = 200_000;
+/// Programs with more moves have no moments unless they are asked for: it takes about as long as the simulation.
+const MOVES: usize = 50_000;
+/// The default number of moments.
+const FRAMES: u16 = 120;
+
+/// The course of all paths.
+pub(super) struct Courses {
+    pub track: Track,
+    pub course: Option<Course>,
+    /// Of each path, the number of moves before it.
+    pub first_moves: Vec<u32>,
+    pub moves: u32,
+    /// Of each path, the length of feed moves and of rapids.
+    pub lengths: Vec<[f64; 2]>,
+    /// Between two moments: from, to, and the volume removed by the clock.
+    pub removal: Vec<[f64; 3]>,
+    pub notes: Vec<String>,
+    /// The time at the end of each move, and at the start of the first.
+    clocks: Vec<f64>,
+}
+
+impl Courses {
+    /// The clock at a time (0 to 1) of a move.
+    pub fn clock(&self, path: usize, number: usize, time: f64) -> Option<f64> {
+        let place = *self.first_moves.get(path)? as usize + number;
+        let [from, to] = [*self.clocks.get(place)?, *self.clocks.get(place + 1)?];
+        Some(from + (to - from) * time.clamp(0.0, 1.0))
+    }
+}
+
+/// A placement of a tool.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    tip: [f64; 3],
+    axis: [f64; 3],
+    side: [f64; 3],
+}
+
+fn mixed(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
+    [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t)
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+impl Place {
+    fn of(segment: &Segment, t: f64) -> Self {
+        let (turn, tip) = segment.at(t);
+        Self {
+            tip,
+            axis: turn.column(2).into_owned().into(),
+            side: turn.column(0).into_owned().into(),
+        }
+    }
+
+    fn between(&self, other: &Self, t: f64) -> Self {
+        Self {
+            tip: mixed(self.tip, other.tip, t),
+            axis: mixed(self.axis, other.axis, t),
+            side: mixed(self.side, other.side, t),
+        }
+    }
+
+    /// How far the tool is from another placement: tip and a point up its axis.
+    fn far(&self, other: &Self, reach: f64) -> f64 {
+        let up = |place: &Self| [0, 1, 2].map(|k| place.tip[k] + reach * place.axis[k]);
+        distance(self.tip, other.tip).max(distance(up(self), up(other)))
+    }
+
+    fn pose(&self, tool: &Tool) -> Option<Pose> {
+        if tool.is_revolved() {
+            Pose::new(self.tip, self.axis).ok()
+        } else {
+            Pose::with_side(self.tip, self.axis, self.side).ok()
+        }
+    }
+}
+
+/// The placements along a move, without its first: chords are within `room` of the motion.
+fn placements(path: &Path, number: usize, reach: f64, room: f64) -> Vec<Place> {
+    fn split(segment: &Segment, [a, b]: [(f64, Place); 2], reach: f64, room: f64, depth: u32, out: &mut Vec<Place>) {
+        let near = |t: f64| {
+            let at = Place::of(segment, a.0 + (b.0 - a.0) * t);
+            at.far(&a.1.between(&b.1, t), reach) <= room
+        };
+        // A full turn comes back to where it began.
+        if depth == 0 || (near(0.5) && near(0.23)) {
+            out.push(b.1);
+            return;
+        }
+        let t = 0.5 * (a.0 + b.0);
+        let middle = (t, Place::of(segment, t));
+        split(segment, [a, middle], reach, room, depth - 1, out);
+        split(segment, [middle, b], reach, room, depth - 1, out);
+    }
+    let mut out = Vec::new();
+    for segment in path.segments(number, reach, room) {
+        let ends = [0.0, 1.0].map(|t| (t, Place::of(&segment, t)));
+        split(&segment, ends, reach, room, 7, &mut out);
+    }
+    out
+}
+
+fn first(path: &Path) -> Option<Place> {
+    if path.moves() == 0 {
+        return None;
+    }
+    path.segments(0, 1.0, 1.0).first().map(|segment| Place::of(segment, 0.0))
+}
+
+/// The track, and the course if it is wanted.
+pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, Failure> {
+    let job = &source.session.job;
+    let room = 0.1 * job.grid.spacing()[0].min(job.grid.spacing()[1]);
+    let mut made = Courses {
+        track: Track {
+            lines: programs.lines(),
+            unit: "mm".to_owned(),
+            ..Track::default()
+        },
+        course: None,
+        first_moves: Vec::new(),
+        moves: 0,
+        lengths: Vec::new(),
+        removal: Vec::new(),
+        notes: Vec::new(),
+        clocks: vec![0.0],
+    };
+    let every = job.moves().div_ceil(POINTS).max(1);
+    let (mut clock, mut tool_numbers) = (0.0, job.tools.keys().copied().collect::<Vec<u32>>());
+    tool_numbers.sort_unstable();
+    for path in &job.paths {
+        made.first_moves.push(made.moves);
+        let tool = tool_numbers.binary_search(&path.tool).unwrap_or_default() as u16;
+        let reach = job.tools[&path.tool].reach();
+        let mut lengths = [0.0; 2];
+        let mut before = first(&path.path);
+        let mut point = |clock: f64, place: &Place, number: u32, rapid: bool, begins: bool| {
+            made.track.points.push(TrackPoint {
+                clock,
+                tip: place.tip,
+                axis: place.axis,
+                number,
+                rapid,
+                begins,
+                tool,
+            });
+        };
+        if let Some(place) = &before {
+            point(clock, place, made.moves, false, true);
+        }
+        for number in 0..path.path.moves() {
+            let rapid = path.rapid.get(number).copied().unwrap_or_default();
+            // What is left out of long programs is straight, as far as people can see.
+            let room = if every > 1 { f64::INFINITY } else { room };
+            for place in placements(&path.path, number, reach, room) {
+                let step = before.map_or(0.0, |before| distance(before.tip, place.tip));
+                // A turn on the spot takes time, too.
+                clock += before.map_or(0.0, |before| step.max(0.25 * before.far(&place, reach)));
+                lengths[usize::from(rapid)] += step;
+                before = Some(place);
+                if number % every == 0 || number + 1 == path.path.moves() {
+                    point(clock, &place, made.moves + number as u32, rapid, false);
+                }
+            }
+            made.clocks.push(clock);
+        }
+        made.moves += path.path.moves() as u32;
+        made.lengths.push(lengths);
+    }
+    let frames = source.frames.unwrap_or(FRAMES);
+    if source.task == Task::Sweep || frames == 0 || clock <= 0.0 {
+        return Ok(made);
+    }
+    if job.moves() > MOVES && source.frames.is_none() {
+        made.notes.push(format!(
+            "the workpiece during the program is not shown: more than {MOVES} moves; --frames asks for it"
+        ));
+        return Ok(made);
+    }
+    moments(source, frames, &mut made)?;
+    Ok(made)
+}
+
+/// The grid of the moments: that of the job, thinned if it is large.
+fn thinned(grid: &Grid) -> Option<Grid> {
+    let cells = grid.cells();
+    let mut every = 1;
+    while cells[0].div_ceil(every) * cells[1].div_ceil(every) > LINES {
+        every += 1;
+    }
+    let thin = Grid::new(grid.min(), grid.max(), cells.map(|n| n.div_ceil(every))).ok()?;
+    Some(thin.in_frame(*grid.frame()))
+}
+
+fn layer(dexels: &Dexels) -> DexelLayer {
+    let grid = dexels.grid();
+    let area = Area {
+        min: grid.min(),
+        max: grid.max(),
+        cells: grid.cells(),
+    };
+    DexelLayer::new(area, |i, j, line| {
+        let ends = dexels.intervals(i, j).heights();
+        line.extend(ends.map(|[lower, upper]| [LayerEnd::at(lower, [0.0, 0.0, -1.0]), LayerEnd::at(upper, [0.0, 0.0, 1.0])]));
+    })
+}
+
+/// What changed between two states.
+fn changes(clock: f64, before: &Dexels, after: &Dexels) -> KeyFrame {
+    let mut frame = KeyFrame::new(clock);
+    for line in 0..after.grid().len() {
+        if !before.at(line).heights().eq(after.at(line).heights()) {
+            frame.push(line as u32, after.at(line).heights());
+        }
+    }
+    frame
+}
+
+/// Cuts the track at equal times, and removes what is swept in each part.
+fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), Failure> {
+    let session = source.session;
+    let job = &session.job;
+    session.progress.phase("course");
+    let same = || job.stock.dexels(&job.grid).map(|stock| (job.grid, stock));
+    let stock = thinned(&job.grid).and_then(|grid| Some((grid, job.stock.dexels(&grid).ok()?)));
+    // A stock of dexels has a grid of its own.
+    let Some((_, stock)) = stock.or_else(|| same().ok()) else { return Ok(()) };
+    let tools: Vec<&Tool> = job.tools.values().collect();
+    let assemblies: Vec<Assembly> = tools.iter().map(|tool| Assembly::new((*tool).clone())).collect();
+    let options = VerifyOptions::new(source.sweeping.clone());
+    let start = layer(&stock);
+    let mut found = Vec::new();
+    let grid = *stock.grid();
+    let mut shown = stock.clone();
+    let mut now = stock;
+    let end = made.clocks.last().copied().unwrap_or_default();
+    let step = end / f64::from(frames);
+    let mut since = 0.0;
+    let mut poses: Vec<Pose> = Vec::new();
+    let cut = |poses: &mut Vec<Pose>, tool: u16, now: &mut Dexels| -> Result<(), Failure> {
+        let last = poses.last().cloned();
+        if poses.len() > 1
+            && let Ok(path) = Path::new(std::mem::take(poses))
+        {
+            let program = [ToolPath::new(&assemblies[usize::from(tool)], &path)];
+            let scene = Scene::new(std::mem::replace(now, Dexels::empty(grid)));
+            let monitor = &Silent(&session.progress);
+            let done = verify(scene, &program, &options, &mut |_| ControlFlow::Continue(()), monitor);
+            *now = done.map_err(|error| session.failed(error))?.remaining;
+        }
+        poses.clear();
+        poses.extend(last);
+        Ok(())
+    };
+    let mut moment = 1;
+    let points = &made.track.points;
+    for (n, point) in points.iter().enumerate() {
+        let tool = tools[usize::from(point.tool)];
+        let place = |point: &TrackPoint| Place {
+            tip: point.tip,
+            axis: point.axis,
+            side: side(point.axis),
+        };
+        if point.begins {
+            if n > 0 {
+                cut(&mut poses, points[n - 1].tool, &mut now)?;
+            }
+            poses.clear();
+            poses.extend(place(point).pose(tool));
+            continue;
+        }
+        let before = &points[n - 1];
+        while step * moment as f64 <= point.clock || n + 1 == points.len() {
+            let last = n + 1 == points.len() && step * moment as f64 >= point.clock;
+            let clock = if last { point.clock } else { step * moment as f64 };
+            let span = point.clock - before.clock;
+            let t = if span > 0.0 { (clock - before.clock) / span } else { 1.0 };
+            poses.extend(place(before).between(&place(point), t).pose(tool));
+            cut(&mut poses, point.tool, &mut now)?;
+            let frame = changes(clock, &shown, &now);
+            let removed = shown.volume() - now.volume();
+            made.removal.push([since, clock, removed.max(0.0) / (clock - since).max(f64::MIN_POSITIVE)]);
+            since = clock;
+            if !frame.is_empty() {
+                found.push(frame);
+                shown = now.clone();
+            }
+            moment += 1;
+            if last {
+                break;
+            }
+        }
+        poses.extend(place(point).pose(tool));
+    }
+    made.course = Some(Course { start, frames: found });
+    Ok(())
+}
+
+/// Any direction across an axis, the same for nearly the same axis.
+fn side(axis: [f64; 3]) -> [f64; 3] {
+    let across = if axis[2].abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
+    let along: f64 = (0..3).map(|k| across[k] * axis[k]).sum();
+    [0, 1, 2].map(|k| across[k] - along * axis[k])
+}
+
+/// Cancels with the run, but leaves its progress alone.
+struct Silent<'a>(&'a dyn Monitor);
+
+impl Monitor for Silent<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+}
+

@@ -1,0 +1,292 @@
+//! `report.html`: the report for people. The words are put together here, the page itself by `sweepsim-report`.
+
+mod course;
+mod deviation;
+mod program;
+mod solids;
+mod verdict;
+
+use super::task::Task;
+use crate::session::{Failure, JobSession, tool_in_words, words};
+use course::Courses;
+use deviation::Deviated;
+use program::Programs;
+use sweepsim::Options;
+use sweepsim::verify::Target;
+use sweepsim_dexel::{Dexels, Source};
+use sweepsim_formats::Report;
+use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table};
+
+/// What the page is made of.
+pub(crate) struct PageSource<'a> {
+    pub task: Task,
+    pub session: &'a JobSession,
+    pub report: &'a Report,
+    pub dexels: &'a Dexels,
+    pub target: Option<&'a Target>,
+    /// The options of the sweep.
+    pub sweeping: Options,
+    /// The number of moments of the course, if one was chosen.
+    pub frames: Option<u16>,
+    pub threads: usize,
+    /// The duration of the run in seconds.
+    pub total: f64,
+    /// part.png.
+    pub picture: Option<Vec<u8>>,
+}
+
+/// The page as HTML.
+pub(crate) fn html(source: &PageSource) -> Result<String, Failure> {
+    let PageSource {
+        task,
+        session,
+        report,
+        dexels,
+        ..
+    } = *source;
+    let job = &session.job;
+    let programs = Programs::new(session);
+    let deviated = source.target.map(|target| Deviated::new(dexels, target));
+    let made = course::made(source, &programs)?;
+    let mut page = Page::new(&report.job);
+    let [nx, ny] = report.cells;
+    page.lead = format!(
+        "{}: {} on {} × {} dexels",
+        match task {
+            Task::Simulate => "What is left of the stock",
+            Task::Verify => "Verification",
+            Task::Sweep => "The swept volume",
+        },
+        words::counted(report.moves as u64, "move"),
+        words::count(nx as u64),
+        words::count(ny as u64),
+    );
+    page.verdict = verdict::verdict(report);
+    let clock = |path: usize, number: usize, time: f64| made.clock(path, number, time);
+    page.findings = verdict::findings(report, &programs, &clock);
+    page.facts = facts(source);
+    page.plots = plots(&made);
+    page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
+    page.tables = vec![setup(source), tools(source, &made), phases(source)];
+    if !report.dexels.unresolved.is_empty() {
+        page.tables.insert(0, unresolved(report));
+    }
+    page.notes.clone_from(&report.warnings);
+    page.notes.extend(report.notes.iter().cloned());
+    page.notes.extend(made.notes.iter().cloned());
+    page.pictures.extend(source.picture.iter().map(|png| Picture {
+        caption: "The result".to_owned(),
+        png: png.clone(),
+    }));
+    page.footer = format!(
+        "sweepsim {}, method {}, {}, tolerance {} mm.",
+        env!("CARGO_PKG_VERSION"),
+        report.method,
+        words::counted(source.threads as u64, "thread"),
+        job.tolerance,
+    );
+    page.scene = Some(scene(source, deviated.as_ref(), made, programs));
+    Ok(page.html())
+}
+
+/// The part with what is known of its surface.
+fn part(dexels: &Dexels, deviated: Option<&Deviated>, first_moves: &[u32]) -> DexelLayer {
+    let grid = dexels.grid();
+    let area = Area {
+        min: grid.min(),
+        max: grid.max(),
+        cells: grid.cells(),
+    };
+    let mut number = 0;
+    DexelLayer::new(area, |i, j, line| {
+        for interval in dexels.intervals(i, j).iter() {
+            let own = deviated.map_or([f32::NAN; 2], |found| found.ends[number]);
+            number += 1;
+            let end = |end: sweepsim_dexel::End, deviation| LayerEnd {
+                z: end.z,
+                normal: end.normal,
+                deviation,
+                maker: match end.source {
+                    Source::Stock => 0,
+                    Source::Cut { path, segment, .. } => {
+                        first_moves.get(path as usize).map_or(0, |first| first + segment + 1)
+                    }
+                },
+            };
+            line.push([end(interval.lower, own[0]), end(interval.upper, own[1])]);
+        }
+    })
+}
+
+fn scene(source: &PageSource, deviated: Option<&Deviated>, made: Courses, programs: Programs) -> Scene {
+    let job = &source.session.job;
+    let mut scene = Scene::new(part(source.dexels, deviated, &made.first_moves));
+    let frame = job.grid.frame();
+    let [x, y, z] = frame.axes();
+    scene.frame = [frame.origin(), x, y, z];
+    scene.limits = source.target.map(Target::limits);
+    scene.solids = solids::solids(job, source.task);
+    scene.tools = solids::tools(job);
+    let numbers: Vec<u32> = job.tools.keys().copied().collect();
+    let tool = |number| numbers.binary_search(&number).unwrap_or_default() as u16;
+    let ends = made.first_moves.iter().skip(1).copied().chain([made.moves]);
+    scene.paths = job.paths.iter().zip(ends).map(|(path, end)| (end, tool(path.tool))).collect();
+    scene.programs = programs.into_texts();
+    scene.track = Some(made.track);
+    scene.course = made.course;
+    scene
+}
+
+fn facts(source: &PageSource) -> Vec<Fact> {
+    let report = source.report;
+    let volume = report.volume.unwrap_or_default();
+    let mut facts = Vec::new();
+    match report.volume_removed {
+        Some(removed) => {
+            let part = 100.0 * removed / (removed + volume).max(f64::MIN_POSITIVE);
+            let share = format!("{part:.1} % of the stock");
+            facts.push(Fact::new("Removed", format!("{} mm³", words::measure(removed)), share));
+            facts.push(Fact::new("Left", format!("{} mm³", words::measure(volume)), ""));
+        }
+        None => facts.push(Fact::new("Swept", format!("{} mm³", words::measure(volume)), "")),
+    }
+    for (name, found) in [("Deepest gouge", report.gouge), ("Highest excess", report.excess)] {
+        if let Some(found) = found {
+            let max = if found.max < 1e-9 { 0.0 } else { found.max };
+            let small = format!("beyond the limit on {} mm²", words::measure(found.area));
+            facts.push(Fact::new(name, format!("{} mm", words::measure(max)), small));
+        }
+    }
+    let counts = &report.dexels;
+    let audit = match counts.unresolved.len() as u64 {
+        0 => "certified".to_owned(),
+        open => format!("{} unresolved", words::count(open)),
+    };
+    let covered = format!(
+        "{} with material, {} after a repair",
+        words::count(counts.covered as u64),
+        words::count(counts.repaired as u64)
+    );
+    facts.push(Fact::new("Dexels", audit, covered));
+    let rapid = format!("{} of them rapid", words::count(report.rapid_moves as u64));
+    facts.push(Fact::new("Moves", words::count(report.moves as u64), rapid));
+    facts
+}
+
+fn plots(made: &Courses) -> Vec<Plot> {
+    if made.removal.is_empty() {
+        return Vec::new();
+    }
+    vec![Plot {
+        name: "Material removed".to_owned(),
+        unit: "mm³ per mm".to_owned(),
+        steps: made.removal.clone(),
+    }]
+}
+
+/// What the person at the machine needs.
+fn setup(source: &PageSource) -> Table {
+    let job = &source.session.job;
+    let mut rows = Vec::new();
+    let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
+    if let Some([low, high]) = job.stock.bounds().filter(|_| source.task != Task::Sweep) {
+        let size = [0, 1, 2].map(|k| words::measure(high[k] - low[k]));
+        row("Stock", format!("{} × {} × {} mm", size[0], size[1], size[2]));
+        row("Lowest corner", format!("{} mm", words::point(low)));
+        row("Highest corner", format!("{} mm", words::point(high)));
+        let zero = [0, 1, 2].map(|k| {
+            let (from, to) = (low[k], high[k]);
+            let place = match 0.0 {
+                z if z == from => "lower side",
+                z if z == to => "upper side",
+                z if (z - 0.5 * (from + to)).abs() < 1e-9 => "middle",
+                z if z > from && z < to => "inside",
+                _ => "outside",
+            };
+            format!("{} {place}", ["X", "Y", "Z"][k])
+        });
+        row("Program zero", zero.join(", "));
+    }
+    if !job.fixtures.is_empty() {
+        row("Fixtures", words::count(job.fixtures.len() as u64));
+    }
+    if let Some(limits) = job.limits {
+        row(
+            "Limits",
+            format!("gouge {} mm, excess {} mm", words::measure(limits.gouge), words::measure(limits.excess)),
+        );
+    }
+    row("Grid", {
+        let [dx, dy] = job.grid.spacing().map(words::measure);
+        format!("a dexel every {dx} × {dy} mm")
+    });
+    Table {
+        title: "Set-up".to_owned(),
+        rows,
+        printed: true,
+        ..Table::default()
+    }
+}
+
+fn tools(source: &PageSource, made: &Courses) -> Table {
+    let job = &source.session.job;
+    let removed = |number: u32| -> Option<f64> {
+        let paths = source.report.paths.as_ref()?;
+        Some(paths.iter().filter(|path| path.tool == number).map(|path| path.removed).sum())
+    };
+    let row = |(number, tool)| {
+        let number: &u32 = number;
+        let own = || job.paths.iter().zip(&made.lengths).filter(|(path, _)| path.tool == *number);
+        let moves: usize = own().map(|(path, _)| path.path.moves()).sum();
+        let [cut, rapid] = own().fold([0.0; 2], |sum, (_, own)| [sum[0] + own[0], sum[1] + own[1]]);
+        let bodies = job.bodies.get(number).map_or(0, Vec::len);
+        let mut shape = tool_in_words(tool);
+        if bodies > 0 {
+            shape += &format!(", with {}", if bodies == 1 { "a holder" } else { "shank and holder" });
+        }
+        vec![
+            format!("T{number}"),
+            shape,
+            words::count(moves as u64),
+            format!("{cut:.0}"),
+            format!("{rapid:.0}"),
+            removed(*number).map_or("–".to_owned(), words::measure),
+        ]
+    };
+    Table {
+        title: "Tools".to_owned(),
+        columns: ["Tool", "Shape", "Moves", "Feed mm", "Rapid mm", "Removed mm³"]
+            .map(str::to_owned)
+            .into(),
+        rows: job.tools.iter().map(row).collect(),
+        numbers: vec![2, 3, 4, 5],
+        printed: true,
+        ..Table::default()
+    }
+}
+
+fn phases(source: &PageSource) -> Table {
+    let seconds = source.report.seconds.iter();
+    let mut rows: Vec<Vec<String>> = seconds.map(|(name, s)| vec![name.clone(), words::seconds(*s)]).collect();
+    rows.push(vec!["in all".to_owned(), words::seconds(source.total)]);
+    Table {
+        title: "Computing time".to_owned(),
+        rows,
+        numbers: vec![1],
+        ..Table::default()
+    }
+}
+
+fn unresolved(report: &Report) -> Table {
+    let rows = report.dexels.unresolved.iter();
+    Table {
+        title: "Unresolved dexels".to_owned(),
+        note: "The intervals of these dexels are not certified.".to_owned(),
+        columns: ["i", "j", "Why"].map(str::to_owned).into(),
+        rows: rows
+            .map(|dexel| vec![dexel.i.to_string(), dexel.j.to_string(), dexel.reason.clone()])
+            .collect(),
+        numbers: vec![0, 1],
+        ..Table::default()
+    }
+}

@@ -1,0 +1,225 @@
+//! Stock, target, fixtures and tools as they are shown.
+
+use crate::commands::task::Task;
+use sweepsim::motion::{BodyKind, ProfileSegment, Tool, Turn};
+use sweepsim_dexel::{Stock, TriangleSoup};
+use sweepsim_formats::Job;
+use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
+
+/// Sides of a cylinder, and of a ball from pole to pole.
+const SIDES: usize = 64;
+/// Larger meshes are not shown: a page is no CAD system.
+const LARGEST: usize = 300_000;
+
+/// Stock, target and fixtures.
+pub(super) fn solids(job: &Job, task: Task) -> Vec<Solid> {
+    let mut solids = Vec::new();
+    let mut add = |kind, stock: &Stock| {
+        for (vertices, triangles) in meshes(stock) {
+            solids.push(Solid {
+                kind,
+                vertices,
+                triangles,
+            });
+        }
+    };
+    if task != Task::Sweep {
+        add(SolidKind::Stock, &job.stock);
+    }
+    for fixture in &job.fixtures {
+        add(SolidKind::Fixture, fixture);
+    }
+    if let Some(target) = &job.target {
+        add(SolidKind::Target, &Stock::Mesh(target.mesh.clone()));
+    }
+    solids
+}
+
+type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+/// The surfaces of a solid; of intersections and differences, that of their first part.
+fn meshes(stock: &Stock) -> Vec<Triangles> {
+    match stock {
+        Stock::Block { min, max } => vec![block(*min, *max)],
+        Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height,
+        } => vec![cylinder(*base, *axis, *radius, *height)],
+        Stock::Ball { centre, radius } => vec![ball(*centre, *radius)],
+        Stock::Mesh(soup) => of_soup(soup).into_iter().collect(),
+        Stock::Dexels(dexels) => {
+            let mesh = dexels.surface().ok().filter(|mesh| mesh.triangles.len() <= LARGEST);
+            mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
+        }
+        Stock::Union(parts) => parts.iter().flat_map(meshes).collect(),
+        Stock::Intersection(parts) => parts.first().map_or(Vec::new(), meshes),
+        Stock::Difference(whole, _) => meshes(whole),
+        // Kinds to come.
+        _ => Vec::new(),
+    }
+}
+
+fn of_soup(soup: &TriangleSoup) -> Option<Triangles> {
+    if soup.triangles.len() > LARGEST {
+        return None;
+    }
+    let mesh = soup.indexed().ok()?;
+    Some((mesh.vertices, mesh.triangles))
+}
+
+fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
+    let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
+    let faces: [[u32; 4]; 6] = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    ((0..8).map(corner).collect(), triangles.collect())
+}
+
+/// A ring of triangles between two rings of vertices.
+fn band(from: u32, to: u32, triangles: &mut Vec<[u32; 3]>) {
+    let sides = SIDES as u32;
+    for k in 0..sides {
+        let next = (k + 1) % sides;
+        triangles.push([from + k, from + next, to + next]);
+        triangles.push([from + k, to + next, to + k]);
+    }
+}
+
+fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangles {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let z = axis.map(|c| c / length);
+    let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
+    let helper = [0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 });
+    let cross = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    let x = cross(helper, z);
+    let size = x.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let x = x.map(|c| c / size);
+    let y = cross(z, x);
+    let mut vertices = vec![base, [0, 1, 2].map(|k| base[k] + height * z[k])];
+    for up in [0.0, height] {
+        for side in 0..SIDES {
+            let turn = side as f64 / SIDES as f64 * std::f64::consts::TAU;
+            let (s, c) = turn.sin_cos();
+            vertices.push([0, 1, 2].map(|k| base[k] + radius * (c * x[k] + s * y[k]) + up * z[k]));
+        }
+    }
+    let (low, high) = (2, 2 + SIDES as u32);
+    let mut triangles = Vec::new();
+    band(low, high, &mut triangles);
+    for k in 0..SIDES as u32 {
+        let next = (k + 1) % SIDES as u32;
+        triangles.push([0, low + next, low + k]);
+        triangles.push([1, high + k, high + next]);
+    }
+    (vertices, triangles)
+}
+
+fn ball(centre: [f64; 3], radius: f64) -> Triangles {
+    let rings = SIDES / 2;
+    let mut vertices = vec![
+        [centre[0], centre[1], centre[2] - radius],
+        [centre[0], centre[1], centre[2] + radius],
+    ];
+    for ring in 1..rings {
+        let (s, c) = (ring as f64 / rings as f64 * std::f64::consts::PI).sin_cos();
+        for side in 0..SIDES {
+            let (sin, cos) = (side as f64 / SIDES as f64 * std::f64::consts::TAU).sin_cos();
+            vertices.push([centre[0] + radius * s * cos, centre[1] + radius * s * sin, centre[2] - radius * c]);
+        }
+    }
+    let mut triangles = Vec::new();
+    let ring = |n: usize| (2 + n * SIDES) as u32;
+    for n in 0..rings - 2 {
+        band(ring(n), ring(n + 1), &mut triangles);
+    }
+    for k in 0..SIDES as u32 {
+        let next = (k + 1) % SIDES as u32;
+        triangles.push([0, ring(0) + next, ring(0) + k]);
+        triangles.push([1, ring(rings - 2) + k, ring(rings - 2) + next]);
+    }
+    (vertices, triangles)
+}
+
+/// The tools with their bodies, in the order of their numbers.
+pub(super) fn tools(job: &Job) -> Vec<ToolPart> {
+    let part = |(number, tool): (&u32, &Tool)| {
+        let bodies = job.bodies.get(number).into_iter().flatten();
+        ToolPart {
+            name: format!("T{number}"),
+            cutter: vec![shape(tool)],
+            bodies: bodies
+                .filter(|body| matches!(body.kind, BodyKind::Shank | BodyKind::Holder))
+                .map(|body| shape(&body.solid))
+                .collect(),
+        }
+    };
+    job.tools.iter().map(part).collect()
+}
+
+fn shape(tool: &Tool) -> ToolShape {
+    match outline(tool) {
+        Some(points) => ToolShape::Profile(points),
+        None => patches(tool),
+    }
+}
+
+/// The outline of a solid of revolution made of lines and arcs.
+fn outline(tool: &Tool) -> Option<Vec<[f64; 2]>> {
+    let profile = tool.profile()?;
+    let mut points = vec![profile.start()];
+    for segment in profile.segments() {
+        match segment {
+            ProfileSegment::Line { to } => points.push(*to),
+            ProfileSegment::Arc { to, centre, turn } => {
+                let from = points[points.len() - 1];
+                let radius = (from[0] - centre[0]).hypot(from[1] - centre[1]);
+                let angle = |p: [f64; 2]| (p[1] - centre[1]).atan2(p[0] - centre[0]);
+                let (a, b) = (angle(from), angle(*to));
+                let way = match turn {
+                    Turn::Ccw => (b - a).rem_euclid(std::f64::consts::TAU),
+                    Turn::Cw => -(a - b).rem_euclid(std::f64::consts::TAU),
+                };
+                let parts = (way.abs() / 0.12).ceil().max(1.0);
+                for k in 1..parts as usize {
+                    let (s, c) = (a + way * k as f64 / parts).sin_cos();
+                    points.push([(centre[0] + radius * c).max(0.0), centre[1] + radius * s]);
+                }
+                points.push(*to);
+            }
+            // Splines are shown by their patches.
+            _ => return None,
+        }
+    }
+    Some(points)
+}
+
+/// The patches of a tool as a mesh.
+fn patches(tool: &Tool) -> ToolShape {
+    const PARTS: usize = 16;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for patch in tool.patches() {
+        let first = vertices.len() as u32;
+        for u in 0..=PARTS {
+            for v in 0..=PARTS {
+                vertices.push(patch.point(u as f64 / PARTS as f64, v as f64 / PARTS as f64));
+            }
+        }
+        let row = PARTS as u32 + 1;
+        for u in 0..PARTS as u32 {
+            for v in 0..PARTS as u32 {
+                let at = first + u * row + v;
+                triangles.push([at, at + row, at + row + 1]);
+                triangles.push([at, at + row + 1, at + 1]);
+            }
+        }
+    }
+    ToolShape::Mesh { vertices, triangles }
+}

@@ -1,0 +1,204 @@
+// Drawing by WebGL2.
+
+const VERTEX = `#version 300 es
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec3 colour;
+uniform mat4 model;
+uniform mat4 camera;
+out vec3 atWorld;
+out vec3 facing;
+out vec3 tint;
+void main() {
+  vec4 world = model * vec4(place, 1.0);
+  atWorld = world.xyz;
+  facing = mat3(model) * normal;
+  tint = colour;
+  gl_Position = camera * world;
+}`;
+
+const FRAGMENT = `#version 300 es
+precision highp float;
+in vec3 atWorld;
+in vec3 facing;
+in vec3 tint;
+uniform vec4 section;   // material where dot(section.xyz, p) > section.w is cut away
+uniform vec3 eye;
+uniform vec4 flatColour; // of lines and of one-coloured solids: alpha 0 takes the vertex's colour
+uniform vec3 inside;     // of back faces, seen through the section
+uniform float alpha;
+uniform int pass;        // 0: shaded, 1: unlit, 2: depth for picking
+out vec4 pixel;
+void main() {
+  if (dot(section.xyz, atWorld) > section.w) discard;
+  if (pass == 2) {
+    float depth = gl_FragCoord.z * 16777215.0;
+    pixel = vec4(mod(floor(depth / 65536.0), 256.0), mod(floor(depth / 256.0), 256.0), mod(depth, 256.0), 255.0) / 255.0;
+    return;
+  }
+  vec3 base = flatColour.a > 0.0 ? flatColour.rgb : tint;
+  base = base * base; // close to linear light
+  vec3 shade = base;
+  if (pass == 0) {
+    vec3 n = normalize(facing);
+    vec3 view = normalize(eye - atWorld);
+    if (gl_FrontFacing) {
+      vec3 sun = normalize(vec3(-0.45, -0.6, 0.95));
+      vec3 fill = normalize(vec3(0.8, 0.25, 0.35));
+      float sky = 0.5 + 0.5 * n.z;
+      float shine = pow(max(dot(n, normalize(sun + view)), 0.0), 40.0);
+      float rim = pow(1.0 - max(dot(n, view), 0.0), 4.0);
+      shade = base * (0.22 + 0.24 * sky + 0.62 * max(dot(n, sun), 0.0) + 0.16 * max(dot(n, fill), 0.0) + 0.10 * max(dot(n, view), 0.0))
+        + vec3(0.10 * shine + 0.03 * rim);
+    } else {
+      vec3 cut = inside * inside;
+      float stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 12.0) < 2.0 ? 0.78 : 1.0;
+      shade = cut * stripe;
+    }
+  }
+  pixel = vec4(sqrt(clamp(shade, 0.0, 1.0)) * alpha, alpha);
+}`;
+
+/** A mesh on the GPU. */
+class Shape {
+  constructor(gl) {
+    this.gl = gl;
+    this.array = gl.createVertexArray();
+    this.buffers = [0, 1, 2].map(() => gl.createBuffer());
+    this.indices = gl.createBuffer();
+    this.count = 0;
+    gl.bindVertexArray(this.array);
+    const layout = [
+      [3, gl.FLOAT, false, 12],
+      [3, gl.BYTE, true, 4],
+      [3, gl.UNSIGNED_BYTE, true, 4],
+    ];
+    layout.forEach(([size, type, scaled, stride], k) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[k]);
+      gl.enableVertexAttribArray(k);
+      gl.vertexAttribPointer(k, size, type, scaled, stride, 0);
+    });
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+    gl.bindVertexArray(null);
+  }
+
+  put(k, data) {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffers[k]);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+  }
+
+  /** Takes over quads; their colours follow by `colours`. */
+  quads(quads) {
+    const { gl } = this;
+    this.put(0, quads.places.subarray(0, 12 * quads.count));
+    this.put(1, quads.normals.subarray(0, 16 * quads.count));
+    const indices = new Uint32Array(6 * quads.count);
+    for (let q = 0; q < quads.count; q++) {
+      const v = 4 * q;
+      indices.set([v, v + 1, v + 2, v, v + 2, v + 3], 6 * q);
+    }
+    gl.bindVertexArray(this.array);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
+    gl.bindVertexArray(null);
+    this.count = indices.length;
+    this.mode = gl.TRIANGLES;
+  }
+
+  colours(quads, colour) {
+    const bytes = new Uint8Array(16 * quads.count);
+    for (let q = 0; q < quads.count; q++) {
+      const own = colour(quads.ends[q]);
+      for (let c = 0; c < 4; c++) bytes.set(own, 16 * q + 4 * c);
+    }
+    this.put(2, bytes);
+  }
+
+  /** Takes over single triangles, or lines. */
+  plain(places, normals, mode) {
+    const { gl } = this;
+    const count = places.length / 3;
+    this.put(0, new Float32Array(places));
+    this.put(1, new Int8Array(normals ?? 4 * count));
+    this.put(2, new Uint8Array(4 * count));
+    gl.bindVertexArray(this.array);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, Uint32Array.from({ length: count }, (_, k) => k), gl.STATIC_DRAW);
+    gl.bindVertexArray(null);
+    this.count = count;
+    this.mode = mode ?? gl.TRIANGLES;
+  }
+}
+
+class Gpu {
+  /** Throws if there is no WebGL2. */
+  constructor(canvas) {
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true, preserveDrawingBuffer: true });
+    if (!gl) throw new Error("no WebGL2");
+    this.gl = gl;
+    const compiled = (type, source) => {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, source);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
+      return shader;
+    };
+    this.program = gl.createProgram();
+    gl.attachShader(this.program, compiled(gl.VERTEX_SHADER, VERTEX));
+    gl.attachShader(this.program, compiled(gl.FRAGMENT_SHADER, FRAGMENT));
+    gl.linkProgram(this.program);
+    if (!gl.getProgramParameter(this.program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(this.program));
+    this.at = (name) => gl.getUniformLocation(this.program, name);
+    this.places = Object.fromEntries(["model", "camera", "section", "eye", "flatColour", "inside", "alpha", "pass"].map((n) => [n, this.at(n)]));
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+  }
+
+  /** Begins a picture. `section` is a plane [normal, offset] or null. */
+  begin(width, height, camera, eye, section, pass) {
+    const { gl, places } = this;
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.useProgram(this.program);
+    gl.uniformMatrix4fv(places.camera, false, camera);
+    gl.uniform3fv(places.eye, eye);
+    gl.uniform3fv(places.inside, SECTION.map((c) => c / 255));
+    gl.uniform1i(places.pass, pass);
+    this.section = section;
+    this.pass = pass;
+  }
+
+  /** Draws a shape. Options: model, colour, alpha, unlit, uncut. */
+  draw(shape, { model = IDENTITY, colour = null, alpha = 1, unlit = false, uncut = false } = {}) {
+    if (!shape.count) return;
+    const { gl, places, section } = this;
+    gl.uniformMatrix4fv(places.model, false, model);
+    gl.uniform4fv(places.flatColour, colour ? [...colour.map((c) => c / 255), 1] : [0, 0, 0, 0]);
+    gl.uniform4fv(places.section, section && !uncut ? [...section[0], section[1]] : [0, 0, 0, 1]);
+    gl.uniform1f(places.alpha, alpha);
+    if (this.pass !== 2) gl.uniform1i(places.pass, unlit ? 1 : 0);
+    const clear = alpha < 1 && this.pass !== 2;
+    if (clear) {
+      gl.enable(gl.BLEND);
+      gl.depthMask(false);
+      gl.enable(gl.CULL_FACE);
+    }
+    gl.bindVertexArray(shape.array);
+    gl.drawElements(shape.mode, shape.count, gl.UNSIGNED_INT, 0);
+    gl.bindVertexArray(null);
+    if (clear) {
+      gl.disable(gl.CULL_FACE);
+      gl.depthMask(true);
+      gl.disable(gl.BLEND);
+    }
+  }
+
+  /** The depth at a pixel from 0 to 1, after a picture of pass 2; null where nothing is. */
+  depthAt(x, y) {
+    const pixel = new Uint8Array(4);
+    this.gl.readPixels(x, y, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, pixel);
+    if (!pixel[3]) return null;
+    return (pixel[0] * 65536 + pixel[1] * 256 + pixel[2]) / 16777215;
+  }
+}

@@ -1,0 +1,157 @@
+//! All data of the viewer within a number of bytes.
+
+use super::arrays::{Arrays, Entry, Scale};
+use super::layers::{self, CourseHead, HEIGHTS, LayerHead};
+use super::others::{self, MeshHead, TrackHead};
+use crate::scene::{DexelLayer, KeyFrame, Scene};
+use serde::Serialize;
+
+/// The description of the embedded arrays.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Head {
+    /// Of heights.
+    height: Scale,
+    /// Of deviations.
+    deviation: Option<f64>,
+    limits: Option<[f64; 2]>,
+    frame: [[f64; 3]; 4],
+    part: LayerHead,
+    course: Option<CourseHead>,
+    track: Option<TrackHead>,
+    meshes: MeshHead,
+    paths: Vec<(u32, u16)>,
+    programs: Vec<String>,
+    arrays: Vec<Entry>,
+}
+
+/// The embedded data.
+#[derive(Clone, Debug)]
+pub(crate) struct Embedded {
+    pub head: Head,
+    pub bytes: Vec<u8>,
+    /// The step of heights, in millimetres.
+    pub step: f64,
+    /// What was left out for want of space.
+    pub left_out: Vec<String>,
+}
+
+/// Base64 of so many bytes.
+fn encoded(bytes: usize) -> usize {
+    bytes.div_ceil(3) * 4
+}
+
+/// The scene, in at most `most` bytes of base64 if that is possible at all; leaves out what matters least.
+pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
+    let heights = scene.part.intervals.iter().flatten().map(|end| end.z);
+    let course = scene.course.as_ref();
+    let of_course = course.into_iter().flat_map(|course| course.start.intervals.iter().flatten().map(|end| end.z));
+    let height = Scale::over(heights.chain(of_course), HEIGHTS);
+    let (meshes, mesh_arrays) = others::meshes(&scene.tools, &scene.solids);
+    let track = scene.track.as_ref().map(others::track);
+    let (programs, texts) = others::programs(&scene.programs);
+    let mut fixed = mesh_arrays;
+    if let Some((_, arrays)) = &track {
+        fixed.append(arrays);
+    }
+    let mut left_out = Vec::new();
+    let fits = |parts: &[&Arrays]| encoded(parts.iter().map(|part| part.bytes.len()).sum()) <= most;
+
+    // The part as fine as it is, with normals if they fit.
+    let mut part = Part::new(&scene.part, scene.limits, &height);
+    let mut normals = layers::normals(&scene.part);
+    let mut coarser = None::<DexelLayer>;
+    if !fits(&[&fixed, &part.arrays, &normals]) {
+        left_out.push("normals of the surface".to_owned());
+        normals = Arrays::default();
+    }
+    let mut nth = 1;
+    while !fits(&[&fixed, &part.arrays, &normals]) {
+        let before = coarser.as_ref().unwrap_or(&scene.part);
+        if before.area.cells == [1, 1] {
+            break;
+        }
+        let half = before.halved();
+        part = Part::new(&half, scene.limits, &height);
+        coarser = Some(half);
+        nth *= 2;
+    }
+    if nth > 1 {
+        left_out.push(format!("all but every {nth}th line along x and y"));
+    }
+    let (mut kept, mut names) = (texts, programs);
+    if !fits(&[&fixed, &part.arrays, &normals, &kept]) {
+        left_out.push("the text of the program, but for the lines of findings".to_owned());
+        (kept, names) = (Arrays::default(), Vec::new());
+    }
+    // As many moments of the course as fit.
+    let mut shown = None;
+    if let Some(course) = course {
+        let mut frames: Vec<KeyFrame> = course.frames.clone();
+        loop {
+            let (head, arrays) = layers::course(course, &frames, &height);
+            if fits(&[&fixed, &part.arrays, &normals, &kept, &arrays]) {
+                shown = Some((head, arrays));
+                break;
+            }
+            if frames.len() <= 1 {
+                break;
+            }
+            frames = layers::thinned(&frames);
+        }
+        if shown.is_none() {
+            left_out.push("the workpiece during the program".to_owned());
+        } else if frames.len() < course.frames.len() {
+            left_out.push(format!("all but {} of {} moments", frames.len(), course.frames.len()));
+        }
+    }
+    let mut all = part.arrays;
+    all.append(&normals);
+    all.append(&fixed);
+    all.append(&kept);
+    let course = shown.map(|(head, arrays)| {
+        all.append(&arrays);
+        head
+    });
+    let head = Head {
+        height,
+        deviation: part.deviation,
+        limits: scene.limits,
+        frame: scene.frame,
+        part: part.head,
+        course,
+        track: track.map(|(head, _)| head),
+        meshes,
+        paths: scene.paths.clone(),
+        programs: names,
+        arrays: all.entries,
+    };
+    Embedded {
+        head,
+        bytes: all.bytes,
+        step: height.step,
+        left_out,
+    }
+}
+
+/// The part without its normals.
+struct Part {
+    head: LayerHead,
+    arrays: Arrays,
+    deviation: Option<f64>,
+}
+
+impl Part {
+    fn new(layer: &DexelLayer, limits: Option<[f64; 2]>, height: &Scale) -> Self {
+        let mut arrays = layers::material(layer, height, ["part.counts", "lower", "upper"]);
+        arrays.append(&layers::makers(layer));
+        let deviation = layers::deviation_step(layer, limits);
+        if let Some(step) = deviation {
+            arrays.append(&layers::deviations(layer, step));
+        }
+        Self {
+            head: LayerHead::new(layer.area),
+            arrays,
+            deviation,
+        }
+    }
+}

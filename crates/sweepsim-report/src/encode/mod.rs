@@ -1,0 +1,10 @@
+//! The embedded data: typed arrays, predicted, split into planes of bytes, compressed.
+//!
+//! `docs/report.md` in the project's repository describes the format; `assets/data.js` reads it.
+
+mod arrays;
+mod fit;
+mod layers;
+mod others;
+
+pub(crate) use fit::{Embedded, embed};

@@ -1,0 +1,83 @@
+//! The markup of the viewer: what the scripts bring to life.
+
+use crate::html::{escape, measure};
+use crate::scene::{Scene, SolidKind};
+use std::fmt::Write as _;
+
+/// How exact the viewer is, and what it lacks.
+pub(crate) fn accuracy(step: f64, left_out: &[String]) -> String {
+    let mut text = format!(
+        " The viewer shows heights in steps of {} mm; report.json and dexels.csv have them in full.",
+        escape(&measure(step))
+    );
+    if !left_out.is_empty() {
+        let _ = write!(text, " To stay small, it leaves out {}.", escape(&left_out.join("; ")));
+    }
+    text
+}
+
+/// The canvas with its controls.
+pub(crate) fn markup(html: &mut String, scene: &Scene) {
+    html.push_str("<div class=\"viewer\" id=\"viewer\" hidden>\n<div class=\"tools\" role=\"toolbar\" aria-label=\"View\">\n");
+    html.push_str("<div class=\"group\" role=\"radiogroup\" aria-label=\"Colours\">\n");
+    let deviates = scene.part.intervals.iter().flatten().any(|end| end.deviation.is_finite());
+    let cut = scene.part.intervals.iter().flatten().any(|end| end.maker > 0);
+    let modes = [
+        ("deviation", "Deviation", deviates),
+        ("tool", "Tool", cut),
+        ("move", "Move", cut),
+        ("plain", "Plain", true),
+    ];
+    for (mode, name, _) in modes.iter().filter(|(.., offered)| *offered) {
+        let _ = writeln!(
+            html,
+            "<button type=\"button\" role=\"radio\" aria-checked=\"false\" data-mode=\"{mode}\">{name}</button>"
+        );
+    }
+    html.push_str("</div>\n<div class=\"group\" aria-label=\"Show\">\n");
+    let has = |kind| scene.solids.iter().any(|solid| solid.kind == kind);
+    let switches = [
+        ("target", "Target", has(SolidKind::Target), false),
+        ("fixture", "Fixtures", has(SolidKind::Fixture), true),
+        ("stock", "Stock", has(SolidKind::Stock), false),
+        ("tool", "Cutter", scene.track.is_some(), true),
+        ("path", "Path", scene.track.is_some(), false),
+    ];
+    for (what, name, _, on) in switches.iter().filter(|(_, _, offered, _)| *offered) {
+        let _ = writeln!(
+            html,
+            "<button type=\"button\" aria-pressed=\"{on}\" data-show=\"{what}\">{name}</button>"
+        );
+    }
+    html.push_str(
+        "</div>\n<div class=\"group\">\n\
+         <label class=\"select\">Section <select id=\"section\"><option value=\"\">off</option><option value=\"0\">X</option><option value=\"1\">Y</option><option value=\"2\">Z</option></select></label>\n\
+         <input type=\"range\" id=\"section-at\" min=\"0\" max=\"1000\" value=\"500\" aria-label=\"Place of the section\" hidden>\n\
+         <button type=\"button\" id=\"section-flip\" aria-pressed=\"false\" hidden>Flip</button>\n\
+         <button type=\"button\" id=\"measure\" aria-pressed=\"false\">Measure</button>\n\
+         <button type=\"button\" id=\"home\">Reset view</button>\n\
+         </div>\n</div>\n\
+         <div class=\"canvas\"><canvas id=\"canvas\" tabindex=\"0\" role=\"application\" aria-label=\"The part in three dimensions: arrow keys turn it, with Shift they move it, plus and minus zoom, Home resets\" aria-describedby=\"keys\"></canvas>\n\
+         <svg class=\"overlay\" id=\"overlay\" aria-hidden=\"true\"></svg>\n\
+         <div class=\"legend\" id=\"legend\"></div>\n\
+         <output class=\"probe\" id=\"probe\" hidden></output>\n\
+         <p class=\"loading\" id=\"loading\">Loading …</p></div>\n\
+         <p class=\"keys\" id=\"keys\"><kbd>drag</kbd> turn <kbd>right drag</kbd> move <kbd>wheel</kbd> zoom <kbd>← ↑ → ↓</kbd> turn <kbd>Shift</kbd> move <kbd>+ −</kbd> zoom <kbd>N P</kbd> findings <kbd>C</kbd> colours <kbd>S</kbd> section <kbd>M</kbd> measure</p>\n\
+         </div>\n<p class=\"without\" id=\"without\" hidden>This browser offers no WebGL, so the part is shown as a picture.</p>\n",
+    );
+}
+
+/// The slider along the program.
+pub(crate) fn timeline(html: &mut String, scene: Option<&Scene>) {
+    let unit = scene
+        .and_then(|scene| scene.track.as_ref())
+        .map_or("", |track| track.unit.as_str());
+    let _ = write!(
+        html,
+        "<div class=\"course\" id=\"course\" data-unit=\"{}\" hidden>\n\
+         <button type=\"button\" id=\"play\" aria-label=\"Play the program\">▶</button>\n\
+         <input type=\"range\" id=\"moment\" min=\"0\" max=\"10000\" value=\"10000\" step=\"1\" aria-label=\"Time in the program\">\n\
+         <output id=\"clock\"></output>\n<code id=\"now\"></code></div>\n",
+        escape(unit)
+    );
+}
