@@ -145,7 +145,9 @@ impl Page {
         let embedded = self.scene.as_ref().map(|scene| embed(scene, most));
 
         let mut html = head;
-        html.reserve(before.len() + after.len() + script.len() + embedded.as_ref().map_or(0, |e| e.bytes.len() * 4 / 3));
+        html.reserve(
+            before.len() + after.len() + script.len() + embedded.as_ref().map_or(0, |e| e.bytes.len() * 4 / 3),
+        );
         html.push_str(&before);
         self.viewer(&mut html, embedded.as_ref());
         html.push_str("</div>\n");
@@ -155,8 +157,15 @@ impl Page {
         }
         html.push_str(&after.replacen(ACCURACY, "", 1));
         if let Some(embedded) = &embedded {
-            let _ = writeln!(html, "<script type=\"application/json\" id=\"head\">{}</script>", json(&embedded.head));
-            let _ = writeln!(html, "<script type=\"application/json\" id=\"markers\">{marks}</script>");
+            let _ = writeln!(
+                html,
+                "<script type=\"application/json\" id=\"head\">{}</script>",
+                json(&embedded.head)
+            );
+            let _ = writeln!(
+                html,
+                "<script type=\"application/json\" id=\"markers\">{marks}</script>"
+            );
             html.push_str("<script type=\"text/plain\" id=\"arrays\">");
             STANDARD.encode_string(&embedded.bytes, &mut html);
             html.push_str("</script>\n");
@@ -175,7 +184,11 @@ impl Page {
             escape(&self.lead)
         );
         if let Some(verdict) = &self.verdict {
-            let (class, sign) = if verdict.is_good { ("good", "✓") } else { ("bad", "✕") };
+            let (class, sign) = if verdict.is_good {
+                ("good", "✓")
+            } else {
+                ("bad", "✕")
+            };
             let _ = write!(
                 html,
                 "<div class=\"verdict {class}\" id=\"verdict\"><span class=\"sign\" aria-hidden=\"true\">{sign}</span><div><p class=\"headline\">{}</p>",
@@ -188,7 +201,11 @@ impl Page {
             html.push_str("</div></div>\n");
         }
         html.push_str("</header>\n<main>\n");
-        let class = if self.findings.is_empty() { "stage" } else { "stage with-findings" };
+        let class = if self.findings.is_empty() {
+            "stage"
+        } else {
+            "stage with-findings"
+        };
         let _ = writeln!(html, "<div class=\"{class}\">");
         if !self.findings.is_empty() {
             let _ = writeln!(
@@ -210,9 +227,17 @@ impl Page {
         if !self.pictures.is_empty() {
             html.push_str("<div class=\"pictures\" id=\"pictures\">\n");
             for picture in &self.pictures {
-                let _ = write!(html, "<figure><img alt=\"{}\" src=\"data:image/png;base64,", escape(&picture.caption));
+                let _ = write!(
+                    html,
+                    "<figure><img alt=\"{}\" src=\"data:image/png;base64,",
+                    escape(&picture.caption)
+                );
                 STANDARD.encode_string(&picture.png, html);
-                let _ = writeln!(html, "\"><figcaption>{}</figcaption></figure>", escape(&picture.caption));
+                let _ = writeln!(
+                    html,
+                    "\"><figcaption>{}</figcaption></figure>",
+                    escape(&picture.caption)
+                );
             }
             html.push_str("</div>\n");
         }

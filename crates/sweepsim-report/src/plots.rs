@@ -68,7 +68,11 @@ pub(crate) fn plots(html: &mut String, plots: &[Plot], end: f64) {
         let width = WIDTH / COLUMNS as f64;
         let mut before = f64::NAN;
         for (n, value) in columns.iter().enumerate() {
-            let y = if most > 0.0 { HEIGHT - value / most * (HEIGHT - 4.0) } else { HEIGHT };
+            let y = if most > 0.0 {
+                HEIGHT - value / most * (HEIGHT - 4.0)
+            } else {
+                HEIGHT
+            };
             if y != before {
                 let _ = write!(path, "H{:.5}V{:.4}", n as f64 * width, y);
             }
@@ -125,11 +129,18 @@ pub(crate) fn histogram(html: &mut String, histogram: &Histogram) {
     }
     html.push_str("<line class=\"axis\" x1=\"0\" x2=\"640\" y1=\"150\" y2=\"150\"/>\n");
     let mut marks = vec![(first.from, "end"), (0.0, ""), (last.to, "end")];
-    marks.extend([(-gouge, "limit"), (excess, "limit")].iter().filter(|(at, _)| *at > first.from && *at < last.to));
+    marks.extend(
+        [(-gouge, "limit"), (excess, "limit")]
+            .iter()
+            .filter(|(at, _)| *at > first.from && *at < last.to),
+    );
     for (at, kind) in marks {
         let x = x(at);
         if kind == "limit" {
-            let _ = writeln!(html, "<line class=\"limit\" x1=\"{x:.2}\" x2=\"{x:.2}\" y1=\"0\" y2=\"156\"/>");
+            let _ = writeln!(
+                html,
+                "<line class=\"limit\" x1=\"{x:.2}\" x2=\"{x:.2}\" y1=\"0\" y2=\"156\"/>"
+            );
         }
         let y = if kind == "limit" { 186 } else { 168 };
         let _ = writeln!(html, "<text x=\"{x:.2}\" y=\"{y}\">{}</text>", measure(at));

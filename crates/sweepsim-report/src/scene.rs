@@ -122,7 +122,9 @@ impl KeyFrame {
     /// Sets the material of a line from now on: its number (column times rows, plus row), and its intervals from the lowest up.
     pub fn push(&mut self, line: u32, intervals: impl IntoIterator<Item = [f64; 2]>) {
         let before = self.intervals.len();
-        let finite = intervals.into_iter().filter(|[lower, upper]| lower.is_finite() && upper.is_finite());
+        let finite = intervals
+            .into_iter()
+            .filter(|[lower, upper]| lower.is_finite() && upper.is_finite());
         self.intervals.extend(finite.take(usize::from(u16::MAX)));
         self.lines.push(line);
         self.counts.push((self.intervals.len() - before) as u16);

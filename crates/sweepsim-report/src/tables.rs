@@ -72,7 +72,13 @@ pub(crate) fn table(html: &mut String, table: &Table) {
     html.push_str("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"");
     html.push_str(&escape(&table.title));
     html.push_str("\"><table>\n");
-    let number = |column: usize| if table.numbers.contains(&column) { " class=\"n\"" } else { "" };
+    let number = |column: usize| {
+        if table.numbers.contains(&column) {
+            " class=\"n\""
+        } else {
+            ""
+        }
+    };
     if !table.columns.is_empty() {
         html.push_str("<thead><tr>");
         for (column, head) in table.columns.iter().enumerate() {

@@ -18,9 +18,16 @@ pub(crate) fn accuracy(step: f64, left_out: &[String]) -> String {
 
 /// The canvas with its controls.
 pub(crate) fn markup(html: &mut String, scene: &Scene) {
-    html.push_str("<div class=\"viewer\" id=\"viewer\" hidden>\n<div class=\"tools\" role=\"toolbar\" aria-label=\"View\">\n");
+    html.push_str(
+        "<div class=\"viewer\" id=\"viewer\" hidden>\n<div class=\"tools\" role=\"toolbar\" aria-label=\"View\">\n",
+    );
     html.push_str("<div class=\"group\" role=\"radiogroup\" aria-label=\"Colours\">\n");
-    let deviates = scene.part.intervals.iter().flatten().any(|end| end.deviation.is_finite());
+    let deviates = scene
+        .part
+        .intervals
+        .iter()
+        .flatten()
+        .any(|end| end.deviation.is_finite());
     let cut = scene.part.intervals.iter().flatten().any(|end| end.maker > 0);
     let modes = [
         ("deviation", "Deviation", deviates),

@@ -69,7 +69,9 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
             picture: outcome.picture,
         };
         session.progress.phase("page");
-        let html = pool.install(|| page::html(&source)).inspect_err(|_| session.progress.finish())?;
+        let html = pool
+            .install(|| page::html(&source))
+            .inspect_err(|_| session.progress.finish())?;
         session
             .outputs
             .write("report.html", |file| file.write_all(html.as_bytes()))?;

@@ -106,7 +106,11 @@ impl Scale {
     pub fn over(values: impl Iterator<Item = f64>, steps: u32) -> Self {
         let values = values.filter(|value| value.is_finite());
         let [least, greatest] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
-        let (from, range) = if least <= greatest { (least, greatest - least) } else { (0.0, 0.0) };
+        let (from, range) = if least <= greatest {
+            (least, greatest - least)
+        } else {
+            (0.0, 0.0)
+        };
         let step = range / f64::from(steps);
         // A range beyond the largest number has no step; neither has a single value.
         let step = if step > 0.0 && step.is_finite() { step } else { 1.0 };

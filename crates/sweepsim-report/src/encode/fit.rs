@@ -44,7 +44,9 @@ fn encoded(bytes: usize) -> usize {
 pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     let heights = scene.part.intervals.iter().flatten().map(|end| end.z);
     let course = scene.course.as_ref();
-    let of_course = course.into_iter().flat_map(|course| course.start.intervals.iter().flatten().map(|end| end.z));
+    let of_course = course
+        .into_iter()
+        .flat_map(|course| course.start.intervals.iter().flatten().map(|end| end.z));
     let height = Scale::over(heights.chain(of_course), HEIGHTS);
     let (meshes, mesh_arrays) = others::meshes(&scene.tools, &scene.solids);
     let track = scene.track.as_ref().map(others::track);

@@ -57,7 +57,9 @@ pub(crate) fn normals(layer: &DexelLayer) -> Arrays {
     let packed = |end: &LayerEnd| octahedron(end.normal.map(f64::from)).map(|c| (c * 127.0).round() as i8);
     let mut arrays = Arrays::default();
     let names = [["lower.u", "lower.v"], ["upper.u", "upper.v"]];
-    for (names, ends) in names.iter().zip(halves(layer.intervals.iter().map(|ends| [packed(&ends[0]), packed(&ends[1])]))) {
+    for (names, ends) in names.iter().zip(halves(
+        layer.intervals.iter().map(|ends| [packed(&ends[0]), packed(&ends[1])]),
+    )) {
         for (k, name) in names.iter().enumerate() {
             let own: Vec<i8> = ends.iter().map(|end| end[k]).collect();
             arrays.i8(name, &own);

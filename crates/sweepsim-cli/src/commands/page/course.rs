@@ -7,9 +7,9 @@ use super::program::Programs;
 use crate::commands::task::Task;
 use crate::session::Failure;
 use std::ops::ControlFlow;
+use sweepsim::Monitor;
 use sweepsim::motion::{Assembly, Path, Pose, Segment, Tool};
 use sweepsim::verify::{Scene, ToolPath, VerifyOptions, verify};
-use sweepsim::Monitor;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_report::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Track, TrackPoint};
 
@@ -125,7 +125,9 @@ fn first(path: &Path) -> Option<Place> {
     if path.moves() == 0 {
         return None;
     }
-    path.segments(0, 1.0, 1.0).first().map(|segment| Place::of(segment, 0.0))
+    path.segments(0, 1.0, 1.0)
+        .first()
+        .map(|segment| Place::of(segment, 0.0))
 }
 
 /// The track, and the course if it is wanted.
@@ -222,7 +224,12 @@ fn layer(dexels: &Dexels) -> DexelLayer {
     };
     DexelLayer::new(area, |i, j, line| {
         let ends = dexels.intervals(i, j).heights();
-        line.extend(ends.map(|[lower, upper]| [LayerEnd::at(lower, [0.0, 0.0, -1.0]), LayerEnd::at(upper, [0.0, 0.0, 1.0])]));
+        line.extend(ends.map(|[lower, upper]| {
+            [
+                LayerEnd::at(lower, [0.0, 0.0, -1.0]),
+                LayerEnd::at(upper, [0.0, 0.0, 1.0]),
+            ]
+        }));
     })
 }
 
@@ -245,7 +252,9 @@ fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), F
     let same = || job.stock.dexels(&job.grid).map(|stock| (job.grid, stock));
     let stock = thinned(&job.grid).and_then(|grid| Some((grid, job.stock.dexels(&grid).ok()?)));
     // A stock of dexels has a grid of its own.
-    let Some((_, stock)) = stock.or_else(|| same().ok()) else { return Ok(()) };
+    let Some((_, stock)) = stock.or_else(|| same().ok()) else {
+        return Ok(());
+    };
     let tools: Vec<&Tool> = job.tools.values().collect();
     let assemblies: Vec<Assembly> = tools.iter().map(|tool| Assembly::new((*tool).clone())).collect();
     let options = VerifyOptions::new(source.sweeping.clone());
@@ -300,7 +309,8 @@ fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), F
             cut(&mut poses, point.tool, &mut now)?;
             let frame = changes(clock, &shown, &now);
             let removed = shown.volume() - now.volume();
-            made.removal.push([since, clock, removed.max(0.0) / (clock - since).max(f64::MIN_POSITIVE)]);
+            made.removal
+                .push([since, clock, removed.max(0.0) / (clock - since).max(f64::MIN_POSITIVE)]);
             since = clock;
             if !frame.is_empty() {
                 found.push(frame);
@@ -319,7 +329,11 @@ fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), F
 
 /// Any direction across an axis, the same for nearly the same axis.
 fn side(axis: [f64; 3]) -> [f64; 3] {
-    let across = if axis[2].abs() > 0.9 { [1.0, 0.0, 0.0] } else { [0.0, 0.0, 1.0] };
+    let across = if axis[2].abs() > 0.9 {
+        [1.0, 0.0, 0.0]
+    } else {
+        [0.0, 0.0, 1.0]
+    };
     let along: f64 = (0..3).map(|k| across[k] * axis[k]).sum();
     [0, 1, 2].map(|k| across[k] - along * axis[k])
 }
@@ -332,4 +346,3 @@ impl Monitor for Silent<'_> {
         self.0.cancelled()
     }
 }
-

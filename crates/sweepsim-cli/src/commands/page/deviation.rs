@@ -36,7 +36,10 @@ impl Deviated {
                     (near, dx * dy / f64::from(end.normal[2].abs()).max(1e-3))
                 };
                 let pieces = dexels.at(*line);
-                pieces.iter().map(|piece| [distance(piece.lower), distance(piece.upper)]).collect()
+                pieces
+                    .iter()
+                    .map(|piece| [distance(piece.lower), distance(piece.upper)])
+                    .collect()
             })
             .collect();
         let ends = found.iter().flatten().map(|ends| ends.map(|(near, _)| near as f32));

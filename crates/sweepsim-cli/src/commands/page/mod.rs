@@ -130,7 +130,12 @@ fn scene(source: &PageSource, deviated: Option<&Deviated>, made: Courses, progra
     let numbers: Vec<u32> = job.tools.keys().copied().collect();
     let tool = |number| numbers.binary_search(&number).unwrap_or_default() as u16;
     let ends = made.first_moves.iter().skip(1).copied().chain([made.moves]);
-    scene.paths = job.paths.iter().zip(ends).map(|(path, end)| (end, tool(path.tool))).collect();
+    scene.paths = job
+        .paths
+        .iter()
+        .zip(ends)
+        .map(|(path, end)| (end, tool(path.tool)))
+        .collect();
     scene.programs = programs.into_texts();
     scene.track = Some(made.track);
     scene.course = made.course;
@@ -213,7 +218,11 @@ fn setup(source: &PageSource) -> Table {
     if let Some(limits) = job.limits {
         row(
             "Limits",
-            format!("gouge {} mm, excess {} mm", words::measure(limits.gouge), words::measure(limits.excess)),
+            format!(
+                "gouge {} mm, excess {} mm",
+                words::measure(limits.gouge),
+                words::measure(limits.excess)
+            ),
         );
     }
     row("Grid", {
@@ -232,11 +241,22 @@ fn tools(source: &PageSource, made: &Courses) -> Table {
     let job = &source.session.job;
     let removed = |number: u32| -> Option<f64> {
         let paths = source.report.paths.as_ref()?;
-        Some(paths.iter().filter(|path| path.tool == number).map(|path| path.removed).sum())
+        Some(
+            paths
+                .iter()
+                .filter(|path| path.tool == number)
+                .map(|path| path.removed)
+                .sum(),
+        )
     };
     let row = |(number, tool)| {
         let number: &u32 = number;
-        let own = || job.paths.iter().zip(&made.lengths).filter(|(path, _)| path.tool == *number);
+        let own = || {
+            job.paths
+                .iter()
+                .zip(&made.lengths)
+                .filter(|(path, _)| path.tool == *number)
+        };
         let moves: usize = own().map(|(path, _)| path.path.moves()).sum();
         let [cut, rapid] = own().fold([0.0; 2], |sum, (_, own)| [sum[0] + own[0], sum[1] + own[1]]);
         let bodies = job.bodies.get(number).map_or(0, Vec::len);
@@ -267,7 +287,9 @@ fn tools(source: &PageSource, made: &Courses) -> Table {
 
 fn phases(source: &PageSource) -> Table {
     let seconds = source.report.seconds.iter();
-    let mut rows: Vec<Vec<String>> = seconds.map(|(name, s)| vec![name.clone(), words::seconds(*s)]).collect();
+    let mut rows: Vec<Vec<String>> = seconds
+        .map(|(name, s)| vec![name.clone(), words::seconds(*s)])
+        .collect();
     rows.push(vec!["in all".to_owned(), words::seconds(source.total)]);
     Table {
         title: "Computing time".to_owned(),

@@ -40,7 +40,9 @@ impl Programs {
             let mut last = (usize::MAX, 0);
             let line = |number: usize| {
                 // A move belongs to the line of the pose where it ends.
-                let Some(origin) = path.origins.get(number + 1) else { return (0, 0) };
+                let Some(origin) = path.origins.get(number + 1) else {
+                    return (0, 0);
+                };
                 if origin.file != last.0 {
                     let name = shown(path, origin.file, folder);
                     let next = names.len() as u16;

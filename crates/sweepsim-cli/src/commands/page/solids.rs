@@ -98,7 +98,8 @@ fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangl
     let z = axis.map(|c| c / length);
     let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
     let helper = [0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 });
-    let cross = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
     let x = cross(helper, z);
     let size = x.iter().map(|c| c * c).sum::<f64>().sqrt();
     let x = x.map(|c| c / size);
@@ -132,7 +133,11 @@ fn ball(centre: [f64; 3], radius: f64) -> Triangles {
         let (s, c) = (ring as f64 / rings as f64 * std::f64::consts::PI).sin_cos();
         for side in 0..SIDES {
             let (sin, cos) = (side as f64 / SIDES as f64 * std::f64::consts::TAU).sin_cos();
-            vertices.push([centre[0] + radius * s * cos, centre[1] + radius * s * sin, centre[2] - radius * c]);
+            vertices.push([
+                centre[0] + radius * s * cos,
+                centre[1] + radius * s * sin,
+                centre[2] - radius * c,
+            ]);
         }
     }
     let mut triangles = Vec::new();

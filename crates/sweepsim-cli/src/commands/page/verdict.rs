@@ -19,9 +19,14 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
             Verdict::bad("May not be run: the part deviates from its target.")
         }
         (0, 0) if open > 0 => Verdict::bad("Not decided: nothing was found, but some lines are unresolved."),
-        (0, 0) if report.gouge.is_some() => Verdict::good("May be run: no move does harm, and the part is within its limits."),
+        (0, 0) if report.gouge.is_some() => {
+            Verdict::good("May be run: no move does harm, and the part is within its limits.")
+        }
         (0, 0) => Verdict::good("May be run: no move does harm."),
-        (0, left) => Verdict::bad(format!("The part is not finished: material is left in {}.", counted(left, "place"))),
+        (0, left) => Verdict::bad(format!(
+            "The part is not finished: material is left in {}.",
+            counted(left, "place")
+        )),
         (1, _) => Verdict::bad("May not be run: one move does harm."),
         (moves, _) => Verdict::bad(format!("May not be run: {} do harm.", counted(moves, "move"))),
     };
@@ -35,7 +40,12 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
 fn title(finding: &ReportedFinding) -> String {
     let part = finding.body.as_deref().unwrap_or("cutter");
     let mut initial = part.chars();
-    let part: String = initial.next().into_iter().flat_map(char::to_uppercase).chain(initial).collect();
+    let part: String = initial
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .chain(initial)
+        .collect();
     match finding.kind.as_str() {
         "collision" => format!("{part} hits the workpiece"),
         "fixture" => format!("{part} hits a fixture"),
