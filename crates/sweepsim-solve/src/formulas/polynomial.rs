@@ -29,7 +29,7 @@ struct Block {
     error: f64,
 }
 
-/// A sum of forms that share no variables, at most one of them a constant.
+/// A sum of forms that share no variables; a constant only alone.
 #[derive(Clone, Debug)]
 pub(super) struct Polynomial {
     blocks: Vec<Block>,
@@ -59,6 +59,17 @@ fn count(degrees: &[usize]) -> Option<usize> {
 
 fn absolute(x: Double) -> f64 {
     (x.hi.abs() + x.lo.abs()) * (1.0 + 4.0 * f64::EPSILON)
+}
+
+/// The index of the next coefficient, first variable fastest.
+fn next_index(index: &mut [usize], degrees: &[usize]) {
+    for (i, d) in index.iter_mut().zip(degrees) {
+        *i += 1;
+        if *i <= *d {
+            break;
+        }
+        *i = 0;
+    }
 }
 
 impl Block {
@@ -150,8 +161,22 @@ impl Block {
         }
         let size = sum.size + second.size;
         sum.error = (sum.error + second.error + 4.0 * (ROUNDING * size + UNDERFLOW)) * (1.0 + 4.0 * f64::EPSILON);
-        sum.size = size * (1.0 + 4.0 * f64::EPSILON);
+        // Far from the origin, `x − p` is much smaller than `x`, and products of such differences err by their own sizes.
+        sum.size = (size * (1.0 + 4.0 * f64::EPSILON)).min(sum.largest());
         sum.finite()
+    }
+
+    /// A bound on the unscaled coefficients, those meant and those computed, from the coefficients themselves.
+    fn largest(&self) -> f64 {
+        let rows: Vec<Vec<Double>> = self.degrees.iter().map(|d| binomials(*d)).collect();
+        let mut index = vec![0usize; self.degrees.len()];
+        let mut largest: f64 = 0.0;
+        for c in &self.scaled {
+            let binomial: f64 = rows.iter().zip(&index).map(|(row, i)| row[*i].hi).product();
+            largest = largest.max(absolute(*c) / binomial);
+            next_index(&mut index, &self.degrees);
+        }
+        (largest + self.error) * (1.0 + 4.0 * (self.degrees.len() + 2) as f64 * f64::EPSILON) + UNDERFLOW
     }
 
     fn finite(self) -> Option<Self> {
@@ -173,13 +198,7 @@ impl Block {
                 }
             }
             coefficients.push(value);
-            for (i, d) in index.iter_mut().zip(&self.degrees) {
-                *i += 1;
-                if i <= &mut d.clone() {
-                    break;
-                }
-                *i = 0;
-            }
+            next_index(&mut index, &self.degrees);
         }
         let steps = (2 * self.degrees.len() + 4) as f64;
         let error = (self.error + steps * (ROUNDING * self.size + UNDERFLOW)) * (1.0 + 4.0 * f64::EPSILON);
@@ -203,6 +222,23 @@ impl Block {
         let pairs: Vec<(f64, f64)> = coefficients.iter().map(|c| (c.hi, c.lo)).collect();
         Equation::of_pairs(&self.degrees, &pairs, error).ok()
     }
+}
+
+/// Adds the constant among the blocks to the one in which it cancels most: on a domain far from the origin, `x − p` is small, although neither `x` nor `p` is.
+fn absorb(blocks: &mut Vec<Block>, constant: usize) -> Option<()> {
+    let constant = blocks.swap_remove(constant);
+    let mut best: Option<(f64, usize, Block)> = None;
+    for (place, block) in blocks.iter().enumerate() {
+        let sum = block.add(&constant)?;
+        let saved = block.size - sum.size;
+        if best.as_ref().is_none_or(|(most, ..)| saved > *most) {
+            best = Some((saved, place, sum));
+        }
+    }
+    if let Some((_, place, sum)) = best {
+        blocks[place] = sum;
+    }
+    Some(())
 }
 
 impl Polynomial {
@@ -252,6 +288,10 @@ impl Polynomial {
             }
             rest.push(sum);
             blocks = rest;
+        }
+        let constant = blocks.iter().position(Block::is_constant);
+        if let Some(constant) = constant.filter(|_| blocks.len() > 1) {
+            absorb(&mut blocks, constant)?;
         }
         Some(Self {
             blocks,
@@ -316,10 +356,8 @@ impl Polynomial {
     /// As an equation over the domain; `None` if a number is not finite. A single form keeps all digits of its coefficients, since clusters of roots
     /// may need them; sums of forms in different variables are rounded.
     pub(super) fn equation(&self) -> Option<Equation> {
-        let (constants, others): (Vec<&Block>, Vec<&Block>) = self.blocks.iter().partition(|b| b.is_constant());
-        if let [form] = &others[..] {
-            let whole = constants.iter().try_fold((*form).clone(), |sum, c| sum.add(c))?;
-            return whole.pairs();
+        if let [form] = &self.blocks[..] {
+            return form.pairs();
         }
         let forms: Option<Vec<Bernstein>> = self.blocks.iter().map(Block::form).collect();
         forms.map(Equation::sum)

@@ -12,9 +12,9 @@ use crate::points::treat::BEYOND;
 use crate::search::{Cause, Open};
 
 /// Half the width of the first box that is tried, in units in the last place of the domain's numbers, and how much wider each next one is.
-const UNITS: f64 = 32.0;
-const WIDER: f64 = 16.0;
-const TRIES: u32 = 6;
+const UNITS: f64 = 4.0;
+const WIDER: f64 = 4.0;
+const TRIES: u32 = 12;
 
 impl PointSolver {
     /// The found roots in the domain's coordinates. Adds to the open boxes.

@@ -14,6 +14,7 @@ mod fuzz;
 mod invariance;
 mod limits;
 mod many;
+mod many_domains;
 mod many_surfaces;
 mod misuse;
 mod monitors;

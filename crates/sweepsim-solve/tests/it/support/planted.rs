@@ -52,6 +52,13 @@ pub struct Plane {
 }
 
 impl Plane {
+    /// `Σ a (x − p)`.
+    pub fn at(a: &[f64], p: &[f64]) -> Self {
+        let a: Vec<RBig> = a.iter().map(|a| exact(*a)).collect();
+        let b = a.iter().zip(p).fold(RBig::ZERO, |s, (a, x)| s + a * exact(*x));
+        Self { a, b }
+    }
+
     pub fn through(point: &[f64], random: &mut Random) -> Self {
         let a: Vec<RBig> = point.iter().map(|_| exact(random.direction())).collect();
         let b = a.iter().zip(point).fold(RBig::ZERO, |s, (a, x)| s + a * exact(*x));
