@@ -40,7 +40,7 @@ pub mod tools;
 pub mod write;
 
 pub use controls::{heidenhain, siemens};
-pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, check, post};
+pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, RapidPoint, check, post};
 pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,

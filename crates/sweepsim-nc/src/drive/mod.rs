@@ -5,11 +5,14 @@ mod beside;
 mod check;
 mod contour;
 mod driver;
+mod excursions;
 mod post;
+mod rapids;
 mod track;
 
 pub use check::{AxisFault, AxisFinding, check};
 pub use post::{PostError, PostOptions, post};
+pub use rapids::RapidPoint;
 
 pub(crate) use arcs::Arc;
 pub(crate) use contour::{ArcPlane, Bend, Compensation, Corner, CornerShape, Corners, Item, Place, Side, Stroke};

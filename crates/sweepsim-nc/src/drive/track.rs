@@ -360,6 +360,7 @@ impl Track {
             made.tool = self.tool;
             made.feed = if rapid { None } else { self.feed };
             made.feed_mode = self.feed_mode;
+            made.tip_control = self.coordinates == Coordinates::Tip || self.driver.kinematics().is_none();
             made.way = if self.joined { way } else { Move::default() };
             self.program.poses.push(made);
             if self.driver.kinematics().is_some() {

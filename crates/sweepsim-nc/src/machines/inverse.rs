@@ -128,6 +128,30 @@ impl Kinematics {
             .collect()
     }
 
+    /// The axes that have limits.
+    pub(crate) fn limited(&self, tool_length: f64) -> Vec<LimitedAxis> {
+        let offset = self.to_machine(tool_length);
+        let linear = self.linear().iter().map(|axis| {
+            let k = index(&LINEAR, axis.letter);
+            (axis.letter, Some(k), k, offset[k], axis.limits)
+        });
+        let rotary = self
+            .rotary()
+            .map(|axis| (axis.letter, None, index(&ROTARY, axis.letter), 0.0, axis.limits));
+        linear
+            .chain(rotary)
+            .filter_map(|(letter, linear, index, offset, limits)| {
+                Some(LimitedAxis {
+                    letter,
+                    linear,
+                    index,
+                    offset,
+                    limits: limits?,
+                })
+            })
+            .collect()
+    }
+
     /// The axes that are beyond their limits at a position: letter, value in machine coordinates or degrees, limits.
     #[must_use]
     pub fn beyond(&self, at: &Position, tool_length: f64) -> Vec<(char, f64, [f64; 2])> {
@@ -147,6 +171,28 @@ impl Kinematics {
                 (!inside).then_some((letter, value, [least, largest]))
             })
             .collect()
+    }
+}
+
+/// An axis with limits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LimitedAxis {
+    pub letter: char,
+    /// The index of a linear axis.
+    pub linear: Option<usize>,
+    index: usize,
+    /// Machine coordinates less those of programs.
+    pub offset: f64,
+    pub limits: [f64; 2],
+}
+
+impl LimitedAxis {
+    /// Its value in machine coordinates, or in degrees.
+    pub fn value(&self, at: &Position) -> f64 {
+        match self.linear {
+            Some(k) => at.xyz[k] + self.offset,
+            None => at.abc[self.index],
+        }
     }
 }
 

@@ -316,6 +316,42 @@ impl Kinematics {
         (self.inverse_directions * (at_zero - self.head_offset(abc, tool_length))).into()
     }
 
+    /// Bounds the second derivatives of X, Y, Z while the tip moves straight between two points and the rotary axes turn at constant speed, in
+    /// mm over the square of the move's duration.
+    ///
+    /// As for [`chords`](Self::chords), but from the part to the tool: the tip is turned by the table, and what the head's turns add is taken off.
+    pub(crate) fn bend(&self, tips: [[f64; 3]; 2], from: [f64; 3], to: [f64; 3], tool_length: f64) -> [f64; 3] {
+        let [first, last] = tips.map(Vector3::from);
+        let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * (from[k] + to[k]));
+        let mut acceleration = 0.0;
+        let mut turn = |point: &Vector3<f64>, speed: &mut f64, joint: &Joint, raised: f64| {
+            let rate = (to[joint.letter] - from[joint.letter]).abs().to_radians();
+            let pivot = joint.pivot + Vector3::z() * raised;
+            let distance = joint.axis.cross(&(point - pivot)).norm() + 0.5 * *speed;
+            acceleration += 2.0 * rate * *speed + rate * rate * distance;
+            *speed += rate * distance;
+        };
+        let (mut point, mut speed) = (0.5 * (first + last), (last - first).norm());
+        for joint in &self.table {
+            turn(&point, &mut speed, joint, 0.0);
+            point = rotation(&joint.axis, middle[joint.letter]).tr_mul(&(point - joint.pivot)) + joint.pivot;
+        }
+        let (mut point, mut speed) = (Vector3::zeros(), 0.0);
+        for joint in self.head.iter().rev() {
+            turn(&point, &mut speed, joint, tool_length);
+            point = joint.turn(point, middle, tool_length);
+        }
+        std::array::from_fn(|k| acceleration * self.inverse_directions.row(k).norm())
+    }
+
+    /// How X, Y, Z change with the tip at fixed angles.
+    pub(crate) fn linear_along(&self, way: [f64; 3], abc: [f64; 3]) -> [f64; 3] {
+        let turned = self.table.iter().fold(Vector3::from(way), |way, joint| {
+            rotation(&joint.axis, abc[joint.letter]).tr_mul(&way)
+        });
+        (self.inverse_directions * turned).into()
+    }
+
     /// The number of chords within `tolerance` of the tip's course while all axes move at constant speed.
     ///
     /// The tip is a product of turns and shifts. Going from the tool to the part, a shift adds to its speed, and a turn by `ω` about an axis

@@ -36,6 +36,9 @@ pub struct ProgramPose {
     pub call: Option<u32>,
     /// How the tool moves here from the previous pose.
     pub way: Move,
+    /// Whether the tip follows the move: under tip control, in tilted planes, in programs of poses, and without a machine. Otherwise each axis of the
+    /// machine moves at constant speed.
+    pub tip_control: bool,
 }
 
 impl ProgramPose {
@@ -53,6 +56,7 @@ impl ProgramPose {
             feed_mode: FeedMode::default(),
             call: None,
             way: Move::default(),
+            tip_control: true,
         }
     }
 }

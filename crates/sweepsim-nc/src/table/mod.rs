@@ -212,6 +212,7 @@ impl Row<'_> {
             feed_mode: FeedMode::default(),
             call: None,
             way: Move::default(),
+            tip_control: true,
         })
     }
 }

@@ -8,6 +8,7 @@ mod gcode;
 mod harmless;
 mod heidenhain;
 mod kinematics;
+mod limits;
 mod machines;
 mod pieces;
 mod posted;

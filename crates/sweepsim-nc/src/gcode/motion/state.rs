@@ -205,8 +205,25 @@ impl State {
         Ok(())
     }
 
-    /// A feed move along an arc.
+    /// Whether a move of the axes is not the same as one of the tip.
+    pub fn turns_by_axes(&self, abc: [f64; 3]) -> bool {
+        self.coordinates() == Coordinates::Axes && self.driver.kinematics().is_some() && abc != self.abc
+    }
+
+    /// A feed move along an arc, of the axes without tip control; they do not turn then.
     pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc) -> Result<(), NcProblem> {
+        self.driver.change_tool(self.tool);
+        let arc = match self.coordinates() {
+            Coordinates::Axes if self.abc != [0.0; 3] && self.driver.kinematics().is_some() => {
+                let (centre, normal) = (arc.centre(), arc.normal());
+                let above = std::array::from_fn(|k| centre[k] + normal[k]);
+                let centre = self.driver.tip(&Position::new(centre, self.abc))?;
+                let above = self.driver.tip(&Position::new(above, self.abc))?;
+                let normal = std::array::from_fn(|k| above[k] - centre[k]);
+                TipArc::new(centre, normal, arc.angle()).map_err(|error| NcProblem::syntax(error.to_string()))?
+            }
+            _ => arc,
+        };
         let turning = match self.driver.turning(self.abc, target.abc, self.coordinates())? {
             Turning::Slerp => Turning::Even,
             other => other,
@@ -248,6 +265,7 @@ impl State {
                 feed_mode: self.feed_mode,
                 call: self.place.call,
                 way,
+                tip_control: coordinates == Coordinates::Tip || self.driver.kinematics().is_none(),
             });
             if self.driver.kinematics().is_some() {
                 let position = match coordinates {

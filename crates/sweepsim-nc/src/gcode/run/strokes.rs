@@ -95,7 +95,7 @@ impl Reader {
                 "expected the same scale for all axes",
             ));
         };
-        if self.exact_arcs {
+        if self.exact_arcs && !self.state.turns_by_axes(target.abc) {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
             return self.state.arc_to(target, exact);
         }

@@ -1,0 +1,129 @@
+//! Rapid moves of axes that need not arrive together.
+
+use sweepsim_motion::Pose;
+
+use crate::machines::{Kinematics, Position, Rapid};
+use crate::model::program::Program;
+
+/// A point of a rapid move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct RapidPoint {
+    /// The share of the move's duration, from 0 to 1.
+    pub time: f64,
+    /// The position of the axes.
+    pub position: Position,
+}
+
+impl Kinematics {
+    /// The course of a rapid move between two positions: all axes move linearly in time from each point to the next.
+    ///
+    /// Where rapids are [`Straight`](Rapid::Straight), that is from start to end. Where they are [`DogLeg`](Rapid::DogLeg), each axis goes at its own speed
+    /// until it is there, so that there is a corner wherever one arrives. A linear axis without a speed is as fast as the slowest one that has
+    /// one; where none has, all are equally fast. A rotary axis without a speed arrives with the last of the others.
+    ///
+    /// ```
+    /// use sweepsim_nc::{Machine, Position};
+    /// let machine = Machine::read(r#"Machine(name: "mill", rapid: DogLeg, linear: [
+    ///     (letter: 'X', speed: 10000), (letter: 'Y', speed: 10000), (letter: 'Z', speed: 5000)])"#)?;
+    /// let kinematics = machine.kinematics.as_ref().ok_or("no axes")?;
+    /// let points = kinematics.rapid_path(&Position::default(), &Position::new([40.0, 10.0, 0.0], [0.0; 3]));
+    /// // Both axes at first, then X alone.
+    /// let corners: Vec<[f64; 3]> = points.iter().map(|point| point.position.xyz).collect();
+    /// assert_eq!(corners, [[0.0, 0.0, 0.0], [10.0, 10.0, 0.0], [40.0, 10.0, 0.0]]);
+    /// assert_eq!(points[1].time, 0.25);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn rapid_path(&self, from: &Position, to: &Position) -> Vec<RapidPoint> {
+        let ends = [(0.0, *from), (1.0, *to)];
+        let mut points: Vec<RapidPoint> = ends.map(|(time, position)| RapidPoint { time, position }).into();
+        if self.rapid() == Rapid::Straight || from == to {
+            return points;
+        }
+        let speeds = self.linear().clone().map(|axis| axis.speed);
+        let slowest = speeds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+        let slowest = if slowest.is_finite() { slowest } else { 1.0 };
+        let mut durations = [None; 6];
+        for k in 0..3 {
+            durations[k] = Some((to.xyz[k] - from.xyz[k]).abs() / speeds[k].unwrap_or(slowest));
+        }
+        for axis in self.rotary() {
+            if let (Some(k), Some(speed)) = (
+                ['A', 'B', 'C'].iter().position(|letter| *letter == axis.letter),
+                axis.speed,
+            ) {
+                durations[3 + k] = Some((to.abc[k] - from.abc[k]).abs() / speed);
+            }
+        }
+        let last = durations.iter().flatten().copied().fold(0.0, f64::max);
+        if !(last > 0.0) {
+            return points;
+        }
+        let shares = durations.map(|duration| duration.map_or(1.0, |duration| duration / last));
+        let mut times: Vec<f64> = shares.into_iter().filter(|time| *time > 0.0 && *time < 1.0).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let at = |time: f64| {
+            let mix = |k: usize, a: f64, b: f64| {
+                if time >= shares[k] {
+                    b
+                } else {
+                    a + time / shares[k] * (b - a)
+                }
+            };
+            Position {
+                xyz: std::array::from_fn(|k| mix(k, from.xyz[k], to.xyz[k])),
+                abc: std::array::from_fn(|k| mix(3 + k, from.abc[k], to.abc[k])),
+            }
+        };
+        let corners = times.into_iter().map(|time| RapidPoint {
+            time,
+            position: at(time),
+        });
+        points.splice(1..1, corners);
+        points
+    }
+}
+
+impl Program {
+    /// The course of the rapid move that ends at a pose, as the machine that the program was read with makes it: poses with their share of the
+    /// move's duration, from 0 to 1. Between them the tip moves straight to within `tolerance`, in millimetres; without turns it does so exactly.
+    ///
+    /// `None` where the machine makes it straight: rapids of its own kind [`Straight`](Rapid::Straight), feed moves, moves that nothing leads to, under tip
+    /// control with turning axes, and without a machine.
+    #[must_use]
+    pub fn dog_leg(&self, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
+        let machine = self.machine.kinematics.as_deref()?;
+        let end = self.poses.get(pose).filter(|end| end.rapid && end.joined)?;
+        let before = pose.checked_sub(1)?;
+        let (from, to) = (self.positions.get(before)?, self.positions.get(pose)?);
+        if machine.rapid() == Rapid::Straight || end.tip_control && from.abc != to.abc {
+            return None;
+        }
+        let points = machine.rapid_path(from, to);
+        let length = machine.tool_length(end.tool);
+        let mut poses = vec![(0.0, self.poses[before].pose)];
+        for pair in points.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            let turns = a.position.abc != b.position.abc;
+            let parts = if turns {
+                machine
+                    .chords(&a.position, &b.position, length, tolerance.max(1e-6))
+                    .min(1e6) as usize
+            } else {
+                1
+            };
+            for part in 1..=parts {
+                let s = part as f64 / parts as f64;
+                let time = a.time + s * (b.time - a.time);
+                poses.push((time, machine.pose(&a.position.towards(&b.position, s), length).ok()?));
+            }
+        }
+        // The end is the program's own, to the last digit.
+        if let Some(last) = poses.last_mut() {
+            *last = (1.0, end.pose);
+        }
+        (poses.len() > 2).then_some(poses)
+    }
+}
