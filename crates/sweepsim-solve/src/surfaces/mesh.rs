@@ -88,7 +88,7 @@ impl<'a> Mesher<'a> {
         let (mut cycles, mut bad) = (Vec::new(), Vec::new());
         for &number in numbers {
             let node = &self.nodes[number];
-            if !matches!(node.state, State::Plain(_)) {
+            if !matches!(node.state, State::Plain) {
                 continue;
             }
             if let Some(cause) = self.stop(number) {
@@ -369,9 +369,7 @@ impl<'a> Mesher<'a> {
                 mean[j] += places[*corner as usize][j] / corners.len() as f64;
             }
         }
-        let State::Plain(cell) = &self.nodes[number].state else {
-            return mean;
-        };
+        let (lo, hi) = self.grid.bounds(&self.nodes[number]);
         let domain = self.grid.domain();
         // Any common factor cancels.
         let width = [0, 1, 2].map(|j: usize| domain[j].hi() - domain[j].lo());
@@ -388,7 +386,7 @@ impl<'a> Mesher<'a> {
                 x[j] -= step;
                 moved = moved.max(f64::abs(step));
             }
-            if !(0..3).all(|j| x[j] > cell.lo[j] && x[j] < cell.hi[j]) {
+            if !(0..3).all(|j| x[j] > lo[j] && x[j] < hi[j]) {
                 return mean;
             }
             if moved <= 1e-15 {

@@ -110,8 +110,8 @@ pub struct SurfaceSolver {
     pub tolerance: f64,
 }
 
-/// The part of a time budget that is left for the search and the mesh: naming what is left, and releasing the tree, takes up to a third as long again.
-const SEARCH: f64 = 0.75;
+/// More open boxes than this become one.
+const MANY: usize = 2_000;
 
 impl SurfaceSolver {
     /// Creates a solver with the default limits and this tolerance for the mesh.
@@ -191,10 +191,7 @@ impl SurfaceSolver {
             nodes: Vec::new(),
             statistics: SolveStatistics::default(),
             doubles: Vec::new(),
-            watch: Watch::new(&SolveOptions {
-                time: self.options.time.map(|time| time.mul_f64(SEARCH)),
-                ..self.options.clone()
-            }),
+            watch: Watch::new(&self.options),
             stopped: None,
             open: 0,
         };
@@ -203,12 +200,12 @@ impl SurfaceSolver {
         search.nodes.push(OctreeNode {
             corner: [0; 3],
             level: 0,
-            state: State::Plain(Box::new(root)),
+            state: State::Empty,
         });
         if parallel {
-            search.treat_parallel(monitor);
+            search.treat_parallel(root, monitor);
         } else {
-            search.treat(0, monitor);
+            search.treat(0, root, monitor);
         }
         let mut mesh = None;
         while search.stopped.is_none() && mesh.is_none() {
@@ -220,6 +217,9 @@ impl SurfaceSolver {
                 },
                 Ok(Err(failures)) => {
                     for node in failures {
+                        if search.stopped.is_some() {
+                            break;
+                        }
                         search.split(node, monitor);
                     }
                 }
@@ -229,7 +229,7 @@ impl SurfaceSolver {
         if let Some(cause) = search.stopped {
             // Leaves that were not checked against their neighbours are not settled.
             for number in 0..search.nodes.len() {
-                if matches!(search.nodes[number].state, State::Plain(_)) {
+                if matches!(search.nodes[number].state, State::Plain) {
                     search.leave(number, cause);
                 }
             }
@@ -238,35 +238,34 @@ impl SurfaceSolver {
         let mut open: Vec<Open> = Vec::new();
         let mut boxes = Vec::new();
         for node in &search.nodes {
-            if matches!(node.state, State::Plain(_)) {
-                let (lo, hi) = search.grid.bounds(node);
+            let cause = match node.state {
+                State::Inner(_) | State::Empty => continue,
+                State::Plain => None,
+                State::Open(cause) => Some(cause),
+            };
+            let (lo, hi) = search.grid.bounds(node);
+            let Some(cause) = cause else {
                 let (lo, hi) = (search.grid.outer(&lo), search.grid.outer(&hi));
                 boxes.push([0, 1, 2].map(|j| Enclosure::hull(lo[j], hi[j])));
-            }
-            if let State::Open(cause) = node.state {
-                let (lo, hi) = search.grid.bounds(node);
-                open.push(Open {
-                    lo,
-                    hi,
-                    cause,
-                    boxes: 1,
-                });
-            }
-        }
-        if open.len() <= 2_000 {
-            unite(&mut open, 3);
-        } else {
-            // A continuum of open boxes: return one around all of them.
-            let (mut all, cause) = (open[0], open[0].cause);
-            for o in &open {
+                continue;
+            };
+            open.push(Open {
+                lo,
+                hi,
+                cause,
+                boxes: 1,
+            });
+            if search.open > MANY && open.len() == 2 {
+                // A continuum of open boxes: one around all of them.
+                let last = open.remove(1);
                 for j in 0..3 {
-                    all.lo[j] = all.lo[j].min(o.lo[j]);
-                    all.hi[j] = all.hi[j].max(o.hi[j]);
+                    open[0].lo[j] = open[0].lo[j].min(last.lo[j]);
+                    open[0].hi[j] = open[0].hi[j].max(last.hi[j]);
                 }
+                open[0].boxes += 1;
             }
-            (all.boxes, all.cause) = (open.len(), cause);
-            open = vec![all];
         }
+        unite(&mut open, 3);
         Ok(Surface {
             vertices,
             triangles,

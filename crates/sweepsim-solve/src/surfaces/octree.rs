@@ -15,20 +15,20 @@ pub(crate) const FINEST: u32 = 20;
 const PARTS: usize = 256;
 
 /// The state of a node.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum State {
     /// It has children, the first of eight at this number.
     Inner(u32),
-    /// The surface does not meet it.
+    /// The surface does not meet it, or it waits to be decided.
     Empty,
-    /// Plain, with its coefficients.
-    Plain(Box<Cell>),
+    /// Plain. Its coefficients are not kept: few leaves are split later, and a tree without them is small, and released at once.
+    Plain,
     /// Left open.
     Open(Cause),
 }
 
 /// A node of the octree.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct OctreeNode {
     pub corner: [u32; 3],
     pub level: u32,
@@ -59,34 +59,30 @@ pub(super) struct Search<'a> {
 
 impl Search<'_> {
     /// Decides a new leaf, splitting it as often as needed.
-    pub(super) fn treat(&mut self, first: usize, monitor: &dyn Monitor) {
-        let mut stack = vec![first];
-        while let Some(number) = stack.pop() {
-            if let Some(children) = self.decide(number, monitor) {
-                stack.extend((children..children + 8).rev());
-            }
+    pub(super) fn treat(&mut self, first: usize, cell: Cell, monitor: &dyn Monitor) {
+        let mut stack = vec![(first, cell)];
+        while let Some((number, cell)) = stack.pop() {
+            stack.extend(self.decide(number, cell, monitor).into_iter().rev());
         }
     }
 
     /// As [`treat`](Self::treat) of the root, on the threads of the current pool: breadth first to some hundred leaves, which are then treated
     /// independently.
-    pub(super) fn treat_parallel(&mut self, monitor: &dyn Monitor) {
-        let mut waiting = VecDeque::from([0]);
+    pub(super) fn treat_parallel(&mut self, root: Cell, monitor: &dyn Monitor) {
+        let mut waiting = VecDeque::from([(0, root)]);
         while waiting.len() < PARTS {
-            let Some(number) = waiting.pop_front() else { break };
-            if let Some(children) = self.decide(number, monitor) {
-                waiting.extend(children..children + 8);
-            }
+            let Some((number, cell)) = waiting.pop_front() else {
+                break;
+            };
+            waiting.extend(self.decide(number, cell, monitor));
         }
-        let mut parts = Vec::with_capacity(waiting.len());
-        for number in waiting {
-            let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
-            let (corner, level) = (self.nodes[number].corner, self.nodes[number].level);
-            parts.push((number, OctreeNode { corner, level, state }));
-        }
+        let parts: Vec<_> = waiting
+            .into_iter()
+            .map(|(number, cell)| (number, self.nodes[number], cell))
+            .collect();
         let (system, options, tolerance, deepest) = (self.system, self.options, self.tolerance, self.deepest);
         let (watch, stopped) = (&self.watch, self.stopped);
-        let searched = spread(true, parts, |(number, root): (usize, OctreeNode)| {
+        let searched = spread(true, parts, |(number, root, cell): (usize, OctreeNode, Cell)| {
             let mut part = Search {
                 system,
                 grid: PlaneLattice::new(system),
@@ -100,7 +96,7 @@ impl Search<'_> {
                 stopped,
                 open: 0,
             };
-            part.treat(0, monitor);
+            part.treat(0, cell, monitor);
             (number, part.nodes, part.statistics, part.stopped, part.open)
         });
         for (number, nodes, statistics, stopped, open) in searched {
@@ -125,10 +121,8 @@ impl Search<'_> {
         }
     }
 
-    /// Decides a new leaf; returns the first of its children if it is split.
-    fn decide(&mut self, number: usize, monitor: &dyn Monitor) -> Option<usize> {
-        let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
-        let State::Plain(mut cell) = state else { return None };
+    /// Decides a new leaf; returns its children if it is split.
+    fn decide(&mut self, number: usize, mut cell: Cell, monitor: &dyn Monitor) -> Vec<(usize, Cell)> {
         if self.stopped.is_none() {
             self.stopped = self.watch.stop(self.options, &self.statistics, self.open, monitor);
             // Children are numbered with 32 bits.
@@ -138,7 +132,7 @@ impl Search<'_> {
         }
         if let Some(cause) = self.stopped {
             self.leave(number, cause);
-            return None;
+            return Vec::new();
         }
         self.statistics.boxes += 1;
         self.statistics.depth = self.statistics.depth.max(self.nodes[number].level);
@@ -169,11 +163,11 @@ impl Search<'_> {
         }
         match fate {
             Fate::Sign => {}
-            Fate::Certified => self.nodes[number].state = State::Plain(cell),
-            Fate::Split => return Some(self.divide(number, *cell)),
+            Fate::Certified => self.nodes[number].state = State::Plain,
+            Fate::Split => return self.divide(number, cell),
             _ => self.leave(number, Cause::Smallest),
         }
-        None
+        Vec::new()
     }
 
     pub(super) fn leave(&mut self, number: usize, cause: Cause) {
@@ -183,21 +177,24 @@ impl Search<'_> {
 
     /// Splits a plain leaf that does not fit its neighbours.
     pub(super) fn split(&mut self, number: usize, monitor: &dyn Monitor) {
-        let state = std::mem::replace(&mut self.nodes[number].state, State::Empty);
-        match state {
-            State::Plain(cell) if self.nodes[number].level < self.deepest => {
-                let children = self.divide(number, *cell);
-                for child in children..children + 8 {
-                    self.treat(child, monitor);
-                }
-            }
-            State::Plain(_) => self.leave(number, Cause::Smallest),
-            other => self.nodes[number].state = other,
+        if !matches!(self.nodes[number].state, State::Plain) {
+            return;
+        }
+        if self.nodes[number].level >= self.deepest {
+            self.leave(number, Cause::Smallest);
+            return;
+        }
+        let mut cell = self.grid.first.clone();
+        (cell.lo, cell.hi) = self.grid.bounds(&self.nodes[number]);
+        self.system.layout.refresh(&mut cell, &mut self.doubles);
+        self.statistics.refreshed += 1;
+        for (child, cell) in self.divide(number, cell) {
+            self.treat(child, cell, monitor);
         }
     }
 
-    /// Adds the eight children; the number of the first.
-    fn divide(&mut self, number: usize, cell: Cell) -> usize {
+    /// Adds the eight children.
+    fn divide(&mut self, number: usize, cell: Cell) -> Vec<(usize, Cell)> {
         let layout = &self.system.layout;
         let first = self.nodes.len();
         let (corner, level) = (self.nodes[number].corner, self.nodes[number].level);
@@ -214,7 +211,7 @@ impl Search<'_> {
             cells.append(&mut uppers);
         }
         // Bit `axis` of a child's number says whether it is the upper one.
-        for (child, cell) in cells.into_iter().enumerate() {
+        for child in 0..cells.len() {
             let mut place = corner;
             for (axis, x) in place.iter_mut().enumerate() {
                 *x += half * u32::from(child >> axis & 1 == 1);
@@ -222,11 +219,11 @@ impl Search<'_> {
             self.nodes.push(OctreeNode {
                 corner: place,
                 level: level + 1,
-                state: State::Plain(Box::new(cell)),
+                state: State::Empty,
             });
         }
         self.nodes[number].state = State::Inner(first as u32);
-        first
+        (first..).zip(cells).collect()
     }
 
     /// Whether the surface in the cell lies in a slab within the tolerance.

@@ -5,7 +5,6 @@
 //! A small part always runs. All:
 //! `cargo test -p sweepsim-solve --test it many_domains -- --ignored --nocapture`
 
-use crate::support::expression::exact;
 use crate::support::planted::{Plane, Random, holds, meet};
 use dashu_ratio::RBig;
 use std::time::{Duration, Instant};
