@@ -1,6 +1,7 @@
 //! Maintenance commands of the workspace: `cargo xtask --help`.
 
 mod bench;
+mod browser;
 mod generate;
 mod regress;
 mod standalone;
@@ -68,6 +69,12 @@ enum Command {
         /// The names of crates [default: all].
         crates: Vec<String>,
     },
+    /// Opens the report of a faulty program in headless Chromium, and uses it by mouse and keyboard, on a phone and without WebGL.
+    Browser {
+        /// Takes the screenshots of the docs anew.
+        #[arg(long)]
+        screenshots: bool,
+    },
     /// Runs .ci/run, which must pass before a change is integrated.
     Ci,
 }
@@ -113,6 +120,7 @@ fn main() -> ExitCode {
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),
         Command::Standalone { crates } => standalone::run(&crates),
+        Command::Browser { screenshots } => browser::run(screenshots),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())

@@ -21,7 +21,7 @@ const OTHER_KIND = "#475569";
 
 /** Multiples of the limits, and the colours between them: too deep on the left, too much left on the right. */
 const STEPS = [-5, -2, -1, -0.5, 0.5, 1, 2, 5];
-const DEVIATIONS = ["#7f2704", "#d9610c", "#fdae6b", "#f1dcc6", "#eceff1", "#d3d6ea", "#a6a3d1", "#6a51a3", "#3f007d"].map(rgb);
+const DEVIATIONS = ["#7f2704", "#d9610c", "#fdae6b", "#ecd5b8", "#d3dadf", "#c5c9e6", "#a29ed0", "#6a51a3", "#3f007d"].map(rgb);
 
 /** Along the program: from first to last. */
 const COURSE = ["#00204c", "#31446b", "#666870", "#958f78", "#cbba69", "#ffe945"].map(rgb);
@@ -109,7 +109,7 @@ class Colours {
       const [deep, fine, high] = [rows.slice(0, 3), rows.slice(3, 6), rows.slice(6)];
       return {
         title: "Deviation, mm",
-        rows: [["", "too little removed"], ...high.reverse(), ["", "within the limits"], ...fine.reverse(), ["", "too much removed"], ...deep.reverse(), [UNMEASURED, "wall, not measured"]],
+        rows: [["", "too little removed"], ...high.reverse(), ["", "within the limits"], ...fine.reverse(), ["", "too much removed"], ...deep.reverse(), [UNMEASURED, "not measured"]],
       };
     }
     if (this.mode === "tool") return { title: "Cut by", rows: [...tools.map((tool, n) => [TOOLS[n % TOOLS.length], tool.name]), [STOCK, "stock"]] };

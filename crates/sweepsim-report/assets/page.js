@@ -208,6 +208,7 @@ function withViewer(viewer, markers) {
     const marker = markers[number];
     const { camera } = viewer;
     if (marker.clock != null) setClock(marker.clock);
+    canvas.dataset.flying = "1";
     camera.fly(marker.place, Math.min(camera.distance, 2.2 * camera.reach), Math.max(camera.elevation, 0.45));
     viewer.ask();
     if (scroll) all(".finding")[number].scrollIntoView({ block: "nearest" });

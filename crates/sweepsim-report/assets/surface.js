@@ -86,10 +86,31 @@ function surfaceOf(layer) {
     return Math.abs(z[side][best] - own - expected) <= room ? best : -1;
   };
 
+  /** Whether an end and those of the eight neighbours are at one height, and upright: most are. */
+  const isFlat = (side, k, i, j) => {
+    if (i < 1 || j < 1 || i > nx - 2 || j > ny - 2) return false;
+    const steps = side ? layer.upper : layer.lower;
+    for (let n = (i - 1) * ny + j; n <= (i + 1) * ny + j; n += ny)
+      for (let m = n - 1; m <= n + 1; m++) {
+        const f = first[m];
+        if (first[m + 1] !== f + 1 || steps[f] !== steps[k]) return false;
+        if (known && Math.abs(known[3 * (2 * f + side) + 2]) < 0.9999) return false;
+      }
+    return true;
+  };
+
   for (let i = 0; i < nx; i++)
     for (let j = 0; j < ny; j++)
       for (let k = first[i * ny + j]; k < first[i * ny + j + 1]; k++)
         for (let side = 0; side < 2; side++) {
+          const at = 3 * (8 * k + 4 * side);
+          if (isFlat(side, k, i, j)) {
+            for (let c = 0; c < 12; c += 3) {
+              corner[at + c] = z[side][k];
+              bent[at + c + 2] = side ? 127 : -127;
+            }
+            continue;
+          }
           // The eight neighbours, once each.
           const near = [];
           for (let a = -1; a <= 1; a++) for (let b = -1; b <= 1; b++) near.push(a || b ? continues(side, k, i + a, j + b, a, b) : k);
@@ -124,14 +145,14 @@ function surfaceOf(layer) {
                   crossings++;
                 }
             }
-            const at = 3 * (8 * k + 4 * side + c);
-            corner[at] = sum / count;
-            corner[at + 1] = crossings ? (0.5 * mx) / crossings : 0;
-            corner[at + 2] = crossings ? (0.5 * my) / crossings : 0;
+            const p = at + 3 * c;
+            corner[p] = sum / count;
+            corner[p + 1] = crossings ? (0.5 * mx) / crossings : 0;
+            corner[p + 2] = crossings ? (0.5 * my) / crossings : 0;
             const long = known ? Math.hypot(px, py, pz) || 1 : 1;
-            bent[at] = known ? (127 * px) / long : 0;
-            bent[at + 1] = known ? (127 * py) / long : 0;
-            bent[at + 2] = known ? (127 * pz) / long : side ? 127 : -127;
+            bent[p] = known ? (127 * px) / long : 0;
+            bent[p + 1] = known ? (127 * py) / long : 0;
+            bent[p + 2] = known ? (127 * pz) / long : side ? 127 : -127;
           });
         }
   const quads = new Quads(2 * total + 4 * (nx + ny) + 64);
@@ -165,7 +186,7 @@ function faces(layer, quads, corner, bent, known, x, y) {
             // Corners 2 and 3 move on by a row.
             for (const c of [2, 3]) {
               const slot = side ? c : 3 - c;
-              quads.places[12 * before.quad + 3 * slot + 1] = y(j, 1, at + 3 * c);
+              quads.places[12 * before.quad + 3 * slot + 1] = y(j, 1, at + 3 * c) + SEAM * layer.spacing[1];
             }
             before.j = j;
             continue;
@@ -179,9 +200,24 @@ function faces(layer, quads, corner, bent, known, x, y) {
             quads.corner(quad, slot, x(i, a, p), y(j, b, p), corner[p], bent[p] * scale, bent[p + 1] * scale, bent[p + 2] * scale);
           }
           if (!known) flattened(quads, quad);
+          // Joined faces meet others along their sides: a little wider, they leave no seam.
+          if (flat) widened(quads, quad, layer.spacing);
           run[side] = flat ? { quad, j, z: corner[at], look } : null;
         }
     }
+  }
+}
+
+/** By how much joined faces overlap others, in cells. */
+const SEAM = 0.012;
+
+/** Moves the corners of a flat quad outwards. */
+function widened(quads, quad, [dx, dy]) {
+  const p = quads.places.subarray(12 * quad, 12 * quad + 12);
+  const [cx, cy] = [0, 1].map((k) => (p[k] + p[3 + k] + p[6 + k] + p[9 + k]) / 4);
+  for (let c = 0; c < 12; c += 3) {
+    p[c] += Math.sign(p[c] - cx) * SEAM * dx;
+    p[c + 1] += Math.sign(p[c + 1] - cy) * SEAM * dy;
   }
 }
 

@@ -102,11 +102,13 @@ class Viewer {
     colours.clocks = this.course?.clocks ?? [];
     const colour = colours.of(layer, this.track);
     layer.look = (end) => colour(end).reduce((all, c) => all * 256 + c, 0);
+    const begin = performance.now();
     const quads = surfaceOf(layer);
     this.layer = layer;
     this.shapes.part.quads(quads);
     this.shapes.part.colours(quads, colour);
-    Object.assign(this.canvas.dataset, { quads: quads.count, moment, mode: this.mode });
+    const milliseconds = Math.round(performance.now() - begin);
+    Object.assign(this.canvas.dataset, { quads: quads.count, moment, mode: this.mode, milliseconds });
   }
 
   ask() {
@@ -115,6 +117,9 @@ class Viewer {
     requestAnimationFrame((now) => {
       this.asked = false;
       if (this.camera.step(now)) this.ask();
+      // For tests: whether the picture is still moving.
+      if (this.camera.flight) this.canvas.dataset.flying = "1";
+      else delete this.canvas.dataset.flying;
       this.draw();
     });
   }
@@ -142,7 +147,7 @@ class Viewer {
     gpu.draw(shapes.part, { model: this.frame });
     if (shown.fixture) gpu.draw(shapes.fixture, { colour: FIXTURE });
     if (pass === 2) return;
-    if (shown.tool && this.track) this.drawTool();
+    if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
     if (shown.path) {
       gpu.draw(shapes.path, { colour: rgb("#0b7a75"), unlit: true, uncut: true });
       gpu.draw(shapes.rapid, { colour: rgb("#c2410c"), unlit: true, uncut: true });

@@ -62,14 +62,14 @@ pub(crate) fn markup(html: &mut String, scene: &Scene) {
          <input type=\"range\" id=\"section-at\" min=\"0\" max=\"1000\" value=\"500\" aria-label=\"Place of the section\" hidden>\n\
          <button type=\"button\" id=\"section-flip\" aria-pressed=\"false\" hidden>Flip</button>\n\
          <button type=\"button\" id=\"measure\" aria-pressed=\"false\">Measure</button>\n\
-         <button type=\"button\" id=\"home\">Reset view</button>\n\
+         <button type=\"button\" id=\"home\">Reset</button>\n\
          </div>\n</div>\n\
          <div class=\"canvas\"><canvas id=\"canvas\" tabindex=\"0\" role=\"application\" aria-label=\"The part in three dimensions: arrow keys turn it, with Shift they move it, plus and minus zoom, Home resets\" aria-describedby=\"keys\"></canvas>\n\
          <svg class=\"overlay\" id=\"overlay\" aria-hidden=\"true\"></svg>\n\
          <div class=\"legend\" id=\"legend\"></div>\n\
          <output class=\"probe\" id=\"probe\" hidden></output>\n\
          <p class=\"loading\" id=\"loading\">Loading …</p></div>\n\
-         <p class=\"keys\" id=\"keys\"><kbd>drag</kbd> turn <kbd>right drag</kbd> move <kbd>wheel</kbd> zoom <kbd>← ↑ → ↓</kbd> turn <kbd>Shift</kbd> move <kbd>+ −</kbd> zoom <kbd>N P</kbd> findings <kbd>C</kbd> colours <kbd>S</kbd> section <kbd>M</kbd> measure</p>\n\
+         <p class=\"keys\" id=\"keys\"><kbd>drag</kbd> turn <kbd>right drag</kbd> move <kbd>wheel</kbd> zoom <kbd>arrows</kbd> <kbd>+ −</kbd> <kbd>Home</kbd> <kbd>N P</kbd> findings <kbd>C</kbd> colours <kbd>S</kbd> section</p>\n\
          </div>\n<p class=\"without\" id=\"without\" hidden>This browser offers no WebGL, so the part is shown as a picture.</p>\n",
     );
 }

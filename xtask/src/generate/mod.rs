@@ -1,5 +1,6 @@
 //! `cargo xtask generate`: writes the jobs and paths under `fixtures/` that are computed rather than written by hand.
 
+mod bracket;
 mod cavity;
 mod impeller;
 mod router;
@@ -15,6 +16,7 @@ fn files() -> Vec<(&'static str, String)> {
     files.extend(cavity::files());
     files.extend(impeller::files());
     files.extend(router::files());
+    files.extend(bracket::files());
     files
 }
 

@@ -44,10 +44,12 @@ fn encoded(bytes: usize) -> usize {
 pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
     let heights = scene.part.intervals.iter().flatten().map(|end| end.z);
     let course = scene.course.as_ref();
-    let of_course = course
+    let of_start = course
         .into_iter()
         .flat_map(|course| course.start.intervals.iter().flatten().map(|end| end.z));
-    let height = Scale::over(heights.chain(of_course), HEIGHTS);
+    let frames = course.into_iter().flat_map(|course| &course.frames);
+    let of_frames = frames.flat_map(|frame| frame.intervals.iter().flatten().copied());
+    let height = Scale::over(heights.chain(of_start).chain(of_frames), HEIGHTS);
     let (meshes, mesh_arrays) = others::meshes(&scene.tools, &scene.solids);
     let track = scene.track.as_ref().map(others::track);
     let (programs, texts) = others::programs(&scene.programs);
