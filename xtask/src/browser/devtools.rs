@@ -34,8 +34,18 @@ impl Browser {
         let child = Command::new("sh")
             .args(["-c", "exec 3<&0 4>&1; exec \"$0\" \"$@\" </dev/null >/dev/null 2>&1"])
             .arg(program)
-            .args(["--headless=new", "--no-sandbox", "--remote-debugging-pipe", "--no-first-run", "--hide-scrollbars"])
-            .args(["--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update"])
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--remote-debugging-pipe",
+                "--no-first-run",
+                "--hide-scrollbars",
+            ])
+            .args([
+                "--enable-unsafe-swiftshader",
+                "--disable-background-networking",
+                "--disable-component-update",
+            ])
             .args(flags)
             .arg(format!("--user-data-dir={}", profile.display()))
             .arg("about:blank")
@@ -67,7 +77,11 @@ impl Browser {
             asked: Vec::new(),
         };
         let targets = browser.call("Target.getTargets", json!({}))?;
-        let page = targets["targetInfos"].as_array().into_iter().flatten().find(|t| t["type"] == "page");
+        let page = targets["targetInfos"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .find(|t| t["type"] == "page");
         let target = page.ok_or("Chromium opened no page")?["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", json!({"targetId": target, "flatten": true}))?;
         browser.session = attached["sessionId"].as_str().map(str::to_owned);
@@ -108,10 +122,15 @@ impl Browser {
         let parameters = &event["params"];
         match event["method"].as_str() {
             Some("Runtime.exceptionThrown") => self.said.push(parameters["exceptionDetails"].to_string()),
-            Some("Runtime.consoleAPICalled") if parameters["type"] != "info" => self.said.push(parameters["args"].to_string()),
-            Some("Log.entryAdded") if parameters["entry"]["level"] == "error" => self.said.push(parameters["entry"]["text"].to_string()),
+            Some("Runtime.consoleAPICalled") if parameters["type"] != "info" => {
+                self.said.push(parameters["args"].to_string())
+            }
+            Some("Log.entryAdded") if parameters["entry"]["level"] == "error" => {
+                self.said.push(parameters["entry"]["text"].to_string())
+            }
             Some("Network.requestWillBeSent") => {
-                self.asked.extend(parameters["request"]["url"].as_str().map(str::to_owned));
+                self.asked
+                    .extend(parameters["request"]["url"].as_str().map(str::to_owned));
             }
             _ => {}
         }
@@ -119,7 +138,8 @@ impl Browser {
 
     /// The value of an expression; waits for promises.
     pub fn value(&mut self, expression: &str) -> Result<Value, String> {
-        let parameters = json!({"expression": expression, "awaitPromise": true, "returnByValue": true, "userGesture": true});
+        let parameters =
+            json!({"expression": expression, "awaitPromise": true, "returnByValue": true, "userGesture": true});
         let mut answer = self.call("Runtime.evaluate", parameters)?;
         match answer.get("exceptionDetails") {
             Some(error) => Err(format!("{expression}: {}", error["exception"]["description"])),
@@ -169,7 +189,10 @@ impl Browser {
         for (n, [x, y]) in places.iter().enumerate() {
             let mut send = |kind: &str| {
                 let buttons = u8::from(kind != "mouseReleased");
-                self.call("Input.dispatchMouseEvent", json!({"type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1}))
+                self.call(
+                    "Input.dispatchMouseEvent",
+                    json!({"type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1}),
+                )
             };
             send(if n == 0 { "mousePressed" } else { "mouseMoved" })?;
             if n + 1 == places.len() {

@@ -23,7 +23,10 @@ fn chromium() -> Option<PathBuf> {
 /// Makes the report, opens it, and uses it. With `screenshots`, those of the docs are taken anew.
 pub fn run(screenshots: bool) -> Result<bool, String> {
     let Some(program) = chromium() else {
-        return Err("Chromium is missing: install the package `chromium` (apt-get install -y --no-install-recommends chromium)".to_owned());
+        return Err(
+            "Chromium is missing: install the package `chromium` (apt-get install -y --no-install-recommends chromium)"
+                .to_owned(),
+        );
     };
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace::root().join("target"), PathBuf::from);
     let folder = std::path::absolute(target.join("browser")).map_err(|error| error.to_string())?;
@@ -72,7 +75,9 @@ fn report(folder: &Path) -> Result<PathBuf, String> {
         .status()
         .map_err(|error| format!("sweepsim: {error}"))?;
     if status.code() != Some(1) {
-        return Err(format!("the faulty bracket must fail with 1, but sweepsim ended with {status}"));
+        return Err(format!(
+            "the faulty bracket must fail with 1, but sweepsim ended with {status}"
+        ));
     }
     Ok(folder.join("report.html"))
 }

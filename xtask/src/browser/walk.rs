@@ -17,7 +17,12 @@ pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 4] {
         ("mouse", DESKTOP, &[], mouse),
         ("keyboard", DESKTOP, &[], keyboard),
         ("phone", PHONE, &[], phone),
-        ("no WebGL", DESKTOP, &["--disable-gpu", "--disable-3d-apis"], without_webgl),
+        (
+            "no WebGL",
+            DESKTOP,
+            &["--disable-gpu", "--disable-3d-apis"],
+            without_webgl,
+        ),
     ]
 }
 
@@ -84,7 +89,10 @@ fn expect(good: bool, what: &str) -> Result<(), String> {
 
 /// No errors, and no requests but for the page and what it holds itself.
 fn quiet(browser: &mut Browser) -> Result<(), String> {
-    expect(browser.said.is_empty(), &format!("the page complains: {}", browser.said.join("; ")))?;
+    expect(
+        browser.said.is_empty(),
+        &format!("the page complains: {}", browser.said.join("; ")),
+    )?;
     let outside = |url: &&String| !url.starts_with("file://") && !url.starts_with("data:");
     let asked: Vec<&String> = browser.asked.iter().filter(outside).collect();
     expect(asked.is_empty(), &format!("the page asks for {asked:?}"))?;
@@ -107,10 +115,17 @@ fn mouse(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
     browser.open(report)?;
     let first = pixels(browser)?;
     let loaded = begin.elapsed().as_secs_f64();
-    expect(browser.value("document.documentElement.dataset.viewer")? == "ready", "there is no viewer")?;
-    expect(first[0].as_f64() > Some(0.1) && first[2].as_f64() > Some(50.0), &format!("the picture is empty: {first}"))?;
     expect(
-        browser.value("document.getElementById('verdict').innerText.includes('May not be run: 5 moves do harm')")? == true,
+        browser.value("document.documentElement.dataset.viewer")? == "ready",
+        "there is no viewer",
+    )?;
+    expect(
+        first[0].as_f64() > Some(0.1) && first[2].as_f64() > Some(50.0),
+        &format!("the picture is empty: {first}"),
+    )?;
+    expect(
+        browser.value("document.getElementById('verdict').innerText.includes('May not be run: 5 moves do harm')")?
+            == true,
         "the verdict is missing",
     )?;
     // A finding turns the view, and shows its line.
@@ -136,7 +151,10 @@ fn mouse(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
     }
     let all_differ = |list: &[Value]| (1..list.len()).all(|n| !list[..n].contains(&list[n]));
     let (counts, hashes): (Vec<Value>, Vec<Value>) = seen.into_iter().unzip();
-    expect(all_differ(&counts) && all_differ(&hashes), &format!("the slider does not change the workpiece: {counts:?}"))?;
+    expect(
+        all_differ(&counts) && all_differ(&hashes),
+        &format!("the slider does not change the workpiece: {counts:?}"),
+    )?;
     // Colours, switches and sections each change the picture.
     click(browser, "#home")?;
     let mut looks = vec![pixels(browser)?[1].clone()];
@@ -165,13 +183,19 @@ fn mouse(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
         pixels(browser)?;
     }
     let measured = browser.value("document.getElementById('probe').innerText")?;
-    expect(measured.as_str().is_some_and(|text| text.contains(" mm")), &format!("nothing is measured: {measured}"))?;
+    expect(
+        measured.as_str().is_some_and(|text| text.contains(" mm")),
+        &format!("nothing is measured: {measured}"),
+    )?;
     // Turning.
     let before = camera(browser)?;
     browser.drag(&[[x, y], [x + 40.0, y + 10.0], [x + 80.0, y + 25.0]])?;
     expect(camera(browser)? != before, "dragging does not turn the part")?;
     quiet(browser)?;
-    Ok(format!("loaded in {loaded:.1} s; measured {}", measured.as_str().unwrap_or_default()))
+    Ok(format!(
+        "loaded in {loaded:.1} s; measured {}",
+        measured.as_str().unwrap_or_default()
+    ))
 }
 
 fn keyboard(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
@@ -190,8 +214,20 @@ fn keyboard(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<St
         expect(now[1] == true, &format!("the focus on {} cannot be seen", now[0]))?;
         reached.extend(now[0].as_str().map(str::to_owned));
     }
-    for name in ["0", "deviation", "target", "section", "measure", "canvas", "play", "moment"] {
-        expect(reached.iter().any(|own| own == name), &format!("Tab does not reach {name}: {reached:?}"))?;
+    for name in [
+        "0",
+        "deviation",
+        "target",
+        "section",
+        "measure",
+        "canvas",
+        "play",
+        "moment",
+    ] {
+        expect(
+            reached.iter().any(|own| own == name),
+            &format!("Tab does not reach {name}: {reached:?}"),
+        )?;
     }
     browser.value("document.getElementById('canvas').focus()")?;
     let mut seen = vec![camera(browser)?];
@@ -201,8 +237,14 @@ fn keyboard(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<St
     }
     expect(seen[6] == seen[0], "Home does not come back")?;
     seen.pop();
-    expect((1..seen.len()).all(|n| !seen[..n].contains(&seen[n])), &format!("a key does nothing: {seen:?}"))?;
-    expect(browser.value("document.querySelectorAll('.finding')[1].classList.contains('open')")? == true, "N is not the next finding")?;
+    expect(
+        (1..seen.len()).all(|n| !seen[..n].contains(&seen[n])),
+        &format!("a key does nothing: {seen:?}"),
+    )?;
+    expect(
+        browser.value("document.querySelectorAll('.finding')[1].classList.contains('open')")? == true,
+        "N is not the next finding",
+    )?;
     quiet(browser)?;
     Ok(format!("{} stops of Tab", reached.len()))
 }
@@ -211,7 +253,10 @@ fn phone(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
     browser.open(report)?;
     pixels(browser)?;
     let wide = browser.value("[document.documentElement.scrollWidth, innerWidth]")?;
-    expect(wide[0] == wide[1], &format!("the page is {} wide on {}", wide[0], wide[1]))?;
+    expect(
+        wide[0] == wide[1],
+        &format!("the page is {} wide on {}", wide[0], wide[1]),
+    )?;
     save(browser, docs, "report-phone.png")?;
     browser.call(
         "Emulation.setEmulatedMedia",
@@ -227,12 +272,21 @@ fn phone(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
 
 fn without_webgl(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
     browser.open(report)?;
-    expect(browser.value("document.documentElement.dataset.viewer")? == "none", "there is a viewer without WebGL")?;
+    expect(
+        browser.value("document.documentElement.dataset.viewer")? == "none",
+        "there is a viewer without WebGL",
+    )?;
     let shown = browser.value(
         "(() => { const i = document.querySelector('#pictures img'); const box = i.getBoundingClientRect(); return [i.naturalWidth, box.width, box.height]; })()",
     )?;
-    expect((0..3).all(|k| shown[k].as_f64() > Some(100.0)), &format!("the picture does not show: {shown}"))?;
-    expect(browser.value("document.querySelectorAll('table').length >= 3")? == true, "tables are missing")?;
+    expect(
+        (0..3).all(|k| shown[k].as_f64() > Some(100.0)),
+        &format!("the picture does not show: {shown}"),
+    )?;
+    expect(
+        browser.value("document.querySelectorAll('table').length >= 3")? == true,
+        "tables are missing",
+    )?;
     click(browser, "[data-finding='2']")?;
     expect(
         browser.value("document.querySelector('.finding.open mark').innerText.includes('X50 Y30')")? == true,

@@ -16,7 +16,16 @@ type Point = [f64; 3];
 fn part() -> Vec<[Point; 3]> {
     let [long, wide, tall] = SIZE;
     // From left to right over the top, then the bottom.
-    let mut outline = vec![[0.0, 0.0], [10.0, 0.0], [10.0, -10.0], [22.0, -10.0], [22.0, 0.0], [68.0, 0.0], [68.0, -9.0], [79.0, -9.0]];
+    let mut outline = vec![
+        [0.0, 0.0],
+        [10.0, 0.0],
+        [10.0, -10.0],
+        [22.0, -10.0],
+        [22.0, 0.0],
+        [68.0, 0.0],
+        [68.0, -9.0],
+        [79.0, -9.0],
+    ];
     // The groove of the ball end: a half circle.
     let parts = 48;
     for k in 1..parts {
@@ -45,7 +54,12 @@ fn part() -> Vec<[Point; 3]> {
         if a[0] == b[0] {
             continue;
         }
-        quad(at(below(a), 0.0), at(below(a), wide), at(below(b), wide), at(below(b), 0.0));
+        quad(
+            at(below(a), 0.0),
+            at(below(a), wide),
+            at(below(b), wide),
+            at(below(b), 0.0),
+        );
         // Beside a step, an end has the corners of both its sides.
         let chain = |[x, top]: [f64; 2]| {
             let mut chain: Vec<[f64; 2]> = outline.iter().filter(|p| p[0] == x && p[1] <= top).copied().collect();
@@ -77,7 +91,12 @@ fn pocket(triangles: &mut Vec<[Point; 3]>) {
         let (s, c) = (TAU * (k % SIDES) as f64 / SIDES as f64).sin_cos();
         [centre[0] + radius * c, centre[1] + radius * s, z]
     };
-    let corners = [[68.0, SIZE[1], 0.0], [22.0, SIZE[1], 0.0], [22.0, 0.0, 0.0], [68.0, 0.0, 0.0]];
+    let corners = [
+        [68.0, SIZE[1], 0.0],
+        [22.0, SIZE[1], 0.0],
+        [22.0, 0.0, 0.0],
+        [68.0, 0.0, 0.0],
+    ];
     let quarter = SIDES / 4;
     for (n, corner) in corners.iter().enumerate() {
         for k in n * quarter..(n + 1) * quarter {
@@ -195,7 +214,11 @@ fn faulty() -> String {
     let mut text = PROGRAM.to_owned();
     for (right, wrong, which) in FAULTS {
         let lines = format!("\n{right}\n");
-        let place = text.match_indices(&lines).nth(which).expect("the program has this line").0;
+        let place = text
+            .match_indices(&lines)
+            .nth(which)
+            .expect("the program has this line")
+            .0;
         text.replace_range(place..place + lines.len(), &format!("\n{wrong}\n"));
     }
     text

@@ -70,7 +70,11 @@ impl Data {
             let numbers = (0..count).map(|k| {
                 let step: i64 = (0..width).map(|p| i64::from(plain[p * count + k]) << (8 * p)).sum();
                 before = (before + step).rem_euclid(range);
-                if signed && before >= range / 2 { before - range } else { before }
+                if signed && before >= range / 2 {
+                    before - range
+                } else {
+                    before
+                }
             });
             arrays.insert(name, numbers.collect());
         }
@@ -88,14 +92,20 @@ impl Data {
 
     /// A number of the head, by its path.
     pub fn number(&self, path: &str) -> f64 {
-        self.head.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number {path}"))
+        self.head
+            .pointer(path)
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("no number {path}"))
     }
 
     /// Intervals of each line of a layer, as heights.
     pub fn lines(&self, names: [&str; 3]) -> Vec<Vec<[f64; 2]>> {
         let height = |steps: i64| self.number("/height/from") + steps as f64 * self.number("/height/step");
         let [counts, lower, upper] = names.map(|name| self.array(name));
-        assert_eq!((lower.len(), lower.len()), (upper.len(), counts.iter().sum::<i64>() as usize));
+        assert_eq!(
+            (lower.len(), lower.len()),
+            (upper.len(), counts.iter().sum::<i64>() as usize)
+        );
         let mut k = 0..lower.len();
         let line = |count: &i64| {
             let own = k.by_ref().take(*count as usize);

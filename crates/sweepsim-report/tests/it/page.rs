@@ -1,7 +1,8 @@
 //! The page as text: escaped, offline, the same each time.
 
 use sweepsim_report::{
-    Area, Bar, DexelLayer, Excerpt, Fact, Finding, Histogram, LayerEnd, Page, Picture, Plot, ProgramText, Scene, Table, ToolPart, Verdict,
+    Area, Bar, DexelLayer, Excerpt, Fact, Finding, Histogram, LayerEnd, Page, Picture, Plot, ProgramText, Scene, Table,
+    ToolPart, Verdict,
 };
 
 /// Text that would leave every element, attribute and script if it were not escaped.
@@ -34,7 +35,11 @@ fn evil() -> Page {
         steps: vec![[0.0, f64::NAN, 1.0], [f64::INFINITY, 1.0, 2.0]],
     }];
     page.histogram = Some(Histogram {
-        bars: vec![Bar { from: -1.0, to: 1.0, area: 2.0 }],
+        bars: vec![Bar {
+            from: -1.0,
+            to: 1.0,
+            area: 2.0,
+        }],
         limits: [0.1, 0.2],
         note: text(),
     });
@@ -47,14 +52,27 @@ fn evil() -> Page {
         printed: true,
     }];
     page.notes = vec![text()];
-    page.pictures = vec![Picture { caption: text(), png: vec![1, 2, 3] }];
+    page.pictures = vec![Picture {
+        caption: text(),
+        png: vec![1, 2, 3],
+    }];
     page.footer = text();
-    let area = Area { min: [0.0; 2], max: [2.0; 2], cells: [2, 2] };
+    let area = Area {
+        min: [0.0; 2],
+        max: [2.0; 2],
+        cells: [2, 2],
+    };
     let mut scene = Scene::new(DexelLayer::new(area, |_, _, line| {
         line.push([LayerEnd::at(0.0, [0.0, 0.0, -1.0]), LayerEnd::at(1.0, [0.0, 0.0, 1.0])]);
     }));
-    scene.tools = vec![ToolPart { name: text(), ..ToolPart::default() }];
-    scene.programs = vec![ProgramText { name: text(), text: text() }];
+    scene.tools = vec![ToolPart {
+        name: text(),
+        ..ToolPart::default()
+    }];
+    scene.programs = vec![ProgramText {
+        name: text(),
+        text: text(),
+    }];
     page.scene = Some(scene);
     page
 }
@@ -63,7 +81,13 @@ fn evil() -> Page {
 fn without_scripts(html: &str) -> String {
     let mut rest = html;
     let mut kept = String::new();
-    for (open, close) in [("<style>", "</style>"), ("<script", "</script>"), ("<script", "</script>"), ("<script", "</script>"), ("<script", "</script>")] {
+    for (open, close) in [
+        ("<style>", "</style>"),
+        ("<script", "</script>"),
+        ("<script", "</script>"),
+        ("<script", "</script>"),
+        ("<script", "</script>"),
+    ] {
         let (before, from) = rest.split_once(open).expect("the page has it");
         kept.push_str(before);
         rest = from.split_once(close).expect("it ends").1;
@@ -75,7 +99,10 @@ fn without_scripts(html: &str) -> String {
 fn no_text_leaves_its_element() {
     let html = evil().html();
     let words = without_scripts(&html);
-    assert!(!words.contains("<script") && !words.contains("<img src=x") && !words.contains("<!--"), "{words}");
+    assert!(
+        !words.contains("<script") && !words.contains("<img src=x") && !words.contains("<!--"),
+        "{words}"
+    );
     // The scripts are the page's own, whole: four, and nothing behind them.
     assert_eq!(html.matches("<script").count(), 4);
     assert!(html.trim_end().ends_with("</script>\n</body>\n</html>"));
@@ -87,7 +114,9 @@ fn nothing_is_asked_of_the_network() {
     let html = evil().html();
     let words = without_scripts(&html);
     for mark in ["http:", "https:", "//", "url(", "@import", "<link", "<iframe"] {
-        let found = words.match_indices(mark).filter(|(at, _)| !words[..*at].ends_with("data:image/png;base64,"));
+        let found = words
+            .match_indices(mark)
+            .filter(|(at, _)| !words[..*at].ends_with("data:image/png;base64,"));
         assert_eq!(found.count(), 0, "{mark}");
     }
     assert!(html.contains("Content-Security-Policy\" content=\"default-src 'none';"));
@@ -102,8 +131,14 @@ fn the_same_page_gives_the_same_bytes() {
 fn the_verdict_comes_first() {
     let mut page = Page::new("job");
     page.verdict = Some(Verdict::bad("May not be run: 3 moves do harm."));
-    page.tables = vec![Table { title: "Tools".to_owned(), ..Table::default() }];
-    page.findings = vec![Finding { title: "Holder hits the workpiece".to_owned(), ..Finding::default() }];
+    page.tables = vec![Table {
+        title: "Tools".to_owned(),
+        ..Table::default()
+    }];
+    page.findings = vec![Finding {
+        title: "Holder hits the workpiece".to_owned(),
+        ..Finding::default()
+    }];
     let html = page.html();
     let places = ["May not be run", "Holder hits", "<h2>Tools"].map(|text| html.find(text).expect("it is on the page"));
     assert!(places[0] < places[1] && places[1] < places[2]);

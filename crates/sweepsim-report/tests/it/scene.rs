@@ -11,7 +11,8 @@ fn layer(area: Area, lines: &Lines) -> DexelLayer {
 }
 
 fn end() -> impl Strategy<Value = LayerEnd> {
-    let normal = prop::array::uniform3(-1.0_f32..1.0).prop_filter("not short", |n| n.iter().map(|c| c * c).sum::<f32>() > 0.1);
+    let normal =
+        prop::array::uniform3(-1.0_f32..1.0).prop_filter("not short", |n| n.iter().map(|c| c * c).sum::<f32>() > 0.1);
     let deviation = prop_oneof![Just(f32::NAN), -3.0_f32..3.0];
     (normal, deviation, 0_u32..100_000).prop_map(|(normal, deviation, maker)| {
         let size = normal.iter().map(|c| c * c).sum::<f32>().sqrt();
@@ -170,20 +171,31 @@ fn the_track_comes_back() {
         tool: (n > 2).into(),
     };
     let mut page = Page::new("track");
-    let mut scene = Scene::new(DexelLayer::new(Area { min: [0.0; 2], max: [1.0; 2], cells: [1, 1] }, |_, _, _| {}));
+    let mut scene = Scene::new(DexelLayer::new(
+        Area {
+            min: [0.0; 2],
+            max: [1.0; 2],
+            cells: [1, 1],
+        },
+        |_, _, _| {},
+    ));
     scene.track = Some(Track {
         points: (0..5).map(point).collect(),
         lines: vec![(0, 7), (0, 9), (1, 1)],
         unit: "s".to_owned(),
     });
-    let text = |name: &str, text: &str| ProgramText { name: name.to_owned(), text: text.to_owned() };
+    let text = |name: &str, text: &str| ProgramText {
+        name: name.to_owned(),
+        text: text.to_owned(),
+    };
     scene.programs = vec![text("a.nc", "G0 X1\nG1 <b>ü</b>"), text("b.nc", "</script>")];
     page.scene = Some(scene);
     let data = Data::of(&page.html());
     for n in 0..5_usize {
         let own = point(n as u32);
         let value = |name: &str, scale: &str| {
-            data.number(&format!("/track/{scale}/from")) + data.array(name)[n] as f64 * data.number(&format!("/track/{scale}/step"))
+            data.number(&format!("/track/{scale}/from"))
+                + data.array(name)[n] as f64 * data.number(&format!("/track/{scale}/step"))
         };
         assert!((value("track.clock", "clock") - own.clock).abs() < 1e-6);
         for (k, name) in ["track.x", "track.y", "track.z"].iter().enumerate() {
@@ -192,7 +204,10 @@ fn the_track_comes_back() {
         let axis = unfolded(["track.u", "track.v"].map(|name| data.array(name)[n] as f64 / 32_767.0));
         assert!((0..3).all(|k| (axis[k] - own.axis[k]).abs() < 1e-4), "{axis:?}");
         assert_eq!(data.array("track.move")[n], i64::from(own.number));
-        assert_eq!(data.array("track.flags")[n], i64::from(own.rapid) + 2 * i64::from(own.begins));
+        assert_eq!(
+            data.array("track.flags")[n],
+            i64::from(own.rapid) + 2 * i64::from(own.begins)
+        );
         assert_eq!(data.array("track.tool")[n], i64::from(own.tool));
     }
     assert_eq!(data.array("moves.line"), [7, 9, 1]);
@@ -210,7 +225,11 @@ fn noise(seed: &mut u64) -> u64 {
 /// Noise cannot be compressed: what cannot be kept is left out, and said.
 #[test]
 fn noise_fits_as_well() {
-    let area = Area { min: [0.0; 2], max: [100.0; 2], cells: [300, 300] };
+    let area = Area {
+        min: [0.0; 2],
+        max: [100.0; 2],
+        cells: [300, 300],
+    };
     let mut seed = 5;
     let mut end = |low: f64| {
         let n = noise(&mut seed);
@@ -230,8 +249,16 @@ fn noise_fits_as_well() {
     let whole = page.html();
     page.most_bytes = 1_200_000;
     let html = page.html();
-    assert!(whole.len() > 3_000_000 && html.len() <= page.most_bytes, "{} {}", whole.len(), html.len());
-    assert!(html.contains("it leaves out normals of the surface; all but every "), "what is left out is said");
+    assert!(
+        whole.len() > 3_000_000 && html.len() <= page.most_bytes,
+        "{} {}",
+        whole.len(),
+        html.len()
+    );
+    assert!(
+        html.contains("it leaves out normals of the surface; all but every "),
+        "what is left out is said"
+    );
     let data = Data::of(&html);
     assert!(!data.has("lower.u") && data.has("lower.maker"));
     // The lines that remain are where they were.
@@ -248,13 +275,20 @@ fn noise_fits_as_well() {
 #[ignore = "takes some seconds"]
 fn a_million_dexels_are_small() {
     let side = 1000;
-    let area = Area { min: [0.0; 2], max: [200.0; 2], cells: [side; 2] };
+    let area = Area {
+        min: [0.0; 2],
+        max: [200.0; 2],
+        cells: [side; 2],
+    };
     let part = DexelLayer::new(area, |i, j, line| {
         let (x, y) = (i as f64 * 0.2, j as f64 * 0.2);
         let pass = (y / 0.7).floor();
         let off = y - (pass + 0.5) * 0.7;
         let z = 30.0 + 8.0 * (x * 0.05).sin() * (y * 0.04).cos() + 5.0 - (25.0 - off * off).sqrt();
-        let (sx, sy) = (0.4 * (x * 0.05).cos() * (y * 0.04).cos(), -0.32 * (x * 0.05).sin() * (y * 0.04).sin() + off / 5.0);
+        let (sx, sy) = (
+            0.4 * (x * 0.05).cos() * (y * 0.04).cos(),
+            -0.32 * (x * 0.05).sin() * (y * 0.04).sin() + off / 5.0,
+        );
         let size = (1.0 + sx * sx + sy * sy).sqrt();
         let top = LayerEnd {
             z,
