@@ -30,7 +30,7 @@ pub(super) fn roofs(job: &Job, remaining: &Dexels) -> Vec<String> {
             let Some(cut) = job.paths.get(path as usize) else {
                 continue;
             };
-            if !known.as_ref().is_some_and(|(p, s, _)| (*p, *s) == (path, segment)) {
+            if known.as_ref().is_none_or(|(p, s, _)| (*p, *s) != (path, segment)) {
                 known = Some((path, segment, segments(job, cut, segment)));
             }
             let Some((.., parts)) = &known else { continue };
@@ -58,13 +58,12 @@ pub(super) fn roofs(job: &Job, remaining: &Dexels) -> Vec<String> {
 
 fn segments(job: &Job, path: &JobPath, number: u32) -> Vec<Segment> {
     let tool = &job.tools[&path.tool];
-    let all = number < path.path.moves() as u32;
+    if number as usize >= path.path.moves() {
+        return Vec::new();
+    }
     // Enough to tell the end of the tool from its sides.
-    all.then(|| {
-        path.path
-            .segments(number as usize, tool.reach(), 0.1 * CLOSE * tool.reach())
-    })
-    .unwrap_or_default()
+    let deviation = 0.1 * CLOSE * tool.reach();
+    path.path.segments(number as usize, tool.reach(), deviation)
 }
 
 /// Whether the upper end of the tool touches a point of the surface of the material, whose outward normal is given, at a time of a move.
