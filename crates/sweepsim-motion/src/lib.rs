@@ -18,7 +18,7 @@ pub use boundary::{Edge, Fold, NormalField, Patch, PatchError, Revolved, Side, T
 pub use path::{ArcError, Course, Law, Move, Path, PathError, RotaryTable, TipArc, Turning, UnknownTable};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
-pub use segment::{Segment, SegmentEnd};
+pub use segment::{Segment, SegmentEnd, turned_back};
 pub use spline_motion::{MotionError, SplineMotion};
 pub use tool::{Apt, AptError, AptWarning, Barrel, BoundingCylinder, Dovetail, Lens, Lollipop, Oval, Taper, Tool};
 

@@ -49,6 +49,7 @@ mod envelope;
 mod error;
 mod methods;
 pub mod prelude;
+mod repair_budget;
 mod sections;
 mod sweep;
 mod time;

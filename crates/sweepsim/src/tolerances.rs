@@ -27,6 +27,8 @@ const LAW: f64 = 5e-2;
 const LINE: f64 = 1e-3;
 /// The factors for the attempts, each larger than the one before.
 const ATTEMPTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 200.0];
+/// The directions for the attempts, in radians: none along a row or column of lines, as walls are, and no two alike.
+const DIRECTIONS: [f64; 6] = [0.7391, 1.970, 3.520, 5.323, 1.154, 2.747];
 /// Crossings of a line this close together count as having the same height.
 const SAME: f64 = 1e-3;
 /// The error that the last step of Newton's method may leave.
@@ -36,14 +38,18 @@ const REST: f64 = 1e-3;
 const OUTSIDE: f64 = 20.0;
 /// After this many poses, the displacement of tips restarts from zero.
 const PERIOD: usize = 61;
+/// The same for tolerances below [`FINE`], where a sixtieth of the displacement would be a few roundings of the coordinates.
+const FINE_PERIOD: usize = 4;
+/// In parts of the largest coordinate.
+const FINE: f64 = 1e-9;
 /// The limit that the table above promises.
 const _: () = assert!(TIP + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
 
 /// Coordinates are accurate to within this fraction of the largest: a few dozen roundings.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// The smallest tolerance, as a fraction of the largest coordinate. The smallest displacement, a thousandth of it, is then twenty roundings, so that
-/// displaced lines are where they should be.
-const FINEST: f64 = 2e4 * f64::EPSILON;
+/// The smallest tolerance, as a fraction of the largest coordinate. The smallest displacement, a thousandth of it, is then four times the rounding of
+/// coordinates, so that a line in a wall is seen to be beside it.
+const FINEST: f64 = 4.0 * ROUNDING / LINE;
 /// Sums of products of three such coordinates stay far from overflow.
 const LARGEST: f64 = 1e90;
 
@@ -76,8 +82,7 @@ impl Tolerances {
     /// The displacement of a line at an attempt, 0 to [`REPAIRS`](Self::REPAIRS): farther than at the previous one, and in a different direction.
     pub fn line_displacement(&self, attempt: usize) -> [f64; 2] {
         let reach = LINE * self.tolerance * ATTEMPTS[attempt.min(Self::REPAIRS)];
-        // Steps of the golden angle.
-        let angle = 0.7391 + 2.399_963_229_728_653 * attempt as f64;
+        let angle = DIRECTIONS[attempt.min(Self::REPAIRS)];
         [reach * angle.cos(), reach * angle.sin()]
     }
 
@@ -87,7 +92,12 @@ impl Tolerances {
     /// kinks arise between collinear moves. The exception is every 61st, which takes all of the displacement back: before and after it there may be
     /// kinks, as thin as the displacement, which are counted like any others.
     pub fn tip_displacement(&self, pose: usize) -> Vector3<f64> {
-        direction() * (TIP * self.tolerance * ((pose % PERIOD) as f64 / PERIOD as f64))
+        let period = if self.tolerance < FINE * self.size {
+            FINE_PERIOD
+        } else {
+            PERIOD
+        };
+        direction() * (TIP * self.tolerance * ((pose % period) as f64 / period as f64))
     }
 
     /// A translation for a tool that stands still: as long as the largest displacement of a tip.
@@ -180,6 +190,8 @@ mod tests {
                 "attempt {attempt}"
             );
             before = reach;
+            // Away from walls along rows and columns.
+            assert!(x.abs().min(y.abs()) > 0.3 * reach, "attempt {attempt}");
         }
         let [x, y] = tolerances.line_displacement(0);
         assert!(x.hypot(y) <= 1e-3 * 1e-6 * (1.0 + 1e-12));

@@ -6,11 +6,13 @@
 //! velocity `(κ/w) k`.
 
 mod between;
+mod compensated;
 mod forms;
 mod part;
 mod rates;
 
 pub(crate) use between::{frame, rational_turn, turn_between};
+pub use compensated::turned_back;
 pub(crate) use forms::{product, raised, wronskian};
 pub(crate) use rates::spins;
 

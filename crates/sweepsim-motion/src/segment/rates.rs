@@ -1,5 +1,6 @@
 //! Velocities: of the tip, of the orientation, and in the tool's frame.
 
+use super::compensated::turned_back;
 use super::forms::{product, raised, wronskian};
 use super::{Kind, Segment, SegmentCurve, SegmentEnd};
 use nalgebra::{Matrix3, Vector3};
@@ -40,7 +41,7 @@ impl Segment {
         let curve = match &self.kind {
             Kind::Arc(spin) => {
                 let travel = self.travel_vector();
-                let back = |turn: &Matrix3<f64>| turn.tr_mul(&travel);
+                let back = |turn: &Matrix3<f64>| turned_back(turn, &travel);
                 return (vec![self.start().tr_mul(spin)], self.turns.iter().map(back).collect());
             }
             Kind::Curve(curve) => curve,

@@ -8,6 +8,7 @@ use crate::algebra::bivariate::factors;
 use crate::algebra::quad::add;
 use crate::algebra::table::{Table, position};
 use crate::cutter::revolution::{Revolution, Spot};
+use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing};
 use nalgebra::Vector3;
 use sweepsim_motion::{Edge, NormalField, Patch, Revolved, Tool};
@@ -32,9 +33,8 @@ pub(crate) struct PatchForms {
     /// Homogeneous tensors of the whole element: see [`Layout`].
     pub(super) whole: Vec<f64>,
     pub(super) layout: Layout,
-    /// Largest coefficients of `N` and `M`.
-    pub largest_normal: f64,
-    pub largest_moment: f64,
+    /// The largest coefficients of each component of `M` and of `N`.
+    pub largest: Sizes,
     /// A faster evaluation of its points, if there is one, arranged for the inner loop.
     pub revolution: Option<Revolution>,
     frame: Option<LocalFrame>,
@@ -104,14 +104,15 @@ impl PatchForms {
                 put(&[&x, &y, &z, &denominator])
             })
             .collect();
-        let mut largest = [0.0_f64; 2];
+        let mut largest = [[0.0_f64; 3]; 2];
         let mut all: Vec<&Bernstein> = Vec::new();
         let fields = fields
             .iter()
             .map(|field| {
                 let forms: Vec<&Bernstein> = field.normal().iter().chain(field.moment()).collect();
                 for (k, form) in forms.iter().enumerate() {
-                    largest[k / 3] = largest[k / 3].max(form.magnitude());
+                    let largest = &mut largest[1 - k / 3][k % 3];
+                    *largest = largest.max(form.magnitude());
                 }
                 all.extend_from_slice(&forms);
                 put(&forms)
@@ -126,8 +127,7 @@ impl PatchForms {
         Self {
             whole,
             layout,
-            largest_normal: largest[0],
-            largest_moment: largest[1],
+            largest,
             revolution: None,
             frame: None,
             places: table(&[x, y, z, weight]),

@@ -3,7 +3,7 @@
 use crate::algebra::ranges::{products, shifted_products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::time::pieces::Times;
+use crate::time::pieces::{Sizes, Times};
 use sweepsim_solve::Enclosure;
 
 /// Sums of products of a few numbers are accurate to within this fraction of the sum of their absolute values.
@@ -50,10 +50,16 @@ pub(crate) type Brick = (u32, u32);
 
 pub(crate) const ROOT: Brick = (0, 0);
 
-/// A bound of `|g|`, and so of its rounding.
+/// A bound of `|g|`, and so of its rounding: component by component, since a bottom that slides along itself has the sign of a displacement that is a
+/// tiny part of the velocity.
 pub(super) fn envelope_size(element: &PatchForms, times: &Times) -> f64 {
-    let [spin, travel] = times.sizes();
-    spin * element.largest_moment + travel * element.largest_normal
+    product_size(&times.sizes(), &element.largest)
+}
+
+/// A bound of `⟨s, M⟩ + ⟨b, N⟩`.
+pub(super) fn product_size(twist: &Sizes, fields: &Sizes) -> f64 {
+    let pairs = twist.as_flattened().iter().zip(fields.as_flattened());
+    pairs.map(|(a, b)| a * b).sum()
 }
 
 /// Ranges of X and Y.

@@ -5,7 +5,8 @@ use crate::algebra::ranges::Triples;
 use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative};
+use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size};
+use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_solve::{ChartMap, Enclosure, Sample};
@@ -24,6 +25,8 @@ pub(crate) struct OnPlaced {
 pub(crate) struct Twist {
     pub spin: [f64; 3],
     pub travel: [f64; 3],
+    /// Bounds of the components of both.
+    pub sizes: Sizes,
 }
 
 /// A side of a joint: the motion there, or none at the end of a path. The sign of `g` is then fixed.
@@ -39,8 +42,7 @@ impl Side {
         match self {
             Self::Beyond(negative) => Some(*negative),
             Self::Moving(twist) => {
-                let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
-                let size = sum(&twist.spin) * element.largest_moment + sum(&twist.travel) * element.largest_normal;
+                let size = product_size(&twist.sizes, &element.largest);
                 negative(envelope(&[twist.spin], &[twist.travel], field), ROUNDING * size)
             }
         }

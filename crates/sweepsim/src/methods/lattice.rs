@@ -63,6 +63,11 @@ impl<'a> Lattice<'a> {
         }
     }
 
+    /// The number of lines, or a little more if some of them are not asked for.
+    pub fn len(&self) -> usize {
+        (self.i[1] + 1 - self.i[0]) * (self.j[1] + 1 - self.j[0])
+    }
+
     /// Whether some line lies in these ranges of `x` and `y`.
     pub fn meets(&self, [x, y]: [Enclosure; 2]) -> bool {
         self.numbers(0, x).is_some() && self.numbers(1, y).is_some()

@@ -2,16 +2,17 @@
 
 use crate::envelope::{Side, Twist};
 use crate::time::path_parts::PathPart;
+use crate::time::pieces::back_size;
 use nalgebra::Matrix3;
-use sweepsim_motion::{Segment, SegmentEnd};
+use sweepsim_motion::{Segment, SegmentEnd, turned_back};
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
-    let back = turn.transpose();
     let [spin, travel] = segment.velocity(end).map(nalgebra::Vector3::from);
     Side::Moving(Twist {
-        spin: (back * spin).into(),
-        travel: (back * travel).into(),
+        sizes: [spin, travel].map(|v| back_size(&[*turn], &v, segment.turns().len() > 1)),
+        spin: turned_back(turn, &spin).into(),
+        travel: turned_back(turn, &travel).into(),
     })
 }
 

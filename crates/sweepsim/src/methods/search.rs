@@ -34,6 +34,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         if !self.reaches(segment) {
             return;
         }
+        space.solvers.limit(self.lines.len());
         let mut times = Times::new(segment);
         self.patches(at, &mut times, space, harvest);
         self.edges(at, &mut times, space, harvest);

@@ -39,7 +39,22 @@ impl Workspace {
     }
 }
 
+/// The most boxes of one system: more than any that is not degenerate needs, on as many lines. They bound the memory, too.
+const MOST_BOXES: u64 = 400_000;
+/// For one line, and for each further one.
+const CHART_BOXES: [u64; 2] = [100_000, 100];
+/// The same for the systems of [lines](crate::methods::lines), which charts repair.
+const BUNDLE_BOXES: [u64; 2] = [10_000, 100];
+
 impl Solvers {
+    /// Limits the searches for some lines.
+    pub fn limit(&mut self, lines: usize) {
+        let most = |[first, each]: [u64; 2]| (first + each * lines as u64).min(MOST_BOXES);
+        self.moving.options.boxes = most(CHART_BOXES);
+        self.placed.options.boxes = most(CHART_BOXES);
+        self.bundles.options.boxes = most(BUNDLE_BOXES);
+    }
+
     /// The statistics since the last call.
     pub fn take_statistics(&mut self) -> ChartStatistics {
         let solved = [

@@ -13,6 +13,9 @@ use std::collections::BTreeMap;
 use sweepsim_dexel::{AuditFailure, Crossing, Dexels, Interval, IntervalSet, Operation, cover};
 use sweepsim_solve::Cause;
 
+/// Lines that share the budget of repairs, at least.
+const FEW: usize = 64;
+
 /// Swept intervals of some lines, sorted by line, and the lines that stayed unresolved.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SweptLines {
@@ -67,12 +70,14 @@ impl SweepJob<'_> {
         // A line with an open box may have no crossing at all.
         let missing = |line: &u32| crossings.binary_search_by_key(line, |(line, _)| *line).is_err();
         let lonely: Vec<u32> = open.iter().map(|(line, _)| *line).filter(missing).collect();
+        // How many fail their audit is not known yet: few, if they were asked for one by one.
+        let most = self.repairs.of_each(open.len().max(FEW));
         let solve = |line: u32, group: &[Numbered]| {
             let certain = open.binary_search_by_key(&line, |(line, _)| *line).is_err();
             let counted = certain.then(|| self.intervals(group).ok()).flatten();
             let found = match counted {
                 Some(intervals) => Ok(intervals),
-                None => self.with_space(|space| self.repair(chunk, line, 1, space)),
+                None => self.with_space(|space| self.repair(chunk, line, (1, most), space).0),
             };
             (line, found)
         };
@@ -143,14 +148,18 @@ impl SweepJob<'_> {
         wrong.extend(&bad);
         wrong.sort_unstable();
         wrong.dedup();
-        let repaired: Vec<Result<Vec<Interval>, UnresolvedReason>> = wrong
+        let most = self.repairs.of_each(wrong.len());
+        let repaired: Vec<(Result<Vec<Interval>, UnresolvedReason>, u64)> = wrong
             .par_iter()
-            .map(|line| self.with_space(|space| self.repair(chunk, *line, 1, space)))
+            .map(|line| self.with_space(|space| self.repair(chunk, *line, (1, most), space)))
             .collect();
+        let boxes = repaired.iter().map(|(_, boxes)| boxes).sum();
+        self.repairs.spend(boxes);
+        statistics.boxes += boxes;
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
         }
-        for (line, result) in wrong.into_iter().zip(repaired) {
+        for (line, (result, _)) in wrong.into_iter().zip(repaired) {
             let united = result.and_then(|intervals| Ok(volume.unite(line as usize, &intervals)?));
             match united {
                 Ok(()) => statistics.repaired += 1,
@@ -163,21 +172,23 @@ impl SweepJob<'_> {
         Ok(())
     }
 
-    /// Solves one line, from the given attempt on displaced farther each time, until its audit closes.
+    /// Solves one line, from the given attempt on displaced farther each time, until its audit closes or the search has examined about as many boxes as it
+    /// may. Also the number of boxes.
     pub fn repair(
         &self,
         chunk: &[PathPart],
         line: u32,
-        first: usize,
+        (first, most): (usize, u64),
         space: &mut Workspace,
-    ) -> Result<Vec<Interval>, UnresolvedReason> {
-        let mut reason = UnresolvedReason::Budget;
+    ) -> (Result<Vec<Interval>, UnresolvedReason>, u64) {
+        let (mut reason, mut boxes) = (UnresolvedReason::Budget, 0);
         for attempt in first..=Tolerances::REPAIRS {
-            if self.monitor.cancelled() {
+            if self.monitor.cancelled() || boxes > most {
                 break;
             }
             let mut harvest = Harvest::default();
-            self.line(chunk, line as usize, attempt, space, &mut harvest);
+            self.line(chunk, line as usize, (attempt, most - boxes), space, &mut harvest);
+            boxes += harvest.statistics.boxes;
             if let Some((_, why)) = harvest.open.first() {
                 reason = match why {
                     Cause::Boxes => UnresolvedReason::Budget,
@@ -186,11 +197,11 @@ impl SweepJob<'_> {
                 continue;
             }
             match self.intervals(&harvest.crossings) {
-                Ok(intervals) => return Ok(intervals),
+                Ok(intervals) => return (Ok(intervals), boxes),
                 Err(failure) => reason = UnresolvedReason::Audit(failure),
             }
         }
-        Err(reason)
+        (Err(reason), boxes)
     }
 
     /// The intervals of one line.

@@ -108,7 +108,7 @@ pub(crate) fn probe_lines(
         let mut volume = Dexels::empty(grid);
         let mut probed: Result<(), UnresolvedReason> = Ok(());
         for chunk in plan.parts.chunks(CHUNK) {
-            let found = job.repair(chunk, 0, 0, &mut own);
+            let found = job.repair(chunk, 0, (0, job.repairs.of_each(1)), &mut own).0;
             let united = found.and_then(|intervals| Ok(volume.unite(0, &intervals)?));
             probed = probed.and(united);
         }

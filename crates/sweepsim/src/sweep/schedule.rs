@@ -13,6 +13,7 @@ use crate::methods::planes::Planes;
 use crate::methods::search::Search;
 use crate::methods::surface::Surfaces;
 use crate::methods::workspace::Workspace;
+use crate::repair_budget::RepairBudget;
 use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
@@ -22,7 +23,7 @@ use rayon::prelude::*;
 use std::sync::Mutex;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
-use sweepsim_solve::Monitor;
+use sweepsim_solve::{Cause, Monitor};
 
 /// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
 pub(crate) const CHUNK: usize = 256;
@@ -49,6 +50,7 @@ impl Plan {
                 slack: self.tolerances.rounding(),
             },
             spaces: Mutex::new(Vec::new()),
+            repairs: RepairBudget::new(self.parts.len()),
             monitor,
         }
     }
@@ -66,6 +68,8 @@ pub(crate) struct SweepJob<'a> {
     /// The lines that are asked for; `None` if all are.
     pub mask: Option<&'a LineMask>,
     pub size: Size,
+    /// What repairs may cost.
+    pub repairs: RepairBudget,
     /// Workspaces that are not in use.
     pub spaces: Mutex<Vec<Workspace>>,
     pub monitor: &'a dyn Monitor,
@@ -138,7 +142,15 @@ impl SweepJob<'_> {
     }
 
     /// The crossings of one line, displaced as in the given attempt.
-    pub fn line(&self, chunk: &[PathPart], line: usize, attempt: usize, space: &mut Workspace, harvest: &mut Harvest) {
+    /// Ends when the search has examined `most` boxes, with the line open.
+    pub fn line(
+        &self,
+        chunk: &[PathPart],
+        line: usize,
+        (attempt, most): (usize, u64),
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
         let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
         let search = self.search(&Charts, chunk, &lines);
         for at in 0..chunk.len() {
@@ -146,6 +158,10 @@ impl SweepJob<'_> {
                 break;
             }
             search.part(at, space, harvest);
+            if harvest.statistics.boxes > most {
+                harvest.open.push((line as u32, Cause::Boxes));
+                break;
+            }
         }
     }
 }

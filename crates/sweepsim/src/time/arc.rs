@@ -1,8 +1,9 @@
 //! The motion of an arc (straight tip, turn about one axis) cut into pieces of `t`: the simplest motion, in its lowest degrees.
 
 use crate::time::moment::Moment;
+use crate::time::pieces::{Sizes, back_size};
 use nalgebra::{Matrix3, Vector3};
-use sweepsim_motion::Segment;
+use sweepsim_motion::{Segment, turned_back};
 use sweepsim_solve::CUT;
 
 type Rows = [[f64; 3]; 3];
@@ -38,6 +39,8 @@ pub(crate) struct ArcTimes {
     pub velocity: Vector3<f64>,
     /// `κ k`.
     pace: Vector3<f64>,
+    /// Bounds of the components of `κ A₀ᵀ k` and of `Âᵀ b′`.
+    pub sizes: Sizes,
 }
 
 impl ArcTimes {
@@ -54,8 +57,13 @@ impl ArcTimes {
             tips: segment.tips().map(Vector3::from),
             velocity: segment.travel().into(),
             pace: segment.spin().into(),
+            sizes: [[0.0; 3]; 2],
         };
         let root = times.node(0.0, 1.0, turns, weights);
+        times.sizes = [
+            back_size(&turns[..1], &times.pace, count > 1),
+            back_size(&turns[..count], &times.velocity, count > 1),
+        ];
         times.nodes.push(root);
         times
     }
@@ -105,7 +113,11 @@ impl ArcTimes {
                 node.rows[r][i] = row(&turn, r);
                 node.spin_rows[r][i] = row(&spin, r);
             }
-            node.travel[i] = (turns[i].transpose() * self.velocity).into();
+            node.travel[i] = match self.nodes.first() {
+                // Without rotation it is constant.
+                Some(root) if self.count == 1 => root.travel[0],
+                _ => turned_back(&turns[i], &self.velocity).into(),
+            };
             node.pace.0 = node.pace.0.min(1.0 / weights[i]);
             node.pace.1 = node.pace.1.max(1.0 / weights[i]);
         }

@@ -7,6 +7,7 @@
 use crate::algebra::bivariate::MOST;
 use crate::algebra::ranges::{all_or_none, range_of};
 use crate::time::moment::{Moment, Rows};
+use crate::time::pieces::{PRODUCT, Sizes};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::Segment;
 use sweepsim_solve::CUT;
@@ -88,7 +89,7 @@ struct TimePiece {
 #[derive(Clone, Debug)]
 pub(crate) struct CurveTimes {
     nodes: Vec<TimePiece>,
-    sizes: [f64; 2],
+    pub sizes: Sizes,
     /// Whether orientation and tip have the same weights: then `X` is a convex combination of sums of control values.
     joint: bool,
 }
@@ -153,12 +154,16 @@ impl CurveTimes {
             bare(&spins),
             bare(&travels),
         ];
-        let size = |list: &[Vector3<f64>]| list.iter().map(|v| v.abs().sum()).fold(0.0, f64::max);
+        // Components may be small differences of large products.
+        let size = |list: &[Vector3<f64>]| {
+            let largest = |of: &dyn Fn(&Vector3<f64>) -> f64| list.iter().map(of).fold(0.0, f64::max);
+            let all = largest(&|v| v.abs().sum());
+            [0, 1, 2].map(|k| largest(&|v| v[k].abs()) + PRODUCT * all)
+        };
         let joint = segment.weights() == tip.1 && turn_rate.1 == tip_rate.1;
         let mut times = Self {
             joint,
             nodes: Vec::with_capacity(32),
-
             sizes: [size(&spins), size(&travels)],
         };
         times.nodes.push(node(0.0, 1.0, channels, joint));
@@ -228,10 +233,6 @@ impl CurveTimes {
     pub fn twist_slope(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {
         let [spins, travels] = &self.nodes[piece as usize].twist_slope;
         (spins, travels)
-    }
-
-    pub fn sizes(&self) -> [f64; 2] {
-        self.sizes
     }
 
     pub fn tip(&self, piece: u32, r: usize) -> (f64, f64) {

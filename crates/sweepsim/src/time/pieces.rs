@@ -3,7 +3,29 @@
 use crate::time::arc::ArcTimes;
 use crate::time::curve::CurveTimes;
 use crate::time::moment::{Moment, Rows};
-use sweepsim_motion::Segment;
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_motion::{Segment, turned_back};
+
+/// Bounds of the components of two vectors: of an angular and a linear velocity, or of a moment and a normal.
+pub(crate) type Sizes = [[f64; 3]; 2];
+
+/// The rounding of a sum of three products of rounded numbers is at most eight roundings of the sum of their absolute values: this part of
+/// [`ROUNDING`](crate::envelope::ROUNDING), by which bounds are multiplied.
+pub(super) const PRODUCT: f64 = 0.25;
+
+/// Bounds of the components of `Aᵀ v` for several `A`, which hold their rounding, too. If there is only one `A`, as in a translation, all systems have the
+/// same components, without cancellation ([`turned_back`]).
+pub(crate) fn back_size(turns: &[Matrix3<f64>], v: &Vector3<f64>, is_turning: bool) -> [f64; 3] {
+    let mut size = [0.0_f64; 3];
+    for turn in turns {
+        let all = turn.abs().transpose() * v.abs();
+        let rounding = if is_turning { PRODUCT } else { 0.0 };
+        for (k, own) in turned_back(turn, v).iter().enumerate() {
+            size[k] = size[k].max(own.abs() + rounding * all[k]);
+        }
+    }
+    size
+}
 
 /// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
@@ -92,12 +114,11 @@ impl Times {
         }
     }
 
-    /// Bounds of the sums of the absolute values of the components of both.
-    pub fn sizes(&self) -> [f64; 2] {
-        let sum = |v: &[f64; 3]| v.iter().map(|x| x.abs()).sum::<f64>();
+    /// Bounds of the components of both, which hold their rounding, too.
+    pub fn sizes(&self) -> Sizes {
         match self {
-            Self::Arc(times) => [sum(&times.spin[0]), sum(&times.velocity.into())],
-            Self::Curve(times) => times.sizes(),
+            Self::Arc(times) => times.sizes,
+            Self::Curve(times) => times.sizes,
         }
     }
 
