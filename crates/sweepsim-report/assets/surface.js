@@ -51,7 +51,7 @@ function surfaceOf(layer) {
     z[0][k] = layer.height(layer.lower[k]);
     z[1][k] = layer.height(layer.upper[k]);
   }
-  const known = normalsOf(layer);
+  const { normals: known, guessed } = normalsOf(layer, z);
   // Eight corners an interval, lower then upper: height, shifts from the cell's corner, normal.
   const corner = new Float32Array(total * 8 * 3);
   const bent = new Int8Array(total * 8 * 3);
@@ -69,20 +69,17 @@ function surfaceOf(layer) {
       if (gap < nearest) [nearest, best] = [gap, m];
     }
     if (best < 0) return -1;
-    // What the slopes of both ends predict, with some room; without normals, up to 45° and a little more.
+    // What the slopes of both ends predict, with some room; where slopes are guessed, up to 50°.
     const run = Math.hypot(a * dx, b * dy);
-    let expected = 0;
-    let room = 1.2 * run;
-    if (known) {
-      const slope = (m) => {
-        const s = 3 * (2 * m + side);
-        const up = Math.max(Math.abs(known[s + 2]), 0.12);
-        return -(known[s] * a * dx + known[s + 1] * b * dy) / (known[s + 2] < 0 ? -up : up);
-      };
-      const [from, to] = [slope(k), slope(best)];
-      expected = 0.5 * (from + to);
-      room = 0.25 * run + 0.6 * Math.abs(from - to) + 0.3 * Math.abs(expected);
-    }
+    const slope = (m) => {
+      const s = 3 * (2 * m + side);
+      const up = Math.max(Math.abs(known[s + 2]), 0.12);
+      return -(known[s] * a * dx + known[s + 1] * b * dy) / (known[s + 2] < 0 ? -up : up);
+    };
+    const [from, to] = [slope(k), slope(best)];
+    const expected = 0.5 * (from + to);
+    let room = 0.25 * run + 0.6 * Math.abs(from - to) + 0.3 * Math.abs(expected);
+    if (guessed[2 * k + side] || guessed[2 * best + side]) room = Math.max(room, 1.2 * run - Math.abs(expected));
     return Math.abs(z[side][best] - own - expected) <= room ? best : -1;
   };
 
@@ -94,7 +91,7 @@ function surfaceOf(layer) {
       for (let m = n - 1; m <= n + 1; m++) {
         const f = first[m];
         if (first[m + 1] !== f + 1 || steps[f] !== steps[k]) return false;
-        if (known && Math.abs(known[3 * (2 * f + side) + 2]) < 0.9999) return false;
+        if (Math.abs(known[3 * (2 * f + side) + 2]) < 0.9999) return false;
       }
     return true;
   };
@@ -120,15 +117,13 @@ function surfaceOf(layer) {
             ring.forEach((m, r) => {
               if (m < 0) return;
               let own = z[side][m];
-              if (known) {
-                const s = 3 * (2 * m + side);
-                const [sx, sy] = [r === 0 || r === 3 ? a : -a, r === 0 || r === 1 ? b : -b];
-                const up = known[s + 2];
-                if (Math.abs(up) > 0.3) own -= (known[s] * sx * dx + known[s + 1] * sy * dy) / (2 * up);
-                px += known[s];
-                py += known[s + 1];
-                pz += known[s + 2];
-              }
+              const s = 3 * (2 * m + side);
+              const [sx, sy] = [r === 0 || r === 3 ? a : -a, r === 0 || r === 1 ? b : -b];
+              const up = known[s + 2];
+              if (Math.abs(up) > 0.3) own -= (known[s] * sx * dx + known[s + 1] * sy * dy) / (2 * up);
+              px += known[s];
+              py += known[s + 1];
+              pz += known[s + 2];
               sum += own;
               count++;
             });
@@ -149,22 +144,22 @@ function surfaceOf(layer) {
             corner[p] = sum / count;
             corner[p + 1] = crossings ? (0.5 * mx) / crossings : 0;
             corner[p + 2] = crossings ? (0.5 * my) / crossings : 0;
-            const long = known ? Math.hypot(px, py, pz) || 1 : 1;
-            bent[p] = known ? (127 * px) / long : 0;
-            bent[p + 1] = known ? (127 * py) / long : 0;
-            bent[p + 2] = known ? (127 * pz) / long : side ? 127 : -127;
+            const long = Math.hypot(px, py, pz) || 1;
+            bent[p] = (127 * px) / long;
+            bent[p + 1] = (127 * py) / long;
+            bent[p + 2] = (127 * pz) / long;
           });
         }
   const quads = new Quads(2 * total + 4 * (nx + ny) + 64);
   const x = (i, a, at) => min[0] + (i + 0.5 + 0.5 * a + corner[at + 1]) * dx;
   const y = (j, b, at) => min[1] + (j + 0.5 + 0.5 * b + corner[at + 2]) * dy;
-  faces(layer, quads, corner, bent, known, x, y);
+  faces(layer, quads, corner, bent, x, y);
   walls(layer, quads, corner, x, y, z);
   return quads;
 }
 
 /** Top and bottom faces. Flat ones of one making are joined along a column. */
-function faces(layer, quads, corner, bent, known, x, y) {
+function faces(layer, quads, corner, bent, x, y) {
   const { nx, ny, first } = layer;
   for (let i = 0; i < nx; i++) {
     const run = [null, null];
@@ -199,7 +194,6 @@ function faces(layer, quads, corner, bent, known, x, y) {
             const scale = 1 / 127;
             quads.corner(quad, slot, x(i, a, p), y(j, b, p), corner[p], bent[p] * scale, bent[p + 1] * scale, bent[p + 2] * scale);
           }
-          if (!known) flattened(quads, quad);
           // Joined faces meet others along their sides: a little wider, they leave no seam.
           if (flat) widened(quads, quad, layer.spacing);
           run[side] = flat ? { quad, j, z: corner[at], look } : null;
@@ -219,13 +213,6 @@ function widened(quads, quad, [dx, dy]) {
     p[c] += Math.sign(p[c] - cx) * SEAM * dx;
     p[c + 1] += Math.sign(p[c + 1] - cy) * SEAM * dy;
   }
-}
-
-/** Sets a quad's normals to that of its plane. */
-function flattened(quads, quad) {
-  const p = (c) => Array.from(quads.places.subarray(12 * quad + 3 * c, 12 * quad + 3 * c + 3));
-  const normal = unit(cross(sub(p(2), p(0)), sub(p(3), p(1))));
-  for (let c = 0; c < 4; c++) for (let k = 0; k < 3; k++) quads.normals[16 * quad + 4 * c + k] = normal[k] * 127;
 }
 
 // The four sides of a cell: the neighbour's step, and the two corners there, counter-clockwise seen from outside the cell.
@@ -304,22 +291,46 @@ function walls(layer, quads, corner, x, y, z) {
       }
 }
 
-/** Unit normals of all ends, three numbers each; null if they are not stored. */
-function normalsOf(layer) {
+/** Unit normals of all ends, three numbers each: those that are stored; elsewhere from the slopes to neighbours at nearly the same height. */
+function normalsOf(layer, z) {
+  const { nx, ny, first, spacing } = layer;
   const total = layer.lower.length;
   const source = layer.final ?? layer;
-  if (!source.normals) return null;
   const normals = new Float32Array(6 * total);
-  for (let k = 0; k < total; k++)
-    for (let side = 0; side < 2; side++) {
-      const from = layer.final ? layer.asFinal[side][k] : k;
-      if (from < 0) {
-        // Not known: upright.
-        normals[6 * k + 3 * side + 2] = side ? 1 : -1;
-        continue;
+  const guessed = new Uint8Array(2 * total);
+  /** The slope from an end along an axis. */
+  const slope = (side, k, n, step, within, run) => {
+    let [sum, count] = [0, 0];
+    for (const way of [-1, 1]) {
+      if (!within(way)) continue;
+      for (let m = first[n + way * step]; m < first[n + way * step + 1]; m++) {
+        const rise = z[side][m] - z[side][k];
+        if (Math.abs(rise) > 1.3 * run) continue;
+        sum += (way * rise) / run;
+        count++;
+        break;
       }
-      const [u, v] = source.normals[side];
-      normals.set(fromOctahedron(u[from] / 127, v[from] / 127), 6 * k + 3 * side);
     }
-  return normals;
+    return count ? sum / count : 0;
+  };
+  for (let i = 0; i < nx; i++)
+    for (let j = 0; j < ny; j++) {
+      const n = i * ny + j;
+      for (let k = first[n]; k < first[n + 1]; k++)
+        for (let side = 0; side < 2; side++) {
+          const from = layer.final ? layer.asFinal[side][k] : layer.moments ? -1 : k;
+          if (source.normals && from >= 0) {
+            const [u, v] = source.normals[side];
+            normals.set(fromOctahedron(u[from] / 127, v[from] / 127), 6 * k + 3 * side);
+            continue;
+          }
+          const sx = slope(side, k, n, ny, (way) => i + way >= 0 && i + way < nx, spacing[0]);
+          const sy = slope(side, k, n, 1, (way) => j + way >= 0 && j + way < ny, spacing[1]);
+          const out = side ? 1 : -1;
+          const long = Math.hypot(sx, sy, 1) * out;
+          normals.set([-sx / long, -sy / long, 1 / long], 6 * k + 3 * side);
+          guessed[2 * k + side] = 1;
+        }
+    }
+  return { normals, guessed };
 }

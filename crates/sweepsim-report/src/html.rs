@@ -24,8 +24,14 @@ pub(crate) fn json<T: serde::Serialize>(value: &T) -> String {
     text.replace('<', "\\u003c")
 }
 
-/// A length, area or volume with about four significant digits.
-pub(crate) fn measure(value: f64) -> String {
+/// A length, area or volume for people: about four significant digits, without zeros at the end, with thousands separators.
+///
+/// ```
+/// use sweepsim_report::measure;
+/// assert_eq!([measure(0.02), measure(-12.3456), measure(32_875.4)], ["0.02", "−12.35", "32,875"]);
+/// ```
+#[must_use]
+pub fn measure(value: f64) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }

@@ -37,6 +37,7 @@ mod tables;
 mod viewer;
 
 pub use findings::{Excerpt, Finding};
+pub use html::measure;
 pub use page::{Page, Picture, Verdict};
 pub use plots::{Bar, Histogram, Plot};
 pub use scene::{

@@ -206,8 +206,8 @@ const FAULTS: [(&str, &str, usize); 4] = [
     ("Z-10", "Z-9.4", 0),
     // A sign lost: the rapid to the pocket goes through material.
     ("G0 Z2\n(POCKET)", "G0 Z-2\n(POCKET)", 0),
-    // One digit: the circle reaches a millimetre too far.
-    ("G3 X55 Y30 I-10 J0", "G3 X55 Y30 I-10.5 J0", 1),
+    // One digit too many: the circle reaches more than a millimetre too far.
+    ("G3 X55 Y30 I-10 J0", "G3 X55 Y30 I-10.6 J0", 1),
 ];
 
 fn faulty() -> String {

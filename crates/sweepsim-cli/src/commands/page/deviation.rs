@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use sweepsim::verify::Target;
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::Report;
-use sweepsim_report::{Bar, Histogram};
+use sweepsim_report::{Bar, Histogram, measure};
 
 /// Bars of the histogram.
 const BARS: usize = 48;
@@ -78,8 +78,8 @@ impl Deviated {
         let beyond = [report.gouge, report.excess].map(|side| side.map_or(0.0, |side| side.area));
         let note = format!(
             "Beyond the limits: {} mm² too deep, {} mm² too high.",
-            crate::session::words::measure(beyond[0]),
-            crate::session::words::measure(beyond[1])
+            measure(beyond[0]),
+            measure(beyond[1])
         );
         Some(Histogram {
             bars,

@@ -15,7 +15,7 @@ use sweepsim::Options;
 use sweepsim::verify::Target;
 use sweepsim_dexel::{Dexels, Source};
 use sweepsim_formats::Report;
-use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table};
+use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
 
 /// What the page is made of.
 pub(crate) struct PageSource<'a> {
@@ -150,16 +150,16 @@ fn facts(source: &PageSource) -> Vec<Fact> {
         Some(removed) => {
             let part = 100.0 * removed / (removed + volume).max(f64::MIN_POSITIVE);
             let share = format!("{part:.1} % of the stock");
-            facts.push(Fact::new("Removed", format!("{} mm³", words::measure(removed)), share));
-            facts.push(Fact::new("Left", format!("{} mm³", words::measure(volume)), ""));
+            facts.push(Fact::new("Removed", format!("{} mm³", measure(removed)), share));
+            facts.push(Fact::new("Left", format!("{} mm³", measure(volume)), ""));
         }
-        None => facts.push(Fact::new("Swept", format!("{} mm³", words::measure(volume)), "")),
+        None => facts.push(Fact::new("Swept", format!("{} mm³", measure(volume)), "")),
     }
     for (name, found) in [("Deepest gouge", report.gouge), ("Highest excess", report.excess)] {
         if let Some(found) = found {
             let max = if found.max < 1e-9 { 0.0 } else { found.max };
-            let small = format!("beyond the limit on {} mm²", words::measure(found.area));
-            facts.push(Fact::new(name, format!("{} mm", words::measure(max)), small));
+            let small = format!("beyond the limit on {} mm²", measure(found.area));
+            facts.push(Fact::new(name, format!("{} mm", measure(max)), small));
         }
     }
     let counts = &report.dexels;
@@ -189,16 +189,20 @@ fn plots(made: &Courses) -> Vec<Plot> {
     }]
 }
 
+fn point(place: [f64; 3]) -> String {
+    place.map(measure).join(", ")
+}
+
 /// What the person at the machine needs.
 fn setup(source: &PageSource) -> Table {
     let job = &source.session.job;
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
     if let Some([low, high]) = job.stock.bounds().filter(|_| source.task != Task::Sweep) {
-        let size = [0, 1, 2].map(|k| words::measure(high[k] - low[k]));
+        let size = [0, 1, 2].map(|k| measure(high[k] - low[k]));
         row("Stock", format!("{} × {} × {} mm", size[0], size[1], size[2]));
-        row("Lowest corner", format!("{} mm", words::point(low)));
-        row("Highest corner", format!("{} mm", words::point(high)));
+        row("Lowest corner", format!("{} mm", point(low)));
+        row("Highest corner", format!("{} mm", point(high)));
         let zero = [0, 1, 2].map(|k| {
             let (from, to) = (low[k], high[k]);
             let place = match 0.0 {
@@ -220,13 +224,13 @@ fn setup(source: &PageSource) -> Table {
             "Limits",
             format!(
                 "gouge {} mm, excess {} mm",
-                words::measure(limits.gouge),
-                words::measure(limits.excess)
+                measure(limits.gouge),
+                measure(limits.excess)
             ),
         );
     }
     row("Grid", {
-        let [dx, dy] = job.grid.spacing().map(words::measure);
+        let [dx, dy] = job.grid.spacing().map(measure);
         format!("a dexel every {dx} × {dy} mm")
     });
     Table {
@@ -270,7 +274,7 @@ fn tools(source: &PageSource, made: &Courses) -> Table {
             words::count(moves as u64),
             format!("{cut:.0}"),
             format!("{rapid:.0}"),
-            removed(*number).map_or("–".to_owned(), words::measure),
+            removed(*number).map_or("–".to_owned(), measure),
         ]
     };
     Table {

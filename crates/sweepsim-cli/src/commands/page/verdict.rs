@@ -2,10 +2,10 @@
 
 use super::program::Programs;
 use crate::commands::summary::found;
-use crate::session::words::{counted, measure};
+use crate::session::words::counted;
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
-use sweepsim_report::{Finding, Verdict};
+use sweepsim_report::{Finding, Verdict, measure};
 
 /// Whether the program may be run.
 pub(super) fn verdict(report: &Report) -> Option<Verdict> {
