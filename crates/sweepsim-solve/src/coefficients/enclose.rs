@@ -193,6 +193,13 @@ impl Layout {
         Slopes { lo, hi }
     }
 
+    /// Whether all derivatives are bounded on the cell.
+    pub(crate) fn differentiable(&self, cell: &Cell) -> bool {
+        let slopes = self.slopes(cell);
+        let bounded = |rows: &Square| rows[..self.m].iter().flatten().all(|x| x.is_finite());
+        bounded(&slopes.lo) && bounded(&slopes.hi)
+    }
+
     /// Enclosures of the rows' derivatives.
     #[inline(always)]
     fn row_slopes(&self, cell: &Cell, lo: &mut [Row], hi: &mut [Row]) {

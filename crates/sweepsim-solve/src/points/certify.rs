@@ -3,8 +3,10 @@
 use crate::coefficients::{Affine, Cell, Layout};
 use crate::numbers::{Double, EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
 
-/// Roots that are known less well than this, in sides of the cell, are refined in double-double precision.
-const BLUNT: f64 = 1e-8;
+/// Roots that are known less well than this, in sides of the domain, are refined in double-double precision: `2⁻⁴⁰`.
+const BLUNT: f64 = f64::from_bits((1023 - 40) << 52);
+/// Refinement ends below this, in sides of the domain: `2⁻⁴⁸`.
+const SHARP: f64 = f64::from_bits((1023 - 48) << 52);
 /// The most steps of that refinement: it usually takes two.
 const MORE_STEPS: u32 = 8;
 
@@ -136,8 +138,10 @@ pub(crate) fn unique_root(
         point[i] = cell.lo[i] + s[i] * side(i);
     }
     let mut errors = distances(&k, &rest, contraction, &value, &value_errors, n);
-    let sharp = errors.is_some_and(|errors| errors[..n].iter().all(|e| *e <= BLUNT));
-    if !sharp && layout.improvable(cell) {
+    let sharp = errors.is_some_and(|errors| (0..n).all(|i| errors[i] * side(i) <= BLUNT));
+    // Unless the equations themselves are known no better.
+    let known_better = |e: usize| value_errors[e] > 4.0 * (layout.first_noise[e] + layout.remainder[e]);
+    if !sharp && (0..n).any(known_better) {
         // The equations are nearly singular, or their values mostly noise: values in double-double precision, from the original coefficients.
         let mut better = point;
         for _ in 0..MORE_STEPS {
@@ -153,9 +157,7 @@ pub(crate) fn unique_root(
             if own.is_some() {
                 (errors, point) = (own, better);
             }
-            // Below what the enclosure is widened by, anyway.
-            let least = |i: usize| 2.0 * EPSILON * (better[i].abs() + side(i));
-            if own.is_some_and(|own| (0..n).all(|i| own[i] * side(i) <= least(i))) {
+            if own.is_some_and(|own| (0..n).all(|i| own[i] * side(i) <= SHARP)) {
                 break;
             }
             let step = apply(&newton, &value, n);

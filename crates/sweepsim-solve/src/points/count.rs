@@ -6,10 +6,12 @@
 //! *Two unknowns*: the boundary is cut into segments on each of which one equation has one sign. The signs in their order give the winding
 //! number of `f` around 0, its Brouwer degree: the sum of the signs of all roots inside, of any small perturbation of `f` as well.
 //!
-//! Both hold for all systems within the coefficients' error bounds. In more unknowns nothing is claimed.
+//! *Three and four unknowns*: the same degree, from roots on the faces of the box ([`degree`]).
+//!
+//! All hold for all systems within the coefficients' error bounds. In more unknowns nothing is claimed.
 
-use super::PointSolver;
 use super::treat::BEYOND;
+use super::{PointSolver, degree};
 use crate::System;
 use crate::coefficients::{Cell, Layout, excluded};
 use crate::numbers::{EPSILON, Row};
@@ -24,6 +26,8 @@ const LEAST: f64 = 1e-13;
 const HALVINGS: u32 = 24;
 /// Clusters beyond this number are not counted: there is a continuum.
 const MOST: usize = 64;
+/// The same in three and more unknowns, where each takes longer.
+const MOST_OF_DEGREES: usize = 16;
 
 impl PointSolver {
     /// The roots in a box around each cluster, where they can be counted. A box that meets another cluster or a certified root proves nothing about
@@ -31,7 +35,8 @@ impl PointSolver {
     pub(super) fn counts(&mut self, system: &System, clusters: &[Cluster]) -> Vec<Option<RootCount>> {
         let n = system.layout.n;
         let mut counts = vec![None; clusters.len()];
-        if n > 2 || clusters.len() > MOST {
+        let most = if n > 2 { MOST_OF_DEGREES } else { MOST };
+        if n > degree::MOST_UNKNOWNS || clusters.len() > most {
             return counts;
         }
         for (number, cluster) in clusters.iter().enumerate() {
@@ -58,10 +63,10 @@ impl PointSolver {
                 cell.c.resize(system.layout.len, 0.0);
                 (cell.lo, cell.hi) = (lo, hi);
                 system.layout.refresh(&mut cell, &mut self.doubles);
-                let count = if n == 1 {
-                    complex_zeros(&system.layout, &cell).map(|zeros| (zeros, None))
-                } else {
-                    winding_number(&system.layout, &mut cell).map(|degree| (0, Some(degree)))
+                let count = match n {
+                    1 => complex_zeros(&system.layout, &cell).map(|zeros| (zeros, None)),
+                    2 => winding_number(&system.layout, &mut cell).map(|degree| (0, Some(degree))),
+                    _ => degree::degree(system, &cell, self).map(|degree| (0, Some(degree))),
                 };
                 if let Some((zeros, degree)) = count {
                     counts[number] = Some(RootCount {

@@ -16,6 +16,7 @@
 
 mod certify;
 mod count;
+mod degree;
 mod drowned;
 mod flood;
 #[cfg(feature = "rayon")]

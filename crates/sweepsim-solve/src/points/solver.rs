@@ -119,6 +119,11 @@ impl PointSolver {
         self.deadline.is_some_and(|d| Instant::now() >= d)
     }
 
+    /// How much time is left; `None` if there is no limit.
+    pub(super) fn time_left(&self) -> Option<std::time::Duration> {
+        self.deadline.map(|d| d.saturating_duration_since(Instant::now()))
+    }
+
     /// Checks that the system and the limits are valid.
     pub(crate) fn check(&self, system: &System) -> Result<(), SolveError> {
         let (n, m) = (system.layout.n, system.layout.m);

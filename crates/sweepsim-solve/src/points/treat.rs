@@ -333,7 +333,12 @@ impl PointSolver {
             }
         }
         self.failures += u32::from(useful);
-        self.leave(cause);
+        let own = matches!(cause, Cause::Smallest | Cause::Vanishing);
+        if own && layout.tape.is_some() && !layout.differentiable(&self.cell) {
+            self.leave(Cause::NotDifferentiable);
+        } else {
+            self.leave(cause);
+        }
         Fate::Unresolved
     }
 }

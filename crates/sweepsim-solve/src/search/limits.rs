@@ -128,6 +128,9 @@ pub enum Cause {
     Cancelled,
     /// A curve may touch the boundary of the region in it, from outside.
     Skin,
+    /// A function is not differentiable in it, or not defined in a part of it, such as a square root at 0. It is as small as
+    /// [`SolveOptions::smallest`], or an equation vanishes on it.
+    NotDifferentiable,
 }
 
 impl std::fmt::Display for Cause {
@@ -142,6 +145,7 @@ impl std::fmt::Display for Cause {
             Self::Vertices => "budget of vertices used up",
             Self::Cancelled => "cancelled",
             Self::Skin => "a curve may touch the region's boundary from outside",
+            Self::NotDifferentiable => "a function is not differentiable, or not defined in a part of the box",
         })
     }
 }
@@ -171,7 +175,7 @@ pub struct RootCount {
     /// One unknown: the number of complex zeros, with multiplicity, in the disc with the box as a diameter. Real roots are at most as many, and
     /// differ from it by an even number.
     pub zeros: Option<u32>,
-    /// Two unknowns: the Brouwer degree, the sum of the orientations of the roots in the box (of a root of multiplicity `m`: between `−m` and `m`). If it is not
+    /// Two to four unknowns: the Brouwer degree, the sum of the orientations of the roots in the box (of a root of multiplicity `m`: between `−m` and `m`). If it is not
     /// 0, there is a root. If it is 0, there may or may not be.
     pub degree: Option<i32>,
 }

@@ -5,7 +5,7 @@ use crate::support::planted::Random;
 use sweepsim_solve::{Enclosure, PointSolver, RootCount, System};
 
 fn polynomial(text: &str, n: usize) -> Polynomial {
-    let names = ["x".to_owned(), "y".to_owned()];
+    let names = ["x", "y", "z", "w"].map(str::to_owned);
     Polynomial::of(&parse(text, &names[..n]), n).unwrap()
 }
 
@@ -70,5 +70,42 @@ fn degrees_in_two_unknowns() {
         (re, im) = (re.mul(&x).add(&minus(&im.mul(&y))), re.mul(&y).add(&im.mul(&x)));
         let count = count(&[re.clone(), im.clone()], &[0.0, 0.0], "complex power");
         assert_eq!((count.degree, count.zeros), (Some(m), None));
+    }
+}
+
+#[test]
+fn degrees_in_three_and_four_unknowns() {
+    // Complex powers have their exponent as degree; products of orientations, their product; an even root along a line has none.
+    let cases: [(&[&str], i32); 10] = [
+        (&["x**2 - y**2", "2*x*y", "z"], 2),
+        (&["2*x*y", "x**2 - y**2", "z"], -2),
+        (&["x**3 - 3*x*y**2", "3*x**2*y - y**3", "z - x*y"], 3),
+        (&["z", "x**3 - 3*x*y**2", "3*x**2*y - y**3"], 3),
+        (&["x**2 - y**2 + x*z", "2*x*y + y*z", "0 - z"], -2),
+        (&["x", "y", "z**3"], 1),
+        (&["x", "y - x**2", "0 - z**5"], -1),
+        // A sphere and its tangent plane.
+        (&["x**2 + y**2 + (z - 1)**2 - 1", "z", "x - y"], 0),
+        (&["(x + y - z)**2", "x - 2*y", "z + x"], 0),
+        (&["x**2 - y**2", "2*x*y", "z - x*w", "w"], 2),
+    ];
+    let mut random = Random(19);
+    for (texts, degree) in cases {
+        let n = texts.len();
+        // A shift by a dyadic point, so that no cut passes through the root.
+        let at: Vec<f64> = (0..n).map(|_| 0.5 * random.direction()).collect();
+        let shifted: Vec<Polynomial> = texts
+            .iter()
+            .map(|text| {
+                let mut text = (*text).to_owned();
+                for (name, a) in ["x", "y", "z", "w"].iter().zip(&at) {
+                    let sign = if *a < 0.0 { "+" } else { "-" };
+                    text = text.replace(name, &format!("({name} {sign} {})", a.abs()));
+                }
+                polynomial(&text, n)
+            })
+            .collect();
+        let count = count(&shifted, &at, &format!("{texts:?}"));
+        assert_eq!((count.zeros, count.degree), (None, Some(degree)), "{texts:?}");
     }
 }

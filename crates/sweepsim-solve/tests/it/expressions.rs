@@ -5,7 +5,8 @@ use crate::support;
 use std::f64::consts::{FRAC_PI_4, LN_2, PI, TAU};
 use support::planted::Random;
 use sweepsim_solve::{
-    CurveSolver, Enclosure, Equation, Expression, MAX_STEPS, PointSolver, Points, SurfaceSolver, System, SystemError,
+    Cause, CurveSolver, Enclosure, Equation, Expression, MAX_STEPS, PointSolver, Points, SurfaceSolver, System,
+    SystemError,
 };
 use sweepsim_spline::Bernstein;
 
@@ -267,4 +268,23 @@ fn nothing_is_certified_where_a_function_is_not_smooth() {
     let one = || Expression::constant(1.0);
     let points = solve(vec![one() / (one() / (x() - Expression::constant(0.4)))]);
     assert!(points.roots.is_empty() && points.unresolved.iter().all(|u| u.bounds[0].contains(0.4)));
+}
+
+#[test]
+fn solutions_at_the_end_of_a_functions_domain_are_named() {
+    let unit = [Enclosure::new(-1.0, 2.0).unwrap(); 2];
+    for (texts, at) in [
+        (["sqrt(x) = 0", "y = 1/3"], [0.0, 1.0 / 3.0]),
+        (["sqrt(x - 1/4) = y", "y = 0"], [0.25, 0.0]),
+        (["sqrt(x) + sqrt(y) = 0", "x = y"], [0.0, 0.0]),
+        (["x*ln(x) = 0", "y + x = 1/2"], [0.0, 0.5]),
+    ] {
+        let system = System::parse(&texts, &["x", "y"], &unit).unwrap();
+        let points = PointSolver::default().solve(&system, &()).unwrap();
+        let holds = |bounds: &[Enclosure]| bounds.iter().zip(at).all(|(b, x)| b.contains(x));
+        let open: Vec<_> = points.unresolved.iter().filter(|u| holds(&u.bounds)).collect();
+        assert_eq!(open.len(), 1, "{texts:?}: {points:?}");
+        assert_eq!(open[0].cause, Cause::NotDifferentiable, "{texts:?}: {points:?}");
+        assert!(open[0].bounds.iter().all(|b| b.radius() < 1e-6), "{texts:?}: {open:?}");
+    }
 }

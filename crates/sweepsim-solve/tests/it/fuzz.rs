@@ -2,6 +2,7 @@
 //!
 //! A sample always runs. For a million calls of each:
 //! `FUZZ_CALLS=1000000 cargo test --release -p sweepsim-solve --test it fuzz -- --ignored --nocapture`
+//! (`FUZZ_SOLVERS=formulas,splines`: only these.)
 
 use crate::bundles::Forms;
 use crate::monitors::Fold;
@@ -347,8 +348,8 @@ fn charts(random: &mut Random) -> bool {
 /// One call; whether its input was valid.
 type Call = fn(&mut Random) -> bool;
 
-/// So many calls of each solver; prints how many were valid, and the longest.
-fn run(calls: u64, seed: u64) {
+/// So many calls of each solver (or of the wanted ones); prints how many were valid, and the longest.
+fn run(calls: u64, seed: u64, wanted: &str) {
     let solvers: [(&str, Call); 8] = [
         ("points", points),
         ("curves", curves),
@@ -360,6 +361,9 @@ fn run(calls: u64, seed: u64) {
         ("splines", splines),
     ];
     for (name, call) in solvers {
+        if !(wanted.is_empty() || wanted.split(',').any(|w| w == name)) {
+            continue;
+        }
         let (mut valid, mut longest, start) = (0, Duration::ZERO, Instant::now());
         for number in 0..calls {
             let mut random = Random(planted::Random(seed.wrapping_mul(1_000_003).wrapping_add(number)));
@@ -382,12 +386,13 @@ fn run(calls: u64, seed: u64) {
 
 #[test]
 fn no_input_makes_a_solver_panic() {
-    run(150, 1);
+    run(150, 1, "");
 }
 
 #[test]
 #[ignore = "a million calls of each solver take hours"]
 fn a_million_inputs_make_no_solver_panic() {
     let calls = std::env::var("FUZZ_CALLS").ok().and_then(|calls| calls.parse().ok());
-    run(calls.unwrap_or(1_000_000), 2);
+    let wanted = std::env::var("FUZZ_SOLVERS").unwrap_or_default();
+    run(calls.unwrap_or(1_000_000), 2, &wanted);
 }
