@@ -14,7 +14,7 @@ use thiserror::Error;
 /// A file that cannot be read, understood or written.
 ///
 /// Its `Display` is one line, `file:line:column: what is wrong, and what was expected`, as far as each is known;
-/// [`FormatError::render`] adds the line of the file with the position marked.
+/// [`FormatError::render`] adds the line of the file with the position marked, and [`FormatError::further`] has the other problems of a program.
 #[derive(Debug)]
 pub struct FormatError(Box<Inner>);
 
@@ -23,6 +23,7 @@ struct Inner {
     file: Option<PathBuf>,
     position: Option<TextPosition>,
     problem: Problem,
+    further: Vec<FormatError>,
 }
 
 /// What is wrong, without the position.
@@ -166,6 +167,7 @@ impl FormatError {
             file: None,
             position,
             problem,
+            further: Vec::new(),
         }))
     }
 
@@ -191,6 +193,12 @@ impl FormatError {
     #[must_use]
     pub fn problem(&self) -> &Problem {
         &self.0.problem
+    }
+
+    /// The other problems of the same program, in the order of its lines: programs are read to their end.
+    #[must_use]
+    pub fn further(&self) -> &[Self] {
+        &self.0.further
     }
 
     /// The message, and the line of the file with the position marked, optionally in colour for terminals.
@@ -237,7 +245,8 @@ impl fmt::Display for FormatError {
 }
 
 impl From<NcError> for FormatError {
-    fn from(error: NcError) -> Self {
+    fn from(mut error: NcError) -> Self {
+        let further = error.take_further().into_iter().map(Self::from).collect();
         let (file, position, problem) = error.into_parts();
         let problem = match problem {
             NcProblem::Read(error) => Problem::Read(error),
@@ -253,6 +262,7 @@ impl From<NcError> for FormatError {
             file,
             position,
             problem,
+            further,
         }))
     }
 }

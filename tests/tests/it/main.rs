@@ -2,5 +2,6 @@
 
 mod brute_force;
 mod router_bit;
+mod same_part;
 mod shared_data;
 mod tidy;

@@ -52,7 +52,17 @@ impl Failure {
 
 impl From<FormatError> for Failure {
     fn from(error: FormatError) -> Self {
-        Self::Bad(error.render(true))
+        let further = error.further();
+        let mut text = error.render(true);
+        for error in further.iter().take(MOST_FURTHER) {
+            text.push_str("\n\n");
+            text.push_str(&error.render(true));
+        }
+        let more = further.len().saturating_sub(MOST_FURTHER);
+        if more > 0 {
+            text.push_str(&format!("\n\n{more} more problems of other kinds"));
+        }
+        Self::Bad(text)
     }
 }
 
@@ -63,18 +73,8 @@ impl From<sweepsim_dexel::MeshError> for Failure {
 }
 
 impl From<NcError> for Failure {
-    fn from(mut error: NcError) -> Self {
-        let further = error.take_further();
-        let mut text = FormatError::from(error).render(true);
-        let more = further.len().saturating_sub(MOST_FURTHER);
-        for error in further.into_iter().take(MOST_FURTHER) {
-            text.push_str("\n\n");
-            text.push_str(&FormatError::from(error).render(true));
-        }
-        if more > 0 {
-            text.push_str(&format!("\n\n{more} more problems of other kinds"));
-        }
-        Self::Bad(text)
+    fn from(error: NcError) -> Self {
+        FormatError::from(error).into()
     }
 }
 

@@ -207,8 +207,9 @@ fn g(value: f64) -> Code {
         600 => Code::Refused("single-direction positioning is"),
         640 => Code::Blending,
         650 => Code::MacroCall,
-        660 | 661 => Code::Refused("modal macro calls are"),
-        670 => Code::Harmless,
+        661 => Code::Refused("macro calls by every block are"),
+        // Performed with their blocks.
+        660 | 670 => Code::Harmless,
         680 => Code::Rotate,
         682 | 2680 => Code::TiltedPlane,
         2690 => Code::CancelTilt,

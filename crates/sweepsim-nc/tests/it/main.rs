@@ -8,6 +8,7 @@ mod gcode;
 mod harmless;
 mod heidenhain;
 mod kinematics;
+mod klartext_cycles;
 mod limits;
 mod machines;
 mod pieces;

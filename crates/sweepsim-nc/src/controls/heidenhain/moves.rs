@@ -335,7 +335,7 @@ impl Reader<'_> {
     }
 
     /// The radius of the tool with the oversize of its call.
-    fn cutter_radius(&self) -> Option<f64> {
+    pub(super) fn cutter_radius(&self) -> Option<f64> {
         let tool = self.track.tool?;
         let table = self.options.tool_offsets.get(&tool).map(|offset| 0.5 * offset.diameter);
         Some(self.radii.get(&tool).copied().or(table)? + self.oversize)

@@ -47,6 +47,8 @@ pub(crate) struct Reader {
     /// Whether the control is given, not guessed: its own rules about missing and spare words then count.
     pub strict: bool,
     pub frames: Vec<Frame>,
+    /// The block of G66, and how deep in calls it is.
+    pub modal_macro: Option<(Block, usize)>,
     pub sources: Vec<Rc<Source>>,
     pub files: Vec<PathBuf>,
     pub folders: Vec<PathBuf>,
@@ -166,6 +168,7 @@ impl Reader {
             tools: ToolTable::new(&options.tool_offsets),
             controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
             strict: options.controller.is_some(),
+            modal_macro: None,
             frames: vec![Frame::main()],
             sources: vec![Rc::new(Source::new(0, input.text.to_owned()))],
             files: input.file.map(Path::to_owned).into_iter().collect(),

@@ -31,6 +31,18 @@ impl Reader {
         if block.is_empty() {
             return Ok(Step::Next);
         }
+        let has = |code: f64| {
+            block
+                .words()
+                .iter()
+                .any(|word| word.letter == 'G' && word.value == code)
+        };
+        if has(66.0) {
+            return self.begin_modal_macro(block).map_err(|problem| (problem, block.all()));
+        }
+        if has(67.0) {
+            self.modal_macro = None;
+        }
         let macro_call = block.has('G') && block.words().iter().any(|w| w.letter == 'G' && w.value == 65.0);
         if !macro_call {
             self.check_letters(block)?;
@@ -71,6 +83,13 @@ impl Reader {
             }
             None if plan.dwell && plan.motion.is_none() => {}
             None => self.motion(block, &plan)?,
+        }
+        if plan.action.is_none()
+            && block.first("XYZABC").is_some()
+            && let Some((arguments, depth)) = self.modal_macro.clone()
+            && depth == self.frames.len()
+        {
+            step = self.call_macro(&arguments, here).map_err(whole)?;
         }
         // A subprogram is called, and the program ends, after the move.
         if let Some(word) = block.words().iter().rfind(|word| word.letter == 'M') {

@@ -5,7 +5,8 @@ use sweepsim_nc::{Controller, ReadOptions, gcode};
 use super::{Random, number, seeds};
 
 /// Programs that are mutated.
-const SEEDS: [&str; 8] = [
+const SEEDS: [&str; 9] = [
+    "O1\nG0 X0 Y0 Z0\nG66 P2 A1 Z-2.\nX1\nX2 L2\nG67\nX3\nM30\nO2\nG1 Z#26 F9\nX#1\nM99\n",
     "%\nO1000 (PART)\nG21 G90 G17 G40 G49 G80\nT1 M6\nS8000 M3\nG54 G0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F200\nG3 X5 Y5 I0 J5\nG2 X0 Y0 R10\nM5\nM30\n%\n",
     "#1=0\no1 while [#1 lt 5]\n#1=[#1+1]\nG1 X#1 F100\no1 endwhile\no2 sub\nG1 Y#1\no2 endsub [#1]\no2 call [1] [2]\nM2\n",
     "O1\nWHILE [#100 LT 3] DO1\n#100=#100+1\nG65 P2 A#100 B2.\nEND1\nIF [#100 EQ 3] GOTO 9\nM98 P2 L3\nN9 M30\nO2\nG1 X#1\nM99\n",

@@ -223,3 +223,30 @@ fn variables_without_a_value() {
     let found = program("#1=2 #2=3 #3=4\nG0 X##1 Y#[#1+1] Z0");
     assert_eq!(found.poses[0].pose.tip(), [3.0, 4.0, 0.0]);
 }
+
+#[test]
+fn modal_macros_are_called_after_each_move() {
+    let text = "O1 (MAIN)\nG90 G0 X0 Y0 Z5\nG66 P9 Z-2. R1.\nG0 X10\nX20\nG67\nX30\nM30\nO9\nG0 Z#18\nG1 Z#26 F100\nG0 Z5\nM99\n";
+    let found = program_with(text, &options(Controller::Fanuc));
+    let expected: Vec<[f64; 3]> = [
+        [0.0, 0.0, 5.0],
+        [10.0, 0.0, 5.0],
+        [10.0, 0.0, 1.0],
+        [10.0, 0.0, -2.0],
+        [10.0, 0.0, 5.0],
+        [20.0, 0.0, 5.0],
+        [20.0, 0.0, 1.0],
+        [20.0, 0.0, -2.0],
+        [20.0, 0.0, 5.0],
+        [30.0, 0.0, 5.0],
+    ]
+    .into();
+    assert_near(&tips(&found), &expected);
+    let error = |text: &str| gcode::read(text, &options(Controller::Fanuc)).unwrap_err().to_string();
+    assert!(error("G0 X0 Y0 Z0\nG66 Z1\nX1").starts_with("2:1: G66 without the number of a program"));
+    assert!(
+        error("O1\nG0 X0 Y0 Z0\nG66 P2\nG66 P2\nX1\nM30\nO2\nM99")
+            .starts_with("4:1: a modal macro call within another one")
+    );
+    assert!(error("O1\nG0 X0 Y0 Z0\nG66 P7\nX1\nM30\n").contains("O7"));
+}

@@ -236,6 +236,23 @@ impl Reader {
         self.enter(frame, start, here)
     }
 
+    /// G66: calls the macro after each block that moves, as G65 does, until G67. Moves within the macro do not call it again.
+    pub(crate) fn begin_modal_macro(&mut self, block: &Block) -> Result<Step, NcProblem> {
+        if self.modal_macro.is_some() {
+            return Err(NcProblem::unsupported(
+                "a modal macro call within another one is",
+                "expected G67 before it",
+            ));
+        }
+        if block.get('P').is_none() {
+            return Err(NcProblem::syntax("G66 without the number of a program: expected P"));
+        }
+        // Calls return to the frame they were made from: the main program's is the first.
+        self.frame();
+        self.modal_macro = Some((block.clone(), self.frames.len()));
+        Ok(Step::Next)
+    }
+
     /// How often to execute it: L.
     fn times(&self, block: &Block) -> Result<u32, NcProblem> {
         match block.get('L') {
