@@ -50,6 +50,7 @@ pub use model::names::Format;
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use model::stock::StockDescription;
+pub use model::times::{MoveTime, RAPID_SPEED, RAPID_TURN};
 pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
 pub use read::read_file;

@@ -248,6 +248,43 @@ impl Path {
         constant_speed::segments(from, to, way, tool, deviation)
     }
 
+    /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself along
+    /// [motions](Path::along).
+    ///
+    /// # Panics
+    /// If there is no such move.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Path, Pose};
+    /// let path = Path::new(vec![Pose::new([0.0; 3], [0.0, 0.0, 1.0])?, Pose::new([3.0, 4.0, 0.0], [0.0, 0.1, 1.0])?])?;
+    /// assert_eq!(path.tip_length(0), 5.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn tip_length(&self, index: usize) -> f64 {
+        let (from, to) = (self.poses[index].tip_vector(), self.poses[index + 1].tip_vector());
+        let course = match &self.ways {
+            Ways::Motion(motion) => {
+                let segment = motion.segment(index);
+                let chords = |count: usize| -> f64 {
+                    let at = |k: usize| Vector3::from(segment.at(k as f64 / count as f64).1);
+                    (0..count).map(|k| (at(k + 1) - at(k)).norm()).sum()
+                };
+                // The error of chords is of second order (Richardson 1911).
+                return (4.0 * chords(128) - chords(64)) / 3.0;
+            }
+            Ways::Slerp => Course::Straight,
+            Ways::Each(moves) => moves[index].course,
+        };
+        match course {
+            Course::Straight => (to - from).norm(),
+            Course::Arc(arc) => {
+                let rise = (to - from).dot(&arc.normal_vector());
+                (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
+            }
+        }
+    }
+
     /// A bound on the absolute value of all coordinates of the tip.
     #[must_use]
     pub fn size(&self) -> f64 {

@@ -5,5 +5,6 @@ pub(crate) mod names;
 pub(crate) mod program;
 pub(crate) mod read_options;
 pub(crate) mod stock;
+pub(crate) mod times;
 pub(crate) mod tool;
 pub(crate) mod usage;

@@ -96,7 +96,7 @@ impl ToolUsage {
 }
 
 /// The length of the tip's way.
-fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
+pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let chord = [0, 1, 2].map(|k| b[k] - a[k]);
     match to.way.course {

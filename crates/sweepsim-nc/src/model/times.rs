@@ -1,0 +1,154 @@
+//! How long each move of a program takes.
+
+use nalgebra::Vector3;
+
+use crate::machines::{Kinematics, Position};
+use crate::model::event::{EventKind, Spindle};
+use crate::model::program::{FeedMode, Program, ProgramPose};
+use crate::model::usage::length;
+
+/// The speed of rapids in mm/min where the machine does not say it.
+pub const RAPID_SPEED: f64 = 10_000.0;
+/// The speed of rotary axes in rapids, in degrees per minute, where the machine does not say it.
+pub const RAPID_TURN: f64 = 7_200.0;
+
+/// How long the move to a pose takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MoveTime {
+    /// The move, in seconds. `None` if its feed is unknown: none is set, or it counts turns of a spindle of unknown speed.
+    pub seconds: Option<f64>,
+    /// How long the tool rests before it, in seconds.
+    pub rest: f64,
+    /// Whether the speed of an axis had to be assumed: [`RAPID_SPEED`] or [`RAPID_TURN`].
+    pub assumed: bool,
+}
+
+impl Program {
+    /// How long the moves to all poses take; nothing for those that no move leads to.
+    ///
+    /// A feed move takes as long as its feed says, or as its slowest axis needs at its largest speed: axes do not accelerate, as controls look ahead. In
+    /// a rapid each axis starts and ends at rest and moves as fast as it can, accelerating if the machine says how; the last to arrive ends the move. That
+    /// holds for straight rapids and for dog-legs.
+    ///
+    /// ```
+    /// use sweepsim_nc::{ReadOptions, gcode};
+    /// let program = gcode::read("G21\nT1 M6\nG0 X0 Y0 Z0\nG1 X100 F600\nG93 G1 X0 F4\nG4 P2\nG0 Z10\n", &ReadOptions::default())?;
+    /// let times = program.times();
+    /// assert_eq!([times[1].seconds, times[2].seconds], [Some(10.0), Some(15.0)]);
+    /// // No machine is known: 10 mm at 10 m/min.
+    /// assert_eq!((times[3].rest, times[3].seconds, times[3].assumed), (2.0, Some(0.06), true));
+    /// # Ok::<(), sweepsim_nc::NcError>(())
+    /// ```
+    #[must_use]
+    pub fn times(&self) -> Vec<MoveTime> {
+        let mut all = Vec::with_capacity(self.poses.len());
+        let mut events = self.events.iter().peekable();
+        let mut rpm = None;
+        let known = self.positions.len() == self.poses.len();
+        for (index, pose) in self.poses.iter().enumerate() {
+            let mut time = MoveTime::default();
+            while let Some(event) = events.next_if(|event| event.pose <= index) {
+                match event.kind {
+                    EventKind::Dwell { seconds } => time.rest += seconds,
+                    EventKind::Spindle(Spindle::Stopped) => rpm = None,
+                    EventKind::Spindle(
+                        Spindle::Clockwise { rpm: speed } | Spindle::CounterClockwise { rpm: speed },
+                    ) => rpm = speed,
+                    _ => {}
+                }
+            }
+            if let (true, Some(from)) = (pose.joined, index.checked_sub(1)) {
+                let machine = self.machine.kinematics.as_deref().filter(|_| known);
+                let axes = machine.map(|machine| Axes::new(machine, &self.positions[from], &self.positions[index]));
+                let from = &self.poses[from];
+                if pose.rapid {
+                    let (seconds, assumed) = axes.map_or_else(|| (assumed_rapid(from, pose), true), Axes::rapid);
+                    (time.seconds, time.assumed) = (Some(seconds), assumed);
+                } else {
+                    let least = axes.map_or(0.0, |axes| axes.at_full_speed());
+                    let seconds = self.feed_seconds(from, pose, rpm);
+                    time.seconds = seconds.map(|seconds| seconds.max(least));
+                }
+            }
+            time.seconds = time.seconds.filter(|seconds| seconds.is_finite());
+            all.push(time);
+        }
+        all
+    }
+
+    /// How long a feed move takes by its feed. That of a turn in place counts degrees.
+    fn feed_seconds(&self, from: &ProgramPose, to: &ProgramPose, rpm: Option<f64>) -> Option<f64> {
+        let feed = to.feed.filter(|feed| *feed > 0.0)?;
+        let way = length(from, to);
+        let unit = self.units.in_mm();
+        let way = if way > 0.0 {
+            way
+        } else {
+            turn(from, to) * unit
+        };
+        let minutes = match to.feed_mode {
+            FeedMode::PerMinute => way / (feed * unit),
+            FeedMode::PerRevolution => way / (feed * unit * rpm?),
+            FeedMode::InverseTime => 1.0 / feed,
+        };
+        Some(60.0 * minutes)
+    }
+}
+
+/// The angle between two tool axes, in degrees.
+fn turn(from: &ProgramPose, to: &ProgramPose) -> f64 {
+    let (a, b) = (Vector3::from(from.pose.axis()), Vector3::from(to.pose.axis()));
+    a.cross(&b).norm().atan2(a.dot(&b)).to_degrees()
+}
+
+fn assumed_rapid(from: &ProgramPose, to: &ProgramPose) -> f64 {
+    60.0 * (length(from, to) / RAPID_SPEED).max(turn(from, to) / RAPID_TURN)
+}
+
+/// The axes that move: the way of each in mm or degrees, its speed per minute and acceleration per s², and whether the speed is assumed.
+struct Axes(Vec<(f64, f64, Option<f64>, bool)>);
+
+impl Axes {
+    fn new(machine: &Kinematics, from: &Position, to: &Position) -> Self {
+        let linear = machine.linear().iter().map(|axis| {
+            let k = "XYZ".find(axis.letter).unwrap_or(0);
+            (to.xyz[k] - from.xyz[k], axis.speed, RAPID_SPEED, axis.acceleration)
+        });
+        let rotary = machine.rotary().map(|axis| {
+            let k = "ABC".find(axis.letter).unwrap_or(0);
+            (to.abc[k] - from.abc[k], axis.speed, RAPID_TURN, axis.acceleration)
+        });
+        let all = linear.chain(rotary).filter(|(way, ..)| *way != 0.0);
+        Self(
+            all.map(|(way, speed, other, acceleration)| {
+                (way.abs(), speed.unwrap_or(other), acceleration, speed.is_none())
+            })
+            .collect(),
+        )
+    }
+
+    /// From rest to rest, each as fast as it can; in seconds.
+    fn rapid(self) -> (f64, bool) {
+        let seconds = |(way, speed, acceleration, _): &(f64, f64, Option<f64>, bool)| {
+            let speed = speed / 60.0;
+            match *acceleration {
+                None => way / speed,
+                // It never reaches its speed,
+                Some(a) if way * a <= speed * speed => 2.0 * (way / a).sqrt(),
+                // or does between two ramps of v/a seconds, which cover v²/a together.
+                Some(a) => way / speed + speed / a,
+            }
+        };
+        let longest = self.0.iter().map(seconds).fold(0.0, f64::max);
+        (longest, self.0.iter().any(|axis| axis.3))
+    }
+
+    /// What the slowest axis of those with a known speed needs, in seconds.
+    fn at_full_speed(&self) -> f64 {
+        let known = self.0.iter().filter(|axis| !axis.3);
+        known
+            .map(|(way, speed, ..)| 60.0 * way / speed)
+            .fold(0.0, f64::max)
+    }
+}
