@@ -19,9 +19,9 @@ use std::process::ExitCode;
 #[must_use]
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
-        Command::Simulate(options) => commands::run(commands::Task::Simulate, &options, false),
-        Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, false),
-        Command::Verify { run, first } => commands::run(commands::Task::Verify, &run, first),
+        Command::Simulate(options) => commands::run(commands::Task::Simulate, &options, &Default::default()),
+        Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, &Default::default()),
+        Command::Verify { run, judging } => commands::run(commands::Task::Verify, &run, &judging),
         Command::Section(options) => commands::section(&options),
         Command::New(options) => commands::new(&options).map(|()| ExitCode::SUCCESS),
         Command::Inspect(options) => commands::inspect(&options).map(|()| ExitCode::SUCCESS),

@@ -63,7 +63,7 @@ pub use meshes::{
     write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
-    ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, PathSummary, Report, ReportedDexel,
-    ReportedFinding, ReportedRegion, Verdict,
+    ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, MoveSummary, PathSummary, Report,
+    ReportedDexel, ReportedFinding, ReportedRegion, ToolSummary, Verdict, WorkSummary, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;

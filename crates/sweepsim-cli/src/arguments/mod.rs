@@ -30,9 +30,8 @@ pub(crate) enum Command {
     Verify {
         #[command(flatten)]
         run: RunOptions,
-        /// Ends at the first finding.
-        #[arg(long)]
-        first: bool,
+        #[command(flatten)]
+        judging: JudgeOptions,
     },
     /// Writes the volume that the tools of a job sweep, without stock: the same outputs.
     Sweep(RunOptions),
@@ -95,6 +94,17 @@ pub(crate) struct RunOptions {
     /// Prints the report as JSON instead of the summary.
     #[arg(long)]
     pub json: bool,
+}
+
+/// What `verify` looks at.
+#[derive(Debug, Default, Args)]
+pub(crate) struct JudgeOptions {
+    /// Ends at the first finding.
+    #[arg(long)]
+    pub first: bool,
+    /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
+    #[arg(long)]
+    pub moves: bool,
 }
 
 #[derive(Debug, Args)]

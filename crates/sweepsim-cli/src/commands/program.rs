@@ -103,7 +103,7 @@ fn used(tool: &ToolUsage) -> String {
 }
 
 /// A duration on a machine.
-fn clock(duration: f64) -> String {
+pub(super) fn clock(duration: f64) -> String {
     if duration < 60.0 {
         return seconds(duration);
     }

@@ -5,7 +5,7 @@ use super::summary::{NAMED, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
 use super::verify::verified;
-use crate::arguments::{Output, RunOptions};
+use crate::arguments::{JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
 use crate::warnings;
 use std::io::Write as _;
@@ -14,7 +14,9 @@ use std::time::Instant;
 use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh};
-use sweepsim_formats::{Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_ply};
+use sweepsim_formats::{
+    MoveSummary, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_moves_csv, write_ply,
+};
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
 const CHORD: f64 = 0.02;
@@ -28,12 +30,14 @@ struct Outcome {
     uncertified: usize,
     /// The target that the result was compared with.
     target: Option<Target>,
+    /// What each move does, if asked for.
+    moves: Vec<MoveSummary>,
     /// part.png.
     picture: Option<Vec<u8>>,
 }
 
 /// Runs a job and writes its outputs.
-pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitCode, Failure> {
+pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let mut report = Report::default();
     let read = phase(&mut report, "read", || read(options))?;
@@ -50,7 +54,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, first: bool) -> Result<ExitC
         .build()
         .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
     let threads = pool.current_num_threads();
-    let outcome = pool.install(|| work(task, &mut session, options, first, &mut report));
+    let outcome = pool.install(|| work(task, &mut session, options, judging, &mut report));
     let outcome = outcome.map_err(|failure| {
         session.progress.finish();
         failure.after(&session.outputs)
@@ -115,13 +119,18 @@ fn work(
     task: Task,
     session: &mut JobSession,
     options: &RunOptions,
-    first: bool,
+    judging: &JudgeOptions,
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
-    let mut outcome = compute(task, session, options, first, report)?;
+    let mut outcome = compute(task, session, options, judging, report)?;
     session.progress.check()?;
     describe(task, report, session, options, &outcome);
     write_dexels(&outcome, session, report)?;
+    if judging.moves {
+        session
+            .outputs
+            .write("moves.csv", |file| write_moves_csv(&outcome.moves, file))?;
+    }
     if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
         let mesh = mesh(task, session, options, &mut outcome, report)?;
         outcome.picture = write_mesh(options, &mesh, session, report)?;
@@ -143,7 +152,7 @@ fn compute(
     task: Task,
     session: &JobSession,
     options: &RunOptions,
-    first: bool,
+    judging: &JudgeOptions,
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
     let (job, progress) = (&session.job, &session.progress);
@@ -167,17 +176,19 @@ fn compute(
                 statistics: done.statistics,
                 uncertified: 0,
                 target: None,
+                moves: Vec::new(),
                 picture: None,
             })
         }
         Task::Verify => {
-            let done = verified(session, options, first, report)?;
+            let done = verified(session, options, judging, report)?;
             Ok(Outcome {
                 dexels: done.remaining,
                 statistics: done.statistics,
                 volume_removed: Some(done.volume_removed),
                 uncertified: 0,
                 target: done.target,
+                moves: done.moves,
                 picture: None,
             })
         }
@@ -193,6 +204,7 @@ fn compute(
                 volume_removed: None,
                 uncertified: 0,
                 target: None,
+                moves: Vec::new(),
                 picture: None,
             })
         }

@@ -1,10 +1,11 @@
 //! The summary of `simulate` and `sweep`.
 
+use super::program::clock;
 use super::task::Task;
 use crate::session::{JobSession, Lines, words};
 use crate::warnings::is_covered;
 
-use sweepsim_formats::{Report, ReportedFinding, Verdict};
+use sweepsim_formats::{Report, ReportedFinding, Verdict, WorkSummary};
 
 /// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
 pub(crate) const NAMED: usize = 10;
@@ -49,6 +50,13 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
             line("left", &format!("{} mm³", words::measure(volume)));
         }
         None => line("swept", &format!("{} mm³", words::measure(volume))),
+    }
+    if let Some(work) = &report.work {
+        line("machine", &worked(work));
+        let tools = report.tools.iter().flatten().filter(|_| session.job.tools.len() > 1);
+        for summary in tools.take(NAMED) {
+            line("", &format!("tool {}: {}", summary.tool, worked(&summary.work)));
+        }
     }
     let counts = &report.dexels;
     let covered = words::count(counts.covered as u64);
@@ -169,6 +177,37 @@ fn sentence(finding: &ReportedFinding) -> String {
     }
     if let Some(program) = &finding.text {
         text += &format!(" | {program}");
+    }
+    text
+}
+
+/// How long some moves take, and what they remove.
+fn worked(work: &WorkSummary) -> String {
+    let mut text = format!(
+        "{} (feed {}, rapid {}), {} mm cut and {} mm rapid",
+        clock(work.total_seconds()),
+        clock(work.seconds),
+        clock(work.rapid_seconds),
+        words::measure(work.length),
+        words::measure(work.rapid_length),
+    );
+    if work.untimed > 0 {
+        text += &format!(
+            ", without {} of unknown duration",
+            words::counted(work.untimed as u64, "move")
+        );
+    }
+    text += &format!(", {} mm³", words::measure(work.removed));
+    if let Some(rate) = work.rate {
+        text += &format!(" at {} mm³/min", words::measure(rate));
+    }
+    if let (Some(depth), Some(width), Some(idle)) = (work.depth, work.width, work.idle_moves) {
+        text += &format!(
+            ", at most {} mm deep and {} mm wide, {} that remove nothing",
+            words::measure(depth),
+            words::measure(width),
+            words::counted(idle as u64, "feed move")
+        );
     }
     text
 }

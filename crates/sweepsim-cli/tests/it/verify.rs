@@ -150,3 +150,42 @@ fn cuts_with_a_stopped_spindle_or_without_a_feed() {
     fs::write(folder.path("part.nc"), silent).unwrap();
     assert_eq!(verified(&folder, 0, &[]).1, []);
 }
+
+#[test]
+fn what_each_move_does() {
+    let folder = workdir(&job("", 12.0, LIMITS));
+    let (report, _) = verified(&folder, 0, &["--moves"]);
+    let work = report.work.unwrap();
+    // 40 + 2.5 + 40 mm at 400 mm/min; 4.5 + 17 mm at the assumed 10 m/min.
+    assert!((work.seconds - 82.5 / 400.0 * 60.0).abs() < 1e-9, "{work:?}");
+    assert!((work.rapid_seconds - 21.5 / 10_000.0 * 60.0).abs() < 1e-9, "{work:?}");
+    assert_eq!(
+        (work.length, work.rapid_length, work.moves, work.rapid_moves),
+        (82.5, 21.5, 5, 2)
+    );
+    assert_eq!((work.untimed, work.idle_moves), (0, Some(1)));
+    assert!((work.removed - report.volume_removed.unwrap()).abs() < 1e-6, "{work:?}");
+    assert!((work.rate.unwrap() - work.removed / work.seconds * 60.0).abs() < 1e-9);
+    let tools = report.tools.unwrap();
+    assert_eq!((tools.len(), tools[0].tool, tools[0].work), (1, 1, work));
+    let text = fs::read_to_string(folder.path("out/moves.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        rows[0].join(","),
+        "path,move,file,line,tool,rapid,seconds,length,removed,depth,width,rate"
+    );
+    let lines: Vec<&str> = rows[1..].iter().map(|row| row[3]).collect();
+    assert_eq!(lines, ["5", "6", "7", "8", "9"]);
+    // The first pass: 2.5 deep, and 6 wide but for half a cell on both sides.
+    let number = |row: usize, column: usize| rows[row][column].parse::<f64>().unwrap();
+    assert!(
+        (number(2, 9) - 2.5).abs() < 1e-6 && (number(2, 10) - 5.5).abs() < 1e-6,
+        "{text}"
+    );
+    assert!(
+        (number(2, 11) - number(2, 8) * 10.0).abs() < 1e-6,
+        "six seconds: {text}"
+    );
+    let total: f64 = (1..rows.len()).map(|row| number(row, 8)).sum();
+    assert!((total - work.removed).abs() < 1e-6, "{total}");
+}

@@ -26,6 +26,12 @@ pub struct JobPath {
     pub spindle_stopped: Vec<bool>,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
     pub no_feed: Vec<bool>,
+    /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
+    pub seconds: Vec<Option<f64>>,
+    /// How long the tool rests between these moves, in seconds.
+    pub dwell_seconds: f64,
+    /// Whether the speeds of rapids had to be assumed.
+    pub assumed_rapids: bool,
     /// Where each pose comes from; empty for poses in the job itself.
     pub origins: Vec<Origin>,
     /// The files of the program, the main program first.
@@ -107,6 +113,7 @@ pub(crate) fn of_program(
         call: pose.call,
     };
     let stopped = stopped_spindle(&program);
+    let times = program.times();
     let has_feed = program.poses.iter().any(|pose| pose.feed.is_some());
     let mut paths = Vec::new();
     let mut begin = 0;
@@ -148,6 +155,9 @@ pub(crate) fn of_program(
             path,
             source: shown.to_owned(),
             rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
+            seconds: times[ends.clone()].iter().map(|time| time.seconds).collect(),
+            dwell_seconds: times[ends.start - 1..ends.end].iter().map(|time| time.rest).sum(),
+            assumed_rapids: times[ends.clone()].iter().any(|time| time.assumed),
             spindle_stopped: stopped.get(ends).unwrap_or_default().to_vec(),
             no_feed: if has_feed {
                 let missing = |pose: &ProgramPose| !pose.rapid && pose.feed.is_none();

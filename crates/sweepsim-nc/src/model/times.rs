@@ -1,6 +1,6 @@
 //! How long each move of a program takes.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector3, Vector6};
 
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{EventKind, Spindle};
@@ -74,7 +74,51 @@ impl Program {
             time.seconds = time.seconds.filter(|seconds| seconds.is_finite());
             all.push(time);
         }
+        if let Some(machine) = self.machine.kinematics.as_deref().filter(|_| known) {
+            self.join_chords(machine, &mut all);
+        }
         all
+    }
+
+    /// Rapids that are divided into chords rest at the ends of their block only: its time is shared among them by their ways.
+    fn join_chords(&self, machine: &Kinematics, all: &mut [MoveTime]) {
+        let change = |index: usize| {
+            let [from, to] = [&self.positions[index - 1], &self.positions[index]];
+            Vector6::from_fn(|k, _| {
+                if k < 3 {
+                    to.xyz[k] - from.xyz[k]
+                } else {
+                    to.abc[k - 3] - from.abc[k - 3]
+                }
+            })
+        };
+        let mut begin = 1;
+        while begin < self.poses.len() {
+            let (first, mut end) = (&self.poses[begin], begin + 1);
+            let whole = change(begin);
+            let one = |pose: &ProgramPose| {
+                pose.joined && pose.rapid && (pose.file, pose.line, pose.call) == (first.file, first.line, first.call)
+            };
+            if one(first) && whole.norm() > 0.0 {
+                while end < self.poses.len() && one(&self.poses[end]) {
+                    let next = change(end);
+                    // All axes go on in the same direction.
+                    let along = next.dot(&whole) / whole.norm();
+                    if along <= 0.0 || (next - whole * (along / whole.norm())).norm() > 1e-6 * next.norm() {
+                        break;
+                    }
+                    end += 1;
+                }
+            }
+            if end > begin + 1 {
+                let (seconds, _) = Axes::new(machine, &self.positions[begin - 1], &self.positions[end - 1]).rapid();
+                let total: f64 = (begin..end).map(|index| change(index).norm()).sum();
+                for (index, time) in all.iter_mut().enumerate().take(end).skip(begin) {
+                    time.seconds = Some(seconds * change(index).norm() / total);
+                }
+            }
+            begin = end;
+        }
     }
 
     /// How long a feed move takes by its feed. That of a turn in place counts degrees.
@@ -82,11 +126,7 @@ impl Program {
         let feed = to.feed.filter(|feed| *feed > 0.0)?;
         let way = length(from, to);
         let unit = self.units.in_mm();
-        let way = if way > 0.0 {
-            way
-        } else {
-            turn(from, to) * unit
-        };
+        let way = if way > 0.0 { way } else { turn(from, to) * unit };
         let minutes = match to.feed_mode {
             FeedMode::PerMinute => way / (feed * unit),
             FeedMode::PerRevolution => way / (feed * unit * rpm?),
@@ -147,8 +187,6 @@ impl Axes {
     /// What the slowest axis of those with a known speed needs, in seconds.
     fn at_full_speed(&self) -> f64 {
         let known = self.0.iter().filter(|axis| !axis.3);
-        known
-            .map(|(way, speed, ..)| 60.0 * way / speed)
-            .fold(0.0, f64::max)
+        known.map(|(way, speed, ..)| 60.0 * way / speed).fold(0.0, f64::max)
     }
 }

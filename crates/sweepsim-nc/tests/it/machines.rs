@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use sweepsim_motion::{Course, Turning};
-use sweepsim_nc::{AxisLaw, ReadOptions, gcode};
+use sweepsim_nc::{AxisLaw, Machine, ReadOptions, gcode};
 
 const PROGRAM: &str =
     "G21 G90 M428\nG0 X0 Y0 Z5 A0 C0\nG1 X10 A30 C350 F200\nG17 G3 X10 Y20 I0 J10 C700\nG2 X10 Y20 I1 J0\n";
@@ -48,4 +48,49 @@ fn programs_as_machines_run_them() {
         let way = program.poses[program.poses.len() - 1].way;
         assert!(matches!(way.course, Course::Arc(arc) if arc.normal() == normal && arc.angle() > 0.0));
     }
+}
+
+/// Times by hand: trapezoids, triangles, slow axes and feeds of all kinds.
+#[test]
+fn moves_take_as_long_as_their_feeds_and_axes() {
+    let text = r#"Machine(
+        name: "slow",
+        table: [(letter: 'C', axis: (0, 0, 1), speed: 3600, acceleration: 120)],
+        linear: [
+            (letter: 'X', speed: 6000, acceleration: 1000),
+            (letter: 'Y', speed: 12000, acceleration: 500),
+            (letter: 'Z', speed: 600),
+        ],
+    )"#;
+    let mut options = ReadOptions::default();
+    options.machine = Machine::read(text).unwrap();
+    let program = "G21 G90\nT1 M6\nG0 X0 Y0 Z0 C0\nX100\nX102\nX0 Y400\nG1 Z-30 F1200\nG93 X10 F2\nG94 G4 P1.5\nG95 S1000 M3 G1 X20 F0.1\nG94 G0 C90\n";
+    let program = gcode::read(program, &options).unwrap();
+    let times = program.times();
+    let expected = [
+        // 100 mm/s after 0.1 s and 5 mm; the same at the end.
+        0.2 + 90.0 / 100.0,
+        // 2 mm never reach it: twice √(1 mm · 2 / 1000).
+        2.0 * 0.002_f64.sqrt(),
+        // Y last: 200 mm/s after 0.4 s and 40 mm.
+        0.8 + 320.0 / 200.0,
+        // Z at its largest 10 mm/s.
+        3.0,
+        // Half a minute by inverse time.
+        30.0,
+        // 100 mm/min.
+        6.0,
+        // 60 degrees per second after half a second and 15 degrees.
+        1.0 + 60.0 / 60.0,
+    ];
+    let found: Vec<f64> = times[1..].iter().filter_map(|time| time.seconds).collect();
+    // The turn, without tip control, is made of chords.
+    let (straight, chords) = found.split_at(6);
+    assert!(chords.len() > 10);
+    let found = [straight, &[chords.iter().sum()]].concat();
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+    assert_eq!(times.iter().map(|time| time.rest).sum::<f64>(), 1.5);
+    assert!(times.iter().all(|time| !time.assumed));
 }

@@ -4,27 +4,27 @@ use super::depth::{Side, greatest};
 use super::finding::{Finding, FindingKind};
 use super::heights::HeightMap;
 use super::lines::Lines;
-use super::scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
+use super::scene::{PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 use super::search::{Arena, Touch, Touching};
 use super::solid::MovingSolid;
 use super::target::Target;
 use crate::error::SweepError;
 use crate::sweep::{CHUNK, Options};
 use std::ops::{ControlFlow, Range};
-use sweepsim_dexel::{Dexels, Grid, Interval, Operation};
+use sweepsim_dexel::{Dexels, Grid, Interval};
 use sweepsim_solve::Monitor;
 
 /// The state between two runs.
-struct Work<'a> {
-    remaining: Dexels,
-    heights: HeightMap,
+pub(super) struct Work<'a> {
+    pub(super) remaining: Dexels,
+    pub(super) heights: HeightMap,
     fixtures: Option<(&'a Dexels, HeightMap)>,
     target: Option<&'a Target>,
     /// Options of the sweeps; the path number is that of the present toolpath.
-    options: Options,
+    pub(super) options: Options,
     each_move: bool,
-    monitor: &'a dyn Monitor,
-    done: Verification,
+    pub(super) monitor: &'a dyn Monitor,
+    pub(super) done: Verification,
 }
 
 /// Judges the moves of a program in their order, and removes what they cut.
@@ -127,8 +127,8 @@ pub fn verify(
 }
 
 /// A cutter and its bodies, prepared.
-struct Solids<'a> {
-    cutter: MovingSolid<'a>,
+pub(super) struct Solids<'a> {
+    pub(super) cutter: MovingSolid<'a>,
     bodies: Vec<MovingSolid<'a>>,
 }
 
@@ -340,60 +340,6 @@ impl Work<'_> {
             place: grid.frame().to_world([grid.x(i), grid.y(j), middle]),
             depth,
             volume: touch.all.length() * dx * dy,
-        }
-    }
-
-    /// What each move of a run removes.
-    fn each_move(
-        &mut self,
-        path: usize,
-        solids: &Solids,
-        moves: Range<usize>,
-        cut: &[(u32, Vec<Interval>)],
-    ) -> Result<(), SweepError> {
-        let grid = *self.remaining.grid();
-        let [dx, dy] = grid.spacing();
-        let mut material = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));
-        for number in moves {
-            let swept =
-                solids
-                    .cutter
-                    .swept_near(number..number + 1, &grid, &self.heights, &self.options, self.monitor)?;
-            let removed = material.common(&swept.lines, 0.0);
-            self.done.moves.push(MoveRemoval {
-                path,
-                number,
-                volume: removed.length() * dx * dy,
-                depth: removed.longest().map_or(0.0, |(_, [lower, upper])| upper - lower),
-            });
-            material = material.without(&swept.lines);
-        }
-        Ok(())
-    }
-
-    /// Removes what a run has swept.
-    fn remove(&mut self, path: usize, cut: &[(u32, Vec<Interval>)]) {
-        let grid = *self.remaining.grid();
-        let [dx, dy] = grid.spacing();
-        let before = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));
-        self.done.paths[path].volume += before.common(cut, 0.0).length() * dx * dy;
-        let pieces: Vec<(u32, Interval)> = cut
-            .iter()
-            .flat_map(|(line, intervals)| intervals.iter().map(|interval| (*line, *interval)))
-            .collect();
-        self.remaining
-            .update(Operation::Difference, &pieces)
-            .expect("swept intervals have positive lengths, on lines of the grid");
-        let mut window = [[usize::MAX, 0]; 2];
-        for (line, _) in cut {
-            self.heights.update(&self.remaining, *line);
-            let (i, j) = grid.place(*line as usize);
-            for (range, n) in window.iter_mut().zip([i, j]) {
-                *range = [range[0].min(n), range[1].max(n)];
-            }
-        }
-        if !cut.is_empty() {
-            self.heights.refresh(window[0], window[1]);
         }
     }
 }

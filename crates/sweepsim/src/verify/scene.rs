@@ -116,7 +116,12 @@ pub struct PathRemoval {
     pub volume: f64,
 }
 
-/// What a move removes.
+/// What a move removes, and how its cutter engages.
+///
+/// Each point that is removed is seen from the tool at the time of the move at which the tool's axis is nearest to it, the earliest of them: so many
+/// millimetres above the tip along the axis, and so many across the feed, which is the way of the axis's nearest point. In moves without turns
+/// these are exact on the lines of the grid; in others the tool is placed at 128 times, and so many points of each interval are looked at as there
+/// are cells along it, at most 17.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MoveRemoval {
@@ -126,8 +131,11 @@ pub struct MoveRemoval {
     pub number: usize,
     /// The volume; 0 for moves that remove nothing.
     pub volume: f64,
-    /// The greatest length that it removes of any line.
+    /// The axial depth: between the lowest and the highest point above the tip. In a plunge that is the depth of what is drilled.
     pub depth: f64,
+    /// The radial width: between the farthest points on both sides of the axis, across the feed. In a plunge, which feeds along the axis, the
+    /// larger of two widths at right angles.
+    pub width: f64,
 }
 
 /// The result of [`verify`](fn@crate::verify::verify).

@@ -6,6 +6,7 @@ mod program;
 mod solids;
 mod verdict;
 
+use super::program::clock;
 use super::task::Task;
 use crate::session::{Failure, JobSession, tool_in_words, words};
 use course::Courses;
@@ -253,6 +254,13 @@ fn tools(source: &PageSource, made: &Courses) -> Table {
                 .sum(),
         )
     };
+    let seconds = |number: u32| -> Option<f64> {
+        let tools = source.report.tools.as_ref()?;
+        tools
+            .iter()
+            .find(|summary| summary.tool == number)
+            .map(|summary| summary.work.total_seconds())
+    };
     let row = |(number, tool)| {
         let number: &u32 = number;
         let own = || {
@@ -274,16 +282,17 @@ fn tools(source: &PageSource, made: &Courses) -> Table {
             words::count(moves as u64),
             format!("{cut:.0}"),
             format!("{rapid:.0}"),
+            seconds(*number).map_or("–".to_owned(), clock),
             removed(*number).map_or("–".to_owned(), measure),
         ]
     };
     Table {
         title: "Tools".to_owned(),
-        columns: ["Tool", "Shape", "Moves", "Feed mm", "Rapid mm", "Removed mm³"]
+        columns: ["Tool", "Shape", "Moves", "Feed mm", "Rapid mm", "Time", "Removed mm³"]
             .map(str::to_owned)
             .into(),
         rows: job.tools.iter().map(row).collect(),
-        numbers: vec![2, 3, 4, 5],
+        numbers: vec![2, 3, 4, 5, 6],
         printed: true,
         ..Table::default()
     }

@@ -2,6 +2,7 @@
 
 mod by_force;
 mod deviation;
+mod removal;
 
 use by_force::{Case, Cylinder, pose};
 use std::collections::BTreeMap;

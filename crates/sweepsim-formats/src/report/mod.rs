@@ -1,5 +1,9 @@
 //! `report.json`: the results of a run, or of a comparison, for scripts.
 
+mod work;
+
+pub use work::{MoveSummary, ToolSummary, WorkSummary, write_moves_csv};
+
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +52,12 @@ pub struct Report {
     /// What each path removes (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paths: Option<Vec<PathSummary>>,
+    /// What each tool does, in the order of the tools' numbers (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tools: Option<Vec<ToolSummary>>,
+    /// What all tools do (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub work: Option<WorkSummary>,
     /// What is odd about the job although it could be run: each in one sentence.
     #[serde(default)]
     pub warnings: Vec<String>,

@@ -1,7 +1,9 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
+mod work;
+
 use super::task::sweeping;
-use crate::arguments::RunOptions;
+use crate::arguments::{JudgeOptions, RunOptions};
 use crate::session::{Failure, JobSession, phase};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -13,7 +15,9 @@ use sweepsim::verify::{
 };
 use sweepsim::{Monitor, Statistics};
 use sweepsim_dexel::{Dexels, Grid, Operation};
-use sweepsim_formats::{DeviationSummary, Job, JobPath, PathSummary, Report, ReportedFinding, ReportedRegion, Verdict};
+use sweepsim_formats::{
+    DeviationSummary, Job, JobPath, MoveSummary, PathSummary, Report, ReportedFinding, ReportedRegion, Verdict,
+};
 
 /// The limits of a target that comes without any, in millimetres.
 const LIMIT: f64 = 0.1;
@@ -26,13 +30,15 @@ pub(super) struct Verified {
     pub statistics: Statistics,
     pub volume_removed: f64,
     pub target: Option<Target>,
+    /// What each move does, if asked for.
+    pub moves: Vec<MoveSummary>,
 }
 
 /// Verifies the job of a session, and describes the findings in the report.
 pub(super) fn verified(
     session: &JobSession,
     options: &RunOptions,
-    first: bool,
+    judging: &JudgeOptions,
     report: &mut Report,
 ) -> Result<Verified, Failure> {
     let (job, progress) = (&session.job, &session.progress);
@@ -58,12 +64,12 @@ pub(super) fn verified(
         scene = scene.with_target(target);
     }
     progress.phase("verify");
-    let go_on = if first {
+    let go_on = if judging.first {
         ControlFlow::Break(())
     } else {
         ControlFlow::Continue(())
     };
-    let verifying = VerifyOptions::new(sweeping(job, options));
+    let verifying = VerifyOptions::new(sweeping(job, options)).each_move(judging.moves);
     let done = phase(report, "sweep", || {
         verify(scene, &program, &verifying, &mut |_| go_on, progress as &dyn Monitor)
     });
@@ -74,6 +80,7 @@ pub(super) fn verified(
         .filter(|_| !done.stopped)
         .map(|target| phase(report, "deviation", || deviations(&stock, &done.remaining, target)));
     describe(report, session, &done, found.as_ref());
+    let moves = work::describe(report, session, &done);
     let statistics = {
         let mut statistics = Statistics::default();
         statistics.moves = job.moves();
@@ -86,6 +93,7 @@ pub(super) fn verified(
         remaining: done.remaining,
         statistics,
         target,
+        moves,
     })
 }
 
@@ -232,15 +240,9 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     reported.body = body.map(str::to_owned);
     reported.path = Some(finding.path);
     reported.r#move = Some(finding.number);
-    // A move belongs to the line of the pose where it ends.
-    if let Some(origin) = path.origins.get(finding.number + 1) {
-        let file = match path.files.get(origin.file).filter(|_| origin.file > 0) {
-            // A subprogram in a file of its own.
-            Some(file) => file.strip_prefix(&texts.folder).unwrap_or(file).display().to_string(),
-            None => path.source.clone(),
-        };
-        reported.text = texts.line(&file, origin.line);
-        (reported.file, reported.line) = (Some(file), Some(origin.line));
+    if let Some((file, line)) = work::place(path, finding.number, &texts.folder) {
+        reported.text = texts.line(&file, line);
+        (reported.file, reported.line) = (Some(file), Some(line));
     }
     reported.time = Some(finding.time);
     (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);

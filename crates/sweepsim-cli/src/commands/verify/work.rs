@@ -1,0 +1,74 @@
+//! What each move and each tool does: times, lengths, volumes and engagement.
+
+use crate::session::JobSession;
+use std::collections::BTreeMap;
+use std::path::Path;
+use sweepsim::verify::Verification;
+use sweepsim_formats::{JobPath, MoveSummary, Report, ToolSummary, WorkSummary};
+use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
+
+/// File and line of a move: those of the pose where it ends.
+pub(super) fn place(path: &JobPath, number: usize, folder: &Path) -> Option<(String, usize)> {
+    let origin = path.origins.get(number + 1)?;
+    let file = match path.files.get(origin.file).filter(|_| origin.file > 0) {
+        // A subprogram in a file of its own.
+        Some(file) => file.strip_prefix(folder).unwrap_or(file).display().to_string(),
+        None => path.source.clone(),
+    };
+    Some((file, origin.line))
+}
+
+/// Sums by tool and in all, for the report; and a row for each move, if the verification knows what each removes.
+pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Verification) -> Vec<MoveSummary> {
+    let job = &session.job;
+    let folder = session.file().parent().unwrap_or(Path::new(""));
+    let mut tools: BTreeMap<u32, WorkSummary> = BTreeMap::new();
+    for (path, removal) in job.paths.iter().zip(&done.paths) {
+        let work = tools.entry(path.tool).or_default();
+        for number in 0..path.path.moves() {
+            let seconds = path.seconds.get(number).copied().flatten();
+            work.add_move(rapid(path, number), seconds, path.path.tip_length(number));
+        }
+        work.dwell_seconds += path.dwell_seconds;
+        work.removed += removal.volume;
+    }
+    let mut rows = Vec::with_capacity(done.moves.len());
+    for removal in &done.moves {
+        let path = &job.paths[removal.path];
+        if removal.number >= path.path.moves() {
+            // A single pose.
+            continue;
+        }
+        let mut row = MoveSummary::default();
+        (row.path, row.number, row.tool) = (removal.path, removal.number, path.tool);
+        (row.file, row.line) = place(path, removal.number, folder).unzip();
+        row.rapid = rapid(path, removal.number);
+        row.seconds = path.seconds.get(removal.number).copied().flatten();
+        row.length = path.path.tip_length(removal.number);
+        (row.removed, row.depth, row.width) = (removal.volume, removal.depth, removal.width);
+        tools.entry(path.tool).or_default().add_engagement(&row);
+        rows.push(row);
+    }
+    let mut all = WorkSummary::default();
+    let summaries = tools.into_iter().map(|(tool, mut work)| {
+        all.add(&work);
+        work.finish();
+        let mut summary = ToolSummary::default();
+        (summary.tool, summary.work) = (tool, work);
+        summary
+    });
+    report.tools = Some(summaries.collect());
+    all.finish();
+    report.work = Some(all);
+    if job.paths.iter().any(|path| path.assumed_rapids) {
+        let [speed, turn] = [RAPID_SPEED / 1000.0, RAPID_TURN];
+        report.notes.push(format!(
+            "the speeds of axes are not known: rapids are timed at {speed} m/min and {turn} degrees per minute"
+        ));
+    }
+    rows
+}
+
+fn rapid(path: &JobPath, number: usize) -> bool {
+    path.rapid.get(number).copied().unwrap_or_default()
+}
