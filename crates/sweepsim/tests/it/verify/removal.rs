@@ -77,7 +77,12 @@ fn slots_ramps_and_holes_by_hand() {
 fn ramps_are_as_deep_as_their_layer() {
     let at = |x: f64, z: f64| pose([x, 0.0, z], [0.0, 0.0, 1.0]);
     let back = [at(30.0, 10.0), at(-30.0, 10.0)];
-    let path = [&[at(-30.0, 3.0), at(30.0, -3.0)][..], &back, &[at(-30.0, 2.0), at(30.0, -4.0)]].concat();
+    let path = [
+        &[at(-30.0, 3.0), at(30.0, -3.0)][..],
+        &back,
+        &[at(-30.0, 2.0), at(30.0, -4.0)],
+    ]
+    .concat();
     let path = Path::new(path).unwrap();
     let (moves, _) = moves(&path, [60, 60]);
     let last = moves.last().unwrap();
