@@ -1,6 +1,6 @@
 //! Restricting, splitting and recomputing the coefficients of a cell, and extracting those of a face.
 
-use super::layout::{Axis, Cell, Layout, Summand};
+use super::layout::{Axis, Cell, Layout, MAX_DEGREE, Summand};
 use crate::numbers::double::{self, Double};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, RowList};
 use smallvec::SmallVec;
@@ -108,19 +108,26 @@ impl Layout {
         for (e, error) in errors[..self.m].iter_mut().enumerate() {
             *error = self.first_noise[e] + self.remainder[e];
         }
-        let one = Double::new(1.0);
+        let mut weights = [Double::default(); MAX_DEGREE + 1];
         for part in &self.parts {
             self.originals(part, buffer);
             let mut steps = 4;
-            // De Casteljau along the slowest axis first: the blocks in front hold the result.
+            let mut single = self.second.is_empty();
+            // The slowest axis first: the first slab becomes the sum of all with the weights of the basis. For each degree, a weight rounds by a few
+            // operations, and a sum by two more: far less than a step.
             for axis in part.axes.iter().rev() {
-                let t = Double::new(x[axis.variable]);
-                let s = one.sub(t);
-                for level in 0..axis.degree {
-                    for i in 0..(axis.degree - level) * axis.inner {
-                        buffer[i] = s.mul(buffer[i]).add(t.mul(buffer[i + axis.inner]));
+                double::basis(axis.degree, x[axis.variable], &mut weights);
+                let (sum, others) = buffer.split_at_mut(axis.inner);
+                for x in &mut *sum {
+                    *x = weights[0].mul(*x);
+                }
+                for (slab, weight) in others.chunks_exact(axis.inner).zip(&weights[1..=axis.degree]) {
+                    for (x, c) in sum.iter_mut().zip(slab) {
+                        let term = if single { weight.times(c.hi) } else { weight.mul(*c) };
+                        *x = x.add(term);
                     }
                 }
+                single = false;
                 steps += axis.degree;
             }
             let e = part.equation;

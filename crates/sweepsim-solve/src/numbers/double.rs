@@ -78,6 +78,19 @@ impl Double {
     }
 }
 
+/// The Bernstein polynomials of a degree at `x` in `[0, 1]`. Only numbers of one sign are added and multiplied, in three operations for each degree.
+pub(crate) fn basis(degree: usize, x: f64, values: &mut [Double]) {
+    let y = Double::of_sum(1.0, -x);
+    values[0] = Double::new(1.0);
+    for step in 1..=degree {
+        values[step] = values[step - 1].times(x);
+        for i in (1..step).rev() {
+            values[i] = y.mul(values[i]).add(values[i - 1].times(x));
+        }
+        values[0] = y.mul(values[0]);
+    }
+}
+
 /// Restricts along one axis to `[lo, hi]`, in place. The interval lies in `[0, 1]` or extends slightly beyond it.
 pub(crate) fn restrict(c: &mut [Double], degree: usize, inner: usize, lo: f64, hi: f64) {
     if degree == 0 {
@@ -127,6 +140,26 @@ mod tests {
         assert!(rest.hi.abs() < 1e-31);
         let tiny = Double::new(1.0).add(Double::new(1e-25)).sub(Double::new(1.0));
         assert!((tiny.hi - 1e-25).abs() < 1e-40);
+    }
+
+    #[test]
+    fn basis_reproduces_constants_and_coordinates() {
+        for degree in [1, 2, 8, 31, 63] {
+            for x in [0.0, 1e-12, 0.3, 0.875, 1.0] {
+                let mut values = [Double::default(); 64];
+                basis(degree, x, &mut values);
+                let (mut sum, mut mean) = (Double::new(-1.0), Double::new(-x));
+                for (k, value) in values[..=degree].iter().enumerate() {
+                    assert!(value.hi >= 0.0);
+                    sum = sum.add(*value);
+                    mean = mean.add(value.times(k as f64).div(Double::new(degree as f64)));
+                }
+                assert!(
+                    sum.hi.abs() < 1e-29 && mean.hi.abs() < 1e-29,
+                    "{degree}, {x}: {sum:?} {mean:?}"
+                );
+            }
+        }
     }
 
     #[test]
