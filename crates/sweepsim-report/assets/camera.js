@@ -3,8 +3,15 @@
 const FIELD = (28 * Math.PI) / 180;
 const SOON = matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : 450;
 
+/** Half the width and the height of a picture at distance 1. On narrow pictures the width is fixed, on wide ones the height. */
+function halves(aspect) {
+  const half = Math.tan(FIELD / 2);
+  return aspect < 1 ? [half, half / aspect] : [half * aspect, half];
+}
+
 class Camera {
-  constructor(low, high) {
+  constructor(low, high, aspect) {
+    this.aspect = aspect;
     this.low = low;
     this.high = high;
     this.home();
@@ -16,8 +23,18 @@ class Camera {
     this.elevation = (36 * Math.PI) / 180;
     this.centre = mix(this.low, this.high, 0.5);
     this.reach = 0.5 * size(sub(this.high, this.low)) || 1;
-    this.distance = (1.04 * this.reach) / Math.sin(FIELD / 2);
     this.flight = null;
+    // As near as all corners allow.
+    const { towards, low, high, centre } = this;
+    const right = unit(cross([0, 0, 1], towards));
+    const up = cross(towards, right);
+    const [wide, tall] = halves(this.aspect);
+    this.distance = 0;
+    for (let n = 0; n < 8; n++) {
+      const corner = sub([0, 1, 2].map((k) => ((n >> k) & 1 ? high[k] : low[k])), centre);
+      const far = Math.max(Math.abs(dot(corner, right)) / wide, Math.abs(dot(corner, up)) / tall);
+      this.distance = Math.max(this.distance, 1.12 * far + dot(corner, towards));
+    }
   }
 
   /** From the centre to the eye. */
@@ -31,8 +48,8 @@ class Camera {
   }
 
   matrix(aspect) {
-    // On narrow pictures the width must fit.
-    const angle = aspect < 1 ? 2 * Math.atan(Math.tan(FIELD / 2) / aspect) : FIELD;
+    this.aspect = aspect;
+    const angle = 2 * Math.atan(halves(aspect)[1]);
     const far = this.distance + 4 * this.reach + size(sub(this.centre, mix(this.low, this.high, 0.5)));
     const near = Math.max(this.distance - far + this.distance, this.distance * 0.02);
     return product(perspective(angle, aspect, Math.min(near, this.distance * 0.2), far), lookAt(this.eye, this.centre, [0, 0, 1]));

@@ -25,7 +25,7 @@ in vec3 tint;
 uniform vec4 section;   // material where dot(section.xyz, p) > section.w is cut away
 uniform vec3 eye;
 uniform vec4 flatColour; // of lines and of one-coloured solids: alpha 0 takes the vertex's colour
-uniform vec3 inside;     // of back faces, seen through the section
+uniform vec4 inside;     // of back faces, seen through the section: alpha 0 shades them like the others
 uniform float alpha;
 uniform int pass;        // 0: shaded, 1: unlit, 2: depth for picking
 out vec4 pixel;
@@ -42,7 +42,7 @@ void main() {
   if (pass == 0) {
     vec3 n = normalize(facing);
     vec3 view = normalize(eye - atWorld);
-    if (gl_FrontFacing) {
+    if (gl_FrontFacing || inside.a == 0.0) {
       vec3 sun = normalize(vec3(-0.45, -0.6, 0.95));
       vec3 fill = normalize(vec3(0.8, 0.25, 0.35));
       float sky = 0.5 + 0.5 * n.z;
@@ -51,7 +51,7 @@ void main() {
       shade = base * (0.22 + 0.24 * sky + 0.62 * max(dot(n, sun), 0.0) + 0.16 * max(dot(n, fill), 0.0) + 0.10 * max(dot(n, view), 0.0))
         + vec3(0.10 * shine + 0.03 * rim);
     } else {
-      vec3 cut = inside * inside;
+      vec3 cut = inside.rgb * inside.rgb;
       float stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 12.0) < 2.0 ? 0.78 : 1.0;
       shade = cut * stripe;
     }
@@ -163,7 +163,7 @@ class Gpu {
     gl.useProgram(this.program);
     gl.uniformMatrix4fv(places.camera, false, camera);
     gl.uniform3fv(places.eye, eye);
-    gl.uniform3fv(places.inside, SECTION.map((c) => c / 255));
+    gl.uniform4fv(places.inside, [...SECTION.map((c) => c / 255), section ? 1 : 0]);
     gl.uniform1i(places.pass, pass);
     this.section = section;
     this.pass = pass;

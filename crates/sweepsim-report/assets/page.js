@@ -97,7 +97,12 @@ function withViewer(viewer, markers) {
     if (on) $("section-at").setAttribute("aria-valuetext", `${short(viewer.plane()[2])} mm`);
     viewer.ask();
   };
-  $("section").addEventListener("input", setSection);
+  $("section").addEventListener("input", () => {
+    // What is nearer to the viewer goes away.
+    const axis = $("section").value;
+    if (axis !== "") $("section-flip").setAttribute("aria-pressed", String(viewer.camera.towards[axis] < 0));
+    setSection();
+  });
   $("section-at").addEventListener("input", setSection);
   $("section-flip").addEventListener("click", () => {
     const button = $("section-flip");
@@ -227,7 +232,7 @@ function withViewer(viewer, markers) {
     } else if (key === "s") {
       const select = $("section");
       select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
-      setSection();
+      select.dispatchEvent(new Event("input"));
     } else if (key === "m") $("measure").click();
   });
 

@@ -96,6 +96,26 @@ function surfaceOf(layer) {
     return true;
   };
 
+  /** Whether the cells around a corner that do not continue an end are at one height: only then do both sides agree on the outline. */
+  const hasTwoLevels = (side, k, ring, [i, j, a, b]) => {
+    const lines = [i * ny + j, (i + a) * ny + j, (i + a) * ny + j + b, i * ny + j + b];
+    const room = 1.2 * Math.max(dx, dy);
+    let other = null;
+    for (let r = 0; r < 4; r++) {
+      const n = lines[r];
+      const many = first[n + 1] - first[n];
+      if (many > 1) return false;
+      if (ring[r] >= 0) {
+        if (Math.abs(z[side][ring[r]] - z[side][k]) > room) return false;
+        continue;
+      }
+      const height = many ? z[side][first[n]] : -Infinity;
+      if (other !== null && height !== other && !(Math.abs(height - other) <= room)) return false;
+      other ??= height;
+    }
+    return true;
+  };
+
   for (let i = 0; i < nx; i++)
     for (let j = 0; j < ny; j++)
       for (let k = first[i * ny + j]; k < first[i * ny + j + 1]; k++)
@@ -131,7 +151,7 @@ function surfaceOf(layer) {
             let [mx, my] = [0, 0];
             let crossings = 0;
             const inside = i + a >= 0 && i + a < nx && j + b >= 0 && j + b < ny;
-            if (inside && count < 4) {
+            if (inside && count < 4 && hasTwoLevels(side, k, ring, [i, j, a, b])) {
               const offsets = [[0, -b], [a, 0], [0, b], [-a, 0]];
               for (let r = 0; r < 4; r++)
                 if (ring[r] < 0 !== ring[(r + 1) % 4] < 0) {

@@ -26,7 +26,7 @@ class Viewer {
     this.marked = null;
     if (this.track) this.drawPath();
     const [low, high] = this.extent();
-    this.camera = new Camera(low, high);
+    this.camera = new Camera(low, high, canvas.clientWidth / canvas.clientHeight || 1);
     this.rebuilt = -1;
     this.mode = "plain";
     const asked = () => this.ask();

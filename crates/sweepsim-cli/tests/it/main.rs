@@ -3,6 +3,7 @@
 mod command;
 mod directions;
 mod exchange;
+mod page;
 mod programs;
 mod support;
 mod verify;

@@ -3,3 +3,4 @@
 mod decoder;
 mod page;
 mod scene;
+mod waves;

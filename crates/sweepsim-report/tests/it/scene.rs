@@ -270,39 +270,13 @@ fn noise_fits_as_well() {
     assert!((nth - nth.round()).abs() < 1e-9 && nth > 1.5, "{spacing}");
 }
 
-/// A million dexels of a milled surface: waves with a scallop from each pass of a ball end.
+/// With normals, deviations and moves. `cargo run -p sweepsim-report --example waves` writes the same page to a file.
 #[test]
 #[ignore = "takes some seconds"]
 fn a_million_dexels_are_small() {
-    let side = 1000;
-    let area = Area {
-        min: [0.0; 2],
-        max: [200.0; 2],
-        cells: [side; 2],
-    };
-    let part = DexelLayer::new(area, |i, j, line| {
-        let (x, y) = (i as f64 * 0.2, j as f64 * 0.2);
-        let pass = (y / 0.7).floor();
-        let off = y - (pass + 0.5) * 0.7;
-        let z = 30.0 + 8.0 * (x * 0.05).sin() * (y * 0.04).cos() + 5.0 - (25.0 - off * off).sqrt();
-        let (sx, sy) = (
-            0.4 * (x * 0.05).cos() * (y * 0.04).cos(),
-            -0.32 * (x * 0.05).sin() * (y * 0.04).sin() + off / 5.0,
-        );
-        let size = (1.0 + sx * sx + sy * sy).sqrt();
-        let top = LayerEnd {
-            z,
-            normal: [-sx / size, -sy / size, 1.0 / size].map(|c| c as f32),
-            deviation: (off * off / 10.0) as f32,
-            maker: 1 + (pass as u32) * 200 + i as u32 / 5,
-        };
-        line.push([LayerEnd::at(0.0, [0.0, 0.0, -1.0]), top]);
-    });
-    let mut page = Page::new("million");
-    let mut scene = Scene::new(part);
-    scene.limits = Some([0.02, 0.02]);
-    page.scene = Some(scene);
-    let html = page.html();
+    let html = crate::waves::page(1000).html();
     assert!(html.len() < 7_000_000, "{} bytes", html.len());
-    assert!(Data::of(&html).has("lower.u"), "with its normals");
+    let data = Data::of(&html);
+    assert!(data.has("lower.u") && data.has("upper.deviation"));
+    assert_eq!(data.array("part.counts").len(), 1_000_000);
 }
