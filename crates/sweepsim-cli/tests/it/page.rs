@@ -37,7 +37,12 @@ fn page(command: &str, code: i32, more: &[&str]) -> String {
 #[test]
 fn the_page_of_a_verification_says_what_is_wrong_and_where() {
     let html = page("verify", 1, &[]);
-    for words in ["May not be run: one move does harm.", "1 rapid move through material", "Rapid move through material", "part.nc:10"] {
+    for words in [
+        "May not be run: one move does harm.",
+        "1 rapid move through material",
+        "Rapid move through material",
+        "part.nc:10",
+    ] {
         assert!(html.contains(words), "{words}");
     }
     // The line with its neighbours, as text.
