@@ -228,8 +228,20 @@ fn bent(value: &dyn Fn(f64) -> f64, limit: f64, bound: f64) -> Option<(f64, f64)
         open.push((start, low, middle, at, depth + 1));
     }
     let first = first?;
-    let farthest = (0..=64)
-        .map(|k| value(f64::from(k) / 64.0))
-        .fold(value(first), f64::max);
+    // The largest of some samples, and of the course near it.
+    let at = |k: i32| f64::from(k.clamp(0, 128)) / 128.0;
+    let largest = (0..=128)
+        .max_by(|a, b| value(at(*a)).total_cmp(&value(at(*b))))
+        .unwrap_or(0);
+    let (mut low, mut high) = (at(largest - 1), at(largest + 1));
+    for _ in 0..40 {
+        let third = (high - low) / 3.0;
+        if value(low + third) < value(high - third) {
+            low += third;
+        } else {
+            high -= third;
+        }
+    }
+    let farthest = value(first).max(value(at(largest))).max(value(0.5 * (low + high)));
     Some((first, farthest))
 }

@@ -17,4 +17,5 @@ mod programs;
 mod round_trips;
 mod siemens;
 mod tables;
+mod tilted_turns;
 mod tools;

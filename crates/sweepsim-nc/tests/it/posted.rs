@@ -213,7 +213,12 @@ fn one_part_in_five_languages() {
         }
     }
     for (name, program) in &programs {
-        let found = ends(program);
+        let mut program = program.clone();
+        if name.contains("planes") {
+            // The turns into the planes, by the axes alone, are not programmed points.
+            program.poses.retain(|pose| pose.tip_control);
+        }
+        let found = ends(&program);
         assert_eq!(found.len(), expected.len(), "{name}");
         for (found, expected) in found.iter().zip(&expected) {
             assert!(

@@ -235,6 +235,9 @@ impl Reader<'_> {
             .tokens
             .iter()
             .any(|token| matches!(token.text.as_str(), "TURN" | "MOVE"));
+        let has = |word: &str| line.tokens.iter().any(|token| token.text == word);
+        // MOVE moves the linear axes too, by a distance that the machine knows.
+        let turn = has("TURN").then(|| has("FMAX") || has("MAX"));
         self.frames.tilted_shift = [0.0; 3];
         match tilt {
             Some(_) => {
@@ -246,7 +249,7 @@ impl Reader<'_> {
             None => {
                 self.frames.tilt = None;
                 self.apply_frames().map_err(whole)?;
-                if turns && self.track.turn_to([0.0, 0.0, 1.0]).map_err(whole)? {
+                if turns && self.track.turn_to([0.0, 0.0, 1.0], turn).map_err(whole)? {
                     self.track.note("PLANE turns the rotary axes: the path breaks here");
                 }
                 self.control(self.tip_control).map_err(whole)?;
@@ -255,7 +258,7 @@ impl Reader<'_> {
         }
         if turns {
             let normal = self.frames.total(self.plane).direction([0.0, 0.0, 1.0]);
-            if self.track.turn_to(normal).map_err(whole)? {
+            if self.track.turn_to(normal, turn).map_err(whole)? {
                 self.track.note("PLANE turns the rotary axes: the path breaks here");
             }
         } else {

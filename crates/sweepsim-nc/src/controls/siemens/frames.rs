@@ -173,7 +173,9 @@ impl Reader<'_> {
                 .note("CYCLE800 without a direction turns no axis: the tool keeps its direction");
         } else {
             let normal = self.frames.swivel.direction([0.0, 0.0, 1.0]);
-            if self.track.turn_to(normal)? {
+            // With _FR the tool is first drawn back to where only the machine knows.
+            let rapid = (get(0) == 0.0).then_some(true);
+            if self.track.turn_to(normal, rapid)? {
                 self.track.note("CYCLE800 turns the rotary axes: the path breaks here");
             }
         }

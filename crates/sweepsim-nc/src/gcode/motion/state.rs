@@ -205,6 +205,32 @@ impl State {
         Ok(())
     }
 
+    /// Turns the rotary axes while the linear ones stand still, if the machine and the place are known; gives where the coordinates are then.
+    pub fn turn_in_place(&mut self, abc: [f64; 3], rapid: bool) -> Result<Option<[f64; 3]>, NcProblem> {
+        self.driver.change_tool(self.tool);
+        let Some(here) = self.known().filter(|_| self.driver.kinematics().is_some()) else {
+            return Ok(None);
+        };
+        let coordinates = self.coordinates();
+        let axes = match coordinates {
+            Coordinates::Axes => Some(here),
+            Coordinates::Tip => self.driver.axes_at(here, self.abc),
+        };
+        let Some(axes) = axes else { return Ok(None) };
+        let (tip_control, tilted) = (self.tip_control, self.tilted);
+        (self.tip_control, self.tilted) = (false, false);
+        self.xyz = axes.map(Some);
+        let result = self.line_to(MoveEnd { xyz: axes, abc }, rapid);
+        (self.tip_control, self.tilted) = (tip_control, tilted);
+        result?;
+        let there = match coordinates {
+            Coordinates::Axes => axes,
+            Coordinates::Tip => self.driver.tip(&Position::new(axes, abc))?,
+        };
+        self.xyz = there.map(Some);
+        Ok(Some(there))
+    }
+
     /// Whether a move of the axes is not the same as one of the tip.
     pub fn turns_by_axes(&self, abc: [f64; 3]) -> bool {
         self.coordinates() == Coordinates::Axes && self.driver.kinematics().is_some() && abc != self.abc

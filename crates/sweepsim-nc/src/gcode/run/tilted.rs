@@ -129,7 +129,15 @@ impl Reader {
         }
         self.refuse_compensation("a turn of the tool")?;
         if self.state.driver.knows_rotaries() {
-            self.state.abc = self.state.driver.angles(direction, self.state.abc)?;
+            let abc = self.state.driver.angles(direction, self.state.abc)?;
+            let rapid = self.modes.motion != Some(MotionMode::Feed);
+            if let (true, Some(inverse)) = (self.known_position().is_some(), self.map.inverse())
+                && let Some(xyz) = self.state.turn_in_place(abc, rapid)?
+            {
+                self.at = inverse.apply(xyz).map(Some);
+                return Ok(());
+            }
+            self.state.abc = abc;
             self.state.direct = None;
         } else {
             self.state.direct = Some(direction);
