@@ -66,6 +66,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
             report: &report,
             dexels: &outcome.dexels,
             target: outcome.target.as_ref(),
+            moves: &outcome.moves,
             sweeping: sweeping(&session.job, options),
             frames: options.frames,
             threads,

@@ -11,6 +11,7 @@ use sweepsim::Monitor;
 use sweepsim::motion::{Assembly, Path, Pose, Segment, Tool};
 use sweepsim::verify::{Scene, ToolPath, VerifyOptions, verify};
 use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_formats::JobPath;
 use sweepsim_report::{Area, Course, DexelLayer, KeyFrame, LayerEnd, Track, TrackPoint};
 
 /// The most lines of the grid of the moments.
@@ -134,10 +135,15 @@ fn first(path: &Path) -> Option<Place> {
 pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, Failure> {
     let job = &source.session.job;
     let room = 0.1 * job.grid.spacing()[0].min(job.grid.spacing()[1]);
+    // The clock is that of the machine if all moves have a duration, otherwise the way of the tip.
+    let is_timed = |path: &JobPath| {
+        path.seconds.len() == path.path.moves() && path.seconds.iter().all(|s| s.is_some_and(f64::is_finite))
+    };
+    let timed = job.paths.iter().all(is_timed);
     let mut made = Courses {
         track: Track {
             lines: programs.lines(),
-            unit: "mm".to_owned(),
+            unit: if timed { "s" } else { "mm" }.to_owned(),
             ..Track::default()
         },
         course: None,
@@ -175,16 +181,35 @@ pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, 
             let rapid = path.rapid.get(number).copied().unwrap_or_default();
             // What is left out of long programs is straight, as far as people can see.
             let room = if every > 1 { f64::INFINITY } else { room };
-            for place in placements(&path.path, number, reach, room) {
-                let step = before.map_or(0.0, |before| distance(before.tip, place.tip));
-                // A turn on the spot takes time, too.
-                clock += before.map_or(0.0, |before| step.max(0.25 * before.far(&place, reach)));
+            let places = placements(&path.path, number, reach, room);
+            let steps: Vec<[f64; 2]> = std::iter::once(before)
+                .chain(places.iter().copied().map(Some))
+                .zip(&places)
+                .map(|(before, place)| {
+                    let Some(before) = before else { return [0.0; 2] };
+                    let step = distance(before.tip, place.tip);
+                    // A turn on the spot takes time, too.
+                    [step, step.max(0.25 * before.far(place, reach))]
+                })
+                .collect();
+            let whole: f64 = steps.iter().map(|[_, way]| way).sum();
+            let seconds = if timed {
+                path.seconds[number].unwrap_or_default()
+            } else {
+                whole
+            };
+            let pace = if whole > 0.0 { seconds / whole } else { 0.0 };
+            let end = clock + seconds;
+            for (place, [step, way]) in places.iter().zip(&steps) {
+                clock += pace * way;
                 lengths[usize::from(rapid)] += step;
-                before = Some(place);
                 if number % every == 0 || number + 1 == path.path.moves() {
-                    point(clock, &place, made.moves + number as u32, rapid, false);
+                    point(clock, place, made.moves + number as u32, rapid, false);
                 }
             }
+            before = places.last().copied().or(before);
+            // A move without a way may take its time.
+            clock = end.max(clock);
             made.clocks.push(clock);
         }
         made.moves += path.path.moves() as u32;

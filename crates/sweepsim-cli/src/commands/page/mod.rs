@@ -15,7 +15,7 @@ use program::Programs;
 use sweepsim::Options;
 use sweepsim::verify::Target;
 use sweepsim_dexel::{Dexels, Source};
-use sweepsim_formats::Report;
+use sweepsim_formats::{MoveSummary, Report};
 use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
 
 /// What the page is made of.
@@ -25,6 +25,8 @@ pub(crate) struct PageSource<'a> {
     pub report: &'a Report,
     pub dexels: &'a Dexels,
     pub target: Option<&'a Target>,
+    /// What each move does, if that is known.
+    pub moves: &'a [MoveSummary],
     /// The options of the sweep.
     pub sweeping: Options,
     /// The number of moments of the course, if one was chosen.
@@ -66,7 +68,7 @@ pub(crate) fn html(source: &PageSource) -> Result<String, Failure> {
     let clock = |path: usize, number: usize, time: f64| made.clock(path, number, time);
     page.findings = verdict::findings(report, &programs, &clock);
     page.facts = facts(source);
-    page.plots = plots(&made);
+    page.plots = plots(source, &made);
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
     page.tables = vec![setup(source), tools(source, &made), phases(source)];
     if !report.dexels.unresolved.is_empty() {
@@ -163,6 +165,13 @@ fn facts(source: &PageSource) -> Vec<Fact> {
             facts.push(Fact::new(name, format!("{} mm", measure(max)), small));
         }
     }
+    if let Some(work) = report
+        .work
+        .filter(|work| work.untimed == 0 && work.total_seconds() > 0.0)
+    {
+        let rapid = format!("{} of it in rapids", clock(work.rapid_seconds));
+        facts.push(Fact::new("Machine time", clock(work.total_seconds()), rapid));
+    }
     let counts = &report.dexels;
     let audit = match counts.unresolved.len() as u64 {
         0 => "certified".to_owned(),
@@ -179,15 +188,43 @@ fn facts(source: &PageSource) -> Vec<Fact> {
     facts
 }
 
-fn plots(made: &Courses) -> Vec<Plot> {
-    if made.removal.is_empty() {
-        return Vec::new();
+/// Removal and engagement along the program.
+fn plots(source: &PageSource, made: &Courses) -> Vec<Plot> {
+    let mut plots = Vec::new();
+    let timed = made.track.unit == "s";
+    if !made.removal.is_empty() {
+        // mm³/s as cm³/min.
+        let (name, unit, factor) = if timed {
+            ("Removal rate", "cm³/min", 0.06)
+        } else {
+            ("Material removed", "mm³ per mm", 1.0)
+        };
+        plots.push(Plot {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            steps: made
+                .removal
+                .iter()
+                .map(|[from, to, rate]| [*from, *to, factor * rate])
+                .collect(),
+        });
     }
-    vec![Plot {
-        name: "Material removed".to_owned(),
-        unit: "mm³ per mm".to_owned(),
-        steps: made.removal.clone(),
-    }]
+    let mut along = |name: &str, value: fn(&MoveSummary) -> f64| {
+        let step = |row: &MoveSummary| {
+            let clock = |time| made.clock(row.path, row.number, time);
+            Some([clock(0.0)?, clock(1.0)?, value(row)])
+        };
+        plots.push(Plot {
+            name: name.to_owned(),
+            unit: "mm".to_owned(),
+            steps: source.moves.iter().filter_map(step).collect(),
+        });
+    };
+    if !source.moves.is_empty() {
+        along("Axial depth", |row| row.depth);
+        along("Radial width", |row| row.width);
+    }
+    plots
 }
 
 fn point(place: [f64; 3]) -> String {

@@ -3,7 +3,7 @@
 mod work;
 
 use super::task::sweeping;
-use crate::arguments::{JudgeOptions, RunOptions};
+use crate::arguments::{JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobSession, phase};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -21,6 +21,8 @@ use sweepsim_formats::{
 
 /// The limits of a target that comes without any, in millimetres.
 const LIMIT: f64 = 0.1;
+/// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
+const PLOTTED: usize = 1000;
 /// The most lines of a grid of fixtures.
 const MOST_LINES: f64 = 4e6;
 
@@ -69,7 +71,9 @@ pub(super) fn verified(
     } else {
         ControlFlow::Continue(())
     };
-    let verifying = VerifyOptions::new(sweeping(job, options)).each_move(judging.moves);
+    // The page plots what each move does, where that costs little.
+    let plotted = session.outputs.wants(Output::Report) && job.moves() <= PLOTTED;
+    let verifying = VerifyOptions::new(sweeping(job, options)).each_move(judging.moves || plotted);
     let done = phase(report, "sweep", || {
         verify(scene, &program, &verifying, &mut |_| go_on, progress as &dyn Monitor)
     });
