@@ -10,6 +10,7 @@ use super::solid::MovingSolid;
 use super::target::Target;
 use crate::error::SweepError;
 use crate::sweep::{CHUNK, Options};
+use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 use sweepsim_dexel::{Dexels, Grid, Interval};
 use sweepsim_solve::Monitor;
@@ -298,24 +299,28 @@ impl Work<'_> {
         if material.is_empty() {
             return Ok(());
         }
-        let mut arena = Arena {
-            grid,
-            options: &self.options,
-            monitor: self.monitor,
-            unresolved: Vec::new(),
-            undecided: Vec::new(),
-        };
-        let mut touches = Vec::new();
-        arena.touches(touching, moves, material, &mut touches)?;
-        let Arena {
-            unresolved, undecided, ..
-        } = arena;
-        self.done.unresolved.extend(unresolved);
-        self.done
-            .undecided
-            .extend(undecided.into_iter().map(|number| (path, number)));
+        let mut arena = Arena::new(grid, &self.options, self.monitor);
+        let mut suspects = Vec::new();
+        arena.touches(touching, moves, material, &mut suspects)?;
+        self.done.unresolved.extend(arena.unresolved);
+        // Each on its own, in any order.
+        let judged: Vec<_> = suspects
+            .into_par_iter()
+            .map(|suspect| {
+                let mut arena = Arena::new(grid, &self.options, self.monitor);
+                let touch = arena.judged(touching, suspect)?;
+                Ok((touch, arena.unresolved, arena.undecided))
+            })
+            .collect::<Result<_, SweepError>>()?;
+        let mut touches = Vec::with_capacity(judged.len());
+        for (touch, unresolved, undecided) in judged {
+            touches.extend(touch);
+            self.done.unresolved.extend(unresolved);
+            let undecided = undecided.into_iter().map(|number| (path, number));
+            self.done.undecided.extend(undecided);
+        }
         let found: Vec<Finding> = touches
-            .iter()
+            .par_iter()
             .map(|touch| self.finding(grid, path, kind, body, touch))
             .collect();
         self.done.findings.extend(found);

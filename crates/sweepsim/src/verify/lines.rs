@@ -100,6 +100,18 @@ impl Lines {
         self
     }
 
+    /// The material on one line.
+    pub fn of_line(&self, line: u32) -> Self {
+        let at = self.0.binary_search_by_key(&line, |(at, _)| *at);
+        Self(at.map(|at| self.0[at].clone()).into_iter().collect())
+    }
+
+    /// The material on all other lines.
+    pub fn without_line(mut self, line: u32) -> Self {
+        self.0.retain(|(at, _)| *at != line);
+        self
+    }
+
     /// The material on the lines of `other`.
     pub fn on_lines_of(&self, other: &Self) -> Self {
         self.merged(&other.0, false, |own, _| own.clone())

@@ -20,6 +20,7 @@ mod driver;
 mod finding;
 mod heights;
 mod lines;
+mod moment;
 mod removal;
 mod scene;
 mod search;

@@ -1,8 +1,8 @@
 //! The search for the moves that touch material, and for the time at which they first do.
 //!
 //! Stock only shrinks: for a run of moves with material `S₀` before it and `S₁` after it, each `S(t)` lies between them. If what the solid sweeps in the
-//! run meets no `S₀`, the run is safe; otherwise it is halved, the first half first, since its end is the second half's beginning. A single move is
-//! halved in time, until no point of the solid moves farther than the tolerance.
+//! run meets no `S₀`, the run is safe; otherwise it is halved, the first half first, since its end is the second half's beginning. What is left are single
+//! moves, independent of each other, for the search in time.
 //!
 //! *Contact.* A shank that follows its cutter along a wall touches it, and so does a cutter that leaves the slot it has made. Positions are exact to a
 //! fraction of the tolerance only, so whether a line in such a wall counts as inside is arbitrary, and over its whole length. An overlap is therefore real
@@ -18,9 +18,6 @@ use nalgebra::Matrix3;
 use std::ops::Range;
 use sweepsim_dexel::{Grid, Interval};
 use sweepsim_solve::Monitor;
-
-/// The largest number of halves that the search in one move examines.
-const MOST_WINDOWS: usize = 4096;
 
 /// What touches the material, and what removes it meanwhile.
 #[derive(Clone, Copy)]
@@ -48,6 +45,15 @@ pub(super) struct Touch {
     pub all: Lines,
 }
 
+/// A move that meets material which was there before it.
+pub(super) struct Suspect {
+    pub number: usize,
+    /// What there was on the lines that it meets.
+    pub material: Lines,
+    /// What it meets.
+    pub met: Lines,
+}
+
 /// One grid, and what is needed to sweep solids on it.
 pub(super) struct Arena<'a> {
     pub grid: &'a Grid,
@@ -59,9 +65,19 @@ pub(super) struct Arena<'a> {
     pub undecided: Vec<usize>,
 }
 
-impl Arena<'_> {
+impl<'a> Arena<'a> {
+    pub fn new(grid: &'a Grid, options: &'a Options, monitor: &'a dyn Monitor) -> Self {
+        Self {
+            grid,
+            options,
+            monitor,
+            unresolved: Vec::new(),
+            undecided: Vec::new(),
+        }
+    }
+
     /// What a solid sweeps on the lines of `material`.
-    fn swept(
+    pub fn swept(
         &mut self,
         solid: &MovingSolid,
         parts: &[PathPart],
@@ -76,7 +92,7 @@ impl Arena<'_> {
     }
 
     /// The material that a solid meets along these parts.
-    fn overlap(
+    pub fn overlap(
         &mut self,
         solid: &MovingSolid,
         parts: &[PathPart],
@@ -115,13 +131,13 @@ impl Arena<'_> {
         Ok(common)
     }
 
-    /// All moves of a run that touch `material`, which is all there is on some lines before the run.
+    /// The moves of a run that may touch `material`, which is all there is on some lines before the run.
     pub fn touches(
         &mut self,
         touching: Touching,
         moves: Range<usize>,
         material: &Lines,
-        found: &mut Vec<Touch>,
+        found: &mut Vec<Suspect>,
     ) -> Result<(), SweepError> {
         let parts = touching.probe.slice(touching.probe.parts(moves.clone()));
         let met = self.overlap(touching.probe, parts, material, touching.strict)?;
@@ -130,7 +146,8 @@ impl Arena<'_> {
         }
         let material = material.on_lines_of(&met);
         if moves.len() == 1 {
-            found.extend(self.within_move(touching, moves.start, material, met)?);
+            let number = moves.start;
+            found.push(Suspect { number, material, met });
             return Ok(());
         }
         let middle = moves.start + moves.len() / 2;
@@ -143,100 +160,5 @@ impl Arena<'_> {
             None => material,
         };
         self.touches(touching, middle..moves.end, &rest, found)
-    }
-
-    /// The first time at which a move touches material, given all that it meets of the material before it.
-    fn within_move(
-        &mut self,
-        touching: Touching,
-        number: usize,
-        material: Lines,
-        met: Lines,
-    ) -> Result<Option<Touch>, SweepError> {
-        let found = if touching.own || touching.eater.is_none() {
-            Some(self.first_of_static(touching, number, material, met.clone())?)
-        } else {
-            self.first_of_shrinking(touching, number, &material)?
-        };
-        let Some((time, first)) = found else { return Ok(None) };
-        let mut all = met;
-        if let (Some(eater), false) = (touching.eater, touching.own) {
-            let parts = eater.slice(eater.parts(number..number + 1));
-            let left = all
-                .without(&self.swept(eater, parts, &all)?)
-                .longer_than(self.options.tolerance);
-            all = if left.is_empty() { first.clone() } else { left };
-        }
-        Ok(Some(Touch {
-            number,
-            time,
-            first,
-            all,
-        }))
-    }
-
-    /// The first time at which a move meets material that nothing removes before.
-    fn first_of_static(
-        &mut self,
-        touching: Touching,
-        number: usize,
-        mut material: Lines,
-        met: Lines,
-    ) -> Result<(f64, Lines), SweepError> {
-        let (mut window, mut first) = ([0.0, 1.0], met);
-        loop {
-            let middle = 0.5 * (window[0] + window[1]);
-            let parts = touching.probe.within(number, [window[0], middle]);
-            if touching.probe.travel(&touching.probe.within(number, window)) <= self.options.tolerance
-                || parts.is_empty()
-                || middle <= window[0]
-            {
-                return Ok((window[0], first));
-            }
-            let met = self.overlap(touching.probe, &parts, &material, touching.strict)?;
-            if met.is_empty() {
-                window[0] = middle;
-            } else {
-                material = material.on_lines_of(&met);
-                (window[1], first) = (middle, met);
-            }
-        }
-    }
-
-    /// The first time at which a move meets material that is removed while it goes.
-    fn first_of_shrinking(
-        &mut self,
-        touching: Touching,
-        number: usize,
-        material: &Lines,
-    ) -> Result<Option<(f64, Lines)>, SweepError> {
-        // Windows still to look at, the earliest on top, with the material before each; without it if it is that left by the window just done.
-        let mut open: Vec<[f64; 2]> = vec![[0.0, 1.0]];
-        let mut before = material.clone();
-        let mut seen = 0;
-        while let Some(window) = open.pop() {
-            seen += 1;
-            if seen > MOST_WINDOWS {
-                self.undecided.push(number);
-                return Ok(None);
-            }
-            let parts = touching.probe.within(number, window);
-            let met = self.overlap(touching.probe, &parts, &before, touching.strict)?;
-            let middle = 0.5 * (window[0] + window[1]);
-            let short = touching.probe.travel(&parts) <= self.options.tolerance || middle <= window[0];
-            if !met.is_empty() && !short {
-                open.extend([[middle, window[1]], [window[0], middle]]);
-                continue;
-            }
-            if let Some(eater) = touching.eater {
-                let eaten = self.swept(eater, &eater.within(number, window), &before)?;
-                let left = met.without(&eaten).longer_than(self.options.tolerance);
-                if !left.is_empty() {
-                    return Ok(Some((window[0], left)));
-                }
-                before = before.without(&eaten);
-            }
-        }
-        Ok(None)
     }
 }

@@ -1,0 +1,174 @@
+//! The search for the time at which a move first touches material.
+//!
+//! Lines are independent of each other, so the first time of all is the least of theirs. The time of one line is found by halving, with sweeps over that
+//! line alone, until no point of the solid moves farther than the tolerance. One sweep of the move's part before that time then tells which lines are
+//! touched earlier, if any: one of them is next. Since each such line drops about half of the others, few are needed.
+//!
+//! A body may touch material that its own move removes later. What the whole move leaves is treated as above; it bounds the time within which the rest,
+//! material that shrinks meanwhile, has to be looked at.
+
+use super::lines::Lines;
+use super::search::{Arena, Suspect, Touch, Touching};
+use crate::error::SweepError;
+
+/// The largest number of halves that the search in one move examines.
+const MOST_WINDOWS: usize = 4096;
+/// The most lines whose own times are found, before all that are left are looked at together.
+const MOST_LINES: usize = 12;
+
+impl Arena<'_> {
+    /// Whether, when and where a move touches material.
+    pub fn judged(&mut self, touching: Touching, suspect: Suspect) -> Result<Option<Touch>, SweepError> {
+        let Suspect { number, material, met } = suspect;
+        if touching.own || touching.eater.is_none() {
+            let (time, first) = self.first_of_static(touching, number, &material, met.clone(), 1.0)?;
+            let all = met;
+            return Ok(Some(Touch {
+                number,
+                time,
+                first,
+                all,
+            }));
+        }
+        self.judged_shrinking(touching, number, &material, &met)
+    }
+
+    fn judged_shrinking(
+        &mut self,
+        touching: Touching,
+        number: usize,
+        material: &Lines,
+        met: &Lines,
+    ) -> Result<Option<Touch>, SweepError> {
+        let Some(eater) = touching.eater else { return Ok(None) };
+        let parts = eater.slice(eater.parts(number..number + 1));
+        let eaten = self.swept(eater, parts, material)?;
+        let left = met.without(&eaten).longer_than(self.options.tolerance);
+        let stays = material.without(&eaten);
+        let mut found = None;
+        if !left.is_empty() {
+            found = Some(self.first_of_static(touching, number, &stays.on_lines_of(&left), left.clone(), 1.0)?);
+        }
+        // Until then only what the move removes itself can be in the way.
+        let end = found.as_ref().map_or(1.0, |(time, _)| *time);
+        let shrinks = material.minus(&stays);
+        if let Some(earlier) = self.first_of_shrinking(touching, number, &shrinks, end, found.is_some())? {
+            found = Some(earlier);
+        }
+        let Some((time, first)) = found else { return Ok(None) };
+        let all = if left.is_empty() { first.clone() } else { left };
+        Ok(Some(Touch {
+            number,
+            time,
+            first,
+            all,
+        }))
+    }
+
+    /// The first time before `end` at which a move meets material that nothing removes, given what it meets.
+    fn first_of_static(
+        &mut self,
+        touching: Touching,
+        number: usize,
+        material: &Lines,
+        mut met: Lines,
+        mut end: f64,
+    ) -> Result<(f64, Lines), SweepError> {
+        for _ in 0..MOST_LINES {
+            // The deepest overlap is likely to be an early one.
+            let Some((line, _)) = met.longest() else { break };
+            let own = met.of_line(line);
+            let (time, first) = self.halved(touching, number, &material.of_line(line), own, end)?;
+            let parts = touching.probe.within(number, [0.0, time]);
+            let others = material.on_lines_of(&met).without_line(line);
+            if parts.is_empty() || others.is_empty() {
+                return Ok((time, first));
+            }
+            met = self.overlap(touching.probe, &parts, &others, touching.strict)?;
+            if met.is_empty() {
+                return Ok((time, first));
+            }
+            end = time;
+        }
+        let material = material.on_lines_of(&met);
+        self.halved(touching, number, &material, met, end)
+    }
+
+    /// The same by halving the time, for all lines together.
+    fn halved(
+        &mut self,
+        touching: Touching,
+        number: usize,
+        material: &Lines,
+        met: Lines,
+        end: f64,
+    ) -> Result<(f64, Lines), SweepError> {
+        let (mut window, mut first) = ([0.0, end], met);
+        let mut material = material.clone();
+        loop {
+            let middle = 0.5 * (window[0] + window[1]);
+            let parts = touching.probe.within(number, [window[0], middle]);
+            if touching.probe.travel(&touching.probe.within(number, window)) <= self.options.tolerance
+                || parts.is_empty()
+                || middle <= window[0]
+            {
+                return Ok((window[0], first));
+            }
+            let met = self.overlap(touching.probe, &parts, &material, touching.strict)?;
+            if met.is_empty() {
+                window[0] = middle;
+            } else {
+                material = material.on_lines_of(&met);
+                (window[1], first) = (middle, met);
+            }
+        }
+    }
+
+    /// The first time before `end` at which a move meets material that is removed while it goes. `found`: whether it is known to touch other
+    /// material at `end`, so that it is not undecided if the budget ends.
+    fn first_of_shrinking(
+        &mut self,
+        touching: Touching,
+        number: usize,
+        material: &Lines,
+        end: f64,
+        found: bool,
+    ) -> Result<Option<(f64, Lines)>, SweepError> {
+        // Windows still to look at, the earliest on top; `before` is what is left at the beginning of the one on top.
+        let mut open: Vec<[f64; 2]> = vec![[0.0, end]];
+        let mut before = material.clone();
+        let mut seen = 0;
+        while let Some(window) = open.pop() {
+            seen += 1;
+            if before.is_empty() {
+                break;
+            }
+            if seen > MOST_WINDOWS {
+                if !found {
+                    self.undecided.push(number);
+                }
+                return Ok(None);
+            }
+            let parts = touching.probe.within(number, window);
+            if parts.is_empty() {
+                continue;
+            }
+            let met = self.overlap(touching.probe, &parts, &before, touching.strict)?;
+            let middle = 0.5 * (window[0] + window[1]);
+            let short = touching.probe.travel(&parts) <= self.options.tolerance || middle <= window[0];
+            if !met.is_empty() && !short {
+                open.extend([[middle, window[1]], [window[0], middle]]);
+                continue;
+            }
+            if let Some(eater) = touching.eater {
+                let eaten = self.swept(eater, &eater.within(number, window), &before)?;
+                let left = met.without(&eaten).longer_than(self.options.tolerance);
+                if !left.is_empty() {
+                    return Ok(Some((window[0], left)));
+                }
+                before = before.without(&eaten);
+            }
+        }
+        Ok(None)
+    }
+}
