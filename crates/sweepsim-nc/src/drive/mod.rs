@@ -9,6 +9,7 @@ mod excursions;
 mod post;
 mod rapids;
 mod track;
+mod turns;
 
 pub use check::{AxisFault, AxisFinding, check};
 pub use post::{PostError, PostOptions, post};

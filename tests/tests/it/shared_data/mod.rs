@@ -1,5 +1,6 @@
 //! Files that nobody here wrote: `../shared/data` beside the project. Where it is absent, these tests are listed as ignored.
 
+mod by_their_numbers;
 mod cl_files;
 mod conformance;
 mod curves;

@@ -1,0 +1,137 @@
+//! Real 3-axis programs against their own numbers, read here word by word: the end of every block.
+
+use super::folder;
+use std::collections::BTreeMap;
+use sweepsim_nc::{Program, ReadOptions, read_file};
+
+/// The ends of the blocks of a program that has no offsets, cycles, variables or subprograms, by line. `None`: it has some.
+fn ends(text: &str) -> Option<BTreeMap<usize, [f64; 3]>> {
+    let mut found = BTreeMap::new();
+    let (mut at, mut absolute, mut unit, mut moving) = ([None::<f64>; 3], true, 1.0, false);
+    for (index, line) in text.lines().enumerate() {
+        let mut code = String::new();
+        let mut comment = false;
+        for c in line.chars() {
+            match c {
+                '(' => comment = true,
+                ')' => comment = false,
+                ';' if !comment => break,
+                c if !comment && !c.is_whitespace() => code.push(c.to_ascii_uppercase()),
+                _ => {}
+            }
+        }
+        if code.contains(['#', '[', 'O', '<']) && !code.starts_with('%') {
+            return None;
+        }
+        if code.starts_with('%') {
+            continue;
+        }
+        let starts: Vec<usize> = code
+            .match_indices(|c: char| c.is_ascii_alphabetic())
+            .map(|(at, _)| at)
+            .collect();
+        let words: Vec<(char, f64)> = starts
+            .iter()
+            .enumerate()
+            .filter_map(|(k, &start)| {
+                let end = starts.get(k + 1).copied().unwrap_or(code.len());
+                Some((code[start..].chars().next()?, code[start + 1..end].parse().ok()?))
+            })
+            .collect();
+        let before = at;
+        for (letter, value) in &words {
+            match (letter, (value * 10.0).round() as i64) {
+                ('G', 0 | 10 | 20 | 30) => moving = true,
+                ('G', 200 | 700) => unit = 25.4,
+                ('G', 210 | 710) => unit = 1.0,
+                ('G', 900) => absolute = true,
+                ('G', 910) => absolute = false,
+                ('G', 40 | 170 | 400 | 430 | 490 | 540 | 610 | 611 | 640 | 800 | 930 | 940 | 980 | 911) => {}
+                ('G', 180 | 190) => {}
+                ('G', _) | ('A' | 'B' | 'C' | 'U' | 'V' | 'W', _) => return None,
+                _ => {}
+            }
+        }
+        for (letter, value) in words {
+            if let Some(k) = "XYZ".find(letter) {
+                at[k] = match at[k] {
+                    _ if absolute => Some(value * unit),
+                    Some(now) => Some(now + value * unit),
+                    None => return None,
+                };
+            }
+        }
+        if let ([Some(x), Some(y), Some(z)], true) = (at, moving && at != before) {
+            found.insert(index + 1, [x, y, z]);
+        }
+    }
+    Some(found)
+}
+
+fn last_by_line(program: &Program) -> BTreeMap<usize, [f64; 3]> {
+    program.poses.iter().map(|pose| (pose.line, pose.pose.tip())).collect()
+}
+
+#[test]
+#[cfg_attr(not(shared_data), ignore = "needs ../shared/data")]
+fn the_end_of_every_block() {
+    let mut options = ReadOptions::default();
+    options.arc_tolerance = 0.1;
+    let mut checked = BTreeMap::new();
+    let mut wrong: Vec<String> = Vec::new();
+    for part in ["3axis/linuxcnc", "3axis/camotics"] {
+        for entry in std::fs::read_dir(folder().join(part)).expect("a folder") {
+            let file = entry.expect("a file").path();
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if !["nc", "ngc", "gcode"]
+                .iter()
+                .any(|extension| name.ends_with(&format!(".{extension}")))
+            {
+                continue;
+            }
+            let text = String::from_utf8_lossy(&std::fs::read(&file).expect("bytes")).into_owned();
+            let Some(expected) = ends(&text) else {
+                println!("{name}: has more than moves");
+                continue;
+            };
+            let program = read_file(&file, &options).unwrap_or_else(|error| panic!("{error}"));
+            let found = last_by_line(&program);
+            for (line, end) in &expected {
+                // Where the tool already is, at the start, there is no move.
+                let Some(tip) = found.get(line) else {
+                    if program.poses[0].line > *line || program.poses[0].pose.tip() == *end {
+                        continue;
+                    }
+                    wrong.push(format!("{name}:{line}: no move to {end:?}"));
+                    continue;
+                };
+                let off = tip.iter().zip(end).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                if off > 1e-9 {
+                    wrong.push(format!("{name}:{line}: {tip:?}, but the file says {end:?}"));
+                }
+            }
+            // Once all coordinates are known, no other block moves, but for full circles, whose end is their start.
+            let known = expected.keys().next().copied().unwrap_or(0);
+            for line in found
+                .keys()
+                .filter(|line| **line > known && !expected.contains_key(line))
+            {
+                let text = text.lines().nth(*line - 1).unwrap_or("").to_ascii_uppercase();
+                if !text.contains(['I', 'J', 'K']) {
+                    wrong.push(format!("{name}:{line}: {text:?} moves"));
+                }
+            }
+            checked.insert(name, expected.len());
+        }
+    }
+    println!("{checked:#?}");
+    assert!(
+        wrong.is_empty(),
+        "{} wrong: {:#?}",
+        wrong.len(),
+        &wrong[..wrong.len().min(20)]
+    );
+    // All but three, which have variables.
+    assert_eq!(checked.len(), 26);
+    assert!(checked.values().sum::<usize>() > 380_000);
+}
