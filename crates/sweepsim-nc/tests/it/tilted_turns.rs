@@ -2,7 +2,10 @@
 
 use nalgebra::Vector3;
 use proptest::prelude::*;
-use sweepsim_nc::{Machine, NcError, Position, Program, ReadOptions, check, gcode, heidenhain, siemens};
+use sweepsim_motion::Course;
+use sweepsim_nc::{
+    Machine, NcError, Position, PostOptions, Program, ReadOptions, check, gcode, heidenhain, post, siemens,
+};
 
 fn options(name: &str) -> ReadOptions {
     let mut options = ReadOptions::default();
@@ -113,5 +116,40 @@ fn without_a_machine_the_path_breaks() {
                 .any(|note| note.message.contains("the path breaks here")),
             "{language}"
         );
+    }
+}
+
+#[test]
+fn posted_arcs_come_back() {
+    let text = "G0 X10 Y0 Z0\nG3 X0 Y10 I-10 J0 F100\nG2 X0 Y10 Z-4 I5 J0 P2\nG18 G3 X0 Z6 I5 K5\nG19 G2 Y20 Z6 J5 K0\nG17 G1 X5\nG3 X5 Y20 I1 J2\n";
+    for name in ["3-axis", "rotary-a", "trunnion-ac", "head-bc"] {
+        let mut options = options(name);
+        options.exact_arcs = true;
+        let read = gcode::read(text, &options).unwrap();
+        let machine = options.machine.kinematics.clone().unwrap();
+        for tip_control in [false, true] {
+            let posted = post(&read, &machine, &PostOptions::tip_control(tip_control)).unwrap();
+            assert_eq!(
+                posted.matches("G2 ").count() + posted.matches("G3 ").count(),
+                5,
+                "{posted}"
+            );
+            let back = gcode::read(&posted, &options).unwrap_or_else(|error| panic!("{error}\n{posted}"));
+            assert_eq!(back.poses.len(), read.poses.len(), "{posted}");
+            for (a, b) in back.poses.iter().zip(&read.poses) {
+                let off = |a: [f64; 3], b: [f64; 3]| (Vector3::from(a) - Vector3::from(b)).norm();
+                assert!(off(a.pose.tip(), b.pose.tip()) < 1e-9, "{name}: {posted}");
+                match (a.way.course, b.way.course) {
+                    (Course::Arc(a), Course::Arc(b)) => {
+                        assert!(
+                            off(a.centre(), b.centre()) < 1e-9 && off(a.normal(), b.normal()) < 1e-9,
+                            "{name}: {posted}"
+                        );
+                        assert!((a.angle() - b.angle()).abs() < 1e-9, "{name}: {posted}");
+                    }
+                    (a, b) => assert_eq!(a, b),
+                }
+            }
+        }
     }
 }
