@@ -65,7 +65,7 @@ fn without(system: &System, cell: &Cell, left_out: usize, solver: &PointSolver) 
                 let (lo, hi) = whole.ranges(&mut around);
                 if lo[left_out] > 0.0 {
                     let side = if upper { 1 } else { -1 };
-                    let place = if (left_out + variable) % 2 == 0 { 1 } else { -1 };
+                    let place = if (left_out + variable).is_multiple_of(2) { 1 } else { -1 };
                     degree += side * place * i32::from(root.orientation);
                 } else if hi[left_out] >= 0.0 {
                     return None;

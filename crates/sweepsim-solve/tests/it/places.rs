@@ -3,7 +3,7 @@
 use crate::support::expression::{Polynomial, exact};
 use crate::support::planted::Random;
 use dashu_ratio::RBig;
-use sweepsim_solve::{Enclosure, PointSolver, Points, System};
+use sweepsim_solve::{Enclosure, Formula, PointSolver, Points, System};
 
 /// Roots of the returned answer are consistent: the point in the enclosure, that in the box without another root, no other enclosure in it.
 fn consistent(points: &Points, what: &str) {
@@ -146,4 +146,19 @@ fn a_square_far_from_the_origin() {
     let points = PointSolver::default().solve(&system, &()).unwrap();
     assert_eq!((points.roots.len(), points.unresolved.len()), (2, 0));
     consistent(&points, "far away");
+}
+
+#[test]
+fn differences_far_from_the_origin_lose_nothing() {
+    // (x − a)(x − b)(x − c)(x − d) on [10⁹, 10⁹ + 1]: `x` and the numbers are large, and only their differences matter.
+    let domain = [Enclosure::new(1e9, 1e9 + 1.0).unwrap(); 2];
+    let product = |j: usize| {
+        let factors =
+            (0..4).map(|k| Formula::variable(j) - (1e9 + 0.125 + 0.25 * f64::from(k)) + Formula::variable(1 - j) * 0.0);
+        factors.reduce(|product, f| product * f).unwrap()
+    };
+    let tied = product(0) + (Formula::variable(1) - (1e9 + 0.5)).powi(2) * 1e-3;
+    let system = System::of_formulas(&domain, [tied, product(1)]).unwrap();
+    let points = PointSolver::default().solve(&system, &()).unwrap();
+    assert_eq!((points.roots.len(), points.unresolved.len()), (16, 0));
 }
