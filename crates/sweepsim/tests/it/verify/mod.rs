@@ -5,7 +5,6 @@ mod deviation;
 mod removal;
 
 use by_force::{Case, Cylinder, pose};
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use sweepsim::prelude::*;
 use sweepsim::verify::{MoveState, Scene, ToolPath, VerifyOptions, verify};
@@ -156,34 +155,70 @@ fn collisions_in_moves_of_other_kinds() {
     assert!(sure >= 12, "{sure}");
 }
 
+/// The kinds of planted faults.
+const FAULTS: usize = 10;
+
+/// Plants a fault of a kind in a program without any, and judges what is found by brute force; the number of sure findings.
+fn planted(seed: u64) -> usize {
+    let random = &mut Random::new(1000 + seed);
+    let mut case = clean(random);
+    let fault = seed as usize % FAULTS;
+    let at = random.below(case.poses.len() as u64 - 2) as usize + 1;
+    let tip = case.poses[at].tip();
+    let axis = case.poses[at].axis();
+    match fault {
+        // A rapid one block too early.
+        0 => case.states[at] = MoveState::RAPID,
+        // A holder that reaches lower.
+        1 => {
+            case.holder.z[0] -= random.within(10.5, 12.5);
+            case.holder.radius += 2.0;
+        }
+        // A clamp in the way.
+        2 => case.clamp = Some([[-14.0, -4.0, -6.0], [-11.0, 4.0, 1.0]]),
+        // One digit of a coordinate wrong.
+        3 => case.poses[at] = pose([tip[0], tip[1], tip[2] - random.within(1.0, 9.0)], axis),
+        // The sign of the tilt, or a tilt where there is none.
+        4 => case.poses[at] = pose(tip, [axis[0] + 0.4, -axis[1] - 0.2, axis[2]]),
+        // The spindle stands still.
+        5 => case.states[at] = MoveState::FEED.with_spindle_stopped(true),
+        // Another stock, which is higher.
+        6 => case.stock[1][2] += random.within(2.0, 14.0),
+        // No offset for the tool's length: everything is too low.
+        7 => {
+            let by = random.within(1.0, 9.0);
+            let lower = |p: &Pose| pose([p.tip()[0], p.tip()[1], p.tip()[2] - by], p.axis());
+            case.poses = case.poses.iter().map(lower).collect();
+        }
+        // Inches for millimetres in one coordinate.
+        8 => case.poses[at] = pose([tip[0], tip[1], tip[2] * 25.4], axis),
+        // Another tool, which is thicker and shorter.
+        _ => {
+            case.cutter.radius += random.within(0.5, 2.0);
+            case.cutter.z[1] -= random.within(2.0, 8.0);
+            case.holder.z[0] -= random.within(8.0, 11.0);
+        }
+    }
+    case.check(&format!("seed {seed}, fault {fault}"))
+}
+
+/// Not every planted fault does harm; `least` of those of each kind must.
+fn planted_faults(seeds: u64, least: usize) {
+    let mut sure = [0; FAULTS];
+    for seed in 0..seeds {
+        sure[seed as usize % FAULTS] += planted(seed);
+    }
+    assert!(sure.iter().sum::<usize>() >= 3 * seeds as usize, "{sure:?}");
+    assert!(sure.iter().all(|sure| *sure >= least), "{sure:?}");
+}
+
 #[test]
 fn planted_faults_are_found() {
-    let mut planted = BTreeMap::<usize, usize>::new();
-    for seed in 0..60 {
-        let random = &mut Random::new(1000 + seed);
-        let mut case = clean(random);
-        let fault = seed as usize % 6;
-        let at = random.below(case.poses.len() as u64 - 2) as usize + 1;
-        let tip = case.poses[at].tip();
-        let axis = case.poses[at].axis();
-        match fault {
-            // A rapid one block too early.
-            0 => case.states[at] = MoveState::RAPID,
-            // A holder that reaches lower.
-            1 => {
-                case.holder.z[0] -= random.within(10.5, 12.5);
-                case.holder.radius += 2.0;
-            }
-            // A clamp in the way.
-            2 => case.clamp = Some([[-14.0, -4.0, -6.0], [-11.0, 4.0, 1.0]]),
-            // One digit of a coordinate wrong.
-            3 => case.poses[at] = pose([tip[0], tip[1], tip[2] - random.within(1.0, 9.0)], axis),
-            // The sign of the tilt, or a tilt where there is none.
-            4 => case.poses[at] = pose(tip, [axis[0] + 0.4, -axis[1] - 0.2, axis[2]]),
-            // The spindle stands still.
-            _ => case.states[at] = MoveState::FEED.with_spindle_stopped(true),
-        }
-        *planted.entry(fault).or_default() += case.check(&format!("seed {seed}, fault {fault}"));
-    }
-    assert!(planted.values().all(|sure| *sure >= 3), "{planted:?}");
+    planted_faults(20, 0);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn many_planted_faults_are_found() {
+    planted_faults(300, 5);
 }
