@@ -153,6 +153,7 @@ pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
             "gouge" => words::counted(*count, "gouging move"),
             "excess" => format!("{} with material left", words::counted(*count, "place")),
             "spindle" => format!("{} with the spindle stopped", words::counted(*count, "cut")),
+            "limit" => format!("{} beyond the machine's limits", words::counted(*count, "move")),
             "feed" => format!("{} without a feed", words::counted(*count, "cut")),
             kind => words::counted(*count, kind),
         })
@@ -168,10 +169,16 @@ fn sentence(finding: &ReportedFinding) -> String {
     };
     if let Some(tool) = finding.tool {
         let part = finding.body.as_deref().unwrap_or("cutter");
-        text += &format!("{part} of tool {tool}, ");
+        text += &match &finding.detail {
+            Some(_) => format!("tool {tool}, "),
+            None => format!("{part} of tool {tool}, "),
+        };
     }
     let [x, y, z] = finding.place.map(|c| format!("{c:.3}"));
-    text += &format!("{} mm deep at ({x}, {y}, {z})", words::measure(finding.depth));
+    match &finding.detail {
+        Some(detail) => text += &format!("{detail}, with the tip at ({x}, {y}, {z})"),
+        None => text += &format!("{} mm deep at ({x}, {y}, {z})", words::measure(finding.depth)),
+    }
     if let Some(time) = finding.time {
         text += &format!(", from {:.1} % of the move", 100.0 * time);
     }

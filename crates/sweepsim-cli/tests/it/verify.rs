@@ -189,3 +189,76 @@ fn what_each_move_does() {
     let total: f64 = (1..rows.len()).map(|row| number(row, 8)).sum();
     assert!((total - work.removed).abs() < 1e-6, "{total}");
 }
+
+#[test]
+fn axes_beyond_their_limits_are_findings() {
+    let machine = "Machine(name: \"mill\", linear: [(letter: 'X', limits: (-40, 40), speed: 600), (letter: 'Z', limits: (-50, 200))], tool_length: 50)";
+    // X reaches 45 in the middle of the half circle.
+    let program = "G21 G90 G17\nT1 M6\nS900 M3\nG0 X0 Y-20 Z20\nG1 X25 F500\nG3 X25 Y20 R20\nG1 X0\nF2000 X-30\nM30\n";
+    let job = r#"Job(
+        grid: Grid(min: (-50, -50), max: (50, 50), cells: (20, 20)),
+        stock: Block(min: (-50, -50, -10), max: (50, 50, 0)),
+        tools: { 1: Ball(radius: 2, length: 30) },
+        paths: [Path(file: "part.nc", machine: "mill.ron", controller: "fanuc")],
+    )"#;
+    let workdir = Workdir::new(job);
+    fs::write(workdir.path("mill.ron"), machine).expect("a file");
+    fs::write(workdir.path("part.nc"), program).expect("a file");
+    let output = workdir.run_job("verify", &["--only", "report"]);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    let report: serde_json::Value =
+        serde_json::from_slice(&fs::read(workdir.path("out/report.json")).unwrap()).unwrap();
+    let findings = report["findings"].as_array().unwrap();
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    let found = &findings[0];
+    assert_eq!((&found["kind"], &found["line"]), (&"limit".into(), &6.into()));
+    assert_eq!(found["text"], "G3 X25 Y20 R20");
+    assert_eq!(found["detail"], "X at 45, outside of −40 … 40");
+    // One block of many chords, beyond from X 40 on, and by 5 mm at most, up to the chords' 1e-5 mm.
+    assert!((found["place"][0].as_f64().unwrap() - 40.0).abs() < 0.01, "{found}");
+    assert!(found["place"][1].as_f64().unwrap() < 0.0, "{found}");
+    assert!((found["depth"].as_f64().unwrap() - 5.0).abs() < 1e-4, "{found}");
+    let summary = text(&output.stdout);
+    assert!(
+        summary.contains("FAIL: 1 move beyond the machine's limits"),
+        "{summary}"
+    );
+    assert!(
+        summary.contains("part.nc:6: tool 1, X at 45, outside of −40 … 40"),
+        "{summary}"
+    );
+    assert!(summary.contains("1 move faster than the axes can be"), "{summary}");
+    // Within the limits there is nothing.
+    fs::write(workdir.path("mill.ron"), machine.replace("(-40, 40)", "(-60, 60)")).expect("a file");
+    let output = workdir.run_job("verify", &["--only", "report"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
+}
+
+#[test]
+fn rapids_go_as_the_machine_makes_them() {
+    // From (-20, -20) to (20, 0): straight past a post at (0, 0), or first along the diagonal into it.
+    let machine =
+        "Machine(name: \"mill\", linear: [(letter: 'X', speed: 6000), (letter: 'Y', speed: 6000)], rapid: DogLeg)";
+    let program = "G21 G90 G17\nT1 M6\nS900 M3\nG0 X-20 Y-20 Z5\nX20 Y0\nM30\n";
+    let job = r#"Job(
+        grid: Grid(min: (-30, -30), max: (30, 30), cells: (60, 60)),
+        stock: Block(min: (-30, -30, -10), max: (30, 30, 0)),
+        tools: { 1: Flat(radius: 2, length: 30) },
+        fixtures: [Cylinder(base: (-5, -5, 0), axis: (0, 0, 1), radius: 1, height: 20)],
+        paths: [Path(file: "part.nc", machine: "mill.ron", controller: "fanuc")],
+    )"#;
+    let workdir = Workdir::new(job);
+    fs::write(workdir.path("mill.ron"), machine).expect("a file");
+    fs::write(workdir.path("part.nc"), program).expect("a file");
+    let run = || {
+        let output = workdir.run_job("verify", &["--only", "report"]);
+        (output.status.code(), text(&output.stdout))
+    };
+    let (code, summary) = run();
+    assert_eq!(code, Some(1), "{summary}");
+    assert!(summary.contains("part.nc:5: cutter of tool 1"), "{summary}");
+    assert!(summary.contains("| X20 Y0"), "{summary}");
+    fs::write(workdir.path("mill.ron"), machine.replace("DogLeg", "Straight")).expect("a file");
+    let (code, summary) = run();
+    assert_eq!(code, Some(0), "{summary}");
+}

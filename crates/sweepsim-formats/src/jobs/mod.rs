@@ -1,6 +1,7 @@
 //! Jobs: RON files that define what is cut, with which tools and along which paths.
 
 mod area;
+mod course;
 mod job;
 mod path_entry;
 mod paths;

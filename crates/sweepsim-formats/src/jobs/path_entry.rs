@@ -52,6 +52,7 @@ impl JobReader<'_> {
                 rapid: vec![false; path.moves()],
                 spindle_stopped: Vec::new(),
                 no_feed: Vec::new(),
+                beyond: Vec::new(),
                 seconds: Vec::new(),
                 dwell_seconds: 0.0,
                 assumed_rapids: false,

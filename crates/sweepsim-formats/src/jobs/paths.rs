@@ -4,8 +4,9 @@ use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
-use sweepsim_nc::{Call, Event, EventKind, Note, Program, ProgramPose, Spindle};
+use sweepsim_nc::{AxisFinding, Call, Event, EventKind, Note, Program, ProgramPose, Spindle, check};
 
+use super::course::{Step, at_steps, course};
 use super::schema;
 use super::tool_box::ToolBox;
 use crate::error::{FormatError, Problem, TextPosition};
@@ -26,6 +27,8 @@ pub struct JobPath {
     pub spindle_stopped: Vec<bool>,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
     pub no_feed: Vec<bool>,
+    /// What the machine cannot do, if one is known: axes beyond their limits, or faster than they can be. The pose is one of this path.
+    pub beyond: Vec<AxisFinding>,
     /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
     pub seconds: Vec<Option<f64>>,
     /// How long the tool rests between these moves, in seconds.
@@ -114,13 +117,13 @@ pub(crate) fn of_program(
     };
     let stopped = stopped_spindle(&program);
     let times = program.times();
+    let kinematics = program.machine.kinematics.as_deref();
+    let beyond = kinematics.map_or_else(Vec::new, |kinematics| check(&program, kinematics));
     let has_feed = program.poses.iter().any(|pose| pose.feed.is_some());
     let mut paths = Vec::new();
     let mut begin = 0;
     for section in program.sections() {
         let first = section[0];
-        let ends = begin + 1..begin + section.len();
-        begin += section.len();
         let number = match (tool, first.tool) {
             (Some(tool), _) | (None, Some(tool)) => tool,
             (None, None) => {
@@ -133,8 +136,10 @@ pub(crate) fn of_program(
         tools
             .need(number, Some((&described, shown)))
             .map_err(|problem| at(problem, first.line))?;
-        let poses = section.iter().map(|pose| pose.pose).collect();
-        let moves: Vec<Move> = section[1..].iter().map(|pose| pose.way).collect();
+        let steps = course(&program, begin, section);
+        begin += section.len();
+        let poses = steps.iter().map(|step| step.pose).collect();
+        let moves: Vec<Move> = steps[1..].iter().map(|step| step.way).collect();
         // Tables do not specify how the tool turns.
         let path = if moves.iter().all(|way| *way == Move::default()) {
             Path::with_law(poses, law)
@@ -143,29 +148,34 @@ pub(crate) fn of_program(
         };
         let path = path.map_err(|error| {
             let line = match error {
-                PathError::OppositeAxes { index } | PathError::Rotary { index } => {
-                    section.get(index + 1).map_or(first.line, |pose| pose.line)
-                }
+                PathError::OppositeAxes { index } | PathError::Rotary { index } => steps
+                    .get(index + 1)
+                    .map_or(first.line, |step| program.poses[step.of].line),
                 _ => first.line,
             };
             at(Problem::Path(error), line)
         })?;
+        let end = |step: &Step| &program.poses[step.of];
+        let moved = || steps[1..].iter();
         paths.push(JobPath {
             tool: number,
             path,
             source: shown.to_owned(),
-            rapid: section[1..].iter().map(|pose| pose.rapid).collect(),
-            seconds: times[ends.clone()].iter().map(|time| time.seconds).collect(),
-            dwell_seconds: times[ends.start - 1..ends.end].iter().map(|time| time.rest).sum(),
-            assumed_rapids: times[ends.clone()].iter().any(|time| time.assumed),
-            spindle_stopped: stopped.get(ends).unwrap_or_default().to_vec(),
+            rapid: moved().map(|step| end(step).rapid).collect(),
+            seconds: moved()
+                .map(|step| Some(times[step.of].seconds? * (step.share[1] - step.share[0])))
+                .collect(),
+            dwell_seconds: times[steps[0].of..begin].iter().map(|time| time.rest).sum(),
+            assumed_rapids: moved().any(|step| times[step.of].assumed),
+            beyond: at_steps(&beyond, &steps),
+            spindle_stopped: moved().filter_map(|step| stopped.get(step.of).copied()).collect(),
             no_feed: if has_feed {
                 let missing = |pose: &ProgramPose| !pose.rapid && pose.feed.is_none();
-                section[1..].iter().map(missing).collect()
+                moved().map(|step| missing(end(step))).collect()
             } else {
                 Vec::new()
             },
-            origins: section.iter().map(origin).collect(),
+            origins: steps.iter().map(|step| origin(end(step))).collect(),
             files: files.clone(),
             calls: calls.clone(),
             notes: std::mem::take(&mut notes),

@@ -151,12 +151,15 @@ pub struct ReportedFinding {
     /// The text of the line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+    /// What is beyond which limit (`limit`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detail: Option<String>,
     /// When it begins, as a fraction of the move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
-    /// Where.
+    /// Where: for a limit, the tool's tip.
     pub place: [f64; 3],
-    /// The depth, in mm.
+    /// The depth, in mm; for a limit, how far the axis is beyond it, in mm or degrees.
     pub depth: f64,
     /// The volume, in mm³.
     pub volume: f64,

@@ -71,8 +71,12 @@ pub(super) fn findings(
         if let Some(tool) = found.tool {
             fact("Tool", format!("T{tool}"));
         }
-        fact("Depth", format!("{} mm", measure(found.depth)));
-        fact("Volume", format!("{} mm³", measure(found.volume)));
+        if let Some(detail) = &found.detail {
+            fact("Axis", detail.clone());
+        } else {
+            fact("Depth", format!("{} mm", measure(found.depth)));
+            fact("Volume", format!("{} mm³", measure(found.volume)));
+        }
         if let Some(time) = found.time {
             fact("Begins after", format!("{:.1} % of the move", 100.0 * time));
         }

@@ -1,5 +1,6 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
+mod axes;
 mod work;
 
 use super::task::sweeping;
@@ -177,6 +178,17 @@ fn describe(report: &mut Report, session: &JobSession, done: &Verification, foun
         .iter()
         .map(|finding| reported(finding, job, &mut texts))
         .collect();
+    findings.extend(axes::findings(job, report, &mut texts));
+    // A stable sort: of one move, what happens first comes first.
+    let when = |finding: &ReportedFinding| (finding.path, finding.r#move);
+    findings.sort_by(|a, b| {
+        let time = |finding: &ReportedFinding| finding.time.unwrap_or_default();
+        when(a).cmp(&when(b)).then(time(a).total_cmp(&time(b)))
+    });
+    if done.stopped {
+        // The first was asked for.
+        findings.truncate(1);
+    }
     let paths = job.paths.iter().zip(&done.paths).map(|(path, removal)| {
         let mut summary = PathSummary::default();
         (summary.tool, summary.moves, summary.removed) = (path.tool, path.path.moves(), removal.volume);
