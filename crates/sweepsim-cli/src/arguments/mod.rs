@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, parsed, plane, section, size, tolerance};
+use values::{area, camera, cells, length, parsed, plane, section, size, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -102,6 +102,12 @@ pub(crate) struct JudgeOptions {
     /// Ends at the first finding.
     #[arg(long)]
     pub first: bool,
+    /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub clearance: Option<f64>,
+    /// Takes shanks and holders larger by half the diagonal between dexels: what they touch beside a dexel is found as well.
+    #[arg(long)]
+    pub sure: bool,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.
     #[arg(long)]
     pub moves: bool,

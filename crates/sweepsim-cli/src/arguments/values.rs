@@ -96,6 +96,14 @@ pub(super) fn section(text: &str) -> Result<CuttingPlane, String> {
     }
 }
 
+/// A length in millimetres that may be 0.
+pub(super) fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value >= 0.0 && value.is_finite() => Ok(value),
+        _ => Err("expected a number of millimetres, 0 or greater".to_owned()),
+    }
+}
+
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),

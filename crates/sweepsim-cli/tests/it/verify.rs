@@ -262,3 +262,49 @@ fn rapids_go_as_the_machine_makes_them() {
     let (code, summary) = run();
     assert_eq!(code, Some(0), "{summary}");
 }
+
+#[test]
+fn clearances_of_holders() {
+    // The holder's end, of radius 10, is 4 mm above the block, and 2 mm beside a wall of 20 mm at y = 12.
+    let job = r#"Job(
+        grid: Grid(min: (-20, -20), max: (20, 20), cells: (80, 80)),
+        stock: Union([Block(min: (-20, -20, -10), max: (20, 20, 0)), Block(min: (-20, 12, -10), max: (20, 20, 20))]),
+        tools: { 1: Flat(radius: 2, length: 5) },
+        bodies: { 1: [Holder(Profile(start: (0, 5), segments: [Line((10, 5)), Line((10, 30)), Line((0, 30))]))] },
+        paths: [Path(tool: 1, poses: [((-8, 0, -1), (0, 0, 1)), ((8, 0, -1), (0, 0, 1))])],
+    )"#;
+    let workdir = Workdir::new(job);
+    let run = |more: &[&str]| {
+        let output = workdir.run_job("verify", &[&["--only", "report"], more].concat());
+        (output.status.code(), text(&output.stdout))
+    };
+    for (more, code) in [
+        (&[][..], 0),
+        (&["--clearance", "1.9"], 0),
+        (&["--clearance", "2.3"], 1),
+        (&["--sure"], 0),
+        // Half a diagonal of cells of 0.5 mm is 0.354 mm.
+        (&["--sure", "--clearance", "1.5"], 0),
+        (&["--sure", "--clearance", "1.95"], 1),
+    ] {
+        let (found, summary) = run(more);
+        assert_eq!(found, Some(code), "{more:?}: {summary}");
+        assert_eq!(
+            summary.contains("collision"),
+            code == 1 || !more.is_empty(),
+            "{more:?}: {summary}"
+        );
+    }
+    let (_, summary) = run(&["--sure", "--clearance", "1.5"]);
+    assert!(
+        summary.contains("by 1.5 mm for their clearance and 0.35355 mm for what may hide between dexels"),
+        "{summary}"
+    );
+    // In the job, in its units.
+    let inch = job.replace("Job(", "Job( clearance: 2.3,");
+    fs::write(workdir.path("job.ron"), inch).expect("a file");
+    assert_eq!(run(&[]).0, Some(1));
+    fs::write(workdir.path("job.ron"), job.replace("Job(", "Job( clearance: -1,")).expect("a file");
+    let bad = workdir.bad(&["verify", "job.ron", "--out", "out"]);
+    assert!(bad.contains("clearance is -1, but must be 0 or greater"), "{bad}");
+}

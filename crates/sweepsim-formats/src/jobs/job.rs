@@ -80,6 +80,8 @@ pub struct Job {
     pub target: Option<Target>,
     /// How far the result may deviate from the target.
     pub limits: Option<Limits>,
+    /// How near shanks and holders may come to anything.
+    pub clearance: f64,
     /// Warnings about the tools, with lines of the job's file.
     pub notes: Vec<Note>,
 }

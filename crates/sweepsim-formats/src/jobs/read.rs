@@ -153,6 +153,14 @@ impl JobReader<'_> {
                 })
             }
         };
+        let clearance = raw.clearance.unwrap_or(0.0);
+        self.check(
+            "clearance",
+            clearance,
+            clearance >= 0.0,
+            "0 or greater",
+            &["clearance".into()],
+        )?;
         let stem = self.file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         Ok(Job {
             name: raw.name.or(stem).unwrap_or_else(|| "job".into()),
@@ -166,6 +174,7 @@ impl JobReader<'_> {
             fixtures,
             target,
             limits,
+            clearance: clearance * self.unit,
             notes,
         })
     }

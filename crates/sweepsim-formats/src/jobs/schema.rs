@@ -30,6 +30,8 @@ pub(crate) struct Job {
     pub target: Option<Target>,
     #[serde(default)]
     pub limits: Option<Limits>,
+    #[serde(default)]
+    pub clearance: Option<f64>,
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]

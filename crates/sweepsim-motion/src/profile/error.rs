@@ -7,6 +7,14 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 #[non_exhaustive]
 pub enum ProfileError {
+    /// It cannot be moved outward.
+    #[error(
+        "a profile cannot be moved outward by {distance}: expected a length that is positive, and neither tiny nor huge beside the profile"
+    )]
+    Offset {
+        /// How far.
+        distance: f64,
+    },
     /// There are no segments.
     #[error("a profile needs at least one segment")]
     Empty,

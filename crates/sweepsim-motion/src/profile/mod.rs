@@ -2,6 +2,7 @@
 
 mod bezier;
 mod error;
+mod offset;
 mod piece;
 mod self_contact;
 mod spline_spans;

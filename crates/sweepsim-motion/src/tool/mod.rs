@@ -12,7 +12,7 @@ pub use apt::{Apt, AptError, AptWarning};
 pub use measures::{Barrel, Dovetail, Lens, Lollipop, Oval, Taper};
 
 use crate::boundary::{self, Edge, Patch, ToolError};
-use crate::profile::Profile;
+use crate::profile::{Profile, ProfileError, ProfileSegment};
 use nalgebra::Vector3;
 use sweepsim_spline::RationalSpline;
 
@@ -141,6 +141,28 @@ impl Tool {
             }
         }
         bound
+    }
+
+    /// The solid of all points no farther than `distance` from this one ([`Profile::offset`]). Of tools without a profile, from the cylinder that holds them,
+    /// which is larger.
+    ///
+    /// # Errors
+    /// [`ProfileError`] as of [`Profile::offset`].
+    pub fn offset(&self, distance: f64) -> Result<Self, ProfileError> {
+        if distance == 0.0 {
+            return Ok(self.clone());
+        }
+        let cylinder = |bound: BoundingCylinder| {
+            let [low, high] = bound.z;
+            let corners = [[bound.radius, low], [bound.radius, high], [0.0, high]];
+            let lines = corners.map(|to| ProfileSegment::Line { to });
+            Profile::new([0.0, low], lines.into())
+        };
+        let profile = match &self.profile {
+            Some(profile) => profile.offset(distance)?,
+            None => cylinder(self.bounding_cylinder())?.offset(distance)?,
+        };
+        Ok(Self::from_profile(profile))
     }
 
     /// The largest radius of the part of the tool below `height`, to within 1e-4 of the tool's own: half the width of a groove of this depth. 0 below the tip.

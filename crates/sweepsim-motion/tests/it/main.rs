@@ -4,5 +4,6 @@ mod boundary;
 mod checked_boundary;
 mod misuse;
 mod motions;
+mod offsets;
 mod parts;
 mod spline_profiles;

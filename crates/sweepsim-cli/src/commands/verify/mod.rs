@@ -5,7 +5,7 @@ mod work;
 
 use super::task::sweeping;
 use crate::arguments::{JudgeOptions, Output, RunOptions};
-use crate::session::{Failure, JobSession, phase};
+use crate::session::{Failure, JobSession, phase, words};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -51,7 +51,8 @@ pub(super) fn verified(
     let fixtures = phase(report, "stock", || fixtures(session))?;
     progress.phase("target");
     let target = phase(report, "target", || target(session))?;
-    let assemblies = assemblies(job);
+    let larger = larger(job, judging, report);
+    let assemblies = assemblies(session, larger)?;
     let states: Vec<Vec<MoveState>> = job.paths.iter().map(states).collect();
     let program: Vec<ToolPath> = job
         .paths
@@ -102,15 +103,42 @@ pub(super) fn verified(
     })
 }
 
-fn assemblies(job: &Job) -> BTreeMap<u32, Assembly> {
-    let assembly = |(number, tool): (&u32, &sweepsim::motion::Tool)| {
-        let bodies = job.bodies.get(number).into_iter().flatten();
-        let whole = bodies.fold(Assembly::new(tool.clone()), |all, body| {
-            all.with(body.kind, body.solid.clone())
-        });
-        (*number, whole)
-    };
-    job.tools.iter().map(assembly).collect()
+/// The cutters, each with its bodies, which are taken `larger` all round.
+fn assemblies(session: &JobSession, larger: f64) -> Result<BTreeMap<u32, Assembly>, Failure> {
+    let job = &session.job;
+    let mut all = BTreeMap::new();
+    for (number, tool) in &job.tools {
+        let mut whole = Assembly::new(tool.clone());
+        for body in job.bodies.get(number).into_iter().flatten() {
+            let solid = body.solid.offset(larger);
+            let solid = solid.map_err(|error| session.failure(format!("a body of tool {number}: {error}")))?;
+            whole = whole.with(body.kind, solid);
+        }
+        all.insert(*number, whole);
+    }
+    Ok(all)
+}
+
+/// By how much bodies are taken larger, and why, in the notes.
+fn larger(job: &Job, judging: &JudgeOptions, report: &mut Report) -> f64 {
+    let clearance = judging.clearance.unwrap_or(job.clearance);
+    let [dx, dy] = job.grid.spacing();
+    let between = if judging.sure { 0.5 * dx.hypot(dy) } else { 0.0 };
+    let reasons = [
+        (clearance, "for their clearance"),
+        (between, "for what may hide between dexels"),
+    ];
+    let reasons = reasons.iter().filter(|(by, _)| *by > 0.0);
+    let reasons: Vec<String> = reasons
+        .map(|(by, why)| format!("{} mm {why}", words::length(*by)))
+        .collect();
+    if !reasons.is_empty() && !job.bodies.is_empty() {
+        report.notes.push(format!(
+            "shanks and holders are taken larger all round, by {}: not each collision is a contact",
+            reasons.join(" and ")
+        ));
+    }
+    clearance + between
 }
 
 fn states(path: &JobPath) -> Vec<MoveState> {
