@@ -22,6 +22,7 @@ pub(super) fn unused(job: &Job, used: Use) -> Vec<String> {
             ("limits", job.limits.is_some()),
             ("fixtures", !job.fixtures.is_empty()),
             ("bodies", !job.bodies.is_empty()),
+            ("clearance", job.clearance > 0.0),
         ];
         let names: Vec<String> = given
             .iter()
@@ -38,6 +39,9 @@ pub(super) fn unused(job: &Job, used: Use) -> Vec<String> {
         }
     } else if job.limits.is_some() && job.target.is_none() {
         all.push("`limits` without a `target`: there is nothing to compare with".to_owned());
+    }
+    if used.judges && job.clearance > 0.0 && job.bodies.is_empty() {
+        all.push("`clearance` without `bodies`: there is nothing to keep away".to_owned());
     }
     let idle: Vec<String> = job
         .tools

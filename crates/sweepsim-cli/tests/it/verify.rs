@@ -308,3 +308,31 @@ fn clearances_of_holders() {
     let bad = workdir.bad(&["verify", "job.ron", "--out", "out"]);
     assert!(bad.contains("clearance is -1, but must be 0 or greater"), "{bad}");
 }
+
+#[test]
+fn the_result_of_a_run_is_a_target() {
+    let job = r#"Job(
+        grid: Grid(min: (0, 0), max: (20, 10), cells: (80, 40)),
+        stock: Block(min: (0, 0, 0), max: (20, 10, 6)),
+        tools: { 1: Ball(radius: 2, length: 30) },
+        paths: [Path(tool: 1, poses: [((-4, 5, 3), (0, 0, 1)), ((24, 5, 3), (0, 0, 1))])],
+    )"#;
+    let workdir = Workdir::new(job);
+    workdir.good(&["simulate", "job.ron", "--out", "wanted", "--only", "binary"]);
+    let with = "limits: Limits(gouge: 0.05, excess: 0.05), target: Dexels(\"wanted/part.dexels\"), paths";
+    let verify = |from: &str, to: &str| {
+        fs::write(workdir.path("job.ron"), job.replace("paths", with).replace(from, to)).expect("a file");
+        let output = workdir.run_job("verify", &["--only", "report"]);
+        (output.status.code(), text(&output.stdout))
+    };
+    let (code, summary) = verify("", "");
+    assert_eq!(code, Some(0), "{summary}");
+    let (code, summary) = verify("5, 3)", "5, 2.8)");
+    assert_eq!(code, Some(1), "{summary}");
+    assert!(summary.contains("FAIL: 1 gouging move"), "{summary}");
+    let (code, summary) = verify("5, 3)", "5, 3.2)");
+    assert_eq!(code, Some(1), "{summary}");
+    assert!(summary.contains("with material left"), "{summary}");
+    let (code, _) = verify("wanted/part", "nowhere/part");
+    assert_eq!(code, Some(2));
+}

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path as FilePath;
 
+use sweepsim_dexel::Grid;
 use sweepsim_motion::{AptWarning, Body, BodyKind, Tool};
 use sweepsim_nc::Note;
 use sweepsim_nc::tools::read_library;
@@ -11,6 +12,7 @@ use super::job::{Job, Limits, Target, Units};
 use super::tool_box::{Library, ToolBox};
 use super::tools::{self, Step};
 use super::{paths, schema, surface_tool};
+use crate::dexels::read_dexels_file;
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::text::{self, SpanTree};
 
@@ -134,6 +136,7 @@ impl JobReader<'_> {
                 file: paths::beside(self.file, name),
                 mesh: self.mesh(name, "target", &["target".into()])?,
             }),
+            Some(schema::Target::Dexels(name)) => Some(self.target_of_dexels(name, &grid)?),
         };
         let limits = match raw.limits {
             None => None,
@@ -176,6 +179,18 @@ impl JobReader<'_> {
             limits,
             clearance: clearance * self.unit,
             notes,
+        })
+    }
+
+    /// The surface of the result of an earlier run, in millimetres like all its outputs.
+    fn target_of_dexels(&self, name: &str, grid: &Grid) -> Result<Target, FormatError> {
+        let (file, steps) = (paths::beside(self.file, name), ["target".into()]);
+        let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "target", &steps)?;
+        let surface = dexels.surface();
+        let surface = surface.map_err(|error| self.error(Problem::syntax(format!("{name}: {error}")), &steps))?;
+        Ok(Target {
+            file,
+            mesh: surface.soup().unwrap_or_default(),
         })
     }
 

@@ -342,6 +342,7 @@ pub(crate) enum Table {
 #[serde(deny_unknown_fields)]
 pub(crate) enum Target {
     Mesh(String),
+    Dexels(String),
 }
 
 #[derive(Debug, Deserialize)]
