@@ -174,6 +174,7 @@ fn what_each_move_does() {
         rows[0].join(","),
         "path,move,file,line,tool,rapid,seconds,length,removed,depth,width,rate"
     );
+    assert!(!text.contains(",-0"), "{text}");
     let lines: Vec<&str> = rows[1..].iter().map(|row| row[3]).collect();
     assert_eq!(lines, ["5", "6", "7", "8", "9"]);
     // The first pass: 2.5 deep, and 6 wide but for half a cell on both sides.

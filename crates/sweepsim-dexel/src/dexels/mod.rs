@@ -372,7 +372,8 @@ impl Dexels {
     #[must_use]
     pub fn volume(&self) -> f64 {
         let [dx, dy] = self.grid.spacing();
-        self.iter().map(|(_, line)| line.length()).sum::<f64>() * dx * dy
+        // An empty sum of floats is −0.
+        (self.iter().map(|(_, line)| line.length()).sum::<f64>() + 0.0) * dx * dy
     }
 }
 

@@ -35,8 +35,9 @@ impl Monitor for LastAsked {
     }
 }
 
-/// Runs this within a fifth more than the budget. However busy the machine is, what comes after the monitor was asked last takes no more than that fifth.
-fn in_time<T>(budget: Duration, run: impl FnOnce(&dyn Monitor) -> T) -> T {
+/// Runs this within a fifth more than the budget. However busy the machine is, what comes after the monitor was asked last takes no more than that fifth and
+/// what the solver keeps of its time for it.
+fn in_time<T>(budget: Duration, kept: Duration, run: impl FnOnce(&dyn Monitor) -> T) -> T {
     let start = Instant::now();
     let before = spent(start);
     let monitor = LastAsked(start, AtomicU64::new(before.as_nanos() as u64));
@@ -45,7 +46,10 @@ fn in_time<T>(budget: Duration, run: impl FnOnce(&dyn Monitor) -> T) -> T {
     let took = after - before;
     assert!(took <= budget * 6 / 5 + ALLOWANCE, "{took:?} of {budget:?}");
     let last = after - Duration::from_nanos(monitor.1.into_inner());
-    assert!(last <= budget / 5 + ALLOWANCE, "{last:?} after the end of {budget:?}");
+    assert!(
+        last <= budget / 5 + kept + ALLOWANCE,
+        "{last:?} after the end of {budget:?}"
+    );
     result
 }
 
@@ -60,7 +64,7 @@ fn curve_tracing_ends_with_its_time() {
     // Far more vertices than this time and the default number of vertices suffice for.
     let tolerance = 1e-14;
     let options = with_time(&CurveSolver::new(tolerance).options, budget).vertices(usize::MAX);
-    let curves = in_time(budget, |monitor| {
+    let curves = in_time(budget, Duration::ZERO, |monitor| {
         CurveSolver::with_options(tolerance, options).solve(&system, monitor)
     })
     .unwrap();
@@ -76,7 +80,7 @@ fn many_open_cells_are_assembled_in_time() {
     let budget = Duration::from_millis(200);
     let mut options = with_time(&CurveSolver::new(1e-3).options, budget);
     options.unresolved = usize::MAX;
-    let curves = in_time(budget, |monitor| {
+    let curves = in_time(budget, Duration::ZERO, |monitor| {
         CurveSolver::with_options(1e-3, options).solve(&system, monitor)
     })
     .unwrap();
@@ -126,7 +130,7 @@ fn surfaces_end_with_their_time_and_vertices() {
     let system = ball(3);
     let budget = Duration::from_millis(300);
     let options = with_time(&SurfaceSolver::new(1e-9).options, budget);
-    let surface = in_time(budget, |monitor| {
+    let surface = in_time(budget, Duration::ZERO, |monitor| {
         SurfaceSolver::with_options(1e-9, options).solve(&system, monitor)
     })
     .unwrap();
@@ -148,7 +152,7 @@ fn meshing_ends_with_the_time() {
     for share in [0.3, 0.5, 0.7, 0.85, 0.95] {
         let budget = whole.mul_f64(share);
         let options = with_time(&SurfaceSolver::new(2e-3).options, budget);
-        in_time(budget, |monitor| {
+        in_time(budget, Duration::ZERO, |monitor| {
             SurfaceSolver::with_options(2e-3, options).solve(&system, monitor)
         })
         .unwrap();
@@ -181,7 +185,7 @@ fn points_end_with_their_time() {
         for milliseconds in [20, 60, 250] {
             let budget = Duration::from_millis(milliseconds);
             let mut solver = PointSolver::new(with_time(&SolveOptions::default(), budget));
-            let points = in_time(budget, |monitor| solver.solve(system, monitor)).unwrap();
+            let points = in_time(budget, budget / 10, |monitor| solver.solve(system, monitor)).unwrap();
             let out_of_time = points.unresolved.iter().any(|u| u.cause == Cause::Time);
             assert!(out_of_time || number == 1, "{number}, {milliseconds} ms");
         }

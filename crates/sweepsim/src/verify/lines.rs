@@ -28,7 +28,8 @@ impl Lines {
     /// The total length.
     pub fn length(&self) -> f64 {
         let lengths = self.0.iter().flat_map(|(_, heights)| heights);
-        lengths.map(|[lower, upper]| upper - lower).sum()
+        // An empty sum of floats is −0.
+        lengths.map(|[lower, upper]| upper - lower).sum::<f64>() + 0.0
     }
 
     /// The longest interval, and its line.
