@@ -333,3 +333,27 @@ fn the_result_of_a_run_is_a_target() {
     let (code, _) = verify("wanted/part", "nowhere/part");
     assert_eq!(code, Some(2));
 }
+
+/// The shipped faulty bracket with its circle a little narrower or wider: bisection cuts the level arc into parts of less than a micrometre.
+#[test]
+fn level_arcs_leave_nothing_unresolved() {
+    let fixtures = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/verify");
+    let job = fs::read_to_string(fixtures.join("bracket-faulty.ron")).unwrap();
+    let program = fs::read_to_string(fixtures.join("bracket-faulty.nc")).unwrap();
+    let folder = Workdir::new(&job.replace("cells: (200, 120)", "cells: (100, 60)"));
+    fs::copy(fixtures.join("bracket.stl"), folder.path("bracket.stl")).unwrap();
+    for wider in ["I-10.5", "I-10.7"] {
+        assert!(program.contains("I-10.6"));
+        fs::write(folder.path("bracket-faulty.nc"), program.replace("I-10.6", wider)).unwrap();
+        let (report, findings) = verified(&folder, 1, &[]);
+        assert_eq!(report.dexels.unresolved, [], "{wider}");
+        let circle = program.lines().position(|line| line.contains("I-10.6")).unwrap() + 1;
+        let gouge = findings.iter().find(|f| f.line == Some(circle)).unwrap();
+        assert_eq!(gouge.kind, "gouge");
+        let numbers = gouge
+            .place
+            .into_iter()
+            .chain([gouge.depth, gouge.volume, gouge.time.unwrap()]);
+        assert!(numbers.into_iter().all(f64::is_finite), "{gouge:?}");
+    }
+}

@@ -30,7 +30,8 @@ pub struct AuditFailure {
     pub sum: i32,
     /// Lowest partial sum; must be 0.
     pub lowest: i32,
-    /// Height at which the lowest partial sum is reached.
+    /// Height at which the lowest partial sum is reached, if it is negative; otherwise that of the highest crossing, where the sum should be 0. Not finite
+    /// only if a crossing's height is not.
     pub z: f64,
 }
 
@@ -63,7 +64,8 @@ pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval
             z: odd.z,
         });
     }
-    let (mut sum, mut lowest, mut place) = (0_i32, 0_i32, f64::NAN);
+    let (mut sum, mut lowest) = (0_i32, 0_i32);
+    let mut place = crossings.last().map_or(0.0, |highest| highest.z);
     let mut lower: Option<End> = None;
     let mut chains = false;
     for group in crossings.chunk_by(|a, b| b.z - a.z <= same) {
@@ -174,6 +176,10 @@ mod tests {
         let mut intervals = Vec::new();
         let failure = cover(&mut [crossing(2.0, -1), crossing(3.0, 1)], 0.0, &mut intervals).unwrap_err();
         assert_eq!((failure.sum, failure.lowest, failure.z), (0, -1, 2.0));
+        // One that begins and never ends.
+        let all = &mut [crossing(2.0, 1), crossing(3.0, 1), crossing(4.0, -1)];
+        let failure = cover(all, 0.0, &mut intervals).unwrap_err();
+        assert_eq!((failure.sum, failure.lowest, failure.z), (1, 0, 4.0));
     }
 
     #[test]
