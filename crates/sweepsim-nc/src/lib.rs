@@ -15,9 +15,9 @@
 //!
 //! | format | read | write |
 //! | --- | --- | --- |
-//! | G-code (`.nc`, `.ngc`, `.tap`, `.txt`…) | [`gcode::read`] | |
+//! | G-code (`.nc`, `.ngc`, `.tap`, `.txt`…) | [`gcode::read`] | [`write::gcode`] |
 //! | APT, CLSF, NCL (`.apt`, `.cls`, `.ncl`…) | [`apt::read`] | [`write::clsf`] |
-//! | Siemens 840D (`.mpf`), Heidenhain Klartext (`.h`) | [`siemens::read`], [`heidenhain::read`] | |
+//! | Siemens 840D (`.mpf`), Heidenhain Klartext (`.h`) | [`siemens::read`], [`heidenhain::read`] | [`write::gcode`] |
 //! | tables of poses (`.csv`) | [`table::read`] | [`table::write`] |
 //! | one line per move, to read | | [`write::canonical`] |
 //! | any of them, by content | [`read_file`] | |
@@ -40,7 +40,7 @@ pub mod tools;
 pub mod write;
 
 pub use controls::{heidenhain, siemens};
-pub use drive::{AxisFault, AxisFinding, PostError, PostOptions, RapidPoint, check, post};
+pub use drive::{AxisFault, AxisFinding, RapidPoint, check};
 pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use sweepsim::{Options, sweep};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Pose, Tool};
-use sweepsim_nc::{Machine, PostOptions, Program, ProgramPose, ReadOptions, gcode, heidenhain, post, siemens};
+use sweepsim_nc::{Machine, Program, ProgramPose, ReadOptions, gcode, heidenhain, siemens, write};
 
 /// A pass: the tilt of the tool about Y and its turn about Z, in degrees, and the tips.
 type Pass = (f64, f64, Vec<[f64; 3]>);
@@ -110,9 +110,9 @@ fn machines_tip_control_and_tilted_planes_cut_the_same_part() {
         "nutating-head-bc",
     ] {
         let machine = Machine::named(name).expect("a machine");
-        let kinematics = machine.kinematics.clone().expect("its axes");
         for tip_control in [false, true] {
-            let text = post(&part, &kinematics, &PostOptions::tip_control(tip_control)).expect("within reach");
+            let posted = write::GcodeOptions::for_machine(machine.clone(), tip_control);
+            let text = write::gcode(&part, &posted).expect("within reach").text;
             let mut options = ReadOptions::default();
             options.machine = machine.clone();
             let read = gcode::read(&text, &options).unwrap_or_else(|error| panic!("{name}: {error}\n{text}"));

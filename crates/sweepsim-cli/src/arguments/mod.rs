@@ -4,7 +4,7 @@ mod programs;
 mod values;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
-pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions};
+pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
@@ -44,8 +44,8 @@ pub(crate) enum Command {
     /// Converts a program, tool library, mesh or dexel file to another format, by the extensions.
     ///
     /// Meshes (.stl .ply .glb .3mf .vtp) and dexels (dexels.csv .dexels .npz) can be converted to each other and to pictures (.png), and
-    /// dexels to .vtu. Programs are converted to tables (.csv), CLSF (.cls .apt) and text with one line per move (.txt), tool libraries to
-    /// the tools of a job (.ron).
+    /// dexels to .vtu. Programs are converted to G-code (.nc .ngc .tap, Siemens's .mpf, Heidenhain's .h), CLSF (.cls .apt), tables (.csv) and
+    /// text with one line per move (.txt), tool libraries to the tools of a job (.ron).
     Convert(ConvertOptions),
     /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by distance.
     Compare(CompareOptions),
@@ -147,6 +147,8 @@ pub(crate) struct ConvertOptions {
     pub output: PathBuf,
     #[command(flatten)]
     pub dialect: DialectOptions,
+    #[command(flatten)]
+    pub writing: WritingOptions,
     #[command(flatten)]
     pub grid: GridOptions,
     #[command(flatten)]

@@ -5,6 +5,7 @@ use clap::Args;
 use clap::ValueHint;
 use std::path::{Path, PathBuf};
 use sweepsim_formats::{DraftOptions, DraftStock};
+use sweepsim_nc::write::GcodeOptions;
 use sweepsim_nc::{Controller, Format, Machine, ReadOptions};
 
 /// How a program is read.
@@ -23,6 +24,24 @@ pub(crate) struct DialectOptions {
     /// Goes on after problems of the program, and lists what was left out.
     #[arg(long)]
     pub lenient: bool,
+}
+
+/// How G-code is written.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "G-code that is written")]
+pub(crate) struct WritingOptions {
+    /// The control that it is for: linuxcnc, fanuc, haas, siemens, heidenhain or grbl [default: siemens for .mpf, heidenhain for .h, else linuxcnc].
+    #[arg(long, value_name = "NAME", value_parser = known(|name| Controller::named(name).is_some(), &Controller::NAMES))]
+    pub dialect: Option<String>,
+    /// The machine that it is for: a machine.ron, or the name of a ready one [default: none; tilted tools are vectors, where the control has them].
+    #[arg(long, value_name = "FILE")]
+    pub for_machine: Option<String>,
+    /// Writes the coordinates of that machine's axes, without tip control.
+    #[arg(long, requires = "for_machine")]
+    pub axes: bool,
+    /// The most decimals of a number.
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u8).range(0..=15))]
+    pub decimals: u8,
 }
 
 /// What a job says, given with a program instead.
@@ -94,6 +113,26 @@ impl DialectOptions {
         if let Some(machine) = &self.machine {
             options.machine = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
         }
+        Ok(options)
+    }
+}
+
+impl WritingOptions {
+    /// How to write a file with this extension.
+    pub fn options(&self, extension: &str) -> Result<GcodeOptions, String> {
+        let mut options = GcodeOptions::default();
+        options.dialect = match (self.dialect.as_deref().and_then(Controller::named), extension) {
+            (Some(dialect), _) => dialect,
+            (None, "mpf" | "spf") => Controller::Siemens,
+            (None, "h") => Controller::Heidenhain,
+            _ => options.dialect,
+        };
+        if let Some(machine) = &self.for_machine {
+            let read = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
+            options.machine = Some(read);
+            options.tip_control = !self.axes;
+        }
+        options.decimals = usize::from(self.decimals);
         Ok(options)
     }
 }

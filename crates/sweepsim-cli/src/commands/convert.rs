@@ -3,7 +3,6 @@
 use crate::arguments::ConvertOptions;
 use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
 use std::io::Write as _;
-use std::path::Path;
 use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
 use sweepsim_nc::tools::{read_library, to_ron};
 use sweepsim_nc::{Program, read_file, table, write};
@@ -26,7 +25,7 @@ pub(crate) fn convert(options: &ConvertOptions) -> Result<(), Failure> {
                 .map(|e| e.to_string_lossy().to_ascii_lowercase())
                 .unwrap_or_default();
             let program = read_program(options, &extension)?;
-            let lost = path(&program, &extension, output)?;
+            let lost = path(&program, options, &extension)?;
             line("path", &words::counted(program.poses.len() as u64, "pose"));
             lost.iter()
                 .for_each(|what| line("note", &format!("not written: {what}")));
@@ -95,7 +94,7 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     Ok(write_dexels_file(&dexels, output)?)
 }
 
-/// Reads a program as its output needs it: CLSF and the canonical text have arcs, tables have not.
+/// Reads a program as its output needs it: tables have no arcs.
 fn read_program(options: &ConvertOptions, extension: &str) -> Result<Program, Failure> {
     let mut reading = options.dialect.reading().map_err(Failure::message)?;
     reading.exact_arcs = extension != "csv";
@@ -103,7 +102,8 @@ fn read_program(options: &ConvertOptions, extension: &str) -> Result<Program, Fa
 }
 
 /// Writes a program, and returns what the format cannot say.
-fn path(program: &Program, extension: &str, output: &Path) -> Result<Vec<String>, Failure> {
+fn path(program: &Program, options: &ConvertOptions, extension: &str) -> Result<Vec<String>, Failure> {
+    let output = &*options.output;
     let mut lost = Vec::new();
     match extension {
         "csv" => write_atomically(output, |file| table::write(&program.poses, file))?,
@@ -112,9 +112,15 @@ fn path(program: &Program, extension: &str, output: &Path) -> Result<Vec<String>
             Ok(())
         })?,
         "txt" => write_atomically(output, |file| write::canonical(program, file))?,
+        "nc" | "ngc" | "tap" | "gcode" | "mpf" | "spf" | "h" => {
+            let writing = options.writing.options(extension).map_err(Failure::message)?;
+            let written = write::gcode(program, &writing).map_err(|error| Failure::message(error.to_string()))?;
+            write_atomically(output, |file| file.write_all(written.text.as_bytes()))?;
+            lost = written.lost;
+        }
         _ => {
             return Err(Failure::message(format!(
-                "{}: programs can be written as tables (.csv), CLSF (.cls, .apt) and text (.txt): expected one of them",
+                "{}: programs can be written as G-code (.nc, .ngc, .tap, .mpf, .h), CLSF (.cls, .apt), tables (.csv) and text (.txt): expected one of them",
                 output.display()
             )));
         }

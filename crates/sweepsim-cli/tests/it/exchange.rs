@@ -103,7 +103,7 @@ fn paths_become_tables() {
     assert!(
         workdir
             .bad(&["convert", "p.ngc", "p.stl"])
-            .contains("programs can be written as tables (.csv), CLSF (.cls, .apt) and text (.txt)")
+            .contains("programs can be written as G-code (.nc, .ngc, .tap, .mpf, .h), CLSF (.cls, .apt), tables (.csv) and text (.txt)")
     );
 }
 

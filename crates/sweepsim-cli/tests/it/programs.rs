@@ -222,7 +222,7 @@ fn convert_writes_programs_and_tools() {
     for (arguments, message) in [
         (
             ["convert", "slot.nc", "a.stl"],
-            "programs can be written as tables (.csv), CLSF (.cls, .apt) and text (.txt)",
+            "programs can be written as G-code (.nc, .ngc, .tap, .mpf, .h), CLSF (.cls, .apt), tables (.csv) and text (.txt)",
         ),
         (
             ["convert", "p.camotics", "a.csv"],
@@ -232,6 +232,49 @@ fn convert_writes_programs_and_tools() {
         let output = folder.run(&arguments);
         assert!(text(&output.stderr).contains(message), "{}", text(&output.stderr));
     }
+}
+
+/// G-code of each control holds the same moves as the CLSF it was made from.
+#[test]
+fn convert_writes_gcode() {
+    let folder = folder();
+    let read = |name: &str| std::fs::read_to_string(folder.path(name)).unwrap();
+    folder.good(&["convert", "plate.cls", "plate.csv", "--quiet"]);
+    let moves = |table: &str| -> Vec<String> {
+        let rows = read(table);
+        let rows = rows.lines().map(str::to_owned);
+        rows.map(|row| row.rsplit_once(',').unwrap().0.replace(",1,", ",,"))
+            .collect()
+    };
+    for (output, more, words) in [
+        ("a.nc", &[][..], "G43 H3 Z5\nG1 Z-2 F500\nX40\nG0 Z20\nM30\n%\n"),
+        ("b.nc", &["--dialect", "fanuc"], "G1 Z-2. F500.\nX40.\n"),
+        ("c.mpf", &[], "T3 M6\nD1\n"),
+        ("d.h", &[], "L X+40 R0\nL Z+20 R0 FMAX\n"),
+        ("e.nc", &["--for-machine", "head-bc", "--axes"], "X-10 Y10 Z5 B0 C0\n"),
+        ("f.nc", &["--for-machine", "head-bc", "--dialect", "haas"], "G234 H3\n"),
+    ] {
+        let said = folder.good(&[&["convert", "plate.cls", output], more].concat());
+        assert!(!said.contains("not written"), "{said}");
+        assert!(read(output).contains(words), "{}", read(output));
+        let control = match output {
+            "c.mpf" => &["--controller", "siemens"][..],
+            _ => &[],
+        };
+        folder.good(&[&["convert", output, "again.csv", "--quiet"], control].concat());
+        assert_eq!(moves("again.csv")[2..], moves("plate.csv")[2..], "{}", read(output));
+    }
+    std::fs::write(
+        folder.path("tilted.cls"),
+        "UNITS/MM\nGOTO/0,0,0,0,0,1\nGOTO/1,2,3,0.6,0,0.8\n",
+    )
+    .unwrap();
+    let said = folder.bad(&["convert", "tilted.cls", "tilted.nc"]);
+    assert!(
+        said.contains("line 3: the tool is tilted, and linuxcnc has no tool vectors"),
+        "{said}"
+    );
+    folder.bad(&["convert", "plate.cls", "x.nc", "--axes"]);
 }
 
 #[test]

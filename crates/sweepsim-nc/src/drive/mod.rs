@@ -1,4 +1,4 @@
-//! Running programs on machines: from the coordinates of blocks to poses, checks of axes, and programs for a machine from poses.
+//! Running programs on machines: from the coordinates of blocks to poses, and checks of axes.
 
 mod arcs;
 mod beside;
@@ -6,13 +6,11 @@ mod check;
 mod contour;
 mod driver;
 mod excursions;
-mod post;
 mod rapids;
 mod track;
 mod turns;
 
 pub use check::{AxisFault, AxisFinding, check};
-pub use post::{PostError, PostOptions, post};
 pub use rapids::RapidPoint;
 
 pub(crate) use arcs::Arc;

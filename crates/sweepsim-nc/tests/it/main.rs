@@ -19,3 +19,4 @@ mod siemens;
 mod tables;
 mod tilted_turns;
 mod tools;
+mod written;

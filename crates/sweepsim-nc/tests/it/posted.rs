@@ -6,8 +6,7 @@ use nalgebra::{Rotation3, Vector3};
 use proptest::prelude::*;
 use sweepsim_motion::{Pose, Turning};
 use sweepsim_nc::{
-    AxisFault, AxisLaw, Kinematics, Machine, Position, PostError, PostOptions, Program, ProgramPose, ReadOptions,
-    check, gcode, post, siemens,
+    AxisFault, AxisLaw, Kinematics, Machine, Position, Program, ProgramPose, ReadOptions, check, gcode, siemens, write,
 };
 
 fn machine(name: &str) -> (Machine, Kinematics) {
@@ -77,7 +76,8 @@ proptest! {
             .collect();
         // A block that moves nothing has no pose of its own.
         poses.dedup();
-        let text = post(&program(&poses), &kinematics, &PostOptions::tip_control(tip_control)).unwrap();
+        let posted = write::GcodeOptions::for_machine(machine.clone(), tip_control);
+        let text = write::gcode(&program(&poses), &posted).unwrap().text;
         let mut options = options(machine);
         if rotary_law {
             options.law = AxisLaw::Rotary;
@@ -207,8 +207,9 @@ fn one_part_in_five_languages() {
     ];
     for name in ["trunnion-ac", "head-bc", "nutating-head-bc", "head-b-table-c"] {
         for tip_control in [false, true] {
-            let (machine, kinematics) = machine(name);
-            let text = post(&program(&expected), &kinematics, &PostOptions::tip_control(tip_control)).unwrap();
+            let (machine, _) = machine(name);
+            let posted = write::GcodeOptions::for_machine(machine.clone(), tip_control);
+            let text = write::gcode(&program(&expected), &posted).unwrap().text;
             programs.push((name, gcode::read(&text, &options(machine)).unwrap()));
         }
     }
@@ -286,13 +287,14 @@ fn haas_and_fanuc() {
 
 #[test]
 fn what_a_machine_cannot_do() {
-    let (_, kinematics) = machine("rotary-a");
+    let (machine_with_a, _) = machine("rotary-a");
     let poses = [
         Pose::new([0.0; 3], [0.0, 0.0, 1.0]).unwrap(),
         Pose::new([1.0, 0.0, 0.0], [1.0, 0.0, 1.0]).unwrap(),
     ];
-    let error = post(&program(&poses), &kinematics, &PostOptions::default()).unwrap_err();
-    assert!(matches!(error, PostError::Reach { pose: 1, line: 2, .. }));
+    let posted = write::GcodeOptions::for_machine(machine_with_a, true);
+    let error = write::gcode(&program(&poses), &posted).unwrap_err();
+    assert!(matches!(error, write::GcodeError::Reach { pose: 1, line: 2, .. }));
     let mut description = machine("trunnion-bc").1.description().clone();
     description.table[1].limits = Some([-30.0, 30.0]);
     description.table[1].speed = Some(1000.0);

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use sweepsim_motion::Course;
 use sweepsim_nc::{Program, ReadOptions, apt, gcode, table, write};
 
-fn options() -> ReadOptions {
+pub(crate) fn options() -> ReadOptions {
     let mut options = ReadOptions::default();
     options.exact_arcs = true;
     options
@@ -47,7 +47,7 @@ fn same(a: &Program, b: &Program) {
 }
 
 #[derive(Clone, Debug)]
-enum Step {
+pub(crate) enum Step {
     Line([f64; 3], bool),
     Tilted([f64; 3], [f64; 2]),
     Arc(f64, f64, f64),
@@ -57,7 +57,7 @@ enum Step {
     Drill(f64),
 }
 
-fn steps() -> impl Strategy<Value = Vec<Step>> {
+pub(crate) fn steps() -> impl Strategy<Value = Vec<Step>> {
     let place = prop::array::uniform3(-100.0..100.0_f64);
     prop::collection::vec(
         prop_oneof![
@@ -74,7 +74,7 @@ fn steps() -> impl Strategy<Value = Vec<Step>> {
 }
 
 /// A CL file of these steps.
-fn text(steps: &[Step]) -> String {
+pub(crate) fn text(steps: &[Step]) -> String {
     let mut text = String::from("UNITS/MM\nFEDRAT/100,MMPM\nGOTO/0,0,0,0,0,1\n");
     let mut at = Some([0.0; 3]);
     let mut tool = None;

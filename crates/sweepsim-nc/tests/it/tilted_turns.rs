@@ -3,9 +3,7 @@
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use sweepsim_motion::Course;
-use sweepsim_nc::{
-    Machine, NcError, Position, PostOptions, Program, ReadOptions, check, gcode, heidenhain, post, siemens,
-};
+use sweepsim_nc::{Machine, NcError, Position, Program, ReadOptions, check, gcode, heidenhain, siemens, write};
 
 fn options(name: &str) -> ReadOptions {
     let mut options = ReadOptions::default();
@@ -126,9 +124,9 @@ fn posted_arcs_come_back() {
         let mut options = options(name);
         options.exact_arcs = true;
         let read = gcode::read(text, &options).unwrap();
-        let machine = options.machine.kinematics.clone().unwrap();
         for tip_control in [false, true] {
-            let posted = post(&read, &machine, &PostOptions::tip_control(tip_control)).unwrap();
+            let posted = write::GcodeOptions::for_machine(options.machine.clone(), tip_control);
+            let posted = write::gcode(&read, &posted).unwrap().text;
             assert_eq!(
                 posted.matches("G2 ").count() + posted.matches("G3 ").count(),
                 5,

@@ -1,5 +1,7 @@
 //! Arcs, rounded corners and chamfers.
 
+use std::f64::consts::TAU;
+
 use super::interpreter::Reader;
 use super::line::{Line, Located};
 use super::moves::Words;
@@ -131,16 +133,15 @@ impl Reader<'_> {
             "CP" => {
                 let centre = self.centre.ok_or_else(need_centre)?;
                 let counter_clockwise = sense.ok_or_else(need_sense)?;
-                // An incremental angle may be more than a turn: IPA+1080 with IZ is a thread.
-                let turns = match words.polar[1] {
-                    Some((angle, true)) => {
-                        if (angle > 0.0) != counter_clockwise {
-                            return Err(NcProblem::value("IPA", angle, "of the sign of DR"));
-                        }
-                        (angle.abs() / 360.0 - 1e-9).floor().max(0.0) + 1.0
+                // An incremental angle may be more than a turn, IPA+1080 with IZ is a thread, and is the turn whatever its ends are.
+                let swept = match words.polar[1] {
+                    Some((angle, true)) if (angle > 0.0) != counter_clockwise => {
+                        return Err(NcProblem::value("IPA", angle, "of the sign of DR"));
                     }
-                    _ => 1.0,
+                    Some((angle, true)) => Some(angle.to_radians()),
+                    _ => None,
                 };
+                let turns = swept.map_or(1.0, |sweep| sweep.abs() / TAU);
                 if turns > 1e4 {
                     return Err(NcProblem::value(
                         "the number of turns of an arc",
@@ -148,7 +149,10 @@ impl Reader<'_> {
                         "at most 10000",
                     ));
                 }
-                CircularArc::about(ends, plane, centre, counter_clockwise, turns)
+                CircularArc::about(ends, plane, centre, counter_clockwise, 1.0).map(|arc| CircularArc {
+                    sweep: swept.unwrap_or(arc.sweep),
+                    ..arc
+                })
             }
             "CR" => {
                 let radius = words
