@@ -203,13 +203,14 @@ impl Band {
     pub(crate) fn paint(&self, scene: &Scene, camera: &Camera, lights: &Lights, rows: &mut [u8]) {
         let place = |pixel: f32, k: usize| 2.0 * pixel / self.size[k] as f32 - 1.0;
         for (row, pixels) in rows.chunks_mut(3 * self.size[0]).enumerate() {
+            let mut spots = Vec::new();
             for (column, pixel) in pixels.chunks_mut(3).enumerate() {
                 let (x, y) = (column as f32 + 0.5, (self.top + row) as f32 + 0.5);
                 let behind = || shade::background(camera, lights, scene.ground, place(x, 0), -place(y, 1));
                 let colour = if self.normals.is_empty() {
                     behind()
                 } else {
-                    self.pixel(scene, camera, lights, [column, row], behind)
+                    self.pixel(scene, camera, lights, [column, row], &mut spots, behind)
                 };
                 for k in 0..3 {
                     // A fixed dither pattern keeps visible steps out of the background.
@@ -226,9 +227,9 @@ impl Band {
         camera: &Camera,
         lights: &Lights,
         at: [usize; 2],
+        spots: &mut Vec<(Spot, f32, f32, usize)>,
         behind: impl Fn() -> Vector,
     ) -> Vector {
-        let mut spots: Vec<(Spot, f32, f32, usize)> = Vec::new();
         let mut free = 0_usize;
         for sample in 0..SAMPLES * SAMPLES {
             let column = (at[0] + RIM) * SAMPLES + sample % SAMPLES;
@@ -280,7 +281,7 @@ impl Band {
         } else {
             [0.0; 3]
         };
-        for (mut spot, _, lines, count) in spots {
+        for (mut spot, _, lines, count) in spots.drain(..) {
             let mean = 1.0 / count as f32;
             spot.at = scale(spot.at, mean);
             spot.around.sky *= mean;
@@ -311,9 +312,13 @@ impl Band {
             // Depth is linear across the image of a plane.
             let bend = (self.near[before] + self.near[after] - 2.0 * centre).abs();
             let bend = camera.difference(centre, bend);
-            line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
+            if bend > 0.012 {
+                line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
+            }
             let turn = 1.0 - dot(self.normals[before], self.normals[after]);
-            line = line.max(0.30 * smooth_step(0.12, 0.6, turn));
+            if turn > 0.12 {
+                line = line.max(0.30 * smooth_step(0.12, 0.6, turn));
+            }
         }
         line
     }

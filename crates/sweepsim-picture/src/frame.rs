@@ -5,6 +5,7 @@ use crate::camera::Camera;
 use crate::image::Image;
 use crate::light::Lights;
 use crate::scene::Scene;
+use crate::steps::Steps;
 use rayon::prelude::*;
 
 /// Samples across a pixel.
@@ -29,8 +30,19 @@ pub(crate) fn area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
     (b[1] - a[1]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[1] - a[1])
 }
 
-/// Renders a scene.
-pub(crate) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usize; 2]) -> Image {
+/// The number of steps that [`render`] takes.
+pub(crate) fn steps(size: [usize; 2]) -> usize {
+    size[1].div_ceil(BAND)
+}
+
+/// Renders a scene; each band is a step. Returns `None` if the steps end before all are done.
+pub(crate) fn render(
+    scene: &Scene,
+    camera: &Camera,
+    lights: &Lights,
+    size: [usize; 2],
+    steps: &Steps<'_>,
+) -> Option<Image> {
     let samples = size.map(|n| (n * SAMPLES) as f32);
     let points: Vec<ImagePoint> = scene
         .positions
@@ -54,11 +66,13 @@ pub(crate) fn render(scene: &Scene, camera: &Camera, lights: &Lights, size: [usi
         .par_chunks_mut(size[0] * 3 * BAND)
         .zip(&lists)
         .enumerate()
-        .for_each(|(band, (rows, list))| {
-            let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
-            band.paint(scene, camera, lights, rows);
-        });
-    image
+        .try_for_each(|(band, (rows, list))| {
+            steps.step(|| {
+                let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
+                band.paint(scene, camera, lights, rows);
+            })
+        })?;
+    Some(image)
 }
 
 /// The triangles that each band sees, in their order: those that face the viewer, or all if there are sections.

@@ -5,6 +5,8 @@ use crate::frame;
 use crate::image::Image;
 use crate::light::Lights;
 use crate::scene::Scene;
+use crate::steps::Steps;
+use std::ops::ControlFlow;
 use sweepsim_dexel::Mesh;
 
 /// A coordinate axis.
@@ -128,6 +130,17 @@ impl View {
     #[must_use]
     pub fn draw(&self, drawing: &Drawing<'_>) -> Image {
         let size = self.size.map(|side| side.clamp(1, Image::MAX_SIDE));
+        self.draw_while(drawing, &|_| ControlFlow::Continue(()))
+            .unwrap_or_else(|| Image::black(size))
+    }
+
+    /// Renders like [`draw`](Self::draw), for as long as the picture is wanted.
+    ///
+    /// Before each of some hundreds of steps, `go_on` is told the share of the work that is done, from 0 to 1, by any thread; if it
+    /// breaks, the picture is given up and there is none.
+    #[must_use]
+    pub fn draw_while(&self, drawing: &Drawing<'_>, go_on: &(dyn Fn(f64) -> ControlFlow<()> + Sync)) -> Option<Image> {
+        let size = self.size.map(|side| side.clamp(1, Image::MAX_SIDE));
         let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
         let towards = [
             elevation.cos() * azimuth.cos(),
@@ -136,8 +149,9 @@ impl View {
         ];
         let scene = Scene::new(drawing, towards);
         let camera = Camera::new(&Self { size, ..*self }, &scene);
-        let lights = Lights::new(&scene, &camera);
-        frame::render(&scene, &camera, &lights, size)
+        let steps = Steps::new(go_on, Lights::steps(&scene) + frame::steps(size));
+        let lights = Lights::new(&scene, &camera, &steps)?;
+        frame::render(&scene, &camera, &lights, size, &steps)
     }
 }
 

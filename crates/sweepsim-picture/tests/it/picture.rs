@@ -1,5 +1,8 @@
 //! Pictures are deterministic, plausible, and complete.
 
+use std::ops::ControlFlow;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{Grid, Interval, Mesh, Source, Stock};
 use sweepsim_picture::{Axis, CuttingPlane, Drawing, Image, View, legend, render};
 
@@ -47,6 +50,40 @@ fn the_bytes_do_not_depend_on_the_threads() {
         pool.install(|| render(&mesh, SIZE))
     };
     assert!(on(1) == on(3));
+}
+
+#[test]
+fn a_picture_ends_when_it_is_no_longer_wanted() {
+    let mesh = block(true);
+    let view = view_with(|view| view.size = SIZE);
+    let shares = Mutex::new(Vec::new());
+    let whole = view.draw_while(&Drawing::new(&mesh), &|share| {
+        shares.lock().unwrap().push(share);
+        ControlFlow::Continue(())
+    });
+    assert!(whole == Some(view.render(&mesh)));
+    let mut shares = shares.into_inner().unwrap();
+    shares.sort_by(f64::total_cmp);
+    let steps = shares.len();
+    assert!(steps > 50, "{steps}");
+    // Every share once: the number of steps is what was announced.
+    for (k, share) in shares.iter().enumerate() {
+        assert!((share - k as f64 / steps as f64).abs() < 1e-12, "{share}");
+    }
+    // Given up at any step, hardly any other is begun.
+    for limit in [0, 1, 20, steps - 1] {
+        let asked = AtomicUsize::new(0);
+        let none = view.draw_while(&Drawing::new(&mesh), &|_| {
+            if asked.fetch_add(1, Ordering::Relaxed) < limit {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        });
+        assert!(none.is_none());
+        let more = asked.into_inner() - limit;
+        assert!(more <= rayon::current_num_threads().max(1), "{limit}: {more}");
+    }
 }
 
 #[test]
