@@ -3,6 +3,7 @@
 use crate::arguments::{CompareOptions, Output};
 use crate::session::{Failure, Lines, Outputs, Solid, bounds, output_folder, picture, print, soup, words};
 use std::io::Write as _;
+use std::ops::ControlFlow;
 use std::time::Instant;
 use sweepsim_dexel::{Comparison, Dexels, DistanceTo, Grid, Mesh, Nearest};
 use sweepsim_formats::{ComparisonReport, DeviationSummary, Furthest, HistogramBar};
@@ -64,7 +65,9 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let range = options
         .range
         .unwrap_or(round(f64::from(largest).max(options.tolerance)));
-    let (png, missed) = picture(&options.view, &mesh, Some((&values, range)))?;
+    let (png, missed) = picture(&options.view, &mesh, Some((&values, range)), &|_| {
+        ControlFlow::Continue(())
+    })?;
     report.warnings = missed;
     outputs.write("comparison.png", |file| file.write_all(&png))?;
     report

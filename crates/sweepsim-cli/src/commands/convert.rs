@@ -3,6 +3,7 @@
 use crate::arguments::ConvertOptions;
 use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
 use std::io::Write as _;
+use std::ops::ControlFlow;
 use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
 use sweepsim_nc::tools::{read_library, to_ron};
 use sweepsim_nc::{Program, read_file, table, write};
@@ -49,7 +50,7 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     let (input, output) = (&options.input, &options.output);
     let extension = output.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     if extension.as_deref() == Some("png") {
-        let (png, missed) = picture(&options.view, &solid.surface()?, None)?;
+        let (png, missed) = picture(&options.view, &solid.surface()?, None, &|_| ControlFlow::Continue(()))?;
         if let Some(first) = missed.into_iter().next() {
             return Err(Failure::message(first));
         }

@@ -300,9 +300,9 @@ fn write_mesh(
     if !outputs.wants(Output::Picture) {
         return Ok(None);
     }
-    progress.phase("picture");
+    progress.phase_of_shares("picture");
     let (png, missed) = phase(report, "picture", || {
-        let (png, missed) = picture(&options.view, mesh, None)?;
+        let (png, missed) = picture(&options.view, mesh, None, &|share| progress.share(share))?;
         outputs.write("part.png", |file| file.write_all(&png))?;
         Ok::<_, Failure>((png, missed))
     })?;

@@ -1,5 +1,6 @@
 //! The output files of a run. Their folder is checked before the work begins, and each is written completely or not at all.
 
+use super::progress::interrupted;
 use super::{Failure, words};
 use crate::arguments::Output;
 use std::fs;
@@ -42,14 +43,20 @@ impl Outputs {
         self.wanted.contains(&output)
     }
 
-    /// Writes one file.
+    /// Writes one file, unless the run is interrupted meanwhile.
     pub fn write(
         &mut self,
         name: &'static str,
-        write: impl FnOnce(&mut AtomicFile) -> io::Result<()>,
+        write: impl FnOnce(&mut Interruptible<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let path = self.folder.join(name);
-        write_atomically(&path, write)?;
+        write_atomically(&path, |file| write(&mut Interruptible(file))).map_err(|error| {
+            if interrupted() {
+                Failure::interrupted()
+            } else {
+                error.into()
+            }
+        })?;
         let size = fs::metadata(&path).map_or(0, |data| data.len());
         self.written.push((name, size));
         Ok(())
@@ -63,6 +70,22 @@ impl Outputs {
             .map(|(name, size)| format!("{name} ({})", words::bytes(*size)))
             .collect();
         format!("{}: {}", self.folder.display(), files.join(", "))
+    }
+}
+
+/// A file whose writing fails once the run is interrupted.
+pub(crate) struct Interruptible<'a>(&'a mut AtomicFile);
+
+impl io::Write for Interruptible<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if interrupted() {
+            return Err(io::Error::other("interrupted"));
+        }
+        self.0.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::Failure;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::ops::ControlFlow;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -9,9 +10,21 @@ use sweepsim::Monitor;
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
+/// How a phase is drawn whose steps are moves, and one that tells only its share.
+const MOVES: &str = "{msg:>10} {bar:40} {human_pos}/{human_len} moves, {eta} left";
+const SHARE: &str = "{msg:>10} {bar:40} {percent} %";
+/// The length of the bar of a phase that tells only its share.
+const WHOLE: u64 = 1000;
+
+/// Whether the user, or the system, has interrupted the run.
+pub(crate) fn interrupted() -> bool {
+    INTERRUPTED.load(Ordering::Relaxed)
+}
+
 /// Draws a progress bar on a terminal, and cancels the run when the user presses Ctrl-C.
 pub(crate) struct Progress {
     bar: ProgressBar,
+    moves: u64,
 }
 
 impl Progress {
@@ -32,15 +45,36 @@ impl Progress {
             ProgressDrawTarget::stderr()
         };
         let bar = ProgressBar::with_draw_target(Some(moves as u64), target);
-        let style = ProgressStyle::with_template("{msg:>10} {bar:40} {human_pos}/{human_len} moves, {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_style(style(MOVES));
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar }
+        Self {
+            bar,
+            moves: moves as u64,
+        }
     }
 
-    /// Names the current phase.
+    /// Names the current phase, whose steps are moves.
     pub fn phase(&self, name: &'static str) {
         self.bar.set_message(name);
+        self.bar.set_style(style(MOVES));
+        self.bar.set_length(self.moves);
+    }
+
+    /// Names the current phase, which tells its share as it goes on.
+    pub fn phase_of_shares(&self, name: &'static str) {
+        self.bar.set_message(name);
+        self.bar.set_style(style(SHARE));
+        self.bar.set_length(WHOLE);
+        self.bar.set_position(0);
+    }
+
+    /// Draws the share of the phase that is done, unless the run has been interrupted.
+    pub fn share(&self, share: f64) -> ControlFlow<()> {
+        self.bar.set_position((share * WHOLE as f64) as u64);
+        if interrupted() {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
     }
 
     /// Removes the bar.
@@ -64,6 +98,10 @@ impl Monitor for Progress {
     }
 
     fn cancelled(&self) -> bool {
-        INTERRUPTED.load(Ordering::Relaxed)
+        interrupted()
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }

@@ -3,6 +3,7 @@
 use super::Failure;
 use super::words::length;
 use crate::arguments::{GridOptions, ViewOptions};
+use std::ops::ControlFlow;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriangleSoup};
 use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
@@ -156,11 +157,13 @@ impl GridOptions {
 
 /// The picture of a part as PNG: coloured by what made its faces, or by a value per vertex on a scale of plus and minus a range.
 ///
-/// A section that does not meet the part is left out, and said in the list.
+/// A section that does not meet the part is left out, and said in the list. The picture is given up, as an interruption, if `go_on`
+/// breaks.
 pub(crate) fn picture(
     options: &ViewOptions,
     mesh: &Mesh,
     values: Option<(&[f32], f64)>,
+    go_on: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
 ) -> Result<(Vec<u8>, Vec<String>), Failure> {
     let (sections, missed) = meeting(&options.section, mesh);
     let mut view = options.camera;
@@ -170,7 +173,7 @@ pub(crate) fn picture(
         view.legend = legend::WIDTH;
         drawing = drawing.values(values, range as f32);
     }
-    let mut image = view.draw(&drawing);
+    let mut image = view.draw_while(&drawing, go_on).ok_or_else(Failure::interrupted)?;
     if let Some((_, range)) = values {
         legend::draw(&mut image, range as f32);
     }

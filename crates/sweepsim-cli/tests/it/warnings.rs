@@ -310,3 +310,33 @@ fn signals_end_a_run_with_130() {
         }
     }
 }
+
+#[cfg(unix)]
+#[test]
+fn a_picture_ends_with_the_run() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    // The sweep takes a moment, the picture a minute or so.
+    let workdir = Workdir::new(JOB);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_sweepsim"))
+        .args("simulate job.ron --out out --size 8000x6000 --only dexels,picture".split(' '))
+        .current_dir(workdir.path(""))
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the command starts");
+    while !workdir.path("out/dexels.csv").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    let start = Instant::now();
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args(["-s", "INT", &id]).status().expect("kill");
+    assert!(sent.success());
+    let mut words = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().expect("piped"), &mut words).expect("text");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130), "{words}");
+    assert!(words.starts_with("interrupted: dexels.csv is complete"), "{words}");
+    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
+    assert_eq!(workdir.written(), ["dexels.csv"]);
+}
