@@ -73,10 +73,10 @@ pub(crate) struct RunOptions {
     /// The number of dexels, like 300x200, instead of the job's.
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
-    /// Builds the mesh and the picture from dexels along x, y and z: steep walls are as accurate as flat faces and edges are sharp, at three
-    /// times the cost.
-    #[arg(long)]
-    pub tri: bool,
+    /// The dexels that the mesh and the picture are made of: with `xyz` steep walls are as accurate as flat faces and edges are sharp, at
+    /// three times the cost of `z` [default: xyz, if the job allows it].
+    #[arg(long, value_name = "AXES")]
+    pub directions: Option<Directions>,
     /// The tolerance in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
@@ -229,6 +229,15 @@ pub(crate) enum Output {
     Report,
     /// part.dexels: exact and with normals, for later runs; not written by default
     Binary,
+}
+
+/// The directions of the dexels that meshes and pictures are made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Directions {
+    /// Along x, y and z.
+    Xyz,
+    /// Along z only.
+    Z,
 }
 
 #[cfg(test)]

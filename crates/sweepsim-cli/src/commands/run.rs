@@ -5,7 +5,7 @@ use super::summary::{NAMED, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
 use super::verify::verified;
-use crate::arguments::{JudgeOptions, Output, RunOptions};
+use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
 use crate::warnings;
 use std::io::Write as _;
@@ -41,8 +41,8 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
     let start = Instant::now();
     let mut report = Report::default();
     let read = phase(&mut report, "read", || read(options))?;
-    if options.tri {
-        tri_surface::check(&read.job)?;
+    if options.directions == Some(Directions::Xyz) {
+        tri_surface::check(&read.job).map_err(|what| Failure::message(format!("--directions xyz: expected {what}")))?;
     }
     let out = options.out.as_deref();
     let mut session = JobSession::new(&options.job, read, out, &options.only, options.quiet)?;
@@ -260,6 +260,24 @@ fn write_dexels(outcome: &Outcome, session: &mut JobSession, report: &mut Report
     Ok(())
 }
 
+/// Whether the surface is made of dexels along x and y, too. A job that has none, or far too many, says so.
+fn along_three_axes(session: &JobSession, options: &RunOptions, outcome: &Outcome, report: &mut Report) -> bool {
+    if let Some(directions) = options.directions {
+        return directions == Directions::Xyz;
+    }
+    let no = match tri_surface::check(&session.job) {
+        Err(what) => format!("x and y would need {what}"),
+        Ok(()) if tri_surface::too_many(&outcome.dexels) => {
+            "the part is so much taller than the distance of its dexels that those along x and y must be asked for: --directions xyz".to_owned()
+        }
+        Ok(()) => return true,
+    };
+    report
+        .notes
+        .push(format!("mesh and picture are made of dexels along z only: {no}"));
+    false
+}
+
 /// The surface of the result.
 fn mesh(
     task: Task,
@@ -268,7 +286,7 @@ fn mesh(
     outcome: &mut Outcome,
     report: &mut Report,
 ) -> Result<Mesh, Failure> {
-    if !options.tri {
+    if !along_three_axes(session, options, outcome, report) {
         session.progress.phase("mesh");
         return Ok(phase(report, "mesh", || outcome.dexels.surface())?);
     }

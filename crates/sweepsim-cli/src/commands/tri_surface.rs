@@ -1,4 +1,4 @@
-//! `--tri`: a surface from dexels along all three axes.
+//! `--directions xyz`: a surface from dexels along all three axes.
 
 use super::task::{Task, sweeping};
 use crate::arguments::RunOptions;
@@ -17,8 +17,11 @@ pub(crate) struct TriSurface {
 /// that is a whole number of them below the top.
 const ROOM: f64 = 1.37;
 
-/// Checks that a job can be cut along three axes.
-pub(crate) fn check(job: &Job) -> Result<(), Failure> {
+/// How many times as many dexels one of the other directions may have, unless it is asked for.
+const MOST: f64 = 4.0;
+
+/// Checks that a job can be cut along three axes; what stands in the way.
+pub(crate) fn check(job: &Job) -> Result<(), &'static str> {
     fn turns(stock: &Stock) -> bool {
         match stock {
             Stock::Dexels(_) => false,
@@ -28,16 +31,20 @@ pub(crate) fn check(job: &Job) -> Result<(), Failure> {
         }
     }
     if !job.grid.frame().is_world() {
-        return Err(Failure::message(
-            "--tri: expected a grid without a frame: dexels run along x, y and z",
-        ));
+        return Err("a grid without a frame: dexels run along x, y and z");
     }
     if !turns(&job.stock) {
-        return Err(Failure::message(
-            "--tri: expected a stock without dexels of an earlier run, which exist along z only",
-        ));
+        return Err("a stock without dexels of an earlier run, which exist along z only");
     }
     Ok(())
+}
+
+/// Whether the dexels along x and y are so many more than those along z that they must be asked for.
+pub(crate) fn too_many(along_z: &Dexels) -> bool {
+    let grid = along_z.grid();
+    let [dx, dy] = grid.spacing();
+    let [nx, ny] = grid.cells().map(|n| n as f64);
+    heights(along_z).is_some_and(|[low, high]| (high - low) / (dx * dy).sqrt() > MOST * nx.min(ny))
 }
 
 /// The lowest and the highest interval end.
@@ -73,7 +80,7 @@ pub(crate) fn surface(
     let room = 0.5 * (levels * step - (high - low));
     let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
     let (min, max, cells) = ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize]);
-    let wrong = |error: &dyn std::error::Error| Failure::message(format!("--tri: {error}"));
+    let wrong = |error: &dyn std::error::Error| Failure::message(format!("--directions xyz: {error}"));
     let stock = phase(report, "stock", || match task {
         Task::Simulate | Task::Verify => TriDexels::new(min, max, cells, &job.stock),
         Task::Sweep => TriDexels::empty(min, max, cells),

@@ -36,8 +36,8 @@ fn volume(workdir: &Workdir, mesh: &str) -> f64 {
 #[test]
 fn walls_between_lines_are_where_they_are() {
     let workdir = Workdir::new(JOB);
-    simulate(&workdir, "z", &["--only", "dexels,mesh"]).unwrap();
-    simulate(&workdir, "tri", &["--tri", "--only", "dexels,mesh,picture"]).unwrap();
+    simulate(&workdir, "z", &["--directions", "z", "--only", "dexels,mesh"]).unwrap();
+    simulate(&workdir, "tri", &["--only", "dexels,mesh,picture"]).unwrap();
     let dexels = |out: &str| fs::read(workdir.path(&format!("{out}/dexels.csv"))).unwrap();
     assert_eq!(dexels("z"), dexels("tri"));
     let exact = 20.0 * 10.0 * 6.0 - REMOVED;
@@ -61,7 +61,7 @@ fn walls_between_lines_are_where_they_are() {
 #[test]
 fn a_swept_volume_along_three_axes_needs_no_stock() {
     let workdir = Workdir::new(JOB);
-    let arguments = ["sweep", "job.ron", "--out", "out", "--tri", "--only", "mesh"];
+    let arguments = ["sweep", "job.ron", "--out", "out", "--only", "mesh"];
     assert!(workdir.run(&arguments).status.success());
     // The box of the lines cuts it off: 22 along x.
     let (volume, exact) = (volume(&workdir, "out/part.ply"), 22.0 * 4.0 * 30.0);
@@ -116,8 +116,16 @@ fn what_has_no_three_axes_is_said() {
         "cells: (44, 24), frame: Frame(z: (1, 0, 0), x: (0, 1, 0))",
     );
     let workdir = Workdir::new(&JOB.replace(GRID, &framed));
-    let message = simulate(&workdir, "out", &["--tri"]).unwrap_err();
-    assert!(message.contains("--tri: expected a grid without a frame"), "{message}");
+    let message = simulate(&workdir, "out", &["--directions", "xyz"]).unwrap_err();
+    assert!(
+        message.contains("--directions xyz: expected a grid without a frame"),
+        "{message}"
+    );
+    // Unless asked for, they are left out, and that is said.
+    let report = |out: &str| fs::read_to_string(workdir.path(&format!("{out}/report.json"))).unwrap();
+    simulate(&workdir, "framed", &["--only", "mesh,report"]).unwrap();
+    let words = "mesh and picture are made of dexels along z only: x and y would need a grid without a frame";
+    assert!(report("framed").contains(words), "{}", report("framed"));
     let bad = framed.replace("x: (0, 1, 0)", "x: (2, 0, 0)");
     fs::write(workdir.path("job.ron"), JOB.replace(GRID, &bad)).unwrap();
     let message = simulate(&workdir, "out", &[]).unwrap_err();
@@ -132,6 +140,23 @@ fn what_has_no_three_axes_is_said() {
         JOB.replace(STOCK, "Union([Dexels(\"first/part.dexels\")])"),
     )
     .unwrap();
-    let message = simulate(&workdir, "out", &["--tri"]).unwrap_err();
-    assert!(message.contains("--tri: expected a stock without dexels"), "{message}");
+    let message = simulate(&workdir, "out", &["--directions", "xyz"]).unwrap_err();
+    assert!(
+        message.contains("--directions xyz: expected a stock without dexels"),
+        "{message}"
+    );
+    simulate(&workdir, "again", &["--only", "mesh,report"]).unwrap();
+    assert!(report("again").contains("dexels along z only: x and y would need a stock without dexels"));
+    // A needle: a thousand times as tall as its dexels are apart.
+    let needle = r#"Job(
+        grid: Grid(min: (0, 0), max: (0.4, 0.4), cells: (8, 8)),
+        stock: Block(min: (0, 0, 0), max: (0.4, 0.4, 50)),
+        tools: { 1: Flat(radius: 2, length: 30) },
+        paths: [Path(tool: 1, poses: [((-4, 0, 49.9), (0, 0, 1)), ((4, 0, 49.9), (0, 0, 1))])],
+    )"#;
+    fs::write(workdir.path("job.ron"), needle).unwrap();
+    simulate(&workdir, "needle", &["--only", "mesh,report"]).unwrap();
+    assert!(report("needle").contains("must be asked for"), "{}", report("needle"));
+    simulate(&workdir, "asked", &["--only", "mesh,report", "--directions", "xyz"]).unwrap();
+    assert!(!report("asked").contains("along z only"));
 }

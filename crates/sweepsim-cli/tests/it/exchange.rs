@@ -163,15 +163,7 @@ fn comparison_tells_the_worst() {
     let workdir = Workdir::new("");
     for (name, stock, cells) in &solids {
         fs::write(workdir.path(&format!("{name}.ron")), job(stock, *cells)).unwrap();
-        workdir.good(&[
-            "simulate",
-            &format!("{name}.ron"),
-            "--tri",
-            "--only",
-            "mesh",
-            "--out",
-            name,
-        ]);
+        workdir.good(&["simulate", &format!("{name}.ron"), "--only", "mesh", "--out", name]);
     }
     let compared = |part: &str, target: &str| -> [f64; 2] {
         let [part, target] = [part, target].map(|name| format!("{name}/part.ply"));

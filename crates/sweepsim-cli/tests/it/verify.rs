@@ -39,7 +39,7 @@ const LIMITS: &str = "Limits(gouge: 0.02, excess: 0.05)";
 fn workdir(job: &str) -> Workdir {
     let folder = Workdir::new(&self::job("", 12.0, LIMITS).replace("    target: Mesh(\"part.ply\"),\n", ""));
     fs::write(folder.path("part.nc"), PROGRAM).unwrap();
-    folder.good(&["simulate", "job.ron", "--tri", "--only", "mesh", "--out", "."]);
+    folder.good(&["simulate", "job.ron", "--only", "mesh", "--out", "."]);
     fs::write(folder.path("job.ron"), job).unwrap();
     folder
 }
