@@ -57,13 +57,13 @@ pub use dexels::{
 };
 pub use drafts::{Draft, DraftOptions, DraftStock, draft};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
-pub use jobs::{Job, JobPath, Limits, Origin, Target, Units};
+pub use jobs::{Job, JobPath, Limits, Origin, Setup, Target, Units};
 pub use meshes::{
     MeshFormat, parse_stl, read_3mf, read_glb, read_mesh_file, read_ply, read_stl, read_vtp, write_3mf, write_glb,
     write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
     ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, MoveSummary, PathSummary, Report,
-    ReportedDexel, ReportedFinding, ReportedRegion, ToolSummary, Verdict, WorkSummary, write_moves_csv,
+    ReportedDexel, ReportedFinding, ReportedRegion, SetupSummary, ToolSummary, Verdict, WorkSummary, write_moves_csv,
 };
 pub use sweepsim_nc::shortest;

@@ -81,6 +81,17 @@ impl Pose {
         Self { tip, axis, side: None }
     }
 
+    /// The same pose in another place; `None` beyond the range of numbers.
+    pub(crate) fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Option<Self> {
+        let unit = |v: Unit<Vector3<f64>>| Unit::new_normalize(turn * v.into_inner());
+        let tip = turn * self.tip + shift;
+        tip.iter().all(|c| c.is_finite()).then(|| Self {
+            tip,
+            axis: unit(self.axis),
+            side: self.side.map(unit),
+        })
+    }
+
     /// The tip.
     #[must_use]
     pub fn tip(&self) -> [f64; 3] {

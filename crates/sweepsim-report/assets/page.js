@@ -156,7 +156,8 @@ function withViewer(viewer, markers) {
     $("clock").textContent = words;
     const { move } = track.at(clock);
     const text = programs[track.files[move]]?.[track.lines[move] - 1] ?? "";
-    $("now").textContent = [lineOf(move), text.trim()].filter(Boolean).join("  ");
+    const setup = head.setups[viewer.setup];
+    $("now").textContent = [setup && `set-up ${setup[1]}`, lineOf(move), text.trim()].filter(Boolean).join("  ");
     slider.setAttribute("aria-valuetext", `${words} ${$("now").textContent}`);
     for (const cursor of all(".cursor")) {
       const x = track.end > 0 ? (1000 * clock) / track.end : 1000;

@@ -104,8 +104,12 @@ function readMeshes(head) {
     return all;
   };
   const tools = head.meshes.tools.map((tool) => ({ name: tool.name, cutter: shapes(tool.cutter), bodies: shapes(tool.bodies) }));
+  // The fixtures of each set-up by themselves.
   const solids = { stock: new Triangles(), target: new Triangles(), fixture: new Triangles() };
-  for (const solid of head.meshes.solids) mesh(solid, solids[solid.kind]);
+  for (const solid of head.meshes.solids) {
+    const name = solid.setup == null ? solid.kind : `${solid.kind} ${solid.setup}`;
+    mesh(solid, (solids[name] ??= new Triangles()));
+  }
   return { tools, solids };
 }
 

@@ -89,6 +89,14 @@ class Viewer {
     return this.course.momentAt(this.clock);
   }
 
+  /** The number of the set-up at this time. */
+  get setup() {
+    if (!this.track) return 0;
+    const { move } = this.track.at(this.clock);
+    const number = this.head.setups.findIndex(([end]) => move < end);
+    return Math.max(number, 0);
+  }
+
   rebuild() {
     const { moment } = this;
     if (this.rebuilt === `${moment} ${this.mode}`) return;
@@ -145,7 +153,12 @@ class Viewer {
     this.view = view;
     gpu.begin(width, height, view, camera.eye, this.plane(), pass);
     gpu.draw(shapes.part, { model: this.frame });
-    if (shown.fixture) gpu.draw(shapes.fixture, { colour: FIXTURE });
+    if (shown.fixture) {
+      gpu.draw(shapes.fixture, { colour: FIXTURE });
+      const own = shapes[`fixture ${this.setup}`];
+      if (own) gpu.draw(own, { colour: FIXTURE });
+    }
+    canvas.dataset.setup = this.setup;
     if (pass === 2) return;
     if (shown.tool && this.track && this.clock < this.track.end) this.drawTool();
     if (shown.path) {

@@ -217,6 +217,8 @@ pub enum SolidKind {
 pub struct Solid {
     /// What it is.
     pub kind: SolidKind,
+    /// The set-up to which it belongs, from 0: an index of [`Scene::setups`] if there are any. `None`: it is always there.
+    pub setup: Option<u16>,
     /// Corners.
     pub vertices: Vec<[f64; 3]>,
     /// Numbers of corners; those without a corner are left out.
@@ -250,6 +252,8 @@ pub struct Scene {
     pub tools: Vec<ToolPart>,
     /// The last move of each tool's paths, in order: `(number of moves up to there, tool)`.
     pub paths: Vec<(u32, u16)>,
+    /// The set-ups, in order: `(number of moves up to there, name)`; none if there is only one, without a name.
+    pub setups: Vec<(u32, String)>,
     /// Stock, target and fixtures.
     pub solids: Vec<Solid>,
     /// The programs.
@@ -268,6 +272,7 @@ impl Scene {
             track: None,
             tools: Vec::new(),
             paths: Vec::new(),
+            setups: Vec::new(),
             solids: Vec::new(),
             programs: Vec::new(),
         }

@@ -8,7 +8,6 @@ use std::fs::File;
 use std::io::BufReader;
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
 use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
-use sweepsim_motion::Pose;
 use sweepsim_nc::tools::read_library;
 use sweepsim_nc::{Note, read_file};
 
@@ -120,7 +119,12 @@ fn job(text: &mut Lines, job: &Job) {
         text.line("tool", &format!("{number}: {}", tool_in_words(cutter)));
     }
     text.notes(job.notes.iter());
+    let mut shown = None;
     for path in &job.paths {
+        if shown != Some(path.setup) {
+            shown = Some(path.setup);
+            setup(text, job, path.setup);
+        }
         let moves = counted(path.path.moves() as u64, "move");
         let rapids = match path.rapid_moves() as u64 {
             0 => String::new(),
@@ -130,7 +134,8 @@ fn job(text: &mut Lines, job: &Job) {
             "path",
             &format!("{moves}{rapids} of tool {}, from {}", path.tool, path.source),
         );
-        text.bounds(path.path.poses().iter().map(tip));
+        // In the coordinates of its program.
+        text.bounds(path.path.poses().iter().map(|pose| path.frame.from_world(pose.tip())));
         text.notes(path.notes.iter());
     }
     if let Some(target) = &job.target {
@@ -139,8 +144,23 @@ fn job(text: &mut Lines, job: &Job) {
     }
 }
 
-fn tip(pose: &Pose) -> [f64; 3] {
-    pose.tip()
+/// A set-up: how the part lies, and its fixtures.
+fn setup(text: &mut Lines, job: &Job, number: usize) {
+    let setup = &job.setups[number];
+    if let Some(name) = job.setup_name(number) {
+        let place = match setup.frame.is_world() {
+            true => "as the part".to_owned(),
+            false => {
+                let [x, _, z] = setup.frame.axes().map(words::direction);
+                let zero = point(setup.frame.origin());
+                format!("zero at {zero} of the part, whose {z} is up and {x} to the right")
+            }
+        };
+        text.line("set-up", &format!("{name}: {place}"));
+    }
+    if !setup.fixtures.is_empty() {
+        text.line("fixtures", &count(setup.fixtures.len() as u64));
+    }
 }
 
 fn mesh(text: &mut Lines, mesh: &Mesh) {

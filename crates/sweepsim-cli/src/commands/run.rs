@@ -4,7 +4,7 @@ use super::page::{self, PageSource};
 use super::summary::{NAMED, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
-use super::verify::verified;
+use super::verify::{setups, verified};
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
 use crate::warnings;
@@ -229,6 +229,7 @@ fn describe(task: Task, report: &mut Report, session: &JobSession, options: &Run
         .collect();
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
+    report.setups = report.setups.take().or_else(|| setups(job));
     report.notes.splice(0..0, session.notes());
     report.warnings = warnings::before(job, task.uses());
     if task != Task::Sweep {

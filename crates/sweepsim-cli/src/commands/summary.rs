@@ -53,6 +53,11 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
     }
     if let Some(work) = &report.work {
         line("machine", &worked(work));
+        for setup in report.setups.iter().flatten() {
+            if let Some(work) = &setup.work {
+                line("", &format!("set-up {}: {}", setup.name, worked(work)));
+            }
+        }
         let tools = report.tools.iter().flatten().filter(|_| session.job.tools.len() > 1);
         for summary in tools.take(NAMED) {
             line("", &format!("tool {}: {}", summary.tool, worked(&summary.work)));
@@ -118,7 +123,7 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
     }
     for finding in findings.iter().take(NAMED) {
-        line(&finding.kind, &sentence(finding));
+        line(&finding.kind, &sentence(finding, report));
     }
     if findings.len() > NAMED {
         line(
@@ -160,13 +165,22 @@ pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
         .collect()
 }
 
+/// The name of a set-up, if there are set-ups.
+pub(super) fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
+    let setups = report.setups.as_deref()?;
+    Some(&setups.get(number?)?.name)
+}
+
 /// A finding in one line.
-fn sentence(finding: &ReportedFinding) -> String {
+fn sentence(finding: &ReportedFinding, report: &Report) -> String {
     let mut text = match (&finding.file, finding.line, finding.path, finding.r#move) {
         (Some(file), Some(line), ..) => format!("{file}:{line}: "),
         (_, _, Some(path), Some(number)) => format!("path {path}, move {number}: "),
         _ => String::new(),
     };
+    if let Some(name) = setup_name(report, finding.setup) {
+        text += &format!("set-up {name}, ");
+    }
     if let Some(tool) = finding.tool {
         let part = finding.body.as_deref().unwrap_or("cutter");
         text += &match &finding.detail {

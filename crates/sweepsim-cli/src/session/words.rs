@@ -73,6 +73,15 @@ pub(crate) fn point(place: [f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
+/// A direction of the part: one of its axes by name, or its numbers.
+pub(crate) fn direction(v: [f64; 3]) -> String {
+    let along = (0..3).find(|k| (v[*k].abs() - 1.0).abs() < 1e-12);
+    match along {
+        Some(k) => format!("{}{}", if v[k] < 0.0 { "−" } else { "+" }, ["X", "Y", "Z"][k]),
+        None => point(v),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -20,7 +20,7 @@ pub(super) fn unused(job: &Job, used: Use) -> Vec<String> {
         let given = [
             ("target", job.target.is_some()),
             ("limits", job.limits.is_some()),
-            ("fixtures", !job.fixtures.is_empty()),
+            ("fixtures", job.setups.iter().any(|setup| !setup.fixtures.is_empty())),
             ("bodies", !job.bodies.is_empty()),
             ("clearance", job.clearance > 0.0),
         ];

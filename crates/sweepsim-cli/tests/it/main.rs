@@ -5,6 +5,7 @@ mod directions;
 mod exchange;
 mod page;
 mod programs;
+mod setups;
 mod support;
 mod verify;
 mod warnings;

@@ -117,6 +117,24 @@ impl Frame {
         }
     }
 
+    /// This frame in the world, if its own coordinates are those of `outer`.
+    ///
+    /// ```
+    /// use sweepsim_dexel::Frame;
+    /// let outer = Frame::new([10.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0])?;
+    /// let inner = Frame::new([1.0, 2.0, 3.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0])?;
+    /// let both = inner.within(&outer);
+    /// assert_eq!((both.origin(), both.axes()[0]), ([8.0, 1.0, 3.0], [-1.0, 0.0, 0.0]));
+    /// # Ok::<(), sweepsim_dexel::FrameError>(())
+    /// ```
+    #[must_use]
+    pub fn within(&self, outer: &Self) -> Self {
+        Self {
+            origin: outer.to_world(self.origin),
+            axes: self.axes.map(|axis| outer.turn_to_world(axis)),
+        }
+    }
+
     /// The origin, in world coordinates.
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {

@@ -1,6 +1,7 @@
 //! The stock: the material before the first cut.
 
 mod from_mesh;
+mod placed;
 
 use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Grid;

@@ -1,4 +1,5 @@
 use super::*;
+use crate::grid::Frame;
 
 fn grid() -> Grid {
     Grid::new([-10.0, -10.0], [10.0, 10.0], [100, 100]).unwrap()
@@ -117,4 +118,71 @@ fn bad_stock_is_refused() {
     }
     .dexels(&grid());
     assert!(matches!(nothing, Err(StockError::Cylinder { .. })));
+}
+
+/// On the lines of any grid, a placed solid is where its own solid is, seen from the frame.
+#[test]
+fn placed_solids_are_where_the_frame_puts_them() {
+    let frames = [
+        Frame::new([1.0, -2.0, 3.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]).unwrap(),
+        Frame::new([1.0, -2.0, 3.0], [0.3, -0.5, 1.0], [1.0, 0.2, 0.1]).unwrap(),
+    ];
+    let block = |min, max| Stock::Block { min, max };
+    let solid = Stock::Difference(
+        Stock::Union(vec![
+            block([-6.0, -5.0, -3.0], [6.0, 5.0, 2.0]),
+            Stock::Mesh(cube([4.0, 3.0, 1.0], [7.0, 6.0, 4.0])),
+        ])
+        .into(),
+        vec![
+            Stock::Cylinder {
+                base: [-2.0, 0.0, -9.0],
+                axis: [0.2, 0.0, 3.0],
+                radius: 1.5,
+                height: 20.0,
+            },
+            Stock::Ball {
+                centre: [3.0, -3.0, 2.0],
+                radius: 2.0,
+            },
+            Stock::Intersection(vec![
+                block([-9.0, -9.0, 0.0], [0.0, 9.0, 9.0]),
+                block([-9.0, 2.0, -9.0], [9.0, 9.0, 9.0]),
+            ]),
+        ],
+    );
+    let inside = |[x, y, z]: [f64; 3]| {
+        let within = |min: [f64; 3], max: [f64; 3]| {
+            [x, y, z]
+                .iter()
+                .zip(min.iter().zip(max))
+                .all(|(c, (a, b))| a < c && *c < b)
+        };
+        let whole = within([-6.0, -5.0, -3.0], [6.0, 5.0, 2.0]) || within([4.0, 3.0, 1.0], [7.0, 6.0, 4.0]);
+        // The distance from a line through (−2, 0, −9) along (0.2, 0, 3); its disks are far away.
+        let along = (0.2 * (x + 2.0) + 3.0 * (z + 9.0)) / (0.04 + 9.0);
+        let drilled = (x + 2.0 - 0.2 * along).hypot(y).hypot(z + 9.0 - 3.0 * along) < 1.5;
+        let scooped = (x - 3.0).hypot(y + 3.0).hypot(z - 2.0) < 2.0;
+        let notched = x < 0.0 && z > 0.0 && y > 2.0;
+        whole && !drilled && !scooped && !notched
+    };
+    // No line in a wall.
+    let grid = Grid::new([-10.013, -9.987], [10.009, 10.017], [30, 30]).unwrap();
+    for frame in frames {
+        let dexels = solid.placed(&frame).unwrap().dexels(&grid).unwrap();
+        assert!(dexels.volume() > 100.0);
+        for i in 0..30 {
+            for j in 0..30 {
+                for k in -100..100 {
+                    let z = 0.137 * f64::from(k) + 0.011;
+                    let found = dexels.intervals(i, j).heights().any(|[low, high]| low < z && z < high);
+                    let own = frame.from_world([grid.x(i), grid.y(j), z]);
+                    assert_eq!(found, inside(own), "{own:?}");
+                }
+            }
+        }
+    }
+    let dexels = Stock::Dexels(block([0.0; 3], [1.0; 3]).dexels(&grid).unwrap().into());
+    assert_eq!(dexels.placed(&frames[0]), None);
+    assert_eq!(dexels.placed(&Frame::WORLD), Some(dexels));
 }

@@ -9,6 +9,7 @@ use sweepsim_nc::Note;
 
 use super::paths::JobPath;
 use super::read;
+use super::setups::Setup;
 use crate::error::FormatError;
 use crate::text;
 
@@ -72,10 +73,12 @@ pub struct Job {
     pub tools: BTreeMap<u32, Tool>,
     /// Shanks and holders, by the numbers of their tools, in the frame of the tool. They move with it and must not touch anything.
     pub bodies: BTreeMap<u32, Vec<Body>>,
+    /// How the part is clamped, one after the other: at least one. All coordinates of a job are those of the part, which stays where it is.
+    pub setups: Vec<Setup>,
+    /// Whether the job lists its set-ups. If not, all is in the only one.
+    pub has_setups: bool,
     /// The paths, in the order of cutting.
     pub paths: Vec<JobPath>,
-    /// Clamps, vices and tables, which nothing may touch.
-    pub fixtures: Vec<Stock>,
     /// The design part.
     pub target: Option<Target>,
     /// How far the result may deviate from the target.
@@ -122,6 +125,13 @@ impl Job {
     /// As [`Job::read`].
     pub fn parse(text: &str, file: &FilePath) -> Result<Self, FormatError> {
         read::parse(text, file).map_err(|error| error.in_file(file))
+    }
+
+    /// What people call a set-up: its name, or its number from 1. `None` if the job has no set-ups.
+    #[must_use]
+    pub fn setup_name(&self, number: usize) -> Option<String> {
+        let setup = self.setups.get(number).filter(|_| self.has_setups)?;
+        Some(setup.name.clone().unwrap_or_else(|| (number + 1).to_string()))
     }
 
     /// The number of moves of all paths.

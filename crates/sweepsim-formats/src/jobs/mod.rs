@@ -1,17 +1,15 @@
 //! Jobs: RON files that define what is cut, with which tools and along which paths.
 
-mod area;
-mod course;
 mod job;
-mod path_entry;
+mod judging;
 mod paths;
+mod place;
 mod read;
 mod schema;
-mod spline_motion;
-mod stock;
-mod surface_tool;
-mod tool_box;
+mod setups;
+mod solids;
 mod tools;
 
 pub use job::{Job, Limits, Target, Units};
 pub use paths::{JobPath, Origin};
+pub use setups::Setup;

@@ -23,7 +23,10 @@ pub(crate) struct Job {
     pub library: Option<String>,
     #[serde(default)]
     pub bodies: BTreeMap<u32, Vec<Body>>,
-    pub paths: Vec<Path>,
+    #[serde(default)]
+    pub paths: Option<Vec<Path>>,
+    #[serde(default)]
+    pub setups: Option<Vec<Setup>>,
     #[serde(default)]
     pub fixtures: Vec<Stock>,
     #[serde(default)]
@@ -61,8 +64,22 @@ pub(crate) struct Grid {
 pub(crate) struct Frame {
     #[serde(default)]
     pub origin: [f64; 3],
+    #[serde(default = "z_axis")]
     pub z: [f64; 3],
+    #[serde(default = "x_axis")]
     pub x: [f64; 3],
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Setup {
+    #[serde(default)]
+    pub name: Option<String>,
+    #[serde(default)]
+    pub frame: Option<Frame>,
+    pub paths: Vec<Path>,
+    #[serde(default)]
+    pub fixtures: Vec<Stock>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -89,6 +106,10 @@ pub(crate) enum Stock {
     Union(Vec<Stock>),
     Intersection(Vec<Stock>),
     Difference(Box<Stock>, Vec<Stock>),
+}
+
+fn x_axis() -> [f64; 3] {
+    [1.0, 0.0, 0.0]
 }
 
 fn z_axis() -> [f64; 3] {
@@ -203,6 +224,8 @@ pub(crate) enum Turn {
 pub(crate) struct Path {
     #[serde(default)]
     pub tool: Option<u32>,
+    #[serde(default)]
+    pub frame: Option<Frame>,
     #[serde(default)]
     pub poses: Option<Vec<Pose>>,
     #[serde(default)]

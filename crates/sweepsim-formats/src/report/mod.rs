@@ -2,7 +2,7 @@
 
 mod work;
 
-pub use work::{MoveSummary, ToolSummary, WorkSummary, write_moves_csv};
+pub use work::{MoveSummary, SetupSummary, ToolSummary, WorkSummary, write_moves_csv};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -55,6 +55,9 @@ pub struct Report {
     /// What each tool does, in the order of the tools' numbers (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tools: Option<Vec<ToolSummary>>,
+    /// What each set-up does, in their order; none in a job without set-ups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub setups: Option<Vec<SetupSummary>>,
     /// What all tools do (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub work: Option<WorkSummary>,
@@ -139,6 +142,9 @@ pub struct ReportedFinding {
     /// The path of the job, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub path: Option<usize>,
+    /// The set-up, from 0; none in a job without set-ups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub setup: Option<usize>,
     /// The move of the path, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub r#move: Option<usize>,
@@ -187,6 +193,9 @@ pub struct ReportedRegion {
 pub struct PathSummary {
     /// The tool's number.
     pub tool: u32,
+    /// The set-up, from 0; none in a job without set-ups.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub setup: Option<usize>,
     /// The moves of the path.
     pub moves: usize,
     /// The volume, in mm³.

@@ -54,6 +54,23 @@ pub struct ToolSummary {
     pub work: WorkSummary,
 }
 
+/// What is done in a set-up.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct SetupSummary {
+    /// Its name: that of the job, or its number from 1.
+    pub name: String,
+    /// The origin of its coordinates in those of the part.
+    pub origin: [f64; 3],
+    /// The directions of its x, y and z in the coordinates of the part.
+    pub axes: [[f64; 3]; 3],
+    /// The numbers of its tools, in the order in which they are first used.
+    pub tools: Vec<u32>,
+    /// All its moves (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub work: Option<WorkSummary>,
+}
+
 /// What a move does: a row of `moves.csv`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]

@@ -293,6 +293,42 @@ fn one_message_with_its_place() {
             "    ],\n    limits: Some(Limits(gouge: -1, excess: 0)),\n)".into(),
             "job.ron:12:32: gouge is -1",
         ),
+        // Set-ups.
+        (
+            "    paths: [",
+            "    setups: [], paths: [".into(),
+            "job.ron:9:24: `paths` beside `setups`",
+        ),
+        (
+            "    ],\n)",
+            "    ],\n    setups: [Setup(paths: [])],\n)".into(),
+            "job.ron:9:12: `paths` beside `setups`",
+        ),
+        (
+            "    paths: [\n        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),\n    ],\n",
+            String::new(),
+            "job.ron:1:1: this job has no paths: expected `paths` or `setups`",
+        ),
+        (
+            "Path(tool: 1, ",
+            "Path(tool: 1, frame: Frame(z: (1, 0, 0)), ".into(),
+            "job.ron:10:30: the frame's x is zero or parallel",
+        ),
+        (
+            "    paths: [\n        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),\n    ],\n",
+            "    setups: [Setup(frame: Frame(origin: (inf, 0, 0)), paths: [])],\n".into(),
+            "job.ron:9:27: the frame is not finite",
+        ),
+        (
+            "    paths: [\n        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),\n    ],\n",
+            "    setups: [Setup(paths: [Path(tool: 3, poses: [])])],\n".into(),
+            "job.ron:9:39: there is no tool 3",
+        ),
+        (
+            "    paths: [\n        Path(tool: 1, poses: [((0, 0, 9), (0, 0, 1)), ((9, 9, 3), (1, 0, 1))]),\n    ],\n",
+            "    setups: [Setup(paths: [], fixtures: [Union([Dexels(\"part.dexels\")])])],\n".into(),
+            "job.ron:9:42: a fixture cannot be dexels",
+        ),
     ];
     check(&cases, folder.path());
     let text = GOOD.replace(poses, "file: \"two.ngc\"").replace("tool: 1, ", "");

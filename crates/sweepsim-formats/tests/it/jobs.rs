@@ -115,3 +115,60 @@ fn fixtures() {
     }
     assert!(count >= 3);
 }
+
+/// All coordinates become those of the part, program by program.
+#[test]
+fn set_ups_are_in_the_coordinates_of_the_part() {
+    let text = r#"Job(
+    units: Inch,
+    stock: Block(min: (0, 0, 0), max: (4, 2, 1)),
+    tools: { 1: Flat(radius: 0.1, length: 1), 2: Ball(radius: 0.1, length: 1) },
+    setups: [
+        Setup(paths: [Path(tool: 1, poses: [((1, 1, 2), (0, 0, 1)), ((3, 1, 2), (0, 0, 1))])]),
+        Setup(
+            name: "bottom",
+            // Upside down: turned about x; zero is at the far lower corner of the bottom.
+            frame: Frame(origin: (0, 2, 0), z: (0, 0, -1), x: (1, 0, 0)),
+            fixtures: [Block(min: (0, 0, -1), max: (4, 0.5, 0))],
+            paths: [
+                Path(tool: 2, poses: [((1, 0.5, 0.25), (0, 0, 1))]),
+                Path(tool: 1, frame: Frame(origin: (1, 0, 0), x: (0, 1, 0)), poses: [((0.5, 0, 0.25), (0, 0.6, 0.8))]),
+            ],
+        ),
+    ],
+)"#;
+    let job = Job::parse(text, Path::new("part.ron")).unwrap();
+    assert!(job.has_setups);
+    let names: Vec<Option<String>> = (0..3).map(|number| job.setup_name(number)).collect();
+    assert_eq!(names, [Some("1".to_owned()), Some("bottom".to_owned()), None]);
+    let setups: Vec<(usize, u32)> = job.paths.iter().map(|path| (path.setup, path.tool)).collect();
+    assert_eq!(setups, [(0, 1), (1, 2), (1, 1)]);
+    let pose = |path: usize| job.paths[path].path.poses()[0];
+    let inches = |p: [f64; 3]| p.map(|c| (c / 25.4 * 1e9).round() / 1e9);
+    assert_eq!(inches(pose(0).tip()), [1.0, 1.0, 2.0]);
+    assert_eq!(
+        (inches(pose(1).tip()), pose(1).axis()),
+        ([1.0, 1.5, -0.25], [0.0, 0.0, -1.0])
+    );
+    // The path's y is its set-up's −x.
+    assert_eq!(inches(pose(2).tip()), [1.0, 1.5, -0.25]);
+    let axis = pose(2).axis();
+    assert!(
+        (0..3).all(|k| (axis[k] - [-0.6, 0.0, -0.8][k]).abs() < 1e-15),
+        "{axis:?}"
+    );
+    let fixture = Stock::Block {
+        min: [0.0, 1.5 * 25.4, 0.0],
+        max: [4.0 * 25.4, 2.0 * 25.4, 25.4],
+    };
+    assert_eq!(job.setups[1].fixtures, [fixture]);
+    assert!(job.setups[0].fixtures.is_empty());
+    // A grid from the stock, since stock and grid are the part's.
+    assert_eq!(job.grid.max(), [4.0 * 25.4, 2.0 * 25.4]);
+
+    let plain = Job::parse(crate::support::GOOD, Path::new("good.ron")).unwrap();
+    assert_eq!(
+        (plain.setups.len(), plain.has_setups, plain.setup_name(0)),
+        (1, false, None)
+    );
+}

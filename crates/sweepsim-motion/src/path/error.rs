@@ -53,4 +53,7 @@ pub enum PathError {
         /// The first of the two poses, counted from 0.
         index: usize,
     },
+    /// A path was to be turned by what is no rotation, or moved out of the range of numbers.
+    #[error("a path can only be moved by a rotation and a finite shift")]
+    NoRotation,
 }

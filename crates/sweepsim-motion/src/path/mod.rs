@@ -3,6 +3,7 @@
 mod constant_speed;
 mod error;
 mod moves;
+mod placed;
 mod rotary;
 mod tip_arc;
 
@@ -15,6 +16,7 @@ use crate::pose::Pose;
 use crate::segment::{Segment, turn_between};
 use crate::spline_motion::SplineMotion;
 use nalgebra::Vector3;
+use placed::Placed;
 use std::f64::consts::PI;
 
 /// Axes of consecutive poses must differ from opposite by more than this, in radians: between opposite axes
@@ -46,6 +48,7 @@ enum Ways {
     Slerp,
     Each(Vec<Move>),
     Motion(Box<SplineMotion>),
+    Placed(Box<Placed>),
 }
 
 impl Path {
@@ -172,10 +175,12 @@ impl Path {
         self.poses.len() - 1
     }
 
-    /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses.
+    /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses. Angles of rotary axes are those of the
+    /// machine, also of a path that was [moved](Path::moved).
     #[must_use]
     pub fn way(&self, index: usize) -> Move {
         match &self.ways {
+            Ways::Placed(placed) => placed.way(index),
             Ways::Each(moves) => moves.get(index).copied().unwrap_or_default(),
             Ways::Slerp | Ways::Motion(_) => Move::default(),
         }
@@ -187,6 +192,7 @@ impl Path {
         match &self.ways {
             Ways::Slerp => self.poses[from] == self.poses[to],
             Ways::Motion(_) => false,
+            Ways::Placed(placed) => placed.own.rests(from, to),
             Ways::Each(moves) => {
                 let still = |way: &Move| match (way.course, way.turning) {
                     (Course::Arc(_), _) => false,
@@ -240,6 +246,7 @@ impl Path {
         let way = match &self.ways {
             Ways::Slerp => return Segment::between(from, to),
             Ways::Motion(motion) => return vec![motion.segment(index).clone()],
+            Ways::Placed(placed) => return placed.segments(index, tool, deviation),
             Ways::Each(moves) => &moves[index],
         };
         if *way == Move::default() {
@@ -273,6 +280,7 @@ impl Path {
                 // The error of chords is of second order (Richardson 1911).
                 return (4.0 * chords(128) - chords(64)) / 3.0;
             }
+            Ways::Placed(placed) => return placed.own.tip_length(index),
             Ways::Slerp => Course::Straight,
             Ways::Each(moves) => moves[index].course,
         };
@@ -293,6 +301,7 @@ impl Path {
         match &self.ways {
             Ways::Slerp => ends,
             Ways::Motion(motion) => motion.size().max(ends),
+            Ways::Placed(placed) => placed.size().max(ends),
             Ways::Each(moves) => moves
                 .iter()
                 .zip(&self.poses)

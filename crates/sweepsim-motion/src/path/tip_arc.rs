@@ -1,6 +1,6 @@
 //! Circular arcs and helices of the tip.
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use thiserror::Error;
 
 /// An arc of the tip about an axis through `centre`. Any difference between its end and the end of the move is added at constant speed
@@ -139,6 +139,15 @@ impl TipArc {
         Self {
             angle: -self.angle,
             ..*self
+        }
+    }
+
+    /// The same arc in another place.
+    pub(crate) fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Self {
+        Self {
+            centre: turn * self.centre + shift,
+            normal: Unit::new_normalize(turn * self.normal.into_inner()),
+            angle: self.angle,
         }
     }
 

@@ -6,4 +6,5 @@ mod misuse;
 mod motions;
 mod offsets;
 mod parts;
+mod placed;
 mod spline_profiles;

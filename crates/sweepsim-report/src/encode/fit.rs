@@ -20,6 +20,7 @@ pub(crate) struct Head {
     track: Option<TrackHead>,
     meshes: MeshHead,
     paths: Vec<(u32, u16)>,
+    setups: Vec<(u32, String)>,
     programs: Vec<String>,
     arrays: Vec<Entry>,
 }
@@ -126,6 +127,7 @@ pub(crate) fn embed(scene: &Scene, most: usize) -> Embedded {
         track: track.map(|(head, _)| head),
         meshes,
         paths: scene.paths.clone(),
+        setups: scene.setups.clone(),
         programs: names,
         arrays: all.entries,
     };

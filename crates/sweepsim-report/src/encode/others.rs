@@ -67,6 +67,8 @@ pub(crate) struct ToolHead {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct SolidHead {
     kind: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    setup: Option<u16>,
     vertices: usize,
     triangles: usize,
 }
@@ -128,6 +130,7 @@ pub(crate) fn meshes(tools: &[ToolPart], solids: &[Solid]) -> (MeshHead, Arrays)
             };
             SolidHead {
                 kind,
+                setup: solid.setup,
                 vertices,
                 triangles,
             }

@@ -67,12 +67,16 @@ pub fn verify(
 ) -> Result<Verification, SweepError> {
     let grid = *scene.stock.grid();
     let other = |dexels: &Dexels| dexels.grid().frame() != grid.frame();
-    if scene.fixtures.is_some_and(other) || scene.target.is_some_and(|t| *t.solid().grid() != grid) {
+    let mut fixtures = program
+        .iter()
+        .filter_map(|toolpath| toolpath.fixtures)
+        .chain(scene.fixtures);
+    if fixtures.any(other) || scene.target.is_some_and(|t| *t.solid().grid() != grid) {
         return Err(SweepError::Grid);
     }
     let mut work = Work {
         heights: HeightMap::new(&scene.stock),
-        fixtures: scene.fixtures.map(|dexels| (dexels, HeightMap::new(dexels))),
+        fixtures: None,
         target: scene.target,
         options: options.sweep.clone(),
         each_move: options.each_move,
@@ -99,6 +103,7 @@ pub fn verify(
             .sweep
             .clone()
             .path_number(u32::try_from(number).unwrap_or(u32::MAX));
+        work.set_fixtures(toolpath.fixtures.or(scene.fixtures));
         let solids = Solids::new(toolpath, &work)?;
         for moves in runs(toolpath) {
             let seen = work.done.findings.len();
@@ -160,7 +165,14 @@ fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
     runs
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    fn set_fixtures(&mut self, fixtures: Option<&'a Dexels>) {
+        let now = self.fixtures.as_ref().map(|(dexels, _)| std::ptr::from_ref(*dexels));
+        if now != fixtures.map(std::ptr::from_ref) {
+            self.fixtures = fixtures.map(|dexels| (dexels, HeightMap::new(dexels)));
+        }
+    }
+
     /// Judges a run of moves, then removes what it cuts.
     fn run(
         &mut self,

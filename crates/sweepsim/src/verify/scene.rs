@@ -16,6 +16,8 @@ pub struct ToolPath<'a> {
     pub path: &'a Path,
     /// The state in each move; [`MoveState::FEED`] in moves beyond the end of the list.
     pub states: &'a [MoveState],
+    /// What nothing must touch along this path, on a grid of its own in the frame of the stock's grid: the fixtures of its set-up. `None`: those of the [`Scene`].
+    pub fixtures: Option<&'a Dexels>,
 }
 
 impl<'a> ToolPath<'a> {
@@ -26,7 +28,16 @@ impl<'a> ToolPath<'a> {
             assembly,
             path,
             states: &[],
+            fixtures: None,
         }
+    }
+
+    /// With fixtures of its own, in place of those of the scene: each set-up has others. The part stays where it is, so paths and fixtures of all set-ups are in the frame of
+    /// the part (see [`Path::moved`]).
+    #[must_use]
+    pub fn with_fixtures(self, fixtures: &'a Dexels) -> Self {
+        let fixtures = Some(fixtures);
+        Self { fixtures, ..self }
     }
 
     /// Sets the state of the machine in each move.

@@ -4,18 +4,19 @@ mod course;
 mod deviation;
 mod program;
 mod solids;
+mod tables;
 mod verdict;
 
 use super::program::clock;
 use super::task::Task;
-use crate::session::{Failure, JobSession, tool_in_words, words};
+use crate::session::{Failure, JobSession, words};
 use course::Courses;
 use deviation::Deviated;
 use program::Programs;
 use sweepsim::Options;
 use sweepsim::verify::Target;
 use sweepsim_dexel::{Dexels, Source};
-use sweepsim_formats::{MoveSummary, Report};
+use sweepsim_formats::{Job, MoveSummary, Report};
 use sweepsim_report::{Area, DexelLayer, Fact, LayerEnd, Page, Picture, Plot, Scene, Table, measure};
 
 /// What the page is made of.
@@ -70,7 +71,8 @@ pub(crate) fn html(source: &PageSource) -> Result<String, Failure> {
     page.facts = facts(source);
     page.plots = plots(source, &made);
     page.histogram = deviated.as_ref().and_then(|found| found.histogram(report));
-    page.tables = vec![setup(source), tools(source, &made), phases(source)];
+    page.tables = tables::setups(source);
+    page.tables.extend([tables::tools(source, &made), phases(source)]);
     if !report.dexels.unresolved.is_empty() {
         page.tables.insert(0, unresolved(report));
     }
@@ -139,10 +141,22 @@ fn scene(source: &PageSource, deviated: Option<&Deviated>, made: Courses, progra
         .zip(ends)
         .map(|(path, end)| (end, tool(path.tool)))
         .collect();
+    scene.setups = setups_of(job, &made);
     scene.programs = programs.into_texts();
     scene.track = Some(made.track);
     scene.course = made.course;
     scene
+}
+
+/// The set-ups by name, each with the number of moves up to its end; none if the job does not list any.
+fn setups_of(job: &Job, made: &Courses) -> Vec<(u32, String)> {
+    let name = |number: usize| job.setup_name(number);
+    let end = |number: usize| {
+        let next = job.paths.iter().position(|path| path.setup > number);
+        next.map_or(made.moves, |path| made.first_moves[path])
+    };
+    let setups = 0..job.setups.len();
+    setups.filter_map(|number| Some((end(number), name(number)?))).collect()
 }
 
 fn facts(source: &PageSource) -> Vec<Fact> {
@@ -225,114 +239,6 @@ fn plots(source: &PageSource, made: &Courses) -> Vec<Plot> {
         along("Radial width", |row| row.width);
     }
     plots
-}
-
-fn point(place: [f64; 3]) -> String {
-    place.map(measure).join(", ")
-}
-
-/// What the person at the machine needs.
-fn setup(source: &PageSource) -> Table {
-    let job = &source.session.job;
-    let mut rows = Vec::new();
-    let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
-    if let Some([low, high]) = job.stock.bounds().filter(|_| source.task != Task::Sweep) {
-        let size = [0, 1, 2].map(|k| measure(high[k] - low[k]));
-        row("Stock", format!("{} × {} × {} mm", size[0], size[1], size[2]));
-        row("Lowest corner", format!("{} mm", point(low)));
-        row("Highest corner", format!("{} mm", point(high)));
-        let zero = [0, 1, 2].map(|k| {
-            let (from, to) = (low[k], high[k]);
-            let place = match 0.0 {
-                z if z == from => "lower side",
-                z if z == to => "upper side",
-                z if (z - 0.5 * (from + to)).abs() < 1e-9 => "middle",
-                z if z > from && z < to => "inside",
-                _ => "outside",
-            };
-            format!("{} {place}", ["X", "Y", "Z"][k])
-        });
-        row("Program zero", zero.join(", "));
-    }
-    if !job.fixtures.is_empty() {
-        row("Fixtures", words::count(job.fixtures.len() as u64));
-    }
-    if let Some(limits) = job.limits {
-        row(
-            "Limits",
-            format!(
-                "gouge {} mm, excess {} mm",
-                measure(limits.gouge),
-                measure(limits.excess)
-            ),
-        );
-    }
-    row("Grid", {
-        let [dx, dy] = job.grid.spacing().map(measure);
-        format!("a dexel every {dx} × {dy} mm")
-    });
-    Table {
-        title: "Set-up".to_owned(),
-        rows,
-        printed: true,
-        ..Table::default()
-    }
-}
-
-fn tools(source: &PageSource, made: &Courses) -> Table {
-    let job = &source.session.job;
-    let removed = |number: u32| -> Option<f64> {
-        let paths = source.report.paths.as_ref()?;
-        Some(
-            paths
-                .iter()
-                .filter(|path| path.tool == number)
-                .map(|path| path.removed)
-                .sum(),
-        )
-    };
-    let seconds = |number: u32| -> Option<f64> {
-        let tools = source.report.tools.as_ref()?;
-        tools
-            .iter()
-            .find(|summary| summary.tool == number)
-            .map(|summary| summary.work.total_seconds())
-    };
-    let row = |(number, tool)| {
-        let number: &u32 = number;
-        let own = || {
-            job.paths
-                .iter()
-                .zip(&made.lengths)
-                .filter(|(path, _)| path.tool == *number)
-        };
-        let moves: usize = own().map(|(path, _)| path.path.moves()).sum();
-        let [cut, rapid] = own().fold([0.0; 2], |sum, (_, own)| [sum[0] + own[0], sum[1] + own[1]]);
-        let bodies = job.bodies.get(number).map_or(0, Vec::len);
-        let mut shape = tool_in_words(tool);
-        if bodies > 0 {
-            shape += &format!(", with {}", if bodies == 1 { "a holder" } else { "shank and holder" });
-        }
-        vec![
-            format!("T{number}"),
-            shape,
-            words::count(moves as u64),
-            format!("{cut:.0}"),
-            format!("{rapid:.0}"),
-            seconds(*number).map_or("–".to_owned(), clock),
-            removed(*number).map_or("–".to_owned(), measure),
-        ]
-    };
-    Table {
-        title: "Tools".to_owned(),
-        columns: ["Tool", "Shape", "Moves", "Feed mm", "Rapid mm", "Time", "Removed mm³"]
-            .map(str::to_owned)
-            .into(),
-        rows: job.tools.iter().map(row).collect(),
-        numbers: vec![2, 3, 4, 5, 6],
-        printed: true,
-        ..Table::default()
-    }
 }
 
 fn phases(source: &PageSource) -> Table {

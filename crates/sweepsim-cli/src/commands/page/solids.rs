@@ -14,23 +14,26 @@ const LARGEST: usize = 300_000;
 /// Stock, target and fixtures.
 pub(super) fn solids(job: &Job, task: Task) -> Vec<Solid> {
     let mut solids = Vec::new();
-    let mut add = |kind, stock: &Stock| {
+    let mut add = |kind, setup, stock: &Stock| {
         for (vertices, triangles) in meshes(stock) {
             solids.push(Solid {
                 kind,
+                setup,
                 vertices,
                 triangles,
             });
         }
     };
     if task != Task::Sweep {
-        add(SolidKind::Stock, &job.stock);
+        add(SolidKind::Stock, None, &job.stock);
     }
-    for fixture in &job.fixtures {
-        add(SolidKind::Fixture, fixture);
+    for (number, setup) in job.setups.iter().enumerate() {
+        for fixture in &setup.fixtures {
+            add(SolidKind::Fixture, Some(number as u16), fixture);
+        }
     }
     if let Some(target) = &job.target {
-        add(SolidKind::Target, &Stock::Mesh(target.mesh.clone()));
+        add(SolidKind::Target, None, &Stock::Mesh(target.mesh.clone()));
     }
     solids
 }

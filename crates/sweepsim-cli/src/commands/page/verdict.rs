@@ -1,7 +1,7 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::commands::summary::found;
+use crate::commands::summary::{found, setup_name};
 use crate::session::words::counted;
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
@@ -68,6 +68,9 @@ pub(super) fn findings(
     let finding = |found: &ReportedFinding| {
         let mut facts = Vec::new();
         let mut fact = |label: &str, value: String| facts.push((label.to_owned(), value));
+        if let Some(name) = setup_name(report, found.setup) {
+            fact("Set-up", name.to_owned());
+        }
         if let Some(tool) = found.tool {
             fact("Tool", format!("T{tool}"));
         }

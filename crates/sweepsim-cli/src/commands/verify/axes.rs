@@ -45,6 +45,7 @@ pub(super) fn findings(job: &Job, report: &mut Report, texts: &mut ProgramTexts)
             reported.kind = "limit".to_owned();
             reported.tool = Some(path.tool);
             (reported.path, reported.r#move) = (Some(number), Some(moved));
+            reported.setup = job.has_setups.then_some(path.setup);
             if let Some((file, line)) = work::place(path, moved, &texts.folder) {
                 reported.text = texts.line(&file, line);
                 (reported.file, reported.line) = (Some(file), Some(line));

@@ -1,7 +1,10 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
 mod axes;
+mod fixtures;
 mod work;
+
+pub(super) use work::setups;
 
 use super::task::sweeping;
 use crate::arguments::{JudgeOptions, Output, RunOptions};
@@ -15,7 +18,7 @@ use sweepsim::verify::{
     VerifyOptions, deviations, verify,
 };
 use sweepsim::{Monitor, Statistics};
-use sweepsim_dexel::{Dexels, Grid, Operation};
+use sweepsim_dexel::Dexels;
 use sweepsim_formats::{
     DeviationSummary, Job, JobPath, MoveSummary, PathSummary, Report, ReportedFinding, ReportedRegion, Verdict,
 };
@@ -24,8 +27,6 @@ use sweepsim_formats::{
 const LIMIT: f64 = 0.1;
 /// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
 const PLOTTED: usize = 1000;
-/// The most lines of a grid of fixtures.
-const MOST_LINES: f64 = 4e6;
 
 /// What remains of the stock.
 pub(super) struct Verified {
@@ -48,7 +49,7 @@ pub(super) fn verified(
     progress.phase("stock");
     let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
     let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
-    let fixtures = phase(report, "stock", || fixtures(session))?;
+    let fixtures = phase(report, "stock", || fixtures::of_setups(session))?;
     progress.phase("target");
     let target = phase(report, "target", || target(session))?;
     let larger = larger(job, judging, report);
@@ -58,12 +59,15 @@ pub(super) fn verified(
         .paths
         .iter()
         .zip(&states)
-        .map(|(path, states)| ToolPath::new(&assemblies[&path.tool], &path.path).with_states(states))
+        .map(|(path, states)| {
+            let toolpath = ToolPath::new(&assemblies[&path.tool], &path.path).with_states(states);
+            match &fixtures[path.setup] {
+                Some(fixtures) => toolpath.with_fixtures(fixtures),
+                None => toolpath,
+            }
+        })
         .collect();
     let mut scene = Scene::new(stock.clone());
-    if let Some(fixtures) = &fixtures {
-        scene = scene.with_fixtures(fixtures);
-    }
     if let Some(target) = &target {
         scene = scene.with_target(target);
     }
@@ -163,41 +167,6 @@ fn target(session: &JobSession) -> Result<Option<Target>, Failure> {
         .map_err(|error| session.failure(format!("target: {error}")))
 }
 
-/// The fixtures on a grid that holds all of them, with lines as far apart as the stock's.
-fn fixtures(session: &JobSession) -> Result<Option<Dexels>, Failure> {
-    let job = &session.job;
-    let frame = job.grid.frame();
-    let corners = job.fixtures.iter().filter_map(|fixture| fixture.bounds());
-    let corners = corners.flat_map(|[low, high]| {
-        (0..8).map(move |n| frame.from_world([0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] })))
-    });
-    let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-    for corner in corners {
-        for (range, c) in range.iter_mut().zip(corner) {
-            *range = [range[0].min(c), range[1].max(c)];
-        }
-    }
-    if range[0][0] > range[0][1] {
-        return Ok(None);
-    }
-    let spacing = job.grid.spacing();
-    let mut cells = [0, 1].map(|k| ((range[k][1] - range[k][0]) / spacing[k]).ceil().max(1.0));
-    let too_many = (cells[0] * cells[1] / MOST_LINES).sqrt();
-    if too_many > 1.0 {
-        cells = cells.map(|n| (n / too_many).ceil());
-    }
-    let failed = |error: &dyn std::fmt::Display| session.failure(format!("fixtures: {error}"));
-    let [min, max] = [0, 1].map(|end| [range[0][end], range[1][end]]);
-    let grid = Grid::new(min, max, cells.map(|n| n as usize)).map_err(|error| failed(&error))?;
-    let grid = grid.in_frame(*frame);
-    let mut all = Dexels::empty(grid);
-    for fixture in &job.fixtures {
-        let own = fixture.dexels(&grid).map_err(|error| failed(&error))?;
-        all.combine(Operation::Union, &own).map_err(|error| failed(&error))?;
-    }
-    Ok(Some(all))
-}
-
 fn describe(report: &mut Report, session: &JobSession, done: &Verification, found: Option<&Deviations>) {
     let job = &session.job;
     let mut texts = ProgramTexts::new(session);
@@ -220,6 +189,7 @@ fn describe(report: &mut Report, session: &JobSession, done: &Verification, foun
     let paths = job.paths.iter().zip(&done.paths).map(|(path, removal)| {
         let mut summary = PathSummary::default();
         (summary.tool, summary.moves, summary.removed) = (path.tool, path.path.moves(), removal.volume);
+        summary.setup = job.has_setups.then_some(path.setup);
         summary
     });
     report.paths = Some(paths.collect());
@@ -283,6 +253,7 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     reported.tool = Some(path.tool);
     reported.body = body.map(str::to_owned);
     reported.path = Some(finding.path);
+    reported.setup = job.has_setups.then_some(path.setup);
     reported.r#move = Some(finding.number);
     if let Some((file, line)) = work::place(path, finding.number, &texts.folder) {
         reported.text = texts.line(&file, line);

@@ -4,7 +4,7 @@ use crate::session::JobSession;
 use std::collections::BTreeMap;
 use std::path::Path;
 use sweepsim::verify::Verification;
-use sweepsim_formats::{JobPath, MoveSummary, Report, ToolSummary, WorkSummary};
+use sweepsim_formats::{Job, JobPath, MoveSummary, Report, Setup, SetupSummary, ToolSummary, WorkSummary};
 use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
 
 /// File and line of a move: those of the pose where it ends.
@@ -22,9 +22,10 @@ pub(super) fn place(path: &JobPath, number: usize, folder: &Path) -> Option<(Str
 pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Verification) -> Vec<MoveSummary> {
     let job = &session.job;
     let folder = session.file().parent().unwrap_or(Path::new(""));
-    let mut tools: BTreeMap<u32, WorkSummary> = BTreeMap::new();
+    // By set-up and tool.
+    let mut works: BTreeMap<(usize, u32), WorkSummary> = BTreeMap::new();
     for (path, removal) in job.paths.iter().zip(&done.paths) {
-        let work = tools.entry(path.tool).or_default();
+        let work = works.entry((path.setup, path.tool)).or_default();
         for number in 0..path.path.moves() {
             let seconds = path.seconds.get(number).copied().flatten();
             work.add_move(rapid(path, number), seconds, path.path.tip_length(number));
@@ -46,8 +47,23 @@ pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Verific
         row.seconds = path.seconds.get(removal.number).copied().flatten();
         row.length = path.path.tip_length(removal.number);
         (row.removed, row.depth, row.width) = (removal.volume, removal.depth, removal.width);
-        tools.entry(path.tool).or_default().add_engagement(&row);
+        works.entry((path.setup, path.tool)).or_default().add_engagement(&row);
         rows.push(row);
+    }
+    report.setups = setups(job).map(|mut setups| {
+        for (number, setup) in setups.iter_mut().enumerate() {
+            let mut own = WorkSummary::default();
+            works
+                .range((number, 0)..=(number, u32::MAX))
+                .for_each(|(_, work)| own.add(work));
+            own.finish();
+            setup.work = Some(own);
+        }
+        setups
+    });
+    let mut tools: BTreeMap<u32, WorkSummary> = BTreeMap::new();
+    for ((_, tool), work) in works {
+        tools.entry(tool).or_default().add(&work);
     }
     let mut all = WorkSummary::default();
     let summaries = tools.into_iter().map(|(tool, mut work)| {
@@ -67,6 +83,22 @@ pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Verific
         ));
     }
     rows
+}
+
+/// The set-ups of a job that lists them, without what is done in them.
+pub(in crate::commands) fn setups(job: &Job) -> Option<Vec<SetupSummary>> {
+    let summary = |(number, setup): (usize, &Setup)| {
+        let mut summary = SetupSummary::default();
+        summary.name = job.setup_name(number)?;
+        (summary.origin, summary.axes) = (setup.frame.origin(), setup.frame.axes());
+        for path in job.paths.iter().filter(|path| path.setup == number) {
+            if !summary.tools.contains(&path.tool) {
+                summary.tools.push(path.tool);
+            }
+        }
+        Some(summary)
+    };
+    job.setups.iter().enumerate().map(summary).collect()
 }
 
 fn rapid(path: &JobPath, number: usize) -> bool {

@@ -3,6 +3,7 @@
 mod by_force;
 mod deviation;
 mod removal;
+mod setups;
 
 use by_force::{Case, Cylinder, pose};
 use std::ops::ControlFlow;

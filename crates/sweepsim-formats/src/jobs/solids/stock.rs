@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
 
-use super::read::JobReader;
-use super::tools::Step;
-use super::{paths, schema};
 use crate::dexels::read_dexels_file;
 use crate::error::{FormatError, Problem};
+use crate::jobs::place::Step;
+use crate::jobs::read::JobReader;
+use crate::jobs::schema;
 use crate::meshes::{MeshFormat, read_mesh_file, read_stl};
 
 impl JobReader<'_> {
@@ -87,7 +87,7 @@ impl JobReader<'_> {
 
     /// The result of an earlier run, in millimetres like all its outputs.
     fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
-        let file = paths::beside(self.file, name);
+        let file = self.beside(name);
         let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
         if dexels.grid() == grid {
             return Ok(Stock::Dexels(Arc::new(dexels)));
@@ -106,7 +106,7 @@ impl JobReader<'_> {
 
     /// The triangles of a file that the job names, in millimetres.
     pub(crate) fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
-        let file = paths::beside(self.file, name);
+        let file = self.beside(name);
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
         let mesh = if known {
             let mesh = self.named(read_mesh_file(&file), &file, what, steps)?;

@@ -2,30 +2,65 @@
 
 use std::sync::Arc;
 
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, Path, RotaryTable};
 use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions, read_file};
 
-use super::paths::{self, JobPath};
-use super::read::JobReader;
-use super::tool_box::ToolBox;
-use super::tools::Step;
-use super::{schema, spline_motion};
+use super::{JobPath, PathPlace, inline, program, spline_motion};
 use crate::error::{FormatError, Problem};
+use crate::jobs::place::Step;
+use crate::jobs::read::JobReader;
+use crate::jobs::schema;
+use crate::jobs::tools::ToolBox;
 
 /// The default arc tolerance, in tolerances of the job.
 const ARC_TOLERANCE: f64 = 10.0;
 
 impl JobReader<'_> {
-    /// The paths of entry `index` in the list `paths`.
+    /// The paths of entry `index` in a list of paths, in the coordinates of the part.
     pub(crate) fn path(
         &self,
         index: usize,
         raw: &schema::Path,
+        place: &PathPlace,
+        tools: &mut ToolBox,
+        tolerance: f64,
+    ) -> Result<Vec<JobPath>, FormatError> {
+        let at: Vec<Step> = place
+            .at
+            .iter()
+            .cloned()
+            .chain(["paths".into(), Step::Item(index)])
+            .collect();
+        let frame = self.frame(raw.frame.as_ref(), &at)?.within(&place.frame);
+        let own = match place.at {
+            [] => format!("path {index} of the job"),
+            _ => format!("path {index} of set-up {}", place.setup),
+        };
+        let mut paths = self.own_paths(own, raw, &at, tools, tolerance)?;
+        let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from));
+        for path in &mut paths {
+            (path.setup, path.frame) = (place.setup, frame);
+            if !frame.is_world() {
+                let moved = path.path.moved(&turn, frame.origin());
+                path.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
+            }
+        }
+        Ok(paths)
+    }
+
+    /// The paths of the entry at `at`, in its own coordinates. `own` says where it is.
+    fn own_paths(
+        &self,
+        own: String,
+        raw: &schema::Path,
+        at: &[Step],
         tools: &mut ToolBox,
         tolerance: f64,
     ) -> Result<Vec<JobPath>, FormatError> {
         let steps = |rest: &[Step]| {
-            let mut steps = vec!["paths".into(), Step::Item(index)];
+            let mut steps = at.to_vec();
             steps.extend_from_slice(rest);
             steps
         };
@@ -49,6 +84,8 @@ impl JobReader<'_> {
         let whole = |tool: u32, path: Path, source: String| {
             vec![JobPath {
                 tool,
+                setup: 0,
+                frame: Frame::WORLD,
                 rapid: vec![false; path.moves()],
                 spindle_stopped: Vec::new(),
                 no_feed: Vec::new(),
@@ -64,8 +101,7 @@ impl JobReader<'_> {
                 notes: Vec::new(),
             }]
         };
-        let own = || format!("path {index} of the job");
-        let inline = |made: Result<Path, paths::PoseFault>, field: &str| {
+        let inline = |made: Result<Path, inline::PoseFault>, field: &str| {
             let tool = tool()?;
             let path = made.map_err(|(problem, place)| {
                 let mut path = steps(&[field.into()]);
@@ -75,7 +111,7 @@ impl JobReader<'_> {
                 path.extend(rest);
                 self.error(problem, &path)
             })?;
-            Ok(whole(tool, path, own()))
+            Ok(whole(tool, path, own.clone()))
         };
         if let Some(raw_motion) = &raw.motion {
             if raw.poses.is_some() || raw.moves.is_some() || raw.file.is_some() || raw.law.is_some() {
@@ -89,7 +125,7 @@ impl JobReader<'_> {
                 let place: Vec<Step> = std::iter::once("motion".into()).chain(fault.field).collect();
                 self.error(fault.problem, &steps(&place))
             })?;
-            return Ok(whole(tool, path, own()));
+            return Ok(whole(tool, path, own.clone()));
         }
         let own_law = match law {
             schema::Law::Slerp => Law::Slerp,
@@ -101,7 +137,7 @@ impl JobReader<'_> {
                 let problem = Problem::syntax("`moves` and `poses` or `file` in one path: expected one of them");
                 Err(self.error(problem, &steps(&["moves".into()])))
             }
-            (Some(poses), None) => inline(paths::of_poses(poses, own_law, self.unit), "poses"),
+            (Some(poses), None) => inline(inline::of_poses(poses, own_law, self.unit), "poses"),
             (None, Some(name)) => {
                 let arc_tolerance = match raw.arc_tolerance {
                     None => ARC_TOLERANCE * tolerance,
@@ -127,7 +163,7 @@ impl JobReader<'_> {
                     schema::Law::Rotary(_) => AxisLaw::Rotary,
                 };
                 options.exact_arcs = matches!(raw.arcs, Some(schema::Arcs::Exact));
-                let file = paths::beside(self.file, name);
+                let file = self.beside(name);
                 if file
                     .extension()
                     .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
@@ -156,14 +192,14 @@ impl JobReader<'_> {
                         .need(number, Some((&program.tools, name)))
                         .map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
                 }
-                paths::of_program(program, &file, name, raw.tool, own_law, tools)
+                program::of_program(program, &file, name, raw.tool, own_law, tools)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");
                 Err(self.error(problem, &steps(&["file".into()])))
             }
             (None, None) => match &raw.moves {
-                Some(moves) => inline(paths::of_moves(moves, own_law, self.unit), "moves"),
+                Some(moves) => inline(inline::of_moves(moves, own_law, self.unit), "moves"),
                 None => {
                     let problem =
                         Problem::syntax("this path has no poses: expected `poses`, `moves`, `motion` or `file`");
@@ -200,7 +236,7 @@ impl JobReader<'_> {
         if let Some(name) = &raw.machine {
             let read = match Machine::named(name) {
                 Some(machine) => Ok(machine),
-                None => Machine::read_file(&paths::beside(self.file, name)),
+                None => Machine::read_file(&self.beside(name)),
             };
             options.machine = read.map_err(|error| {
                 let problem = Problem::syntax(format!("machine {name}: {error}"));

@@ -15,9 +15,9 @@ use std::path::Path as FilePath;
 use sweepsim_motion::{MotionError, Path, SplineMotion};
 use sweepsim_spline::{BSpline, KnotError, KnotVector, RationalSpline, SplineError};
 
-use super::schema;
-use super::tools::{Fault, Step};
 use crate::error::{FormatError, Problem, TextPosition};
+use crate::jobs::place::{Fault, Step};
+use crate::jobs::schema;
 use crate::text;
 use crate::text::SpanTree;
 

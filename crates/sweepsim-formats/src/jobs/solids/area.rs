@@ -1,11 +1,12 @@
 //! The grid of a job, which covers the stock unless the job says otherwise.
 
-use sweepsim_dexel::{Frame, Grid, Stock};
+use sweepsim_dexel::{Grid, Stock};
 
-use super::read::JobReader;
-use super::schema;
-use super::tools::Step;
 use crate::error::{FormatError, Problem};
+use crate::jobs::place::Step;
+use crate::jobs::read::JobReader;
+use crate::jobs::schema;
+use crate::jobs::setups::has_dexels;
 
 /// The default number of dexels along the longer side.
 const CELLS: f64 = 300.0;
@@ -98,20 +99,7 @@ impl JobReader<'_> {
             let field = if ordered { "cells" } else { "min" };
             self.error(Problem::Grid(error), &["grid".into(), field.into()])
         })?;
-        let Some(frame) = &raw.frame else { return Ok(grid) };
-        let origin = frame.origin.map(|c| c * self.unit);
-        let frame = Frame::new(origin, frame.z, frame.x)
-            .map_err(|error| self.error(Problem::Frame(error), &["grid".into(), "frame".into()]))?;
-        Ok(grid.in_frame(frame))
-    }
-}
-
-fn has_dexels(stock: &schema::Stock) -> bool {
-    match stock {
-        schema::Stock::Dexels(_) => true,
-        schema::Stock::Union(parts) | schema::Stock::Intersection(parts) => parts.iter().any(has_dexels),
-        schema::Stock::Difference(whole, parts) => has_dexels(whole) || parts.iter().any(has_dexels),
-        _ => false,
+        Ok(grid.in_frame(self.frame(raw.frame.as_ref(), &["grid".into()])?))
     }
 }
 

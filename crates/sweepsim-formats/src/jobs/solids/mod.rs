@@ -1,0 +1,4 @@
+//! Solids of a job, and the grid over the stock.
+
+mod area;
+mod stock;
