@@ -19,6 +19,7 @@ mod charts;
 mod coefficients;
 mod curves;
 mod formulas;
+mod multiplicity;
 mod numbers;
 mod points;
 mod search;

@@ -87,7 +87,7 @@ impl Layout {
     }
 
     /// The original coefficients of a part.
-    pub(super) fn originals(&self, part: &Summand, out: &mut Vec<Double>) {
+    pub(crate) fn originals(&self, part: &Summand, out: &mut Vec<Double>) {
         out.clear();
         out.extend(part.of(&self.first).iter().map(|x| Double::new(*x)));
         if !self.second.is_empty() {

@@ -17,13 +17,16 @@ const WIDER: f64 = 4.0;
 const TRIES: u32 = 12;
 
 impl PointSolver {
-    /// The found roots in the domain's coordinates. Adds to the open boxes.
+    /// The found roots in the domain's coordinates. Those that have none become open boxes.
     pub(super) fn represent(&mut self, system: &System) -> Vec<Root> {
         let found = std::mem::take(&mut self.found);
         let mut roots = Vec::with_capacity(found.len());
-        for root in &found {
-            match in_domain(system, root).or_else(|| self.recertified(system, root)) {
-                Some(root) => roots.push(root),
+        for root in found {
+            match in_domain(system, &root).or_else(|| self.recertified(system, &root)) {
+                Some(represented) => {
+                    roots.push(represented);
+                    self.found.push(root);
+                }
                 None => self.open.push(Open {
                     lo: root.lo,
                     hi: root.hi,
@@ -32,7 +35,6 @@ impl PointSolver {
                 }),
             }
         }
-        self.found = found;
         roots
     }
 

@@ -153,8 +153,8 @@ impl PointSolver {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         let roots = self.represent(system);
-        let clusters = clusters(&self.open, n, self.options.unresolved);
-        let counts = self.counts(system, &clusters);
+        let mut clusters = clusters(&self.open, n, self.options.unresolved);
+        let counts = self.counts(system, &mut clusters);
         let unresolved = clusters
             .iter()
             .zip(counts)

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Boxes that touch, or nearly so, are near one another: within this many sides of the wider one.
 const NEAR: f64 = 0.5;
 /// A cluster of at most this size, in sides of the domain, is reported as one box.
-const SMALL: f64 = 1.0 / 128.0;
+pub(crate) const SMALL: f64 = 1.0 / 128.0;
 /// Nor is a cluster cut of whose hull its boxes fill at least this part.
 const FILLED: f64 = 0.25;
 /// More boxes than this are first cut into groups by their places.
@@ -90,7 +90,7 @@ pub(crate) fn cluster_box(system: &System, open: &[Open], cluster: &Cluster) -> 
 }
 
 /// The hull of some boxes, with their commonest cause.
-fn cluster(open: &[Open], members: Vec<usize>, n: usize) -> Cluster {
+pub(crate) fn cluster(open: &[Open], members: Vec<usize>, n: usize) -> Cluster {
     let first = &open[members[0]];
     let (mut lo, mut hi) = (first.lo, first.hi);
     let mut causes: Vec<(Cause, usize)> = Vec::new();

@@ -170,12 +170,13 @@ pub struct UnresolvedBox {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct RootCount {
-    /// The box: an unresolved box with a margin. It meets no other unresolved box and no certified root.
+    /// A box around the unresolved box and the real points of the neighbourhood in which roots were counted. It meets no other unresolved box and no certified root, so
+    /// the roots of the region in it are among those counted.
     pub within: Vec<Enclosure>,
-    /// One unknown: the number of complex zeros, with multiplicity, in the disc with the box as a diameter. Real roots are at most as many, and
-    /// differ from it by an even number.
+    /// The number of complex zeros, with multiplicity, in a neighbourhood of the unresolved box (in one unknown: the disc with `within` as a diameter, or within). Real
+    /// roots are at most as many, and differ from it by an even number.
     pub zeros: Option<u32>,
-    /// Two to four unknowns: the Brouwer degree, the sum of the orientations of the roots in the box (of a root of multiplicity `m`: between `−m` and `m`). If it is not
+    /// In two and more unknowns: the Brouwer degree, the sum of the orientations of the real roots in the neighbourhood (of a root of multiplicity `m`: between `−m` and `m`). If it is not
     /// 0, there is a root. If it is 0, there may or may not be.
     pub degree: Option<i32>,
 }

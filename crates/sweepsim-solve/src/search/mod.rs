@@ -8,7 +8,7 @@ mod open;
 mod picture;
 mod spread;
 
-pub(crate) use cluster::{Cluster, cluster_box, clusters};
+pub(crate) use cluster::{Cluster, SMALL, cluster, cluster_box, clusters};
 pub use error::SolveError;
 pub(crate) use limits::Watch;
 pub use limits::{Cause, Fate, RootCount, SolveOptions, SolveStatistics, UnresolvedBox};

@@ -54,43 +54,42 @@ fn degrees_in_two_unknowns() {
         // v = 0 and u = 0: y = −x/4, 17/16 x = 3/8; the first equation is −uᵐ/4 there.
         let root = [6.0 / 17.0, -1.5 / 17.0];
         let degree = if m % 2 == 1 { -1 } else { 0 };
-        assert_eq!(
-            count(&[first.clone(), second.clone()], &root, "turned").degree,
-            Some(degree),
-            "{m}"
-        );
+        let own = count(&[first.clone(), second.clone()], &root, "turned");
+        assert_eq!((own.zeros, own.degree), (Some(m), Some(degree)), "{m}");
         // Exchanged equations turn it round.
-        assert_eq!(count(&[second, first], &root, "exchanged").degree, Some(-degree), "{m}");
+        let own = count(&[second, first], &root, "exchanged");
+        assert_eq!((own.zeros, own.degree), (Some(m), Some(-degree)), "{m}");
     }
     // zᵐ as a complex number: m-fold with degree m.
     let (mut re, mut im) = (polynomial("x", 2), polynomial("y", 2));
-    for m in 2..=5 {
+    for m in 2..=5i32 {
         let (x, y) = (polynomial("x", 2), polynomial("y", 2));
         let minus = |p: &Polynomial| p.scale(&exact(-1.0));
         (re, im) = (re.mul(&x).add(&minus(&im.mul(&y))), re.mul(&y).add(&im.mul(&x)));
         let count = count(&[re.clone(), im.clone()], &[0.0, 0.0], "complex power");
-        assert_eq!((count.degree, count.zeros), (Some(m), None));
+        // Of two forms of degree m, the complex multiplicity is m².
+        assert_eq!((count.degree, count.zeros), (Some(m), Some(m.unsigned_abs().pow(2))));
     }
 }
 
 #[test]
 fn degrees_in_three_and_four_unknowns() {
     // Complex powers have their exponent as degree; products of orientations, their product; an even root along a line has none.
-    let cases: [(&[&str], i32); 10] = [
-        (&["x**2 - y**2", "2*x*y", "z"], 2),
-        (&["2*x*y", "x**2 - y**2", "z"], -2),
-        (&["x**3 - 3*x*y**2", "3*x**2*y - y**3", "z - x*y"], 3),
-        (&["z", "x**3 - 3*x*y**2", "3*x**2*y - y**3"], 3),
-        (&["x**2 - y**2 + x*z", "2*x*y + y*z", "0 - z"], -2),
-        (&["x", "y", "z**3"], 1),
-        (&["x", "y - x**2", "0 - z**5"], -1),
+    let cases: [(&[&str], u32, i32); 10] = [
+        (&["x**2 - y**2", "2*x*y", "z"], 4, 2),
+        (&["2*x*y", "x**2 - y**2", "z"], 4, -2),
+        (&["x**3 - 3*x*y**2", "3*x**2*y - y**3", "z - x*y"], 9, 3),
+        (&["z", "x**3 - 3*x*y**2", "3*x**2*y - y**3"], 9, 3),
+        (&["x**2 - y**2 + x*z", "2*x*y + y*z", "0 - z"], 4, -2),
+        (&["x", "y", "z**3"], 3, 1),
+        (&["x", "y - x**2", "0 - z**5"], 5, -1),
         // A sphere and its tangent plane.
-        (&["x**2 + y**2 + (z - 1)**2 - 1", "z", "x - y"], 0),
-        (&["(x + y - z)**2", "x - 2*y", "z + x"], 0),
-        (&["x**2 - y**2", "2*x*y", "z - x*w", "w"], 2),
+        (&["x**2 + y**2 + (z - 1)**2 - 1", "z", "x - y"], 2, 0),
+        (&["(x + y - z)**2", "x - 2*y", "z + x"], 2, 0),
+        (&["x**2 - y**2", "2*x*y", "z - x*w", "w"], 4, 2),
     ];
     let mut random = Random(19);
-    for (texts, degree) in cases {
+    for (texts, zeros, degree) in cases {
         let n = texts.len();
         // A shift by a dyadic point, so that no cut passes through the root.
         let at: Vec<f64> = (0..n).map(|_| 0.5 * random.direction()).collect();
@@ -106,6 +105,6 @@ fn degrees_in_three_and_four_unknowns() {
             })
             .collect();
         let count = count(&shifted, &at, &format!("{texts:?}"));
-        assert_eq!((count.zeros, count.degree), (None, Some(degree)), "{texts:?}");
+        assert_eq!((count.zeros, count.degree), (Some(zeros), Some(degree)), "{texts:?}");
     }
 }

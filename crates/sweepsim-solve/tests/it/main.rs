@@ -3,6 +3,7 @@
 mod bad_input;
 mod budgets;
 mod bundles;
+mod clusters;
 mod counts;
 mod cubics;
 mod curves;
