@@ -154,6 +154,21 @@ impl Camera {
         }
     }
 
+    /// Where the viewer stands; in parallel projection the middle of the image.
+    pub fn eye(&self) -> Vector {
+        self.eye
+    }
+
+    /// Pixels of a unit of the scene across the line of sight, at a distance along the axis, in an image `width` pixels wide.
+    pub fn pixels(&self, distance: f32, width: f32) -> f32 {
+        let half = if self.orthographic {
+            self.half[0]
+        } else {
+            self.half[0] * distance
+        };
+        0.5 * width * (1.0 - self.aside) / half
+    }
+
     /// The direction from a point to the viewer.
     pub fn towards(&self, p: Vector) -> Vector {
         if self.orthographic {

@@ -1,7 +1,7 @@
 //! The colour map of values, and the scale beside a picture that explains it.
 
-use crate::glyphs::{ink, write};
 use crate::image::Image;
+use crate::marks::glyphs::{ink, write};
 use crate::shade::srgb;
 use crate::vector::{Vector, mix};
 
@@ -98,7 +98,7 @@ mod tests {
             write(&mut image, text, [5.0, 5.0], 18.0, [0; 3]);
             image.rgb().to_vec()
         };
-        let all: Vec<_> = "0123456789.-+me".chars().map(|c| picture(&c.to_string())).collect();
+        let all: Vec<_> = "0123456789.-+mexyz".chars().map(|c| picture(&c.to_string())).collect();
         for (k, one) in all.iter().enumerate() {
             assert!(one.iter().any(|c| *c < 60), "{k}");
             assert!(all[..k].iter().all(|other| other != one), "{k}");

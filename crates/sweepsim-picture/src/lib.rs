@@ -32,14 +32,15 @@
 //! 3. `frame` divides the image into bands of rows that are rendered independently (`band`). Nine samples per pixel find the nearest
 //!    triangle in integer arithmetic, so that no gap opens between neighbours; samples of a pixel on the same piece of surface are
 //!    shaded (`shade`) together; edges get a fine line.
+//! 4. `marks` draws the axes and a scale.
 
 mod band;
 mod camera;
 mod frame;
-mod glyphs;
 mod image;
 pub mod legend;
 mod light;
+mod marks;
 mod scene;
 mod shade;
 mod steps;

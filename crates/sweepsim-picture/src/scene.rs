@@ -16,6 +16,8 @@ pub(crate) struct Scene {
     pub triangles: Vec<[u32; 3]>,
     /// The section planes: normal towards what is removed, and distance from the centre.
     pub sections: Vec<(Vector, f32)>,
+    /// The mesh's size for a unit of the scene.
+    pub radius: f64,
     /// Height of the plane that the part lies on.
     pub ground: f32,
 }
@@ -173,6 +175,7 @@ impl Scene {
             normals: normals.map(|(v, flat)| v.normal.map_or(flat, unit)).collect(),
             values: clipped.vertices.iter().map(|v| v.value).collect(),
             valued: !drawing.values.is_empty(),
+            radius,
             ground: ((low[2] - centre[2]) / radius) as f32,
             sections: sections
                 .iter()

@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::frame;
 use crate::image::Image;
 use crate::light::Lights;
+use crate::marks;
 use crate::scene::Scene;
 use crate::steps::Steps;
 use std::ops::ControlFlow;
@@ -101,6 +102,9 @@ pub struct View {
     pub margin: f64,
     /// The share of the width left free at the right for a [`legend`](crate::legend), from 0 to 0.5.
     pub legend: f64,
+    /// Whether the axes and a length are drawn in the lower left corner of images of at least 240 × 180 pixels. The length is true in the
+    /// middle of the part.
+    pub axes: bool,
 }
 
 impl Default for View {
@@ -113,6 +117,7 @@ impl Default for View {
             field_of_view: 26.0,
             margin: 0.07,
             legend: 0.0,
+            axes: true,
         }
     }
 }
@@ -151,7 +156,11 @@ impl View {
         let camera = Camera::new(&Self { size, ..*self }, &scene);
         let steps = Steps::new(go_on, Lights::steps(&scene) + frame::steps(size));
         let lights = Lights::new(&scene, &camera, &steps)?;
-        frame::render(&scene, &camera, &lights, size, &steps)
+        let mut image = frame::render(&scene, &camera, &lights, size, &steps)?;
+        if self.axes {
+            marks::draw(&mut image, &scene, &camera);
+        }
+        Some(image)
     }
 }
 

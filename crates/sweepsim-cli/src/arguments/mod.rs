@@ -214,6 +214,9 @@ pub(crate) struct ViewOptions {
     /// The width and height of pictures, in pixels.
     #[arg(long, value_name = "WxH", default_value = "1600x1200", value_parser = size)]
     pub size: [usize; 2],
+    /// Draws neither axes nor a scale in the picture.
+    #[arg(long)]
+    pub no_axes: bool,
 }
 
 /// The outputs of a run.

@@ -168,6 +168,7 @@ pub(crate) fn picture(
     let (sections, missed) = meeting(&options.section, mesh);
     let mut view = options.camera;
     view.size = options.size;
+    view.axes = !options.no_axes;
     let mut drawing = Drawing::new(mesh).sections(&sections);
     if let Some((values, range)) = values {
         view.legend = legend::WIDTH;

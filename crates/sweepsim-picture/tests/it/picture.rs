@@ -229,6 +229,7 @@ fn parallel_lines_stay_parallel() {
             view.elevation = 30.0;
             view.field_of_view = 60.0;
             view.orthographic = orthographic;
+            view.axes = false;
         });
         let image = view.render(&mesh);
         let steel = |x: usize, y: usize| {
@@ -305,4 +306,43 @@ fn odd_views_do_no_harm() {
         view.azimuth = 120.0;
     });
     assert!(view.render(&block(true)) != render(&Mesh::default(), SIZE));
+}
+
+#[test]
+fn axes_and_scale_stand_in_the_corner() {
+    let mesh = block(true);
+    let with = |axes: bool, orthographic: bool| {
+        view_with(|view| (view.size, view.axes, view.orthographic) = ([480, 360], axes, orthographic)).render(&mesh)
+    };
+    for orthographic in [false, true] {
+        let (drawn, plain) = (with(true, orthographic), with(false, orthographic));
+        let places = (0..480).flat_map(|x| (0..360).map(move |y| (x, y)));
+        let marked: Vec<_> = places
+            .filter(|(x, y)| pixel(&drawn, *x, *y) != pixel(&plain, *x, *y))
+            .collect();
+        assert!(marked.len() > 200, "{}", marked.len());
+        assert!(marked.iter().all(|(x, y)| *x < 200 && *y > 280));
+    }
+    // From the front in parallel projection the scale is as long as it says.
+    let front = |axes: bool| {
+        view_with(|view| {
+            (view.size, view.axes, view.orthographic) = ([480, 360], axes, true);
+            (view.azimuth, view.elevation) = (-90.0, 0.0);
+        })
+    };
+    let [drawn, plain, empty] = [
+        front(true).render(&mesh),
+        front(false).render(&mesh),
+        front(false).render(&Mesh::default()),
+    ];
+    let differ = |a: &Image, b: &Image, x: usize, y: usize, by: u8| {
+        let (a, b) = (pixel(a, x, y), pixel(b, x, y));
+        (0..3).any(|k| a[k].abs_diff(b[k]) > by)
+    };
+    let marked = |y: usize| (0..480).filter(|x| differ(&drawn, &plain, *x, y, 20)).count();
+    let scale = (335..352).map(marked).max().unwrap() as f64;
+    let covered = (0..480).filter(|x| (0..330).any(|y| differ(&plain, &empty, *x, y, 60)));
+    let part = covered.count() as f64;
+    // 5 mm of the block's 40.
+    assert!((scale / part * 40.0 - 5.0).abs() < 0.3, "{scale} {part}");
 }

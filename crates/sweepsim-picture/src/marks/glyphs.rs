@@ -1,4 +1,4 @@
-//! Characters drawn as strokes: digits, signs and the unit that a legend needs.
+//! Strokes, and characters drawn by them: digits, signs, the unit of lengths and the names of the axes.
 
 use crate::image::Image;
 use crate::vector::smooth_step;
@@ -131,6 +131,9 @@ fn strokes(character: char) -> (&'static [&'static [[f32; 2]]], f32) {
                 4.8,
             );
         }
+        'x' => &[&[[0.4, 2.3], [3.6, 6.0]], &[[3.6, 2.3], [0.4, 6.0]]],
+        'y' => &[&[[0.4, 2.3], [2.0, 6.0]], &[[3.6, 2.3], [2.0, 6.0], [1.2, 7.4]]],
+        'z' => &[&[[0.4, 2.3], [3.6, 2.3], [0.4, 6.0], [3.6, 6.0]]],
         'e' => {
             return (
                 &[&[
@@ -151,6 +154,9 @@ fn strokes(character: char) -> (&'static [&'static [[f32; 2]]], f32) {
     };
     (strokes, 4.0)
 }
+
+/// How far characters reach below their top; digits end at 6.
+const DEEPEST: f32 = 7.5;
 
 /// The distance of `p` from a line segment.
 fn distance(p: [f32; 2], [a, b]: [[f32; 2]; 2]) -> f32 {
@@ -177,6 +183,22 @@ pub(crate) fn ink(image: &mut Image, x: usize, y: usize, colour: [u8; 3], share:
     }
 }
 
+/// Draws a straight line with round ends, `width` pixels wide.
+pub(crate) fn stroke(image: &mut Image, ends: [[f32; 2]; 2], width: f32, colour: [u8; 3]) {
+    let pen = 0.5 * width;
+    let side = |k: usize, limit: usize| {
+        let (low, high) = (ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k]));
+        (low - pen - 1.0).max(0.0) as usize..((high + pen + 2.0).max(0.0) as usize).min(limit)
+    };
+    let [width, height] = image.size();
+    for y in side(1, height) {
+        for x in side(0, width) {
+            let away = distance([x as f32 + 0.5, y as f32 + 0.5], ends);
+            ink(image, x, y, colour, smooth_step(pen + 0.6, pen - 0.6, away));
+        }
+    }
+}
+
 /// Writes a text with its upper left corner at a point, `height` pixels high, and returns its width.
 pub(crate) fn write(image: &mut Image, text: &str, [left, top]: [f32; 2], height: f32, colour: [u8; 3]) -> f32 {
     let scale = height / 6.0;
@@ -184,7 +206,7 @@ pub(crate) fn write(image: &mut Image, text: &str, [left, top]: [f32; 2], height
     let mut from = left;
     for character in text.chars() {
         let (strokes, width) = strokes(character);
-        let reach = [width, 6.0].map(|size| size * scale + pen + 1.0);
+        let reach = [width, DEEPEST].map(|size| size * scale + pen + 1.0);
         let first = [from, top].map(|c| (c - pen - 1.0).max(0.0) as usize);
         let last = [from + reach[0], top + reach[1]].map(|c| c.max(0.0) as usize);
         for (y, x) in (first[1]..=last[1]).flat_map(|y| (first[0]..=last[0]).map(move |x| (y, x))) {
