@@ -20,7 +20,7 @@ use crate::sweep::plan::Plan;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
 use sweepsim_solve::{Cause, Monitor};
@@ -49,7 +49,7 @@ impl Plan {
                 spacing: grid.spacing(),
                 slack: self.tolerances.rounding(),
             },
-            spaces: Mutex::new(Vec::new()),
+            spaces: Arc::default(),
             repairs: RepairBudget::new(self.parts.len()),
             monitor,
         }
@@ -71,7 +71,7 @@ pub(crate) struct SweepJob<'a> {
     /// What repairs may cost.
     pub repairs: RepairBudget,
     /// Workspaces that are not in use.
-    pub spaces: Mutex<Vec<Workspace>>,
+    pub spaces: Arc<Mutex<Vec<Workspace>>>,
     pub monitor: &'a dyn Monitor,
 }
 

@@ -1,6 +1,6 @@
 //! Where there is material, coarsely: most moves are settled by it without a search.
 
-use sweepsim_dexel::Dexels;
+use sweepsim_dexel::{Dexels, Grid};
 
 /// Lines of a block along each direction.
 const BLOCK: usize = 16;
@@ -94,4 +94,17 @@ impl HeightMap {
         }
         true
     }
+}
+
+/// The columns and rows that a box covers, and one more on each side.
+pub(super) fn window(grid: &Grid, solid: &Box3) -> Option<[(usize, usize); 2]> {
+    let spacing = grid.spacing();
+    let range = |k: usize| {
+        let cells = grid.cells()[k] as f64;
+        let [low, high] = solid[k].map(|x| (x - grid.min()[k]) / spacing[k] - 0.5);
+        // Not finite: everything.
+        let (low, high) = ((low - 1.0).max(0.0), (high + 1.0).min(cells - 1.0));
+        (low <= high).then_some((low as usize, high as usize))
+    };
+    Some([range(0)?, range(1)?])
 }

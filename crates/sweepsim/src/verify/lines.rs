@@ -1,7 +1,8 @@
 //! Material on some lines of a grid: as heights, which is all that the search for events needs.
 
+use super::heights::{Box3, window};
 use smallvec::SmallVec;
-use sweepsim_dexel::{Dexels, Interval};
+use sweepsim_dexel::{Dexels, Grid, Interval};
 
 /// Intervals of one line as `[lower, upper]`: sorted, disjoint, of positive length.
 pub(super) type Heights = SmallVec<[[f64; 2]; 2]>;
@@ -43,6 +44,93 @@ impl Lines {
             Some((_, [lower, upper])) if upper - lower >= h[1] - h[0] => best,
             _ => Some((line, h)),
         })
+    }
+
+    /// The lines with the longest intervals, so many of them.
+    pub fn deepest(&self, count: usize) -> Self {
+        let longest = |heights: &Heights| heights.iter().map(|[lower, upper]| upper - lower).fold(0.0, f64::max);
+        let mut order: Vec<(f64, usize)> = self.0.iter().map(|(_, h)| longest(h)).zip(0..).collect();
+        // The first of equally long ones.
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut chosen: Vec<usize> = order.into_iter().take(count).map(|(_, n)| n).collect();
+        chosen.sort_unstable();
+        Self(chosen.into_iter().map(|n| self.0[n].clone()).collect())
+    }
+
+    /// At most so many lines, spread evenly over all.
+    pub fn sample(&self, count: usize) -> Self {
+        let step = self.0.len().div_ceil(count).max(1);
+        Self(self.0.iter().skip(step / 2).step_by(step).cloned().collect())
+    }
+
+    /// The material on the lines of a window of columns and rows that reaches between two heights.
+    pub fn near(&self, grid: &Grid, reach: Option<Box3>) -> Self {
+        let Some((window, z)) = reach.and_then(|reach| Some((window(grid, &reach)?, reach[2]))) else {
+            return Self::default();
+        };
+        let rows = grid.cells()[1] as u32;
+        let [columns, rows_near] = window.map(|(first, last)| first as u32..last as u32 + 1);
+        let from = self.0.partition_point(|(line, _)| *line < columns.start * rows);
+        let to = self.0.partition_point(|(line, _)| *line < columns.end * rows);
+        let is_near = |(line, heights): &&(u32, Heights)| {
+            let reaches = |heights: &Heights| {
+                let ends = heights.first().zip(heights.last());
+                ends.is_some_and(|(first, last)| first[0] <= z[1] && last[1] >= z[0])
+            };
+            rows_near.contains(&(line % rows)) && reaches(heights)
+        };
+        Self(self.0[from..to].iter().filter(is_near).cloned().collect())
+    }
+
+    /// Takes away what is swept. Lines may be left without material.
+    pub fn remove(&mut self, swept: &[(u32, Vec<Interval>)]) {
+        for (line, cut) in swept {
+            if let Ok(at) = self.0.binary_search_by_key(line, |(at, _)| *at) {
+                let heights = &mut self.0[at].1;
+                *heights = difference(heights, cut.iter().map(|c| [c.lower.z, c.upper.z]));
+            }
+        }
+    }
+
+    /// The material on some lines.
+    pub fn on_lines_where(&self, is: impl Fn(u32) -> bool) -> Self {
+        Self(self.0.iter().filter(|(line, _)| is(*line)).cloned().collect())
+    }
+
+    /// Whether the neighbour of a line on one side, 0 … 3 for the lines before and after it along `x` and along `y`, has material at heights of the line's.
+    pub fn has_neighbour(&self, grid: &Grid, line: u32, side: usize) -> bool {
+        let (i, j) = grid.place(line as usize);
+        let [columns, rows] = grid.cells();
+        let place = match side {
+            0 => i.checked_sub(1).map(|i| (i, j)),
+            1 => Some((i + 1, j)).filter(|(i, _)| *i < columns),
+            2 => j.checked_sub(1).map(|j| (i, j)),
+            _ => Some((i, j + 1)).filter(|(_, j)| *j < rows),
+        };
+        let heights = |line: u32| {
+            let at = self.0.binary_search_by_key(&line, |(at, _)| *at).ok()?;
+            Some(&self.0[at].1)
+        };
+        let other = place
+            .and_then(|(i, j)| grid.index(i, j))
+            .and_then(|line| heights(line as u32));
+        let (Some(own), Some(other)) = (heights(line), other) else {
+            return false;
+        };
+        let shared = |[lower, upper]: &[f64; 2]| other.iter().any(|[a, b]| a < upper && lower < b);
+        own.iter().all(shared)
+    }
+
+    /// The material of `others` on their lines in place of the own, which may leave nothing there.
+    pub fn replaced(&self, lines: &Self, others: &Self) -> Self {
+        let kept = self.minus_lines(lines);
+        let mut all = [kept.0, others.0.clone()].concat();
+        all.sort_by_key(|(line, _)| *line);
+        Self(all)
+    }
+
+    fn minus_lines(&self, lines: &Self) -> Self {
+        self.merged(&lines.0, true, |_, _| Heights::new())
     }
 
     /// For each line of both, what `operation` makes of them; lines of `self` alone are kept if `rest`.

@@ -3,6 +3,7 @@
 use super::driver::{Solids, Work};
 use super::lines::Lines;
 use super::scene::MoveRemoval;
+use super::search::Swept;
 use crate::error::SweepError;
 use crate::time::path_parts::PathPart;
 use nalgebra::Vector3;
@@ -23,23 +24,13 @@ impl Work<'_> {
         solids: &Solids,
         moves: Range<usize>,
         cut: &[(u32, Vec<Interval>)],
-    ) -> Result<(), SweepError> {
+        swept: &[Swept],
+    ) {
         let grid = *self.remaining.grid();
         let [dx, dy] = grid.spacing();
         let mut material = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));
-        let swept: Vec<Vec<(u32, Vec<Interval>)>> = moves
-            .clone()
-            .into_par_iter()
-            .map(|number| {
-                let one = number..number + 1;
-                let swept = solids
-                    .cutter
-                    .swept_near(one, &grid, &self.heights, &self.options, self.monitor)?;
-                Ok(swept.lines)
-            })
-            .collect::<Result<_, SweepError>>()?;
         for (number, swept) in moves.zip(swept) {
-            let removed = material.common(&swept, 0.0);
+            let removed = material.common(swept, 0.0);
             let parts = solids.cutter.slice(solids.cutter.parts(number..number + 1));
             let [depth, width] = engagement(&removed, &grid, parts);
             self.done.moves.push(MoveRemoval {
@@ -49,9 +40,21 @@ impl Work<'_> {
                 depth,
                 width,
             });
-            material = material.without(&swept);
+            material.remove(swept);
         }
-        Ok(())
+    }
+
+    /// What the cutter sweeps in each move of a run, near the stock.
+    pub(super) fn swept_by_each(&self, solids: &Solids, moves: Range<usize>) -> Result<Vec<Swept>, SweepError> {
+        let swept = |number: usize| {
+            let one = number..number + 1;
+            let grid = self.remaining.grid();
+            let swept = solids
+                .cutter
+                .swept_near(one, grid, &self.heights, &self.options, self.monitor)?;
+            Ok(swept.lines)
+        };
+        moves.into_par_iter().map(swept).collect()
     }
 
     /// Removes what a run has swept.

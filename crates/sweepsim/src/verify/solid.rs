@@ -1,6 +1,6 @@
 //! A solid that moves along a path: the cutter, or a body that moves with it.
 
-use super::heights::{Box3, HeightMap};
+use super::heights::{Box3, HeightMap, window};
 use crate::error::SweepError;
 use crate::methods::line_mask::LineMask;
 use crate::methods::workspace::Workspace;
@@ -9,7 +9,7 @@ use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Segment, Tool};
 use sweepsim_solve::Monitor;
@@ -20,7 +20,7 @@ pub(super) struct MovingSolid<'a> {
     plan: Plan,
     /// One box for each part of the path, which holds all that the solid sweeps there.
     boxes: Vec<Box3>,
-    spaces: Mutex<Vec<Workspace>>,
+    spaces: Arc<Mutex<Vec<Workspace>>>,
 }
 
 /// A bound on how far any point of the solid moves.
@@ -52,7 +52,7 @@ impl<'a> MovingSolid<'a> {
             boxes: boxes.collect(),
             tool,
             plan,
-            spaces: Mutex::new(Vec::new()),
+            spaces: Arc::default(),
         })
     }
 
@@ -100,8 +100,15 @@ impl<'a> MovingSolid<'a> {
             .sum()
     }
 
+    /// A box that holds all that the solid sweeps in a move.
+    pub fn reaches(&self, number: usize) -> Option<Box3> {
+        let hull = |a: Box3, b: &Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
+        let (first, rest) = self.boxes[self.parts(number..number + 1)].split_first()?;
+        Some(rest.iter().fold(*first, hull))
+    }
+
     /// The parts of these moves that come near material, in runs of consecutive ones, and the lines with that material.
-    fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, LineMask)> {
+    pub fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, Vec<u32>)> {
         let mut runs: Vec<(Range<usize>, Vec<u32>)> = Vec::new();
         for at in self.parts(moves) {
             let Some(window) = window(grid, &self.boxes[at]) else {
@@ -128,10 +135,7 @@ impl<'a> MovingSolid<'a> {
                 _ => runs.push((at..at + 1, lines)),
             }
         }
-        let masked = runs
-            .into_iter()
-            .filter_map(|(run, lines)| Some((run, LineMask::new(grid, lines)?)));
-        masked.collect()
+        runs
     }
 
     /// What the solid sweeps of the lines whose material it comes near.
@@ -144,7 +148,10 @@ impl<'a> MovingSolid<'a> {
         monitor: &dyn Monitor,
     ) -> Result<SweptLines, SweepError> {
         let mut all = SweptLines::default();
-        for (parts, mask) in self.near(moves, grid, material) {
+        for (parts, lines) in self.near(moves, grid, material) {
+            let Some(mask) = LineMask::new(grid, lines) else {
+                continue;
+            };
             all = all.united(self.swept(self.slice(parts), grid, &mask, options, monitor)?);
         }
         Ok(all)
@@ -163,30 +170,14 @@ impl<'a> MovingSolid<'a> {
         let options = options.clone().method(Method::Charts);
         let mut job = self.plan.job(self.tool, grid, &options, monitor);
         job.mask = Some(mask);
-        let kept = std::mem::take(&mut *self.spaces.lock().unwrap_or_else(PoisonError::into_inner));
-        job.spaces = Mutex::new(kept);
+        job.spaces = Arc::clone(&self.spaces);
         let mut swept = SweptLines::default();
         for chunk in parts.chunks(CHUNK) {
             let more = job.swept_lines(chunk)?;
             swept = swept.united(more);
         }
-        let used = job.spaces.into_inner().unwrap_or_else(PoisonError::into_inner);
-        *self.spaces.lock().unwrap_or_else(PoisonError::into_inner) = used;
         Ok(swept)
     }
-}
-
-/// The columns and rows that a box covers, and one more on each side.
-fn window(grid: &Grid, solid: &Box3) -> Option<[(usize, usize); 2]> {
-    let spacing = grid.spacing();
-    let range = |k: usize| {
-        let cells = grid.cells()[k] as f64;
-        let [low, high] = solid[k].map(|x| (x - grid.min()[k]) / spacing[k] - 0.5);
-        // Not finite: everything.
-        let (low, high) = ((low - 1.0).max(0.0), (high + 1.0).min(cells - 1.0));
-        (low <= high).then_some((low as usize, high as usize))
-    };
-    Some([range(0)?, range(1)?])
 }
 
 #[cfg(test)]

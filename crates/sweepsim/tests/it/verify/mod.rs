@@ -4,6 +4,7 @@ mod by_force;
 mod deviation;
 mod removal;
 mod setups;
+mod threads;
 
 use by_force::{Case, Cylinder, pose};
 use std::ops::ControlFlow;

@@ -7,21 +7,47 @@
 //! A body may touch material that its own move removes later. What the whole move leaves is treated as above; it bounds the time within which the rest,
 //! material that shrinks meanwhile, has to be looked at.
 
-use super::lines::Lines;
-use super::search::{Arena, Suspect, Touch, Touching};
+use super::moves::Suspect;
+use super::{Arena, Swept, Touch, Touching};
 use crate::error::SweepError;
+use crate::verify::lines::Lines;
 
 /// The largest number of halves that the search in one move examines.
 const MOST_WINDOWS: usize = 4096;
+/// So many lines tell whether a collision goes on from the move before.
+const FEW: usize = 4;
 /// The most lines whose own times are found, before all that are left are looked at together.
 const MOST_LINES: usize = 12;
 
 impl Arena<'_> {
     /// Whether, when and where a move touches material.
-    pub fn judged(&mut self, touching: Touching, suspect: Suspect) -> Result<Option<Touch>, SweepError> {
-        let Suspect { number, material, met } = suspect;
+    pub(super) fn judged(&mut self, touching: Touching, suspect: &Suspect) -> Result<Option<Touch>, SweepError> {
+        let Suspect {
+            number,
+            material,
+            eaten,
+        } = suspect;
+        let number = *number;
+        let parts = touching.probe.slice(touching.probe.parts(number..number + 1));
+        let met = if touching.own {
+            let common = material.common(eaten, self.options.tolerance);
+            if touching.strict {
+                self.confirmed(touching.probe, parts, common)?
+            } else {
+                common
+            }
+        } else {
+            self.overlap(touching.probe, parts, material, touching.strict)?
+        };
+        if met.is_empty() {
+            return Ok(None);
+        }
+        let material = material.on_lines_of(&met);
         if touching.own || touching.eater.is_none() {
-            let (time, first) = self.first_of_static(touching, number, &material, met.clone(), 1.0)?;
+            let (time, first) = match self.met_at_once(touching, number, &material, &met)? {
+                Some(first) => (0.0, first),
+                None => self.first_of_static(touching, number, &material, met.clone(), 1.0)?,
+            };
             let all = met;
             return Ok(Some(Touch {
                 number,
@@ -30,24 +56,29 @@ impl Arena<'_> {
                 all,
             }));
         }
-        self.judged_shrinking(touching, number, &material, &met)
+        self.judged_shrinking(touching, number, (&material, eaten), &met)
     }
 
     fn judged_shrinking(
         &mut self,
         touching: Touching,
         number: usize,
-        material: &Lines,
+        (material, eaten): (&Lines, &Swept),
         met: &Lines,
     ) -> Result<Option<Touch>, SweepError> {
-        let Some(eater) = touching.eater else { return Ok(None) };
-        let parts = eater.slice(eater.parts(number..number + 1));
-        let eaten = self.swept(eater, parts, material)?;
-        let left = met.without(&eaten).longer_than(self.options.tolerance);
-        let stays = material.without(&eaten);
+        let mut left = met.without(eaten).longer_than(self.options.tolerance);
+        let stays = material.without(eaten);
         let mut found = None;
         if !left.is_empty() {
-            found = Some(self.first_of_static(touching, number, &stays.on_lines_of(&left), left.clone(), 1.0)?);
+            let at_once = self.met_at_once(touching, number, &stays.on_lines_of(&left), &left)?;
+            found = at_once.map(|first| (0.0, first));
+        }
+        if found.is_none() && !left.is_empty() {
+            let parts = touching.probe.slice(touching.probe.parts(number..number + 1));
+            left = self.certified(touching.probe, parts, left)?;
+            if !left.is_empty() {
+                found = Some(self.first_of_static(touching, number, &stays.on_lines_of(&left), left.clone(), 1.0)?);
+            }
         }
         // Until then only what the move removes itself can be in the way.
         let end = found.as_ref().map_or(1.0, |(time, _)| *time);
@@ -92,6 +123,31 @@ impl Arena<'_> {
         }
         let material = material.on_lines_of(&met);
         self.halved(touching, number, &material, met, end)
+    }
+
+    /// What is met before any point of the solid moves farther than the tolerance: where a collision goes on from the move before, some of the deepest
+    /// lines.
+    fn met_at_once(
+        &mut self,
+        touching: Touching,
+        number: usize,
+        material: &Lines,
+        met: &Lines,
+    ) -> Result<Option<Lines>, SweepError> {
+        let tolerance = self.options.tolerance;
+        let travel = touching.probe.travel(&touching.probe.within(number, [0.0, 1.0]));
+        let mut end = f64::min(1.0, 0.5 * tolerance / travel);
+        let mut parts = touching.probe.within(number, [0.0, end]);
+        while touching.probe.travel(&parts) > tolerance {
+            end *= 0.5;
+            parts = touching.probe.within(number, [0.0, end]);
+        }
+        if parts.is_empty() {
+            return Ok(None);
+        }
+        let deepest = material.on_lines_of(&met.deepest(FEW));
+        let first = self.overlap(touching.probe, &parts, &deepest, touching.strict)?;
+        Ok(Some(first).filter(|first| !first.is_empty()))
     }
 
     /// The same by halving the time, for all lines together.

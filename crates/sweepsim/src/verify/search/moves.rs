@@ -1,0 +1,89 @@
+//! The moves of a run that touch material.
+
+use super::{Arena, Swept, Touch, Touching};
+use crate::error::SweepError;
+use crate::verify::lines::Lines;
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// So many moves are judged at a time: enough for any number of threads, few enough to hold the material before each.
+const BLOCK: usize = 32;
+
+/// A move that comes near material which was there before it.
+pub(super) struct Suspect<'a> {
+    pub number: usize,
+    /// What there is on the lines that it comes near.
+    pub material: Lines,
+    /// What the move removes of these lines and others.
+    pub eaten: Cow<'a, Swept>,
+}
+
+impl Arena<'_> {
+    /// The moves of a run that touch `material`, all that there is on some lines before the run, in their order.
+    ///
+    /// `each`: what the eater sweeps in each move of the run, if it is known for all lines.
+    pub fn touches(
+        &mut self,
+        touching: Touching,
+        moves: Range<usize>,
+        mut material: Lines,
+        each: Option<&[Swept]>,
+    ) -> Result<Vec<Touch>, SweepError> {
+        let mut found = Vec::new();
+        let numbers: Vec<usize> = moves.clone().collect();
+        for block in numbers.chunks(BLOCK) {
+            if material.is_empty() {
+                break;
+            }
+            let eaten = match (touching.eater, each) {
+                (None, _) => vec![Cow::Owned(Swept::new()); block.len()],
+                (Some(_), Some(each)) => block.iter().map(|n| Cow::Borrowed(&each[n - moves.start])).collect(),
+                (Some(eater), None) => self.each(block, |arena, &number| {
+                    let near = material.near(arena.grid, eater.reaches(number));
+                    let parts = eater.slice(eater.parts(number..number + 1));
+                    arena.swept(eater, parts, &near).map(Cow::Owned)
+                })?,
+            };
+            let mut suspects = Vec::with_capacity(block.len());
+            for (number, eaten) in block.iter().zip(eaten) {
+                let near = material.near(self.grid, touching.probe.reaches(*number));
+                material.remove(&eaten);
+                if !near.is_empty() {
+                    suspects.push(Suspect {
+                        number: *number,
+                        material: near,
+                        eaten,
+                    });
+                }
+            }
+            let judged = self.each(&suspects, |arena, suspect| arena.judged(touching, suspect))?;
+            found.extend(judged.into_iter().flatten());
+        }
+        Ok(found)
+    }
+
+    /// The same for each item, on all threads, with the results in order.
+    fn each<I: Sync, T: Send>(
+        &mut self,
+        items: &[I],
+        work: impl Fn(&mut Arena, &I) -> Result<T, SweepError> + Sync,
+    ) -> Result<Vec<T>, SweepError> {
+        let (grid, options, monitor) = (self.grid, self.options, self.monitor);
+        let done: Vec<_> = items
+            .par_iter()
+            .map(|item| {
+                let mut arena = Arena::new(grid, options, monitor);
+                let result = work(&mut arena, item)?;
+                Ok((result, arena.unresolved, arena.undecided))
+            })
+            .collect::<Result<_, SweepError>>()?;
+        let mut results = Vec::with_capacity(done.len());
+        for (result, unresolved, undecided) in done {
+            results.push(result);
+            self.unresolved.extend(unresolved);
+            self.undecided.extend(undecided);
+        }
+        Ok(results)
+    }
+}
