@@ -277,6 +277,7 @@ impl Track {
                     self.place = here;
                     result?;
                 }
+                Item::Warning(text, place) => self.notes.add(place.line, text),
             }
         }
         self.xyz = programmed;

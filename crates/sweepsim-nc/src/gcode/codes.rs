@@ -14,6 +14,8 @@ pub(crate) enum MotionMode {
     Arc {
         counter_clockwise: bool,
     },
+    /// G33 and G32: straight, in step with the spindle.
+    Thread,
     /// A drilling cycle: 73 … 89.
     Cycle(u8),
     /// G33.1: down and back, with the spindle.
@@ -22,6 +24,8 @@ pub(crate) enum MotionMode {
     Curve {
         cubic: bool,
     },
+    /// G5.2: control points of a rational B-spline.
+    Nurbs,
 }
 
 /// How G43 and its kin set the length offset.
@@ -88,6 +92,16 @@ pub(crate) enum Code {
     Polar(bool),
     /// G68.2, G268.
     TiltedPlane,
+    /// G68.4: in the plane there is.
+    FurtherTilt,
+    /// G5.3.
+    EndCurve,
+    /// G12, G13.
+    CircularPocket {
+        counter_clockwise: bool,
+    },
+    /// G45 to G48.
+    Stretch(u32),
     CancelTilt,
     /// G53.1, G253.
     AlignTool,
@@ -153,9 +167,13 @@ fn g(value: f64) -> Code {
         40 => Code::Dwell,
         50 => Code::SplineOrMode,
         51 => Code::SplineOrContouring,
-        52 | 53 => Code::Refused("NURBS are"),
+        52 => Code::Motion(MotionMode::Nurbs),
+        53 => Code::EndCurve,
         100 => Code::SetOffsets,
-        120 | 130 | 1500 => Code::Refused("pocket cycles are"),
+        120 | 130 => Code::CircularPocket {
+            counter_clockwise: tenths == 130.0,
+        },
+        1500 => Code::Refused("pockets by a subprogram (G150) are"),
         150 => Code::Polar(false),
         160 => Code::Polar(true),
         170 => Code::Plane([0, 1, 2]),
@@ -172,8 +190,7 @@ fn g(value: f64) -> Code {
         300 => Code::Home { second: true },
         281 => Code::SetHome { second: false },
         301 => Code::SetHome { second: true },
-        // Straight, in step with the spindle.
-        330 => Code::Motion(MotionMode::Feed),
+        320 | 330 => Code::Motion(MotionMode::Thread),
         331 => Code::Motion(MotionMode::RigidTap),
         332..=339 => Code::Refused("threading is"),
         310 | 350..=389 | 1360 => Code::Refused("probing is"),
@@ -193,7 +210,7 @@ fn g(value: f64) -> Code {
         434 => Code::TipControl(true),
         435 => Code::TipVectors,
         440 => Code::Length(LengthCode::Opposite),
-        450..=480 => Code::Refused("tool offsets of single moves (G45 to G48) are"),
+        450 | 460 | 470 | 480 => Code::Stretch(tenths as u32 / 10),
         490 => Code::CancelLength,
         500 => Code::CancelScale,
         501 => Code::CancelMirror,
@@ -212,11 +229,11 @@ fn g(value: f64) -> Code {
         660 | 670 => Code::Harmless,
         680 => Code::Rotate,
         682 | 2680 => Code::TiltedPlane,
+        684 => Code::FurtherTilt,
         2690 => Code::CancelTilt,
-        681 | 683..=689 => Code::Refused("rotated frames are"),
+        681 | 683 | 685..=689 => Code::Refused("rotated frames are"),
         690 => Code::CancelRotation,
-        760 => Code::Motion(MotionMode::Cycle(76)),
-        730 | 740 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
+        730 | 760 | 770 | 740 | 810 | 820 | 830 | 840 | 850 | 860 | 870 | 880 | 890 => {
             Code::Motion(MotionMode::Cycle((tenths as u32 / 10) as u8))
         }
         800 => Code::CancelMotion,

@@ -31,6 +31,8 @@ pub(crate) struct Modes {
     pub feed: Option<f64>,
     pub speed: Option<f64>,
     pub spindle: Turning,
+    /// The way along a thread in one revolution, as given.
+    pub pitch: Option<f64>,
     /// Where the last cubic curve came from, relative to its end: the next one may go on smoothly.
     pub curve_tangent: Option<[f64; 2]>,
     /// G99: cycles retract to their plane R.
@@ -61,6 +63,7 @@ impl Modes {
             feed: None,
             speed: None,
             spindle: Turning::Stopped,
+            pitch: None,
             curve_tangent: None,
             retract_to_plane: false,
             cycle: CycleWords::default(),

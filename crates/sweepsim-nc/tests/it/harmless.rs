@@ -61,7 +61,6 @@ fn high_speed_modes() {
         "G5.1 Q2",
         &format!("1: G5.1: high-speed modes other than Q0 and Q1 are not supported yet: {PATH}"),
     );
-    refused("G5.2 P1", &format!("1: G5.2: NURBS are not supported yet: {PATH}"));
 }
 
 #[test]

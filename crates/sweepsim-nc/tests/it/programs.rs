@@ -178,12 +178,9 @@ fn what_is_not_understood_is_said() {
         ),
         (
             "G87 X0 Y0 Z-2 R5",
-            "1:1: G87: back boring and threading are not supported",
+            "1:1: back boring with a shift by Q is not supported",
         ),
-        (
-            "G0 X0 Y0 Z0\nG68.2 R45",
-            "2:1: tilted planes by other than Euler angles",
-        ),
+        ("G0 X0 Y0 Z0\nG68.2 P4 I45", "2:1: tilted planes by projection angles"),
         ("G0 X#1", "1:5: #1 has no value here"),
         ("M98 P1000", "1:1: the subprogram O1000 is missing"),
         ("G0 X0 Y0 Z0\nG2000 X1", "2:1: G2000"),

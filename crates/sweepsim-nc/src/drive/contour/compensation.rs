@@ -11,38 +11,39 @@
 //! Fanuc, Siemens and Heidenhain, the entry move ends beside the start of the next move.
 
 use std::collections::VecDeque;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use super::corner::{Curve, Flat, arc_tangent, cross, dot, inside_corner, length, minus, outside_corner, plus};
-use super::stroke::{ArcPlane, Bend, Corners, Item, Place, Side, Stroke, flat, set};
+use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, minus, plus};
+use super::narrow::{Narrow, TooNarrow};
+use super::stroke::{ArcPlane, Bend, Item, Place, Side, Stroke, flat, set};
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
-
-/// The largest turn at which the tool goes to the meeting of the offsets: Siemens's usual machine data.
-const LARGEST_MEETING: f64 = 100.0 / 180.0 * PI + 1e-9;
 
 /// Compensation while it is on.
 #[derive(Clone, Debug)]
 pub(crate) struct Compensation {
     pub side: Side,
-    plane: ArcPlane,
+    pub(super) plane: ArcPlane,
     /// No move has been compensated yet.
     first: bool,
     /// The waiting move is the entry: its end is still free.
-    entry: bool,
+    pub(super) entry: bool,
     /// The waiting move begins before its programmed start, where an outside corner extends it.
     extended: bool,
     /// Where the waiting moves start,
-    start: [f64; 3],
+    pub(super) start: [f64; 3],
     /// and where the tool is after them.
-    current: [f64; 3],
+    pub(super) current: [f64; 3],
     /// The direction of the last move at its programmed end.
-    tangent: Flat,
+    pub(super) tangent: Flat,
     /// Its curvature there, positive to the left.
-    curvature: f64,
+    pub(super) curvature: f64,
     /// The curve that the last move lies on.
-    curve: Curve,
+    pub(super) curve: Curve,
     waiting: VecDeque<Item>,
+    narrow: Narrow,
+    /// Where the last move that was given out ended.
+    given: [f64; 3],
 }
 
 impl Compensation {
@@ -62,6 +63,8 @@ impl Compensation {
                 direction: [1.0, 0.0],
             },
             waiting: VecDeque::new(),
+            narrow: Narrow::default(),
+            given: at,
         }
     }
 
@@ -99,7 +102,7 @@ impl Compensation {
     }
 
     /// Whether `point` is on the tool's side of the contour at `at`, along `t`. From there `KONT` moves straight, as `NORM` does.
-    fn check_front(&self, at: Flat, t: Flat, point: Flat) -> Result<(), NcProblem> {
+    pub(super) fn check_front(&self, at: Flat, t: Flat, point: Flat) -> Result<(), NcProblem> {
         if dot(self.normal(t), minus(point, at)) < -1e-9 {
             return Err(NcProblem::unsupported(
                 "KONT from or to a point behind the contour is",
@@ -113,6 +116,7 @@ impl Compensation {
     pub(crate) fn finish(mut self) -> Result<Vec<Item>, NcProblem> {
         let mut out = Vec::new();
         self.flush(&mut out)?;
+        self.check_given(0, true, &mut out);
         Ok(out)
     }
 
@@ -128,6 +132,45 @@ impl Compensation {
 
     /// A programmed move from `from`. What is then certain goes to `out`.
     pub(crate) fn add(&mut self, from: [f64; 3], stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+        let radius = self.side.radius;
+        let moves = stroke.bend.is_some() || flat(self.plane, from) != flat(self.plane, stroke.end);
+        if radius > 0.0 && moves {
+            let found = self.narrow.contour(self.plane, from, &stroke, radius);
+            out.extend(found.map(|found| self.warning(found, stroke.place)));
+        }
+        let before = out.len();
+        let result = self.offset(from, stroke, out);
+        if radius > 0.0 {
+            self.check_given(before, false, out);
+        }
+        result
+    }
+
+    /// Looks for slots that the moves given out do not fit into.
+    fn check_given(&mut self, before: usize, ends: bool, out: &mut Vec<Item>) {
+        let mut warnings = Vec::new();
+        for item in &out[before..] {
+            let Item::Stroke(stroke) = item else { continue };
+            let from = std::mem::replace(&mut self.given, stroke.end);
+            let found = self.narrow.tool(self.plane, from, stroke, ends, self.side.radius);
+            warnings.extend(found.map(|found| self.warning(found, stroke.place)));
+        }
+        out.extend(warnings);
+    }
+
+    fn warning(&self, found: TooNarrow, place: Place) -> Item {
+        let [a, b] = found.lines;
+        let text = format!(
+            "the tool of radius {} mm does not fit between the moves of lines {} and {}: it goes {:.3} mm into the contour",
+            self.side.radius,
+            a.min(b),
+            a.max(b),
+            found.depth
+        );
+        Item::Warning(text, place)
+    }
+
+    fn offset(&mut self, from: [f64; 3], stroke: Stroke, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let (p, q) = (flat(self.plane, from), flat(self.plane, stroke.end));
         let radius = self.side.radius;
         if radius == 0.0 {
@@ -265,13 +308,13 @@ impl Compensation {
     }
 
     /// Gives out what waits.
-    fn flush(&mut self, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+    pub(super) fn flush(&mut self, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let end = flat(self.plane, self.current);
         self.flush_to(end, false, out)
     }
 
     /// Gives out what waits, with its end moved. Moves may become longer only where they are to be extended.
-    fn flush_to(&mut self, at: Flat, extends: bool, out: &mut Vec<Item>) -> Result<(), NcProblem> {
+    pub(super) fn flush_to(&mut self, at: Flat, extends: bool, out: &mut Vec<Item>) -> Result<(), NcProblem> {
         let plane = self.plane;
         let (start, direction) = (flat(plane, self.start), self.tangent);
         for item in &mut self.waiting {
@@ -304,90 +347,5 @@ impl Compensation {
         out.extend(self.waiting.drain(..));
         self.start = self.current;
         Ok(())
-    }
-
-    /// Joins the waiting move with the next one, whose offset starts in `start` along `t`, on `curve`; the corner is at `p`.
-    fn join(
-        &mut self,
-        p: Flat,
-        start: Flat,
-        t: Flat,
-        curve: &Curve,
-        stroke: &Stroke,
-        out: &mut Vec<Item>,
-    ) -> Result<(), NcProblem> {
-        if self.entry {
-            if self.side.round_ends {
-                self.check_front(p, t, flat(self.plane, self.start))?;
-            }
-            return self.flush_to(start, false, out);
-        }
-        let toward = if self.side.left { 1.0 } else { -1.0 };
-        // Positive at inside corners.
-        let angle = (toward * cross(self.tangent, t)).atan2(dot(self.tangent, t));
-        let small = self.side.tangent;
-        if angle.abs() <= small {
-            return self.flush(out);
-        }
-        // Where the contour turns back, the tool goes round its tip, unless the moves part from each other towards the tool's side: then it
-        // is a wedge. Their curvatures decide.
-        let curvature = match stroke.bend {
-            Some(bend) => bend.sweep.signum() / length(minus(p, bend.centre)),
-            None => 0.0,
-        };
-        let wedge = toward * (curvature + self.curvature) < -1e-12;
-        let reversed = angle.abs() > PI - small;
-        let goes_round = if reversed { !wedge } else { angle < 0.0 };
-        if goes_round {
-            let turn = if angle < 0.0 { -angle } else { TAU - angle };
-            if self.side.corners == Corners::Meetings && turn <= LARGEST_MEETING {
-                let end = flat(self.plane, self.current);
-                return match outside_corner(&self.curve, end, curve, start, p) {
-                    Some(at) => self.flush_to(at, true, out),
-                    None => Err(NcProblem::syntax(
-                        "the offsets of both moves do not meet outside of this corner: expected G450",
-                    )),
-                };
-            }
-            self.flush(out)?;
-            self.outside(p, start, t, turn, stroke, out);
-            return Ok(());
-        }
-        let end = flat(self.plane, self.current);
-        match inside_corner(&self.curve, end, curve, start, p) {
-            Some(at) => self.flush_to(at, false, out),
-            None if angle < 0.05 && length(minus(end, start)) < 0.05 * self.side.radius => self.flush(out),
-            None => Err(NcProblem::syntax(format!(
-                "the tool of radius {} mm does not fit into this inside corner",
-                self.side.radius
-            ))),
-        }
-    }
-
-    /// Goes round an outside corner.
-    fn outside(&mut self, p: Flat, start: Flat, t: Flat, turn: f64, stroke: &Stroke, out: &mut Vec<Item>) {
-        let radius = self.side.radius;
-        let plane = self.plane;
-        let mut go = |this: &mut Self, at: Flat, bend: Option<Bend>| {
-            let mut end = this.current;
-            set(plane, &mut end, at);
-            this.current = end;
-            out.push(Item::Stroke(Stroke { end, bend, ..*stroke }));
-        };
-        if self.side.corners != Corners::Lines {
-            let sweep = if self.side.left { -turn } else { turn };
-            go(self, start, Some(Bend { centre: p, sweep }));
-        } else if turn <= PI / 2.0 + 1e-9 {
-            let reach = radius * (0.5 * turn).tan();
-            let tip = plus(flat(plane, self.current), reach, self.tangent);
-            go(self, tip, None);
-            go(self, start, None);
-        } else {
-            let beyond = plus(flat(plane, self.current), radius, self.tangent);
-            go(self, beyond, None);
-            go(self, plus(start, -radius, t), None);
-            go(self, start, None);
-        }
-        self.start = self.current;
     }
 }

@@ -3,6 +3,8 @@
 mod blend;
 mod compensation;
 mod corner;
+mod joins;
+mod narrow;
 mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};

@@ -41,6 +41,8 @@ pub(crate) struct Stroke {
 pub(crate) enum Item {
     Stroke(Stroke),
     Event(EventKind, Place),
+    /// Something to note.
+    Warning(String, Place),
 }
 
 /// How the tool goes round outside corners.

@@ -31,6 +31,9 @@ impl Reader {
             Code::RestoreShift if self.uncertain => {}
             Code::Ignored(note) => self.state.note(note),
             Code::Length(code) => self.set_length(code, block)?,
+            Code::EndCurve => self.end_curve()?,
+            Code::CircularPocket { counter_clockwise } => self.circular_pocket(counter_clockwise, block)?,
+            Code::Stretch(code) => self.stretch(code, block)?,
             Code::WorkOffset(index) => self.select(index)?,
             Code::WorkOffsetByWord => match block.get('P') {
                 Some(p) if p.fract() == 0.0 && (1.0..=999.0).contains(&p) => self.select(EXTENDED + p as u32)?,

@@ -7,6 +7,8 @@ use std::rc::Rc;
 use super::control::calls::{Frame, Spot};
 use super::control::lookup::folders;
 use super::control::variables::{Store, given_work_offsets};
+use super::motion::Nurbs;
+use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
 use crate::drive::{Compensation, Place};
 use crate::gcode::flow::keywords::{Label, after_letter, is_statement, skip_head};
@@ -71,6 +73,12 @@ pub(crate) struct Reader {
     /// From the program's coordinates to the tip's place in the frame of the poses.
     pub map: Map,
     pub compensation: Option<Compensation>,
+    /// The curve of G5.2 so far.
+    pub nurbs: Option<Nurbs>,
+    /// The plane of G68.2 so far, if it takes several blocks.
+    pub plane_blocks: Option<PlaneBlocks>,
+    /// The last move was one of G45 to G48.
+    pub stretched: bool,
     /// After G40, an arc cannot come first.
     pub straight_next: bool,
     /// The length offset in effect,
@@ -187,6 +195,9 @@ impl Reader {
             actual: [0.0; 3],
             map: Map::default(),
             compensation: None,
+            nurbs: None,
+            plane_blocks: None,
+            stretched: false,
             straight_next: false,
             length: [0.0; 3],
             length_known: false,
@@ -278,7 +289,8 @@ impl Reader {
                 break;
             }
         }
-        if let Err(problem) = self.finish_compensation() {
+        for ended in [Self::finish_compensation, Self::check_curve] {
+            let Err(problem) = ended(self) else { continue };
             let last = here.line.min(source.len().saturating_sub(1));
             errors.push(self.error(problem, &source, last, 0..usize::MAX));
         }
@@ -309,6 +321,8 @@ impl Reader {
     fn go_on(&mut self, block: &Block) {
         self.uncertain = true;
         self.compensation = None;
+        self.nurbs = None;
+        self.plane_blocks = None;
         self.at = [None; 3];
         self.state.xyz = [None; 3];
         self.state.leave();
@@ -370,23 +384,5 @@ impl Reader {
         }
         self.begun = true;
         self.perform(block, here)
-    }
-
-    /// Settings of Grbl and TinyG.
-    fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
-        let upper = line.trim().to_ascii_uppercase();
-        if upper.starts_with("$H") {
-            self.state
-                .note("moves to the machine's home are left out: the path breaks here");
-            self.at = [None; 3];
-            self.state.xyz = [None; 3];
-            self.state.leave();
-        } else if upper.starts_with("$J") {
-            let problem = NcProblem::unsupported("jogging ($J) is", "expected G0 or G1");
-            return Err((problem, cursor.at..line.len()));
-        } else {
-            self.state.note("settings of the control (`$…`, `{…}`) are ignored");
-        }
-        Ok(Step::Next)
     }
 }

@@ -3,6 +3,7 @@
 use super::interpreter::{Reader, Step};
 use crate::gcode::codes::{self, Misc, Turning};
 use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::{EventKind, Spindle};
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
@@ -109,5 +110,23 @@ impl Reader {
             None => block.get('X').unwrap_or(0.0),
         };
         self.rest(seconds)
+    }
+
+    /// Settings of Grbl and TinyG.
+    pub(super) fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
+        let upper = line.trim().to_ascii_uppercase();
+        if upper.starts_with("$H") {
+            self.state
+                .note("moves to the machine's home are left out: the path breaks here");
+            self.at = [None; 3];
+            self.state.xyz = [None; 3];
+            self.state.leave();
+        } else if upper.starts_with("$J") {
+            let problem = NcProblem::unsupported("jogging ($J) is", "expected G0 or G1");
+            return Err((problem, cursor.at..line.len()));
+        } else {
+            self.state.note("settings of the control (`$…`, `{…}`) are ignored");
+        }
+        Ok(Step::Next)
     }
 }

@@ -2,13 +2,12 @@
 
 pub(crate) mod actions;
 pub(crate) mod control;
-pub(crate) mod cycles;
 pub(crate) mod events;
 pub(crate) mod frames;
 pub(crate) mod interpreter;
 pub(crate) mod misc;
-pub(crate) mod moves;
+pub(crate) mod motion;
 pub(crate) mod perform;
-pub(crate) mod strokes;
+pub(crate) mod planes;
 pub(crate) mod tilted;
 pub(crate) mod tools;

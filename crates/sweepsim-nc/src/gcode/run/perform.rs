@@ -47,6 +47,8 @@ impl Reader {
         if !macro_call {
             self.check_letters(block)?;
         }
+        self.check_plane_blocks(block)
+            .map_err(|problem| (problem, block.all()))?;
         let plan = self.modal(block)?;
         if let Some(word) = plan.macro_call {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
@@ -68,7 +70,7 @@ impl Reader {
             Some((code, word)) => {
                 let tilts = matches!(
                     code,
-                    Code::TiltedPlane | Code::CancelTilt | Code::AlignTool | Code::DynamicOffset(_)
+                    Code::TiltedPlane | Code::FurtherTilt | Code::CancelTilt | Code::AlignTool | Code::DynamicOffset(_)
                 );
                 let result = if tilts {
                     self.tilt(code, block)
@@ -77,7 +79,7 @@ impl Reader {
                 };
                 result.map_err(|problem| (problem, word.span()))?;
                 // The words of a tilted plane are its own; the other codes may stand beside a move.
-                if tilts && code != Code::TiltedPlane {
+                if tilts && !matches!(code, Code::TiltedPlane | Code::FurtherTilt) {
                     self.motion(block, &plan)?;
                 }
             }
@@ -109,6 +111,14 @@ impl Reader {
 
     fn motion(&mut self, block: &Block, plan: &Plan) -> Result<(), Located> {
         let whole = |problem| (problem, block.all());
+        if self.modes.motion == Some(MotionMode::Nurbs) {
+            let given = plan.motion.is_some() || block.first("XYZABCPLIJKQR").is_some();
+            return if given {
+                self.control_point(block).map_err(whole)
+            } else {
+                Ok(())
+            };
+        }
         let letters = match self.modes.motion {
             Some(MotionMode::Cycle(_)) => "XYZABCR",
             // Words that arcs need, where there is no other use for them.
@@ -139,7 +149,7 @@ impl Reader {
             (Some(_), Some(motion)) => {
                 if self.strict
                     && self.controller == Some(Controller::LinuxCnc)
-                    && motion != MotionMode::Rapid
+                    && !matches!(motion, MotionMode::Rapid | MotionMode::Thread | MotionMode::RigidTap)
                     && self.modes.feed.is_none_or(|feed| feed <= 0.0)
                 {
                     return Err(whole(NcProblem::syntax(
@@ -176,6 +186,9 @@ impl Reader {
                         return fail(NcProblem::syntax(
                             "a second motion code in one block: expected one of G0, G1, G2 and G3",
                         ));
+                    }
+                    if motion != MotionMode::Nurbs {
+                        self.check_curve().map_err(|problem| (problem, word.span()))?;
                     }
                     if let MotionMode::Cycle(_) = motion
                         && self.modes.motion != Some(motion)
@@ -261,6 +274,10 @@ impl Reader {
                 | Code::RestoreShift
                 | Code::Rotate
                 | Code::TiltedPlane
+                | Code::FurtherTilt
+                | Code::EndCurve
+                | Code::CircularPocket { .. }
+                | Code::Stretch(_)
                 | Code::CancelTilt
                 | Code::AlignTool
                 | Code::DynamicOffset(_)

@@ -55,21 +55,25 @@ impl Reader {
         self.state.leave();
     }
 
-    /// G68.2 and G268, G53.1 and G253, G254 and G255, G43.5, G234.
+    /// G68.2 and G268, G68.4, G53.1 and G253, G254 and G255, G43.5, G234.
     pub(crate) fn tilt(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
         match code {
             Code::TiltedPlane => {
-                if block.has('P') || block.has('Q') || block.has('R') {
-                    return Err(NcProblem::unsupported(
-                        "tilted planes by other than Euler angles (G68.2 P or Q) are",
-                        "expected X Y Z I J K",
-                    ));
-                }
-                let unit = self.unit();
-                let word = |letter: char| block.get(letter).unwrap_or(0.0);
-                let origin = ['X', 'Y', 'Z'].map(|letter| word(letter) * unit);
-                let frame = WorkFrame::euler_zxz(origin, ['I', 'J', 'K'].map(word));
+                let Some(frame) = self.plane_of(block)? else {
+                    return Ok(());
+                };
                 self.set_tilt(Some(map_of(&frame)))
+            }
+            Code::FurtherTilt => {
+                let Some(before) = self.modes.tilt else {
+                    return Err(NcProblem::syntax(
+                        "G68.4 without a tilted plane: expected G68.2 before it",
+                    ));
+                };
+                let Some(frame) = self.plane_of(block)? else {
+                    return Ok(());
+                };
+                self.set_tilt(Some(before.after(&map_of(&frame))))
             }
             Code::AlignTool => {
                 let Some(tilt) = self.modes.tilt else {

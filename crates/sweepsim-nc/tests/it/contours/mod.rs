@@ -2,6 +2,7 @@
 
 mod by_hand;
 mod errors;
+mod narrow;
 
 use std::fmt::Write as _;
 
@@ -97,6 +98,9 @@ fn contour_program(contour: &[Piece], left: bool, dialect: Dialect) -> String {
 fn check_distance(contour: &[Piece], left: bool, radius: f64, dialect: Dialect) -> Result<(), String> {
     let text = contour_program(contour, left, dialect);
     let program = read(&text, dialect == Dialect::Klartext, &options(2.0 * radius));
+    if let Some(note) = program.notes.iter().find(|note| note.message.contains("does not fit")) {
+        return Err(format!("{note}\n{text}"));
+    }
     let points = samples(&program, 1..program.poses.len() - 1);
     assert!(points.len() > 10 * contour.len());
     // The offsets of a corner of 100° meet farthest from it.

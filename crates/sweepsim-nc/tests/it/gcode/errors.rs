@@ -3,7 +3,37 @@
 use sweepsim_nc::{Controller, ReadOptions, gcode};
 
 /// Text, controller, message.
-const BAD: [(&str, Option<Controller>, &str); 46] = [
+const BAD: [(&str, Option<Controller>, &str); 52] = [
+    (
+        "G0 X0 Y0 Z0\nG1 F9 G68.2 P4 I9",
+        None,
+        "2:7: tilted planes by projection angles (G68.2 P4) are not supported yet: expected P0 to P3",
+    ),
+    (
+        "G0 X0 Y0 Z0\nF9 G150 P1000",
+        None,
+        "2:4: G150: pockets by a subprogram (G150) are not supported yet: the path of the tool would be unknown; expected G0, G1, G2 or G3",
+    ),
+    (
+        "G0 X0 Y0 Z0\nG13 D0 F9",
+        Some(Controller::Haas),
+        "2:1: G13 without I: expected the radius of the first circle",
+    ),
+    (
+        "G0 X0 Y0 Z0\nG33 Z-9",
+        Some(Controller::Fanuc),
+        "2:1: a thread without its pitch: expected F, the way in one revolution",
+    ),
+    (
+        "G0 X0 Y0 Z0\nF9 G76 Z-9 R1",
+        Some(Controller::LinuxCnc),
+        "2:1: G76: threading cycles of lathes are not supported yet: expected G73, G74 or G81 to G89, or the moves written out",
+    ),
+    (
+        "G0 X0 Y0 Z0\nF9 G5.2 X1",
+        None,
+        "2:1: a control point without X, Y or P: expected all of them",
+    ),
     (
         "G0 X0 Y0 Z0\nG1 X#1",
         None,

@@ -1,11 +1,13 @@
 //! G-code: expressions, flow, cycles, cutter compensation, offsets, errors.
 
 mod compensation;
+mod curves;
 mod cycles;
 mod errors;
 mod events;
 mod flow;
 mod frames;
+mod shop_codes;
 mod speed;
 
 use sweepsim_nc::gcode::read;

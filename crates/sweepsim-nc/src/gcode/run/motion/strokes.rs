@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::interpreter::Reader;
-use super::tools::ToolRow;
 use crate::drive::{Bend, Compensation, Corners, Item, Side, Stroke};
 use crate::gcode::motion::arc::CircularArc;
 use crate::gcode::motion::state::MoveEnd;
+use crate::gcode::run::interpreter::Reader;
+use crate::gcode::run::tools::ToolRow;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::trace::Canonical;
@@ -19,6 +19,7 @@ impl Reader {
         let from = self.known_position();
         let end = stroke.end;
         self.straight_next = false;
+        self.stretched = false;
         if !stroke.rapid && self.compensation.as_ref().is_none_or(Compensation::is_idle) {
             self.state.feed = stroke.feed;
             self.state.start_here()?;
@@ -57,6 +58,7 @@ impl Reader {
             match item {
                 Item::Stroke(stroke) => self.emit(&stroke)?,
                 Item::Event(kind, place) => self.state.event(kind, place)?,
+                Item::Warning(text, place) => self.state.notes.add(place.line, text),
             }
         }
         Ok(())
@@ -131,6 +133,20 @@ impl Reader {
         });
     }
 
+    /// The diameter D in the table, or the tool's own.
+    pub(super) fn cutter_diameter(&self, d: Option<f64>) -> Result<f64, NcProblem> {
+        let number = match d {
+            Some(d) => Self::tool_number(d)?,
+            None => self.state.tool.unwrap_or(0),
+        };
+        match self.tools.get(number).or((number == 0).then(ToolRow::default)) {
+            Some(row) => Ok(row.diameter),
+            None => Err(NcProblem::syntax(format!(
+                "the diameter D{number} for cutter compensation is not known: expected it in the tool table, or G41.1 D with the diameter"
+            ))),
+        }
+    }
+
     /// G41 and G42, by a number of the table (D) or by the diameter itself (G41.1).
     pub(crate) fn compensate(&mut self, left: bool, by_words: bool, block: &Block) -> Result<(), NcProblem> {
         if self.compensation.is_some() {
@@ -148,19 +164,7 @@ impl Reader {
         let diameter = match (by_words, block.get('D')) {
             (true, Some(d)) => d * self.unit(),
             (true, None) => return Err(NcProblem::syntax("G41.1 without D: expected the tool's diameter")),
-            (false, d) => {
-                let number = match d {
-                    Some(d) => Self::tool_number(d)?,
-                    None => self.state.tool.unwrap_or(0),
-                };
-                let row = self.tools.get(number).or((number == 0).then(ToolRow::default));
-                let Some(row) = row else {
-                    return Err(NcProblem::syntax(format!(
-                        "the diameter D{number} for cutter compensation is not known: expected it in the tool table, or G41.1 D with the diameter"
-                    )));
-                };
-                row.diameter
-            }
+            (false, d) => self.cutter_diameter(d)?,
         };
         let Some(at) = self.known_position() else {
             return Err(NcProblem::syntax(

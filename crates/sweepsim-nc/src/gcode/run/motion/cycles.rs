@@ -3,9 +3,9 @@
 //! Sources: *LinuxCNC G-code reference, Canned Cycles*; Fanuc B-63944EN, *Canned cycle for drilling*. Each is expanded into the moves that
 //! the control makes.
 
-use super::interpreter::Reader;
 use crate::gcode::codes::{MotionMode, Turning};
 use crate::gcode::modes::CycleWords;
+use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::model::event::{EventKind, Spindle};
@@ -46,6 +46,13 @@ impl Reader {
     /// A block in a cycle.
     pub(crate) fn cycle(&mut self, cycle: u8, block: &Block) -> Result<(), NcProblem> {
         let name = format!("G{cycle}");
+        let haas = self.controller == Some(Controller::Haas);
+        // Haas's G77 is Fanuc's G87; its G87 leaves the retraction to the operator, as G88 does.
+        let cycle = match cycle {
+            77 if haas => 87,
+            87 if haas => 88,
+            cycle => cycle,
+        };
         self.refuse_compensation("a drilling cycle")?;
         for (angle, letter) in self.state.abc.into_iter().zip(['A', 'B', 'C']) {
             if block.get(letter).is_some_and(|value| value != angle) {
@@ -54,9 +61,15 @@ impl Reader {
                 )));
             }
         }
-        if cycle == 87 || (cycle == 76 && self.controller == Some(Controller::LinuxCnc)) {
+        let linuxcnc = self.controller == Some(Controller::LinuxCnc);
+        if cycle == 77 || linuxcnc && matches!(cycle, 76 | 87) {
+            let what = match cycle {
+                76 => "threading cycles of lathes are",
+                77 => "cycles of lathes are",
+                _ => "back boring is, which this control has not:",
+            };
             return Err(NcProblem::unsupported(
-                format!("{name}: back boring and threading are"),
+                format!("{name}: {what}"),
                 "expected G73, G74 or G81 to G89, or the moves written out",
             ));
         }
@@ -99,6 +112,9 @@ impl Reader {
         let initial = *self.modes.cycle.initial.get_or_insert(at[w]);
         let plane = if absolute { plane } else { at[w] + plane };
         let bottom = if absolute { bottom } else { plane + bottom };
+        if cycle == 87 {
+            return self.back_bore(at, words, [plane, bottom], &sticky, repeats as u32);
+        }
         if bottom > plane {
             return Err(NcProblem::value(
                 format!("the plane R of {name}"),
@@ -174,6 +190,67 @@ impl Reader {
         }
         self.state.xyz = self.map.partial(self.at);
         Ok(self.known_position())
+    }
+
+    /// Back boring: down to R beside the axis of the hole, across, up to Z, and out again.
+    ///
+    /// Sources: Fanuc B-63944EN, *Back boring cycle (G87)*, and *Shift specification by I_J_* (Series 15i, bit SIJ); Haas 96-8000, G77; Weihong's G87 has the same order.
+    fn back_bore(
+        &mut self,
+        mut at: [f64; 3],
+        words: [Option<f64>; 3],
+        [deep, top]: [f64; 2],
+        sticky: &CycleWords,
+        repeats: u32,
+    ) -> Result<(), NcProblem> {
+        let [u, v, w] = self.modes.plane;
+        let Some(shift) = sticky.shift else {
+            return Err(NcProblem::unsupported(
+                "back boring with a shift by Q is",
+                "its direction is a setting of the machine; expected the shift by I and J",
+            ));
+        };
+        let unit = self.unit();
+        if top < deep {
+            return Err(NcProblem::value(
+                "the plane R of a back boring",
+                deep / unit,
+                format!("below Z, {}", top / unit),
+            ));
+        }
+        let initial = at[w];
+        for repeat in 0..repeats {
+            for k in [u, v] {
+                match words[k] {
+                    Some(word) if !self.modes.absolute => at[k] += word,
+                    Some(word) if repeat == 0 => at[k] = word,
+                    _ => {}
+                }
+            }
+            let place = |height: f64, aside: bool| {
+                let mut point = at;
+                point[w] = height;
+                if aside {
+                    point[u] += shift[0];
+                    point[v] += shift[1];
+                }
+                point
+            };
+            self.straight(place(initial, false), true)?;
+            self.turn_spindle(Turning::Stopped)?;
+            self.straight(place(initial, true), false)?;
+            self.straight(place(deep, true), true)?;
+            self.straight(place(deep, false), false)?;
+            self.turn_spindle(Turning::Clockwise)?;
+            self.straight(place(top, false), false)?;
+            self.rest_for(sticky.dwell.unwrap_or(0.0))?;
+            self.turn_spindle(Turning::Stopped)?;
+            self.straight(place(top, true), false)?;
+            self.straight(place(initial, true), true)?;
+            self.straight(place(initial, false), false)?;
+            self.turn_spindle(self.modes.spindle)?;
+        }
+        Ok(())
     }
 
     fn straight(&mut self, end: [f64; 3], rapid: bool) -> Result<(), NcProblem> {

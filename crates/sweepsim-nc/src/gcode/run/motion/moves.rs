@@ -1,10 +1,12 @@
 //! The moves of a block.
 
-use super::interpreter::Reader;
 use crate::drive::{Bend, Stroke};
 use crate::gcode::codes::MotionMode;
 use crate::gcode::motion::arc::CircularArc;
+use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::{Block, Word};
+use crate::gcode::syntax::expression::Variables;
+use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
 
 impl Reader {
@@ -183,6 +185,10 @@ impl Reader {
                 .note("the start of this feed move is unknown: the path begins at its end");
         }
         let mut stroke = self.stroke_to(end, abc, !cuts);
+        if matches!(motion, MotionMode::Thread | MotionMode::RigidTap) {
+            stroke.feed = Some(self.pitch(motion, block)?);
+            stroke.feed_mode = FeedMode::PerRevolution;
+        }
         match (motion, self.known_position()) {
             (MotionMode::Arc { counter_clockwise }, Some(start)) => {
                 if self.straight_next {
@@ -199,9 +205,9 @@ impl Reader {
             (MotionMode::Curve { cubic }, Some(start)) => return self.curve(cubic, start, stroke, block),
             (MotionMode::RigidTap, Some(start)) => {
                 self.give(stroke)?;
-                let back = self.stroke_to(start, abc, false);
-                return self.give(back);
+                return self.give(Stroke { end: start, ..stroke });
             }
+            (MotionMode::Thread, _) => {}
             _ if !vector && Self::has_spare_centre(block) => {
                 return Err(NcProblem::syntax(
                     "I, J, K or R outside an arc: expected G2 or G3 with them",
@@ -212,81 +218,36 @@ impl Reader {
         self.give(stroke)
     }
 
-    /// G5 and G5.1: a Bézier curve, divided into chords within the tolerance of arcs.
-    ///
-    /// Source: *LinuxCNC G-code reference, Cubic Spline, Quadratic Spline*. A chord over 1/n of a curve leaves it by at most |B″| / (8 n²).
-    fn curve(&mut self, cubic: bool, start: [f64; 3], stroke: Stroke, block: &Block) -> Result<(), NcProblem> {
-        self.refuse_compensation("a spline")?;
-        let name = if cubic { "G5" } else { "G5.1" };
-        if self.modes.plane != [0, 1, 2] || block.has('Z') || stroke.abc != self.state.abc {
+    /// The way in one revolution: `K`, or on Fanuc and Haas `F`.
+    fn pitch(&mut self, motion: MotionMode, block: &Block) -> Result<f64, NcProblem> {
+        let fanuc = self.fanuc();
+        if let Some(word) = block.first("IJR").filter(|_| motion == MotionMode::Thread) {
             return Err(NcProblem::unsupported(
-                format!("{name} outside of the plane XY is"),
-                "expected X and Y in G17",
+                format!("{} in a thread is", word.letter),
+                "expected a straight move and its pitch K",
             ));
         }
-        let length = |letter: char| block.get(letter).map(|value| value * self.unit());
-        let [ij, pq] = [('I', 'J'), ('P', 'Q')].map(|(a, b)| match (length(a), length(b)) {
-            (Some(a), Some(b)) => Some([a, b]),
-            (None, None) => None,
-            (a, b) if !cubic => Some([a.unwrap_or(0.0), b.unwrap_or(0.0)]),
-            _ => None,
+        let given = block.get('K').or(if fanuc {
+            block.get('F').or(self.modes.feed)
+        } else {
+            None
         });
-        let before = self.modes.curve_tangent.take();
-        let end = [stroke.end[0], stroke.end[1]];
-        let from = [start[0], start[1]];
-        let plus = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
-        let points = match (cubic, ij.or(before.map(|[x, y]| [-x, -y])), pq) {
-            (true, Some(ij), Some(pq)) => {
-                self.modes.curve_tangent = Some(pq);
-                vec![from, plus(from, ij), plus(end, pq), end]
-            }
-            (false, Some(_), _) if ij.is_some() => vec![from, plus(from, ij.unwrap_or_default()), end],
-            (true, ..) => {
-                return Err(NcProblem::syntax(
-                    "a spline without its control points: expected I and J (unless it goes on from another one), P and Q",
-                ));
-            }
-            _ => return Err(NcProblem::syntax("a spline without its control point: expected I or J")),
-        };
-        let degree = points.len() - 1;
-        let bend = points
-            .windows(3)
-            .map(|p| (p[0][0] - 2.0 * p[1][0] + p[2][0]).hypot(p[0][1] - 2.0 * p[1][1] + p[2][1]))
-            .fold(0.0, f64::max);
-        let second = (degree * (degree - 1)) as f64 * bend;
-        let chords = (second / (8.0 * self.arc_tolerance)).sqrt().ceil().max(1.0);
-        if chords > 1e6 {
-            return Err(NcProblem::value(
-                "the number of chords of this spline",
-                chords,
-                "at most 1000000",
-            ));
+        self.modes.pitch = given.or(self.modes.pitch);
+        match self.modes.pitch {
+            Some(pitch) if pitch > 0.0 => Ok(pitch),
+            Some(pitch) => Err(NcProblem::value("the pitch of a thread", pitch, "a positive number")),
+            None => Err(NcProblem::syntax(if fanuc {
+                "a thread without its pitch: expected F, the way in one revolution"
+            } else {
+                "a thread without its pitch: expected K, the way in one revolution"
+            })),
         }
-        self.state
-            .note("splines are divided into chords within the tolerance of arcs");
-        for k in 1..=chords as usize {
-            let t = k as f64 / chords;
-            let mut level = points.clone();
-            // De Casteljau.
-            while level.len() > 1 {
-                level = level
-                    .windows(2)
-                    .map(|p| [p[0][0] + t * (p[1][0] - p[0][0]), p[0][1] + t * (p[1][1] - p[0][1])])
-                    .collect();
-            }
-            let mut piece = stroke;
-            if k < chords as usize {
-                piece.end = [level[0][0], level[0][1], start[2]];
-            }
-            self.give(piece)?;
-        }
-        Ok(())
     }
 
     /// Whether a straight move has words of an arc.
     fn has_spare_centre(block: &Block) -> bool {
-        // G33's K is a pitch; M codes have words of their own.
-        let other = |w: &Word| w.letter == 'G' && (w.value == 33.0 || w.value == 28.0);
+        // M codes have words of their own.
+        let other = |w: &Word| w.letter == 'G' && w.value == 28.0;
         block.first("IJKR").is_some() && !block.has('M') && !block.words().iter().any(other)
     }
 
