@@ -1,11 +1,14 @@
 //! Mutated and grammar-made programs: none panics, hangs, or takes more memory than it may.
 
-use sweepsim_nc::{Controller, ReadOptions, gcode};
+use sweepsim_nc::{Controller, ReadOptions, ToolOffset, gcode, write};
 
 use super::{Random, number, seeds};
 
 /// Programs that are mutated.
-const SEEDS: [&str; 9] = [
+const SEEDS: [&str; 12] = [
+    "G0 X0 Y0 Z0\nF9\nG5.2 P1 L4\nX1 Y1 P2\nX2 Y0 P.5\nX3 Y3 P1\nX4 Y0 P1\nG5.3\nG18 G5.2 X1 Z1 P1\nX2 Z3 P1\nG5.3\nG33 Z-3 K1\nG33.1 Z-1 K1\n",
+    "G0 X0 Y0 Z0\nG68.2 P1 Q312 X1 I9 J8 K7\nG53.1\nG1 X1 F9\nG69\nG68.2 P2 Q0 X1\nG68.2 P2 Q1\nG68.2 P2 Q2 X1\nG68.2 P2 Q3 Y1 Z1\nG68.4 P3 Q1 I1\nG68.4 P3 Q2 J1\nG53.1\nG0 Z9\nG69\n",
+    "M3 S9 G0 X0 Y0 Z5\nG87 X1 Z-2 R-5 I1 F9\nG77 X2 Z-2 R-5 J1\nG80 G0 Z0\nG13 I9 K21 Q5 D1 Z-1\nG12 I9 D0\nG91 G45 X4 D1\nG48 Y-0 D1\nG90 G41 D1 G1 X0\nX20\nY2\nY4\nX0\nG40 X-9\n",
     "O1\nG0 X0 Y0 Z0\nG66 P2 A1 Z-2.\nX1\nX2 L2\nG67\nX3\nM30\nO2\nG1 Z#26 F9\nX#1\nM99\n",
     "%\nO1000 (PART)\nG21 G90 G17 G40 G49 G80\nT1 M6\nS8000 M3\nG54 G0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F200\nG3 X5 Y5 I0 J5\nG2 X0 Y0 R10\nM5\nM30\n%\n",
     "#1=0\no1 while [#1 lt 5]\n#1=[#1+1]\nG1 X#1 F100\no1 endwhile\no2 sub\nG1 Y#1\no2 endsub [#1]\no2 call [1] [2]\nM2\n",
@@ -17,7 +20,21 @@ const SEEDS: [&str; 9] = [
     "N10 #<a>=[SIN[30]*2**3 MOD 5]\nX[ATAN[1]/[2]] Y##1 Z#[1+2]\n#1=EXISTS[#<a>]\nG1 X-#<a> F-1\n(MSG, x)\n$H\n{\"a\":1}\n",
 ];
 
-const WORDS: [&str; 64] = [
+const WORDS: [&str; 78] = [
+    "G5.2 P1",
+    "X1 Y2 P1",
+    "G5.3",
+    "G5 I1 J1 P1 Q1",
+    "G68.2 P1 I9 J8",
+    "G68.2 P2 Q1",
+    "G68.2 P2 Q2 X1",
+    "G68.2 P2 Q3 Y1",
+    "G68.4 K9",
+    "G53.1",
+    "G87 Z-1 R-2 I1",
+    "G13 I9 D1",
+    "G46 D1",
+    "G33 K1",
     "G0",
     "G1",
     "G2",
@@ -123,9 +140,21 @@ fn run(from: u64, count: u64) -> (u64, u64) {
         options.arc_tolerance = 0.1;
         options.most_blocks = 2000;
         options.most_poses = 5000;
+        let offset = ToolOffset {
+            length: 9.0,
+            diameter: 3.0,
+        };
+        options.tool_offsets.insert(1, offset);
         match gcode::read(&text, &options) {
             Ok(program) => {
                 read += 1;
+                if seed % 8 == 0 {
+                    let mut writing = write::GcodeOptions::default();
+                    writing.dialect =
+                        [Controller::LinuxCnc, Controller::Siemens, Controller::Heidenhain][random.below(3)];
+                    writing.arc_tolerance = 0.1;
+                    let _ = write::gcode(&program, &writing);
+                }
                 poses += program.poses.len() as u64;
                 assert!(program.poses.len() <= options.most_poses, "{text}");
                 assert!(program.events.iter().all(|event| event.pose <= program.poses.len()));
