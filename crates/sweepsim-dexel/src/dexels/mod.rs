@@ -255,10 +255,19 @@ impl Dexels {
     /// # Errors
     /// [`GridMismatch`] if the grids differ.
     pub fn combine(&mut self, operation: Operation, other: &Self) -> Result<(), GridMismatch> {
+        self.combine_by(operation, operation.run(), other)
+    }
+
+    /// Combines the material with that of `other` by `run`, which does the operation.
+    fn combine_by(
+        &mut self,
+        operation: Operation,
+        run: impl Fn(&[PackedInterval], &[PackedInterval], &mut Vec<PackedInterval>) + Sync,
+        other: &Self,
+    ) -> Result<(), GridMismatch> {
         if self.grid != other.grid {
             return Err(GridMismatch);
         }
-        let run = operation.run();
         let both = self.chunks.par_iter_mut().zip(&other.chunks);
         both.for_each_init(
             <(Vec<PackedInterval>, Vec<PackedInterval>)>::default,

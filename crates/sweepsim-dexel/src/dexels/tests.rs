@@ -213,3 +213,57 @@ fn memory_is_as_promised() {
     }
     assert!(grown.bytes() <= lines * (32 + 5 + 4), "{}", grown.bytes());
 }
+
+#[test]
+fn a_removal_that_takes_nothing_leaves_faces_what_they_are() {
+    let grid = grid([3, 1]);
+    let block = |height: f64| {
+        let mut piece = Interval::between(0.0, height);
+        piece.upper.normal = [0.6, 0.0, 0.8];
+        piece
+    };
+    let stock = Dexels::from_fn(grid, |_, line| line.extend([block(5.0), Interval::between(7.0, 8.0)])).unwrap();
+    let cut = |from: f64, to: f64| {
+        let mut piece = Interval::between(from, to);
+        let source = Source::Cut {
+            path: 1,
+            segment: 2,
+            t: 0.5,
+        };
+        (piece.lower.source, piece.upper.source) = (source, source);
+        piece
+    };
+    // Along both faces of the gap and a hair beyond; deeper than the tolerance; a slot in the middle.
+    let cuts = [
+        (0, cut(5.0 - 1e-7, 7.0 + 1e-7)),
+        (1, cut(5.0 - 1e-5, 7.0 + 1e-5)),
+        (2, cut(2.0, 3.0)),
+    ];
+    let mut plain = stock.clone();
+    plain.update(Operation::Difference, &cuts).unwrap();
+    let mut removed = stock.clone();
+    removed.remove(&cuts, 1e-6).unwrap();
+    let other = Dexels::from_fn(grid, |index, line| line.push(cuts[index].1)).unwrap();
+    let mut all = stock.clone();
+    all.remove_all(&other, 1e-6).unwrap();
+    assert_eq!(all, removed);
+    for line in 0..3 {
+        // The heights are those of the cut all the same.
+        assert!(removed.at(line).heights().eq(plain.at(line).heights()));
+    }
+    let kept = removed.at(0).to_vec();
+    assert_eq!(kept[0].upper.source, Source::Stock);
+    assert_eq!(kept[0].upper.normal, stock.at(0).to_vec()[0].upper.normal);
+    assert_eq!(kept[1].lower.source, Source::Stock);
+    assert!(plain.at(0).to_vec()[0].upper.source.is_cut());
+    let deeper = removed.at(1).to_vec();
+    assert!(deeper[0].upper.source.is_cut() && deeper[1].lower.source.is_cut());
+    let slot = removed.at(2).to_vec();
+    assert_eq!(slot.len(), 3);
+    assert!(slot[0].upper.source.is_cut() && slot[1].lower.source.is_cut());
+    assert_eq!(slot[1].upper.source, Source::Stock);
+    // Without a tolerance, faces that are met exactly stay.
+    let mut exact = stock.clone();
+    exact.remove(&[(0, cut(5.0, 7.0))], 0.0).unwrap();
+    assert_eq!(exact, stock);
+}

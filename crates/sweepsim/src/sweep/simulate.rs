@@ -146,7 +146,9 @@ pub fn simulate(
     let mut remaining = stock;
     let grid = *remaining.grid();
     let mut statistics = each(cuts, &grid, options, monitor, |volume| {
-        remaining.subtract_all(&volume).expect("all on one grid");
+        remaining
+            .remove_all(&volume, options.tolerance)
+            .expect("all on one grid");
     })?;
     statistics.covered = remaining.covered();
     Ok(Simulation { remaining, statistics })

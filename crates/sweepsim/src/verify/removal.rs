@@ -9,7 +9,7 @@ use crate::time::path_parts::PathPart;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
-use sweepsim_dexel::{Grid, Interval, Operation};
+use sweepsim_dexel::{Grid, Interval};
 
 /// Times at which the tool is placed in a move that turns, or follows a curve.
 const TIMES: usize = 128;
@@ -68,7 +68,7 @@ impl Work<'_> {
             .flat_map(|(line, intervals)| intervals.iter().map(|interval| (*line, *interval)))
             .collect();
         self.remaining
-            .update(Operation::Difference, &pieces)
+            .remove(&pieces, self.options.tolerance)
             .expect("swept intervals have positive lengths, on lines of the grid");
         let mut window = [[usize::MAX, 0]; 2];
         for (line, _) in cut {

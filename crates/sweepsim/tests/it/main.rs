@@ -1,6 +1,7 @@
 //! Integration tests of `sweepsim`, in one binary: it links once.
 
 mod cancelling;
+mod faces;
 mod far_and_fine;
 mod frames;
 mod freeform;
