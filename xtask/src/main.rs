@@ -85,6 +85,8 @@ enum Table {
     Table1,
     /// The fixture jobs, on one thread and on all.
     Programs,
+    /// A three-axis program of short moves, by closed forms and by charts.
+    ThreeAxis,
     /// The stored systems of equations, on one thread, beside figures of other solvers.
     Systems,
     /// Instructions of Table 1 and of small jobs, by valgrind: for comparing two versions on a busy machine.
@@ -112,6 +114,7 @@ fn main() -> ExitCode {
         Command::Bench { table, filter } => match table {
             Table::Table1 => bench::table1(),
             Table::Programs => bench::programs(),
+            Table::ThreeAxis => bench::three_axis(),
             Table::Systems => bench::systems(filter.as_deref()),
             Table::Instructions => bench::instructions(filter.as_deref()),
         }

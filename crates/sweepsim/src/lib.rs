@@ -54,6 +54,7 @@ mod sections;
 mod sweep;
 mod time;
 mod tolerances;
+mod translation;
 pub mod verify;
 
 pub use envelope::systems;

@@ -1,6 +1,6 @@
 //! Instructions instead of seconds: they hardly differ from run to run, however busy the machine is.
 
-use super::{on, programs, table1};
+use super::{on, programs, table1, three_axis};
 use crate::workspace;
 use std::process::Command;
 use sweepsim::Method;
@@ -41,6 +41,7 @@ fn names() -> Vec<String> {
             names.extend(methods.iter().map(name));
         }
     }
+    names.extend(three_axis::TOOLS.map(|tool| format!("three-axis-{tool}")));
     names.extend(JOBS.map(String::from));
     names
 }
@@ -69,6 +70,9 @@ pub fn work(name: &str) -> Result<(), String> {
 fn here(name: &str) -> Result<(), String> {
     if name == "nothing" {
         return Ok(());
+    }
+    if let Some(tool) = name.strip_prefix("three-axis-") {
+        return three_axis::once(tool, CELLS, Method::default()).map(drop);
     }
     if JOBS.contains(&name) {
         let file = workspace::fixtures().join("jobs").join(name).with_extension("ron");

@@ -4,11 +4,13 @@ mod instructions;
 mod programs;
 mod systems;
 mod table1;
+mod three_axis;
 
 pub use instructions::{instructions, work};
 pub use programs::programs;
 pub use systems::systems;
 pub use table1::table1;
+pub use three_axis::three_axis;
 
 use std::time::{Duration, Instant};
 

@@ -17,5 +17,5 @@ pub use error::{PatchError, Side, ToolError};
 pub(crate) use joints::edges as edges_of_patches;
 pub use normals::NormalField;
 pub use patch::Patch;
-pub(crate) use revolution::{edges as edges_of_profile, patches as patches_of_profile};
+pub(crate) use revolution::{edges as edges_of_profile, joins_smoothly, of_piece, patches as patches_of_profile};
 pub use revolved::Revolved;

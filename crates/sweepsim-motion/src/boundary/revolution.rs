@@ -124,27 +124,30 @@ fn quarters() -> [Quarter; 4] {
 
 /// All patches of the solid of revolution of a profile.
 pub(crate) fn patches(profile: &Profile) -> Vec<Patch> {
-    let mut patches = Vec::new();
-    for piece in profile.pieces() {
-        match &piece.shape {
-            Shape::Line if piece.from.y == piece.to.y && piece.from.x == 0.0 => {
-                patches.push(disk(piece.to.x, piece.to.y, false));
-            }
-            Shape::Line if piece.from.y == piece.to.y && piece.to.x == 0.0 => {
-                patches.push(disk(piece.from.x, piece.to.y, true));
-            }
-            Shape::Line => {
-                let meridian = Meridian::line(piece.from, piece.to);
-                patches.extend(quarters().iter().map(|q| meridian.revolve(q)));
-            }
-            Shape::Bezier(curve) => {
-                let meridian = Meridian::bezier(curve);
-                patches.extend(quarters().iter().map(|q| meridian.revolve(q)));
-            }
-            Shape::Arc(arc) => patches.extend(arc_patches(&piece, arc)),
+    profile.pieces().iter().flat_map(of_piece).collect()
+}
+
+/// The patches of one piece of a profile.
+pub(crate) fn of_piece(piece: &OutlinePiece) -> Vec<Patch> {
+    let revolved = |meridian: Meridian| quarters().iter().map(|q| meridian.revolve(q)).collect();
+    match &piece.shape {
+        Shape::Line if piece.from.y == piece.to.y && piece.from.x == 0.0 => {
+            vec![disk(piece.to.x, piece.to.y, false)]
         }
+        Shape::Line if piece.from.y == piece.to.y && piece.to.x == 0.0 => {
+            vec![disk(piece.from.x, piece.to.y, true)]
+        }
+        Shape::Line => revolved(Meridian::line(piece.from, piece.to)),
+        Shape::Bezier(curve) => revolved(Meridian::bezier(curve)),
+        Shape::Arc(arc) => arc_patches(piece, arc),
     }
-    patches
+}
+
+/// Whether two consecutive pieces of a profile join without a sharp edge.
+pub(crate) fn joins_smoothly(before: &OutlinePiece, after: &OutlinePiece) -> bool {
+    let (a, b) = (before.direction(true), after.direction(false));
+    let smooth = SMOOTH + before.direction_error(true) + after.direction_error(false);
+    (after.smooth || a.perp(&b).abs() <= smooth) && a.dot(&b) > 0.0
 }
 
 fn arc_patches(piece: &OutlinePiece, arc: &OutlineArc) -> Vec<Patch> {
@@ -190,11 +193,10 @@ pub(crate) fn edges(profile: &Profile) -> Vec<Edge> {
     let mut edges = Vec::new();
     for pair in pieces.windows(2) {
         let [before, after] = pair else { continue };
-        let (a, b) = (before.direction(true), after.direction(false));
-        let smooth = SMOOTH + before.direction_error(true) + after.direction_error(false);
-        if (after.smooth || a.perp(&b).abs() <= smooth) && a.dot(&b) > 0.0 {
+        if joins_smoothly(before, after) {
             continue;
         }
+        let (a, b) = (before.direction(true), after.direction(false));
         let point = after.from;
         for quarter in quarters() {
             let scale = |c: &[f64; 3], by: f64| form(&[2], c.iter().map(|c| c * by).collect());

@@ -6,10 +6,12 @@ mod circle_segment;
 mod circle_segment_tests;
 mod cutters;
 mod measures;
+mod meridian;
 mod surfaces;
 
 pub use apt::{Apt, AptError, AptWarning};
 pub use measures::{Barrel, Dovetail, Lens, Lollipop, Oval, Taper};
+pub use meridian::{MeridianCurve, MeridianShape};
 
 use crate::boundary::{self, Edge, Patch, ToolError};
 use crate::profile::{Profile, ProfileError, ProfileSegment};

@@ -4,6 +4,7 @@ pub(crate) mod cells;
 pub(crate) mod patch_forms;
 pub(crate) mod revolution;
 
+use crate::translation::Outline;
 use nalgebra::Vector3;
 use patch_forms::PatchForms;
 use sweepsim_motion::Tool;
@@ -12,6 +13,8 @@ use sweepsim_motion::Tool;
 pub(crate) struct Cutter {
     pub patches: Vec<PatchForms>,
     pub edges: Vec<PatchForms>,
+    /// The meridian, if the tool is one of revolution.
+    pub outline: Option<Outline>,
     /// No point of the tool is farther from its tip.
     pub reach: f64,
 }
@@ -29,6 +32,11 @@ impl Cutter {
                 })
             })
             .fold(0.0, f64::max);
-        Self { patches, edges, reach }
+        Self {
+            patches,
+            edges,
+            outline: Outline::new(tool),
+            reach,
+        }
     }
 }

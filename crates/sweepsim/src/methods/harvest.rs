@@ -43,7 +43,7 @@ impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> f
     }
 }
 
-pub(super) fn unit(normal: Vector3<f64>) -> [f32; 3] {
+pub(crate) fn unit(normal: Vector3<f64>) -> [f32; 3] {
     let length = normal.norm();
     let normal = if length > 0.0 { normal / length } else { normal };
     [normal.x as f32, normal.y as f32, normal.z as f32]

@@ -100,6 +100,29 @@ impl<'a> Lattice<'a> {
         (lo <= hi).then_some((lo, hi))
     }
 
+    /// Whether a line is asked for.
+    #[inline]
+    pub fn asks(&self, i: usize, j: usize) -> bool {
+        self.mask.is_none_or(|mask| mask.contains(i, j))
+    }
+
+    /// The number of a line.
+    #[inline]
+    pub fn line(&self, i: usize, j: usize) -> usize {
+        i * self.grid.cells()[1] + j
+    }
+
+    /// The approximate position of the first line in a direction, and the number of lines per unit of length.
+    pub fn scale(&self, axis: usize) -> (f64, f64) {
+        (self.first[axis], self.density[axis])
+    }
+
+    /// The smaller distance of neighbouring lines.
+    pub fn spacing(&self) -> f64 {
+        let [dx, dy] = self.grid.spacing();
+        dx.min(dy)
+    }
+
     /// The position of a line.
     pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
         self.shift[axis]

@@ -11,6 +11,7 @@ use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
+use crate::translation::{self, Collector, Heading, Neighbour, Outline};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
 use sweepsim_solve::{Monitor, Preimage};
@@ -22,6 +23,8 @@ pub(crate) struct Search<'a, M> {
     pub parts: &'a [PathPart],
     pub lines: &'a Lattice<'a>,
     pub size: Size,
+    /// The tool's meridian, if moves without rotation are to be solved in closed form.
+    pub outline: Option<&'a Outline>,
     /// Number of the path, for sources.
     pub path: u32,
     pub monitor: &'a dyn Monitor,
@@ -35,9 +38,15 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             return;
         }
         space.solvers.limit(self.lines.len());
-        let mut times = Times::new(segment);
-        self.patches(at, &mut times, space, harvest);
-        self.edges(at, &mut times, space, harvest);
+        space.done.clear();
+        if let Some(outline) = self.outline {
+            self.envelope_in_closed_form(at, outline, space, harvest);
+        }
+        if !(space.done.patches.iter().all(|done| *done) && space.done.edges.iter().all(|done| *done)) {
+            let mut times = Times::new(segment);
+            self.patches(at, &mut times, space, harvest);
+            self.edges(at, &mut times, space, harvest);
+        }
         self.placed(at, SegmentEnd::Start, space, harvest);
         if at + 1 == self.parts.len() {
             self.placed(at, SegmentEnd::Finish, space, harvest);
@@ -46,6 +55,52 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         for cells in space.patches.iter_mut().chain(&mut space.edges) {
             cells.trim();
         }
+    }
+
+    /// Settles what it can of the envelope and the edges along a move without rotation.
+    fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
+        let Some(heading) = Heading::new(&self.parts[at].segment, self.size.slack) else {
+            return;
+        };
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let done = &mut space.done;
+        let source = |t: f64| self.source(at, t);
+        let settled = [&mut done.patches[..], &mut done.edges[..]];
+        translation::envelope(outline, &heading, &mut collector, &source, settled);
+    }
+
+    /// Settles what it can of the placement of a tool that stands along the lines between two moves without rotation.
+    fn placed_in_closed_form(
+        &self,
+        (at, end): (usize, SegmentEnd),
+        outline: &Outline,
+        source: Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        space.done.placed.fill(false);
+        let Some(after) = Neighbour::of(&self.parts[at].segment) else {
+            return;
+        };
+        let [tip, last] = self.parts[at].segment.tips();
+        let before = match at.checked_sub(1) {
+            None => Some(Neighbour::Beyond(false)),
+            Some(k) => Neighbour::of(&self.parts[k].segment),
+        };
+        let (tip, sides) = match (end, before) {
+            (SegmentEnd::Finish, _) => (last, [after, Neighbour::Beyond(true)]),
+            (SegmentEnd::Start, Some(before)) => (tip, [before, after]),
+            (SegmentEnd::Start, None) => return,
+        };
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let place = (tip, translation::slack(self.size.slack));
+        translation::placements(outline, place, sides, &mut collector, source, &mut space.done.placed);
     }
 
     /// Whether any line passes near the segment.
@@ -88,6 +143,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
     fn patches(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
+            if space.done.patches[number] {
+                continue;
+            }
             let mut map = PatchMap {
                 motion: FramedMotion::new(times, element.frame()),
                 element,
@@ -111,6 +169,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
     fn edges(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
         for (number, (element, cells)) in self.cutter.edges.iter().zip(&mut space.edges).enumerate() {
+            if space.done.edges[number] {
+                continue;
+            }
             let mut map = EdgeMap {
                 motion: FramedMotion::new(times, None),
                 element,
@@ -145,8 +206,17 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
             SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
         };
+        if let Some(outline) = self.outline {
+            self.placed_in_closed_form((at, end), outline, source, space, harvest);
+            if space.done.placed.iter().all(|done| *done) {
+                return;
+            }
+        }
         let sides = sides(self.parts, at, end);
         for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
+            if space.done.placed[number] {
+                continue;
+            }
             let mut map = PlacedMap::new(element, cells, pose, sides, self.size);
             let mut sink = harvest.reaper(|found: &Preimage<2, OnPlaced>| {
                 let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);

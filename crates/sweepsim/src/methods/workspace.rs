@@ -10,6 +10,26 @@ pub(crate) struct Workspace {
     pub patches: Vec<Cells>,
     pub edges: Vec<Cells>,
     pub solvers: Solvers,
+    pub done: Done,
+}
+
+/// The patches and edges of a tool that closed forms have settled for one part of a path.
+#[derive(Debug)]
+pub(crate) struct Done {
+    /// Under the motion.
+    pub patches: Vec<bool>,
+    pub edges: Vec<bool>,
+    /// At rest.
+    pub placed: Vec<bool>,
+}
+
+impl Done {
+    /// Nothing yet.
+    pub fn clear(&mut self) {
+        self.patches.fill(false);
+        self.edges.fill(false);
+        self.placed.fill(false);
+    }
 }
 
 /// The solvers of all methods, with their memory.
@@ -29,6 +49,11 @@ impl Workspace {
         Self {
             patches: cutter.patches.iter().map(Cells::new).collect(),
             edges: cutter.edges.iter().map(Cells::new).collect(),
+            done: Done {
+                patches: vec![false; cutter.patches.len()],
+                edges: vec![false; cutter.edges.len()],
+                placed: vec![false; cutter.patches.len()],
+            },
             solvers: Solvers {
                 moving: ChartSolver::new(options),
                 placed: ChartSolver::new(options),

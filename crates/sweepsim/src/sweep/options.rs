@@ -9,8 +9,10 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// One subdivision for all lines: boxes on which the envelope system is injective.
+    /// Closed forms for the moves of tools of revolution that do not turn, as far as there are any, and [charts](Self::Charts) for everything else.
     #[default]
+    Auto,
+    /// One subdivision for all lines: boxes on which the envelope system is injective. The reference for closed forms.
     Charts,
     /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision.
     Lines,
@@ -23,6 +25,7 @@ pub enum Method {
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Auto => "auto",
             Self::Charts => "charts",
             Self::Lines => "lines",
             Self::Planes => "planes",
@@ -33,7 +36,7 @@ impl fmt::Display for Method {
 
 /// The error for an unknown name of a method.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("unknown method `{0}`: expected `charts`, `planes`, `lines` or `surface`")]
+#[error("unknown method `{0}`: expected `auto`, `charts`, `planes`, `lines` or `surface`")]
 pub struct UnknownMethod(pub String);
 
 impl FromStr for Method {
@@ -41,6 +44,7 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         match name {
+            "auto" => Ok(Self::Auto),
             "charts" => Ok(Self::Charts),
             "lines" => Ok(Self::Lines),
             "planes" => Ok(Self::Planes),
@@ -68,7 +72,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             tolerance: 1e-6,
-            method: Method::Charts,
+            method: Method::Auto,
             boundary: BoundaryOperator::Coverage,
             path_number: 0,
         }

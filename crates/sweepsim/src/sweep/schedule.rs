@@ -90,7 +90,7 @@ impl SweepJob<'_> {
     /// All crossings of a chunk, in an order that does not depend on the number of threads.
     pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
         match self.method {
-            Method::Charts => self.by::<Charts>(chunk),
+            Method::Auto | Method::Charts => self.by::<Charts>(chunk),
             Method::Lines => self.by::<Lines>(chunk),
             Method::Planes => self.by::<Planes>(chunk),
             Method::Surface => self.by::<Surfaces>(chunk),
@@ -104,6 +104,7 @@ impl SweepJob<'_> {
             parts,
             lines,
             size: self.size,
+            outline: None,
             path: self.path,
             monitor: self.monitor,
         }
@@ -116,7 +117,11 @@ impl SweepJob<'_> {
             .into_par_iter()
             .map(|share| {
                 let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask);
-                let search = self.search(&method, chunk, &lines);
+                let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Auto);
+                let search = Search {
+                    outline,
+                    ..self.search(&method, chunk, &lines)
+                };
                 let mut harvest = Harvest::default();
                 self.with_space(|space| {
                     for at in share.parts {

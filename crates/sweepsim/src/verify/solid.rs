@@ -166,8 +166,12 @@ impl<'a> MovingSolid<'a> {
         options: &Options,
         monitor: &dyn Monitor,
     ) -> Result<SweptLines, SweepError> {
-        // Masks are for charts.
-        let options = options.clone().method(Method::Charts);
+        // Masks are for charts and closed forms.
+        let method = match options.method {
+            Method::Charts => Method::Charts,
+            _ => Method::Auto,
+        };
+        let options = options.clone().method(method);
         let mut job = self.plan.job(self.tool, grid, &options, monitor);
         job.mask = Some(mask);
         job.spaces = Arc::clone(&self.spaces);

@@ -14,4 +14,5 @@ mod rays;
 mod sections;
 mod spline_profiles;
 mod surfaces;
+mod translations;
 mod verify;

@@ -1,0 +1,108 @@
+//! A tool of revolution, prepared for closed forms.
+
+use std::ops::Range;
+use sweepsim_motion::{MeridianCurve, MeridianShape, Tool};
+
+/// A circle whose centre is this close to the axis, in roundings of its size, counts as being about the axis.
+const ON_AXIS: f64 = 4.0 * f64::EPSILON;
+
+/// A line or arc of the meridian.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shape {
+    Line {
+        /// Unit normal, `(ρ, ζ)`.
+        normal: [f64; 2],
+    },
+    Arc {
+        /// `(ρ, ζ)`; with `ρ` exactly 0 for a circle about the axis.
+        centre: [f64; 2],
+        radius: f64,
+        /// The range of angles, ascending.
+        angles: [f64; 2],
+        /// 1 where the normal points away from the centre, −1 where it points to it.
+        out: f64,
+    },
+}
+
+/// A piece of the outline with a closed form.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    pub from: [f64; 2],
+    pub to: [f64; 2],
+    pub shape: Shape,
+    pub patches: Range<usize>,
+}
+
+/// A sharp edge: a circle about the axis.
+#[derive(Clone, Debug)]
+pub(super) struct Rim {
+    pub radius: f64,
+    pub height: f64,
+    /// The unit normals of the faces before and after it, `(ρ, ζ)`.
+    pub normals: [[f64; 2]; 2],
+    pub edges: Range<usize>,
+}
+
+/// The outline of a tool of revolution, as far as it has closed forms.
+#[derive(Clone, Debug)]
+pub(crate) struct Outline {
+    pub(super) pieces: Vec<Piece>,
+    pub(super) rims: Vec<Rim>,
+}
+
+/// The normal of a direction: to the right.
+fn right([x, y]: [f64; 2]) -> [f64; 2] {
+    [y, -x]
+}
+
+impl Outline {
+    /// `None` if the tool is not one of revolution.
+    pub fn new(tool: &Tool) -> Option<Self> {
+        let curves = tool.meridians();
+        if curves.is_empty() {
+            return None;
+        }
+        let pieces = curves.iter().filter_map(piece).collect();
+        let rim = |pair: &[MeridianCurve]| {
+            let [before, after] = pair else { return None };
+            (!after.edges.is_empty()).then(|| Rim {
+                radius: after.from[0],
+                height: after.from[1],
+                normals: [right(before.directions[1]), right(after.directions[0])],
+                edges: after.edges.clone(),
+            })
+        };
+        let rims = curves.windows(2).filter_map(rim).collect();
+        Some(Self { pieces, rims })
+    }
+}
+
+fn piece(curve: &MeridianCurve) -> Option<Piece> {
+    let shape = match curve.shape {
+        MeridianShape::Line => Shape::Line {
+            normal: right(curve.directions[0]),
+        },
+        MeridianShape::Arc {
+            centre: [rho, zeta],
+            radius,
+            start,
+            sweep,
+        } => {
+            let near = rho.abs() <= ON_AXIS * (radius + zeta.abs());
+            let end = start + sweep;
+            Shape::Arc {
+                centre: [if near { 0.0 } else { rho }, zeta],
+                radius,
+                angles: [start.min(end), start.max(end)],
+                out: sweep.signum(),
+            }
+        }
+        _ => return None,
+    };
+    Some(Piece {
+        from: curve.from,
+        to: curve.to,
+        shape,
+        patches: curve.patches.clone(),
+    })
+}

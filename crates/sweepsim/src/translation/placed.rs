@@ -1,0 +1,270 @@
+//! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
+//! distance from the axis.
+
+use super::outline::{Outline, Piece, Shape};
+use super::rows::numbers;
+use super::Collector;
+use super::heading::stands;
+use crate::methods::harvest::unit;
+use sweepsim_dexel::Source;
+use sweepsim_motion::Segment;
+use std::f64::consts::PI;
+
+/// The motion on one side of a placement.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Neighbour {
+    /// A move without rotation, along this vector.
+    Along([f64; 3]),
+    /// Beyond the end of the path; whether that counts as moving inwards.
+    Beyond(bool),
+}
+
+impl Neighbour {
+    /// A move of a tool that stands along the dexels.
+    pub fn of(segment: &Segment) -> Option<Self> {
+        stands(segment).then(|| Self::Along(segment.travel()))
+    }
+}
+
+/// A stretch of the meridian over which the radius is monotone.
+#[derive(Clone, Copy, Debug)]
+enum Radial {
+    /// `ζ` at the smaller radius, its slope, the normal.
+    Line { height: f64, slope: f64, normal: [f64; 2] },
+    Arc {
+        centre: [f64; 2],
+        radius: f64,
+        /// The sign of `ζ − ζ_c`.
+        half: f64,
+        out: f64,
+    },
+}
+
+/// The placement at a joint of two moves, or at an end of the path.
+pub(crate) fn placements(
+    outline: &Outline,
+    (tip, slack): ([f64; 3], f64),
+    sides: [Neighbour; 2],
+    lines: &mut Collector,
+    source: Source,
+    done: &mut [bool],
+) {
+    let mut placed = Placed {
+        tip,
+        slack,
+        sides,
+        lines,
+        source,
+    };
+    for piece in &outline.pieces {
+        placed.piece(piece);
+        done[piece.patches.clone()].fill(true);
+    }
+}
+
+struct Placed<'a, 'b> {
+    tip: [f64; 3],
+    slack: f64,
+    sides: [Neighbour; 2],
+    lines: &'a mut Collector<'b>,
+    source: Source,
+}
+
+/// A sign, if it is certain.
+fn negative(g: f64, error: f64) -> Option<bool> {
+    // NaN is uncertain.
+    if g < -error {
+        Some(true)
+    } else if g > error {
+        Some(false)
+    } else {
+        None
+    }
+}
+
+impl Placed<'_, '_> {
+    fn piece(&mut self, piece: &Piece) {
+        match piece.shape {
+            Shape::Line { normal } => {
+                let ends = if piece.from[0] <= piece.to[0] {
+                    [piece.from, piece.to]
+                } else {
+                    [piece.to, piece.from]
+                };
+                let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
+                let line = Radial::Line {
+                    height: ends[0][1],
+                    slope,
+                    normal,
+                };
+                self.stretch(&line, [ends[0][0], ends[1][0]]);
+            }
+            Shape::Arc {
+                centre,
+                radius,
+                angles,
+                out,
+            } => {
+                // Cut where the radius is extreme.
+                let mut from = angles[0];
+                while from < angles[1] {
+                    let next = ((from / PI).floor() + 1.0) * PI;
+                    let to = if next > from { next.min(angles[1]) } else { angles[1] };
+                    let rho = [from, to].map(|angle| centre[0] + radius * angle.cos());
+                    let arc = Radial::Arc {
+                        centre,
+                        radius,
+                        half: (0.5 * (from + to)).sin().signum(),
+                        out,
+                    };
+                    self.stretch(&arc, [rho[0].min(rho[1]), rho[0].max(rho[1])]);
+                    from = to;
+                }
+            }
+        }
+    }
+
+    /// The signs that `g` has all over a stretch with constant normals, or normals along the axis; otherwise `None`.
+    fn constant(&self, normal: [f64; 2]) -> [Option<bool>; 2] {
+        self.sides.map(|side| match side {
+            Neighbour::Beyond(negative) => Some(negative),
+            Neighbour::Along([x, y, z]) => {
+                let (up, out) = (normal[1] * z, (normal[0] * x.hypot(y)).abs());
+                // With no part of it across the axis, the sign is that of a product.
+                if out == 0.0 {
+                    Some(up < 0.0)
+                } else {
+                    negative(up, out * (1.0 + 1e-9))
+                }
+            }
+        })
+    }
+
+    fn stretch(&mut self, radial: &Radial, [inner, outer]: [f64; 2]) {
+        if let Radial::Line { normal, .. } = radial
+            && let [Some(before), Some(after)] = self.constant(*normal)
+            && before == after
+        {
+            return;
+        }
+        let (slack, [tx, ty, tz]) = (2.0 * self.slack, self.tip);
+        let inner = if inner <= slack { -1.0 } else { inner };
+        let lattice = self.lines.lines;
+        let reach = outer + slack;
+        let Some([first, last]) = numbers(lattice, 0, [tx - reach, tx + reach]) else {
+            return;
+        };
+        for i in first..=last {
+            let x = lattice.coordinate(0, i) - tx;
+            let half = (reach * reach - x * x).max(0.0).sqrt() + slack;
+            // The hole in the middle.
+            let free = inner - slack;
+            let gap = if free > x.abs() { (free * free - x * x).sqrt() - slack } else { -1.0 };
+            let ranges = if gap > 0.0 {
+                [[ty - half, ty - gap], [ty + gap, ty + half]]
+            } else {
+                [[ty - half, ty + half], [f64::INFINITY, f64::NEG_INFINITY]]
+            };
+            let mut next = 0;
+            for range in ranges {
+                let Some([low, high]) = numbers(lattice, 1, range) else {
+                    continue;
+                };
+                for j in low.max(next)..=high {
+                    let y = lattice.coordinate(1, j) - ty;
+                    let rho = x.hypot_fast(y);
+                    if rho < inner - slack || rho > outer + slack {
+                        continue;
+                    }
+                    let spot = radial.at(rho, [inner.max(0.0), outer]);
+                    let (certain, change) = self.change(&spot, [x, y], rho, slack);
+                    if certain && change == 0 {
+                        continue;
+                    }
+                    if !lattice.asks(i, j) {
+                        continue;
+                    }
+                    let line = lattice.line(i, j);
+                    if !certain || rho < inner + slack || rho > outer - slack {
+                        self.lines.open(line);
+                        continue;
+                    }
+                    let [n_rho, n_zeta] = spot.normal;
+                    let jump = if n_zeta > 0.0 { -change } else { change };
+                    let normal = nalgebra::Vector3::new(n_rho * x / rho, n_rho * y / rho, n_zeta);
+                    self.lines.crossing(line, tz + spot.height, jump, unit(normal), self.source);
+                }
+                next = high + 1;
+            }
+        }
+    }
+
+    /// Whether the signs of `g` before and after are certain, and the difference `[g₊ < 0] − [g₋ < 0]`.
+    #[inline]
+    fn change(&self, spot: &Spot, [x, y]: [f64; 2], rho: f64, slack: f64) -> (bool, i8) {
+        let [n_rho, n_zeta] = spot.normal;
+        let ratio = if rho > 0.0 { n_rho / rho } else { 0.0 };
+        let mut certain = true;
+        let sign = |side: &Neighbour| match side {
+            Neighbour::Beyond(negative) => (true, i8::from(*negative)),
+            Neighbour::Along([dx, dy, dz]) => {
+                let out = ratio * (x * dx + y * dy);
+                let g = out + n_zeta * dz;
+                let error = (dx.abs() + dy.abs()) * (slack * (ratio.abs() + spot.bend) + 8.0 * f64::EPSILON)
+                    + dz.abs() * (slack * spot.bend + 8.0 * f64::EPSILON);
+                let sure = n_rho == 0.0 || g.abs() > error;
+                (sure, i8::from(g < 0.0))
+            }
+        };
+        let [before, after] = [&self.sides[0], &self.sides[1]].map(sign);
+        certain &= before.0 && after.0;
+        (certain, after.1 - before.1)
+    }
+}
+
+/// A point of a stretch.
+struct Spot {
+    height: f64,
+    normal: [f64; 2],
+    /// How fast the normal turns with the radius.
+    bend: f64,
+}
+
+impl Radial {
+    #[inline]
+    fn at(&self, rho: f64, [inner, outer]: [f64; 2]) -> Spot {
+        match *self {
+            Self::Line { height, slope, normal } => Spot {
+                height: height + (rho.clamp(inner, outer) - inner) * slope,
+                normal,
+                bend: 0.0,
+            },
+            Self::Arc {
+                centre,
+                radius,
+                half,
+                out,
+            } => {
+                let e = ((rho - centre[0]) / radius).clamp(-1.0, 1.0);
+                let f = half * ((1.0 - e) * (1.0 + e)).sqrt();
+                Spot {
+                    height: centre[1] + radius * f,
+                    normal: [out * e, out * f],
+                    bend: 1.0 / (radius * f.abs()),
+                }
+            }
+        }
+    }
+}
+
+/// The length of a vector, without care for overflow: coordinates are bounded.
+trait Hypot {
+    fn hypot_fast(self, other: Self) -> Self;
+}
+
+impl Hypot for f64 {
+    #[inline]
+    fn hypot_fast(self, other: Self) -> Self {
+        (self * self + other * other).sqrt()
+    }
+}

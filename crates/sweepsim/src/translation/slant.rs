@@ -1,0 +1,84 @@
+//! The grazing curve of a cone or cylinder: two straight lines.
+
+use super::graph::{Graph, Spot};
+use super::{Heading, Local};
+
+/// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
+const BLURRED: f64 = 1e-9;
+
+/// A straight grazing line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slant {
+    ends: [Local; 2],
+    span: [f64; 2],
+    margin: f64,
+    jump: i8,
+    normal: Local,
+    slope: f64,
+    rise: f64,
+}
+
+/// The grazing lines of a meridian line between two points with this normal: those of which `p` changes, and ends of the others. `None` if rounding blurs them.
+pub(super) fn slants(heading: &Heading, [from, to]: [[f64; 2]; 2], normal: [f64; 2]) -> Option<Vec<Slant>> {
+    let [n_rho, n_zeta] = normal;
+    if n_rho == 0.0 {
+        return Some(Vec::new());
+    }
+    let c = -heading.along * n_zeta;
+    let width = heading.across * n_rho;
+    // |cos φ| > 1: the whole cone moves outwards, or inwards.
+    if c.abs() > width.abs() * (1.0 + BLURRED) {
+        return Some(Vec::new());
+    }
+    let cosine = c / width;
+    let square = (1.0 - cosine) * (1.0 + cosine);
+    if !(square > BLURRED) {
+        return None;
+    }
+    let sine = square.sqrt();
+    let line = |side: f64| {
+        let towards = [cosine, side * sine];
+        let ends = [from, to].map(|[rho, zeta]| heading.point(rho, towards, zeta));
+        let run = ends[1][1] - ends[0][1];
+        let up = if run > 0.0 { 1.0 } else { -1.0 };
+        Slant {
+            ends,
+            span: [ends[0][1].min(ends[1][1]), ends[0][1].max(ends[1][1])],
+            margin: heading.slack * (1.0 + 1.0 / sine),
+            jump: if n_rho * side * up > 0.0 { 1 } else { -1 },
+            normal: heading.point(n_rho, towards, n_zeta),
+            slope: (ends[1][0] - ends[0][0]) / run,
+            rise: (ends[1][2] - ends[0][2]) / run,
+        }
+    };
+    Some(vec![line(1.0), line(-1.0)])
+}
+
+impl Graph for Slant {
+    #[inline]
+    fn at(&self, p: f64) -> Spot {
+        let from = &self.ends[0];
+        let run = p - from[1];
+        Spot {
+            q: from[0] + run * self.slope,
+            z: from[2] + run * self.rise,
+            slope: self.slope,
+            jump: self.jump,
+            normal: self.normal,
+            certain: true,
+        }
+    }
+
+    fn span(&self) -> [f64; 2] {
+        self.span
+    }
+
+    fn margins(&self) -> [f64; 2] {
+        [self.margin; 2]
+    }
+
+    fn reach(&self) -> [f64; 2] {
+        let [a, b] = [self.ends[0][0], self.ends[1][0]];
+        [a.min(b), a.max(b)]
+    }
+}

@@ -1,0 +1,200 @@
+//! The lines over the strips that grazing curves and edges sweep.
+
+use super::graph::Graph;
+use super::outline::{Outline, Piece, Rim, Shape};
+use super::rows::{Row, rows};
+use super::{Collector, Heading, ring, slant, torus};
+use crate::methods::harvest::unit;
+use sweepsim_dexel::Source;
+
+/// A strip narrower than this many margins is not searched: its lines are open.
+const NARROW: f64 = 16.0;
+/// The most parts of a span that are searched one by one.
+const PARTS: f64 = 16.0;
+/// A part is about as long as the way, or this many lines.
+const LINES: f64 = 6.0;
+
+/// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
+pub(crate) fn envelope(
+    outline: &Outline,
+    heading: &Heading,
+    lines: &mut Collector,
+    source: &dyn Fn(f64) -> Source,
+    done: [&mut [bool]; 2],
+) {
+    let [patches, edges] = done;
+    let mut strip = Strip {
+        heading,
+        lines,
+        source,
+        spacing: 0.0,
+    };
+    strip.spacing = strip.lines.lines.spacing();
+    for piece in &outline.pieces {
+        if strip.piece(piece).is_some() {
+            patches[piece.patches.clone()].fill(true);
+        }
+    }
+    for rim in &outline.rims {
+        if strip.rim(rim).is_some() {
+            edges[rim.edges.clone()].fill(true);
+        }
+    }
+}
+
+/// The search along one move.
+struct Strip<'a, 'b> {
+    heading: &'a Heading,
+    lines: &'a mut Collector<'b>,
+    source: &'a dyn Fn(f64) -> Source,
+    spacing: f64,
+}
+
+impl Strip<'_, '_> {
+    /// `None` if there is no closed form.
+    fn piece(&mut self, piece: &Piece) -> Option<()> {
+        let heading = self.heading;
+        let poles = [piece.from[0] == 0.0, piece.to[0] == 0.0];
+        match piece.shape {
+            Shape::Line { normal } => {
+                let graphs = slant::slants(heading, [piece.from, piece.to], normal)?;
+                self.all(&graphs);
+            }
+            Shape::Arc {
+                centre,
+                radius,
+                angles,
+                out,
+            } => {
+                if centre[0] == 0.0 {
+                    let poles = if out > 0.0 { poles } else { [poles[1], poles[0]] };
+                    let graphs = ring::ball(heading, [centre[1], radius], angles, poles, out)?;
+                    self.all(&graphs);
+                } else if heading.upright {
+                    let graphs = torus::stretches(heading, centre, radius, angles, out)?;
+                    self.all(&graphs);
+                } else {
+                    return None;
+                }
+            }
+        }
+        Some(())
+    }
+
+    fn rim(&mut self, rim: &Rim) -> Option<()> {
+        let graphs = ring::rim(self.heading, rim)?;
+        self.all(&graphs);
+        Some(())
+    }
+
+    fn all<G: Graph>(&mut self, graphs: &[G]) {
+        for graph in graphs {
+            self.graph(graph);
+        }
+    }
+
+    fn graph<G: Graph>(&mut self, graph: &G) {
+        let [low, high] = graph.span();
+        let margins = graph.margins();
+        let [back, front] = graph.reach();
+        if !(high - low > NARROW * (margins[0] + margins[1])) {
+            self.sliver([low - margins[0], high + margins[1]], [back, front]);
+            return;
+        }
+        let length = self.heading.length.max(LINES * self.spacing);
+        let count = ((front - back) / length).ceil().clamp(1.0, PARTS);
+        let mut a = low;
+        for n in 1..=count as usize {
+            let b = if n == count as usize {
+                high
+            } else {
+                graph.part(n as f64 / count)
+            };
+            self.part(graph, [a, b]);
+            a = b;
+        }
+    }
+
+    /// The lines with `p` in one part of the span.
+    fn part<G: Graph>(&mut self, graph: &G, [a, b]: [f64; 2]) {
+        if graph.idle(a, b) {
+            return;
+        }
+        let [low, high] = graph.span();
+        let margins = graph.margins();
+        let heading = self.heading;
+        let ends = [graph.at(a).q, graph.at(b).q];
+        let (back, front) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // At the ends of the span, `p` may belong to it or not.
+        let (below, above) = (a == low, b == high);
+        let wide = [if below { a - margins[0] } else { a }, if above { b + margins[1] } else { b }];
+        let sure = [if below { a + margins[0] } else { a }, if above { b - margins[1] } else { b }];
+        // How far q may be off in the margins.
+        let blur = |end: f64, inner: f64| 2.0 * (graph.at(end).q - graph.at(inner).q).abs() + 4.0 * heading.slack;
+        let blurs = [blur(low, low + 2.0 * margins[0]), blur(high, high - 2.0 * margins[1])];
+        let blur = if below { blurs[0] } else { 0.0 }.max(if above { blurs[1] } else { 0.0 });
+        let reach = [back - blur - heading.slack, front + blur + heading.slack + heading.length];
+        let lattice = self.lines.lines;
+        let source = self.source;
+        let collector = &mut *self.lines;
+        let [ux, uy] = heading.ahead;
+        rows(lattice, heading, [wide, reach], |Row { i, j, x }| {
+            let (p_base, q_base) = (-uy * x, ux * x);
+            for j in j[0]..=j[1] {
+                let y = lattice.coordinate(1, j) - heading.tip[1];
+                let p = p_base + ux * y;
+                if p < wide[0] || p >= wide[1] {
+                    continue;
+                }
+                let q = q_base + uy * y;
+                if p < sure[0] || (above && p >= sure[1]) {
+                    let end = usize::from(p >= sure[0]);
+                    let ahead = q - graph.at(p.clamp(low, high)).q;
+                    if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks(i, j) {
+                        collector.open(lattice.line(i, j));
+                    }
+                    continue;
+                }
+                let spot = graph.at(p);
+                let ahead = q - spot.q;
+                let error = heading.slack * (2.0 + spot.slope.abs());
+                if ahead < -error || ahead > heading.length + error || (spot.jump == 0 && spot.certain) {
+                    continue;
+                }
+                if !lattice.asks(i, j) {
+                    continue;
+                }
+                let line = lattice.line(i, j);
+                // NaN is uncertain.
+                if !(spot.certain && ahead > error && ahead < heading.length - error) {
+                    collector.open(line);
+                    continue;
+                }
+                let t = ahead / heading.length;
+                let [nx, ny, nz] = heading.in_space(spot.normal);
+                let z = heading.tip[2] + t * heading.way[2] + spot.z;
+                collector.crossing(line, z, spot.jump, unit(nalgebra::Vector3::new(nx, ny, nz)), source(t));
+            }
+        });
+    }
+
+    /// Leaves the lines of a strip that is too narrow open.
+    fn sliver(&mut self, p: [f64; 2], [back, front]: [f64; 2]) {
+        let heading = self.heading;
+        let margin = 2.0 * heading.slack;
+        let reach = [back - margin, front + margin + heading.length];
+        let lattice = self.lines.lines;
+        let [ux, uy] = heading.ahead;
+        let collector = &mut *self.lines;
+        rows(lattice, heading, [p, reach], |Row { i, j, x }| {
+            for j in j[0]..=j[1] {
+                let y = lattice.coordinate(1, j) - heading.tip[1];
+                let (own, q) = (ux * y - uy * x, ux * x + uy * y);
+                let inside = own >= p[0] && own <= p[1] && q >= reach[0] && q <= reach[1];
+                if inside && lattice.asks(i, j) {
+                    collector.open(lattice.line(i, j));
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,195 @@
+//! Moves without rotation in closed form, against charts: the same crossings from other systems, bounds and certificates.
+
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
+use sweepsim::dexel::Frame;
+use sweepsim::nalgebra::Vector3;
+use sweepsim::{Method, Options, Sweep, sweep};
+use sweepsim_dexel::{Grid, Interval};
+use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Path, Pose, Profile, ProfileSegment, Taper, Tool, Turn};
+
+const TOLERANCE: f64 = 1e-6;
+const UP: [f64; 3] = [0.0, 0.0, 1.0];
+
+fn line(to: [f64; 2]) -> ProfileSegment {
+    ProfileSegment::Line { to }
+}
+
+fn made(segments: Vec<ProfileSegment>) -> Tool {
+    Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"))
+}
+
+fn apt(a: f64, b: f64) -> Tool {
+    let apt = Apt {
+        d: 5.0,
+        r: 0.0,
+        e: 2.5,
+        f: 0.0,
+        a,
+        b,
+        h: 9.0,
+    };
+    Tool::apt(&apt).expect("a cutter").0
+}
+
+/// Every kind of tool, with whether all of its outline has closed forms.
+fn tools() -> Vec<(&'static str, Tool, bool)> {
+    let barrel = Barrel {
+        radius: 2.5,
+        flank: 6.0,
+        height: 5.0,
+        corner: 0.6,
+        length: 9.0,
+    };
+    let lens = Lens {
+        radius: 3.0,
+        bottom: 7.0,
+        corner: 0.5,
+        length: 9.0,
+    };
+    let taper = Taper {
+        radius: 3.0,
+        tip: 1.0,
+        flank: 12.0,
+        angle: 10.0,
+        length: 12.0,
+    };
+    let lollipop = Lollipop {
+        radius: 3.0,
+        neck: 1.1,
+        length: 12.0,
+    };
+    let dovetail = Dovetail {
+        radius: 3.0,
+        angle: 60.0,
+        height: 3.0,
+        neck: 1.0,
+        length: 9.0,
+    };
+    let form = vec![
+        line([1.0, 0.0]),
+        line([1.0, 1.0]),
+        ProfileSegment::Arc {
+            to: [3.0, 3.0],
+            centre: [3.0, 1.0],
+            turn: Turn::Cw,
+        },
+        line([3.0, 8.0]),
+        line([0.0, 8.0]),
+    ];
+    let spline = ProfileSegment::Spline {
+        degree: 3,
+        knots: None,
+        points: vec![[1.0, 0.0], [2.6, 0.4], [1.2, 2.5], [3.0, 4.0], [2.2, 6.0]],
+        weights: None,
+    };
+    vec![
+        ("ball", Tool::ball(3.0, 10.0).expect("a tool"), true),
+        ("flat", Tool::flat(3.0, 10.0).expect("a tool"), true),
+        ("bull", Tool::bull(3.0, 0.8, 10.0).expect("a tool"), true),
+        ("drill", apt(31.0, 0.0), true),
+        ("taper", apt(0.0, 8.0), true),
+        ("hollow", apt(-12.0, -8.0), true),
+        ("barrel", Tool::barrel(barrel).expect("a tool"), true),
+        ("lens", Tool::lens(lens).expect("a tool"), true),
+        ("circle segment", Tool::taper(taper).expect("a tool"), true),
+        ("lollipop", Tool::lollipop(lollipop).expect("a tool"), true),
+        ("dovetail", Tool::dovetail(dovetail).expect("a tool"), true),
+        ("form", made(form), true),
+        (
+            "spline",
+            made(vec![line([1.0, 0.0]), spline, line([2.2, 8.0]), line([0.0, 8.0])]),
+            false,
+        ),
+    ]
+}
+
+fn path(tips: &[[f64; 3]], axis: [f64; 3]) -> Path {
+    let poses = tips.iter().map(|tip| Pose::new(*tip, axis).expect("a pose"));
+    Path::new(poses.collect()).expect("a path")
+}
+
+/// Whether the ends agree, each within the tolerance measured across the surface.
+fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
+    let near = |(a, b): (&Interval, &Interval)| {
+        [(a.lower, b.lower), (a.upper, b.upper)].iter().all(|(a, b)| {
+            let steep = f64::from(a.normal[2]).abs().max(f64::from(b.normal[2]).abs()).max(1e-3);
+            (a.z - b.z).abs() <= tolerance / steep
+        })
+    };
+    a.len() == b.len() && a.iter().zip(b).all(near)
+}
+
+/// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside it.
+fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
+    let on = |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
+    let [closed, charts] = [Method::Auto, Method::Charts].map(|method| on(grid, method));
+    for found in [&closed, &charts] {
+        prop_assert!(found.statistics.unresolved.is_empty(), "{name}: {:?}", found.statistics);
+    }
+    for index in 0..grid.len() {
+        let [a, b] = [&closed, &charts].map(|found| found.volume.at(index).to_vec());
+        if same(&a, &b, tolerance) {
+            continue;
+        }
+        let (i, j) = grid.place(index);
+        let beside = |step: [f64; 2]| {
+            let [x, y] = [grid.x(i) + step[0] * tolerance, grid.y(j) + step[1] * tolerance];
+            let half = 1e-3;
+            let one = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]).expect("a grid");
+            same(&a, &on(&one.in_frame(*grid.frame()), Method::Charts).volume.at(0).to_vec(), tolerance)
+        };
+        let around = (0..8).map(|k| std::f64::consts::FRAC_PI_4 * f64::from(k));
+        let steps = around.flat_map(|angle| [0.05, 0.3].map(|r| [r * angle.cos(), r * angle.sin()]));
+        prop_assert!(steps.into_iter().any(beside), "{name}: {:?}: {a:?} {b:?}", (i, j));
+    }
+    Ok([closed, charts])
+}
+
+/// As [`agree`], where nothing is degenerate: hardly any line needs the general method.
+fn agree_in_general(number: usize, tips: &[[f64; 3]], grid: &Grid) -> TestCaseResult {
+    let (name, tool, whole) = &tools()[number];
+    let [closed, charts] = agree(name, tool, &path(tips, UP), grid, TOLERANCE)?;
+    let [own, other] = [&closed.statistics, &charts.statistics];
+    prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
+    if *whole && own.repaired == 0 {
+        prop_assert_eq!(own.boxes, 0, "{}", name);
+    }
+    // The same crossings, but for those of moves as short as a displacement.
+    let off = own.crossings.abs_diff(other.crossings);
+    prop_assert!(off <= 4 + other.crossings / 100, "{name}: {} {}", own.crossings, other.crossings);
+    Ok(())
+}
+
+fn grid(cells: [usize; 2]) -> Grid {
+    Grid::new([-9.97, -10.03], [10.06, 9.94], cells).expect("a grid")
+}
+
+fn tip() -> impl Strategy<Value = [f64; 3]> {
+    [-6.0..6.0, -6.0..6.0, -3.0..3.0]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    /// Ramps up and down in all directions.
+    #[test]
+    fn any_moves(number in 0..13usize, tips in prop::collection::vec(tip(), 2..5)) {
+        agree_in_general(number, &tips, &grid([37, 41]))?;
+    }
+
+    /// Level moves, moves along the grid, and plunges.
+    #[test]
+    fn moves_along_the_axes(number in 0..13usize, start in [-4..4, -4..4, -2..2], steps in prop::collection::vec((0..3usize, -4..5), 1..6)) {
+        let mut tips = vec![start.map(f64::from)];
+        for (axis, step) in steps {
+            let mut next = tips[tips.len() - 1];
+            next[axis] += f64::from(step);
+            tips.push(next);
+        }
+        let (name, tool, _) = &tools()[number];
+        // Lines every 0.5: many are in walls, and tips over lines.
+        let grid = Grid::new([-10.25, -10.25], [10.25, 10.25], [41, 41]).expect("a grid");
+        agree(name, tool, &path(&tips, UP), &grid, TOLERANCE)?;
+    }
+}

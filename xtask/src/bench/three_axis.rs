@@ -1,0 +1,78 @@
+//! A three-axis program of short moves: what the closed forms of translations are for.
+
+use super::{on, shortest};
+use sweepsim::{Method, Options, sweep};
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{Apt, Path, Pose, Tool};
+
+/// Side of the square, in millimetres.
+const SIDE: f64 = 100.0;
+/// Passes, and moves in each.
+const PASSES: [usize; 2] = [50, 60];
+/// Tools of the table.
+pub const TOOLS: [&str; 4] = ["flat", "ball", "bull", "cone"];
+
+/// A tool with this name.
+fn tool(name: &str) -> Result<Tool, String> {
+    let cone = Apt {
+        d: 6.0,
+        r: 0.0,
+        e: 3.0,
+        f: 0.0,
+        a: 45.0,
+        b: 0.0,
+        h: 30.0,
+    };
+    let tool = match name {
+        "flat" => Tool::flat(3.0, 30.0),
+        "ball" => Tool::ball(3.0, 30.0),
+        "bull" => Tool::bull(3.0, 1.0, 30.0),
+        _ => return Tool::apt(&cone).map(|(tool, _)| tool).map_err(|error| error.to_string()),
+    };
+    tool.map_err(|error| error.to_string())
+}
+
+/// A raster over a wavy surface: 50 passes of 60 moves, joined by short ones, 3,049 in all, none along the grid.
+fn path() -> Result<Path, String> {
+    let [passes, moves] = PASSES;
+    let (sine, cosine) = 0.1_f64.sin_cos();
+    let mut poses = Vec::with_capacity(passes * (moves + 1));
+    for pass in 0..passes {
+        for n in 0..=moves {
+            let along = if pass % 2 == 0 { n } else { moves - n } as f64 / moves as f64 - 0.5;
+            let across = pass as f64 / (passes - 1) as f64 - 0.5;
+            let [u, v] = [0.85 * SIDE * along, 0.85 * SIDE * across];
+            let height = 2.0 * (0.17 * u + 0.4).sin() * (0.13 * v).cos() - 0.02 * u;
+            let tip = [cosine * u - sine * v, sine * u + cosine * v, height];
+            poses.push(Pose::new(tip, [0.0, 0.0, 1.0]).map_err(|error| error.to_string())?);
+        }
+    }
+    Path::new(poses).map_err(|error| error.to_string())
+}
+
+/// Sweeps the program once with a tool of this name, on `cells` × `cells` lines. The number of crossings.
+pub fn once(name: &str, cells: usize, method: Method) -> Result<u64, String> {
+    let half = 0.5 * SIDE;
+    let grid = Grid::new([-half, -half], [half, half], [cells; 2]).map_err(|error| error.to_string())?;
+    let options = Options::new(1e-6).method(method);
+    let swept = sweep(&tool(name)?, &path()?, &grid, &options, &()).map_err(|error| error.to_string())?;
+    match swept.statistics.unresolved.len() {
+        0 => Ok(swept.statistics.crossings),
+        open => Err(format!("{open} dexels are unresolved")),
+    }
+}
+
+/// The program with several tools on 1,000 × 1,000 lines, one thread.
+pub fn three_axis() -> Result<(), String> {
+    println!("{:<8} {:>11} {:>9} {:>9}", "tool", "crossings", "s", "charts, s");
+    for name in TOOLS {
+        let timed = |method| on(1, || shortest(|| once(name, 1000, method).map(drop)))?;
+        let crossings = once(name, 1000, Method::default())?;
+        println!(
+            "{name:<8} {crossings:>11} {:>9.3} {:>9.3}",
+            timed(Method::default())?,
+            timed(Method::Charts)?
+        );
+    }
+    Ok(())
+}
