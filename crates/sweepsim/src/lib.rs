@@ -54,7 +54,6 @@ mod sections;
 mod sweep;
 mod time;
 mod tolerances;
-mod translation;
 pub mod verify;
 
 pub use envelope::systems;

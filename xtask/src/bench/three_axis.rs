@@ -27,7 +27,11 @@ fn tool(name: &str) -> Result<Tool, String> {
         "flat" => Tool::flat(3.0, 30.0),
         "ball" => Tool::ball(3.0, 30.0),
         "bull" => Tool::bull(3.0, 1.0, 30.0),
-        _ => return Tool::apt(&cone).map(|(tool, _)| tool).map_err(|error| error.to_string()),
+        _ => {
+            return Tool::apt(&cone)
+                .map(|(tool, _)| tool)
+                .map_err(|error| error.to_string());
+        }
     };
     tool.map_err(|error| error.to_string())
 }

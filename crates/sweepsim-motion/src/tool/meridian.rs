@@ -119,7 +119,10 @@ mod tests {
         for tool in tools.map(|tool| tool.expect("a tool")) {
             let curves = tool.meridians();
             let last = curves.last().expect("a curve");
-            assert_eq!([last.patches.end, last.edges.end], [tool.patches().len(), tool.edges().len()]);
+            assert_eq!(
+                [last.patches.end, last.edges.end],
+                [tool.patches().len(), tool.edges().len()]
+            );
             for pair in curves.windows(2) {
                 assert_eq!(pair[0].to, pair[1].from);
             }

@@ -1,11 +1,12 @@
 //! The tool, prepared once for all moves: its patches and edges as forms, cut into cells on demand.
 
 pub(crate) mod cells;
+pub(crate) mod outline;
 pub(crate) mod patch_forms;
 pub(crate) mod revolution;
 
-use crate::translation::Outline;
 use nalgebra::Vector3;
+use outline::Outline;
 use patch_forms::PatchForms;
 use sweepsim_motion::Tool;
 

@@ -13,4 +13,5 @@ mod placement;
 pub(crate) mod planes;
 pub(crate) mod search;
 pub(crate) mod surface;
+pub(crate) mod translation;
 pub(crate) mod workspace;

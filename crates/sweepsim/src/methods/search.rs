@@ -2,16 +2,17 @@
 //! two caps.
 
 use crate::cutter::Cutter;
+use crate::cutter::outline::Outline;
 use crate::envelope::{EdgeMap, Near, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, Size};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::placement::sides;
+use crate::methods::translation::{self, Collector, Heading, Neighbour};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
-use crate::translation::{self, Collector, Heading, Neighbour, Outline};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
 use sweepsim_solve::{Monitor, Preimage};

@@ -3,7 +3,7 @@
 //!
 //! `cargo test -p sweepsim --release --test near_degenerate -- --nocapture` prints the table of the docs.
 
-use sweepsim::{Options, Statistics, sweep};
+use sweepsim::{Method, Options, Statistics, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Apt, Course, Law, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
 
@@ -155,7 +155,7 @@ fn tools() -> Vec<(&'static str, Tool)> {
 }
 
 fn cost(tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
-    sweep(tool, path, grid, &Options::default(), &())
+    sweep(tool, path, grid, &Options::default().method(Method::Charts), &())
         .expect("a sweep")
         .statistics
 }

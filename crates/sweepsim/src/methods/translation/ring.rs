@@ -1,8 +1,8 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
 use super::graph::{Graph, Spot};
-use super::outline::Rim;
 use super::{Heading, Local, along, dot};
+use crate::cutter::outline::Rim;
 use std::f64::consts::PI;
 
 /// A circle that is seen from the side, narrower than this part of its radius, is left to the general method.
@@ -74,7 +74,14 @@ impl Circle {
 
     /// The parts between these cuts and where `p` or `q` is extreme. `keep` tells of each, by its middle, whether it is wanted.
     /// Cuts come with the rounding error of their angle.
-    fn parts(&self, slack: f64, cuts: &[(f64, f64)], keep: impl Fn(f64) -> bool, role: impl Fn(f64) -> Role, out: &mut Vec<Ring>) {
+    fn parts(
+        &self,
+        slack: f64,
+        cuts: &[(f64, f64)],
+        keep: impl Fn(f64) -> bool,
+        role: impl Fn(f64) -> Role,
+        out: &mut Vec<Ring>,
+    ) {
         let extreme = self.second[0].atan2(self.first[0]);
         let mut angles: Vec<(f64, f64)> = [-PI, 0.0, PI].map(|angle| (angle, 0.0)).into();
         // Turned into (-π, π].
@@ -90,7 +97,12 @@ impl Circle {
                 continue;
             }
             let half = if middle > 0.0 { 1.0 } else { -1.0 };
-            let end = |angle: f64, error: f64| (self.width * angle.cos(), slack + self.width * (angle.sin().abs() + error) * error);
+            let end = |angle: f64, error: f64| {
+                (
+                    self.width * angle.cos(),
+                    slack + self.width * (angle.sin().abs() + error) * error,
+                )
+            };
             let (mut low, mut high) = (end(a, a_error), end(b, b_error));
             let mut own = [a, b];
             if low.0 > high.0 {
@@ -139,7 +151,13 @@ pub(super) fn rim(heading: &Heading, rim: &Rim) -> Option<Vec<Ring>> {
 }
 
 /// The grazing circle of a ball about the axis, on the side of the two ends of its arc. `None` if rounding blurs it.
-pub(super) fn ball(heading: &Heading, [height, radius]: [f64; 2], angles: [f64; 2], poles: [bool; 2], out: f64) -> Option<Vec<Ring>> {
+pub(super) fn ball(
+    heading: &Heading,
+    [height, radius]: [f64; 2],
+    angles: [f64; 2],
+    poles: [bool; 2],
+    out: f64,
+) -> Option<Vec<Ring>> {
     let axis = &heading.axes[2];
     let way = heading.local_way();
     // Perpendicular to the way: across it, and in the vertical plane of it.

@@ -66,7 +66,12 @@ pub(super) fn stretches(
     }
     let steepest = m.abs() / (1.0 + square).sqrt();
     let ratio = -centre[0] / radius;
-    let turning = [(ratio * square / (1.0 + square)).cbrt(), ratio.cbrt(), steepest, -steepest];
+    let turning = [
+        (ratio * square / (1.0 + square)).cbrt(),
+        ratio.cbrt(),
+        steepest,
+        -steepest,
+    ];
     for cosine in turning {
         if cosine.abs() < 1.0 {
             let angle = cosine.acos();
@@ -159,7 +164,11 @@ impl Torus {
         };
         for _ in 0..STEPS {
             if !(e > a && e < b) {
-                e = if b > 4.0 * a && a > 0.0 { (a * b).sqrt() } else { 0.5 * (a + b) };
+                e = if b > 4.0 * a && a > 0.0 {
+                    (a * b).sqrt()
+                } else {
+                    0.5 * (a + b)
+                };
             }
             // w² − (p/ρ)², which has the sign of |p(e)| − |p|.
             let rho = offset + radius * e;
@@ -199,7 +208,11 @@ impl Graph for Torus {
             z: self.centre[1] + self.radius * f,
             slope: self.side * slope,
             jump: self.jump,
-            normal: [self.out * sign * e * cosine, self.out * sign * e * w * self.side, self.out * f],
+            normal: [
+                self.out * sign * e * cosine,
+                self.out * sign * e * w * self.side,
+                self.out * f,
+            ],
             certain: found.is_some(),
         }
     }

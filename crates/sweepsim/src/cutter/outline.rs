@@ -8,7 +8,7 @@ const ON_AXIS: f64 = 4.0 * f64::EPSILON;
 
 /// A line or arc of the meridian.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     Line {
         /// Unit normal, `(ρ, ζ)`.
         normal: [f64; 2],
@@ -26,7 +26,7 @@ pub(super) enum Shape {
 
 /// A piece of the outline with a closed form.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     pub from: [f64; 2],
     pub to: [f64; 2],
     pub shape: Shape,
@@ -35,7 +35,7 @@ pub(super) struct Piece {
 
 /// A sharp edge: a circle about the axis.
 #[derive(Clone, Debug)]
-pub(super) struct Rim {
+pub(crate) struct Rim {
     pub radius: f64,
     pub height: f64,
     /// The unit normals of the faces before and after it, `(ρ, ζ)`.
@@ -46,8 +46,8 @@ pub(super) struct Rim {
 /// The outline of a tool of revolution, as far as it has closed forms.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
-    pub(super) pieces: Vec<Piece>,
-    pub(super) rims: Vec<Rim>,
+    pub(crate) pieces: Vec<Piece>,
+    pub(crate) rims: Vec<Rim>,
 }
 
 /// The normal of a direction: to the right.

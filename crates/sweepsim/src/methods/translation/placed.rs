@@ -1,14 +1,14 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
-use super::outline::{Outline, Piece, Shape};
-use super::rows::numbers;
 use super::Collector;
 use super::heading::stands;
+use super::rows::numbers;
+use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
+use std::f64::consts::PI;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
-use std::f64::consts::PI;
 
 /// The motion on one side of a placement.
 #[derive(Clone, Copy, Debug)]
@@ -159,7 +159,11 @@ impl Placed<'_, '_> {
             let half = (reach * reach - x * x).max(0.0).sqrt() + slack;
             // The hole in the middle.
             let free = inner - slack;
-            let gap = if free > x.abs() { (free * free - x * x).sqrt() - slack } else { -1.0 };
+            let gap = if free > x.abs() {
+                (free * free - x * x).sqrt() - slack
+            } else {
+                -1.0
+            };
             let ranges = if gap > 0.0 {
                 [[ty - half, ty - gap], [ty + gap, ty + half]]
             } else {
@@ -192,7 +196,8 @@ impl Placed<'_, '_> {
                     let [n_rho, n_zeta] = spot.normal;
                     let jump = if n_zeta > 0.0 { -change } else { change };
                     let normal = nalgebra::Vector3::new(n_rho * x / rho, n_rho * y / rho, n_zeta);
-                    self.lines.crossing(line, tz + spot.height, jump, unit(normal), self.source);
+                    self.lines
+                        .crossing(line, tz + spot.height, jump, unit(normal), self.source);
                 }
                 next = high + 1;
             }

@@ -10,7 +10,7 @@
 
 mod graph;
 mod heading;
-mod outline;
+
 mod placed;
 mod ring;
 mod rows;
@@ -19,7 +19,7 @@ mod strip;
 mod torus;
 
 pub(crate) use heading::{Heading, slack};
-pub(crate) use outline::Outline;
+
 pub(crate) use placed::{Neighbour, placements};
 pub(crate) use strip::envelope;
 

@@ -1,9 +1,9 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
 use super::graph::Graph;
-use super::outline::{Outline, Piece, Rim, Shape};
 use super::rows::{Row, rows};
 use super::{Collector, Heading, ring, slant, torus};
+use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
 use sweepsim_dexel::Source;
 
@@ -127,13 +127,22 @@ impl Strip<'_, '_> {
         let (back, front) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
         // At the ends of the span, `p` may belong to it or not.
         let (below, above) = (a == low, b == high);
-        let wide = [if below { a - margins[0] } else { a }, if above { b + margins[1] } else { b }];
-        let sure = [if below { a + margins[0] } else { a }, if above { b - margins[1] } else { b }];
+        let wide = [
+            if below { a - margins[0] } else { a },
+            if above { b + margins[1] } else { b },
+        ];
+        let sure = [
+            if below { a + margins[0] } else { a },
+            if above { b - margins[1] } else { b },
+        ];
         // How far q may be off in the margins.
         let blur = |end: f64, inner: f64| 2.0 * (graph.at(end).q - graph.at(inner).q).abs() + 4.0 * heading.slack;
         let blurs = [blur(low, low + 2.0 * margins[0]), blur(high, high - 2.0 * margins[1])];
         let blur = if below { blurs[0] } else { 0.0 }.max(if above { blurs[1] } else { 0.0 });
-        let reach = [back - blur - heading.slack, front + blur + heading.slack + heading.length];
+        let reach = [
+            back - blur - heading.slack,
+            front + blur + heading.slack + heading.length,
+        ];
         let lattice = self.lines.lines;
         let source = self.source;
         let collector = &mut *self.lines;
