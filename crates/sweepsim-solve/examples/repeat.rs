@@ -11,12 +11,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "dense_deg8_2d".to_owned());
     let times: u32 = arguments.next().map_or(Ok(1), |t| t.parse())?;
-    let mut found = 0;
-    if let Some(named) = systems::all().into_iter().find(|s| s.name == name) {
+    let (mut found, mut boxes) = (0, 0);
+    // Two that take too long for the benches.
+    let large = [(7, "quadrics_7"), (8, "quadrics_8")].into_iter().find(|l| l.1 == name);
+    let large = large.map(|(n, name)| systems::quadrics(n, name));
+    if let Some(named) = large.or_else(|| systems::all().into_iter().find(|s| s.name == name)) {
         assert!(named.system.coefficients() > 0);
         let mut solver = PointSolver::default();
         for _ in 0..times {
-            found = solver.solve(&named.system, &())?.roots.len();
+            let points = solver.solve(&named.system, &())?;
+            found = points.roots.len();
+            boxes = points.statistics.boxes;
         }
         assert!(times == 0 || named.roots == 0 || named.roots == found);
     } else {
@@ -26,6 +31,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             found = solver.solve(&named.system, &())?.curves.len();
         }
     }
-    println!("{name}: {found} solutions, {times} times");
+    println!("{name}: {found} solutions, {boxes} boxes, {times} times");
     Ok(())
 }

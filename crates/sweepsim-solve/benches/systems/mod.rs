@@ -176,6 +176,50 @@ pub fn edge_sweep() -> Named {
     }
 }
 
+/// Combinations of `(xᵢ − 3/10)(xᵢ − 4/5) + Σ dᵢⱼₖ xⱼ xₖ`, with factors of up to 3/100 for all products of two variables, by a random matrix: no equation shows where a root
+/// is.
+pub fn quadrics(n: usize, name: &'static str) -> Named {
+    let mut state = 17u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1 << 23) - 1.0
+    };
+    // For each equation, the factors of all products of two variables, squares among them.
+    let own: Vec<Vec<Vec<f64>>> = (0..n)
+        .map(|i| {
+            let factor = |j: usize, k: usize, r: f64| if j == k { f64::from(u8::from(i == j)) } else { 0.03 * r };
+            (0..n)
+                .map(|j| (0..=j).map(|k| factor(j, k, random())).collect())
+                .collect()
+        })
+        .collect();
+    let forms: Vec<Bernstein> = (0..n)
+        .map(|_| {
+            let weights: Vec<f64> = (0..n).map(|_| random()).collect();
+            let sum = |of: &dyn Fn(usize) -> f64| weights.iter().enumerate().map(|(e, w)| w * of(e)).sum::<f64>();
+            let products: Vec<Vec<f64>> = (0..n)
+                .map(|j| (0..=j).map(|k| sum(&|e| own[e][j][k])).collect())
+                .collect();
+            let form = Bernstein::from_fn(&vec![2; n], |index| {
+                // Products of two variables have products of their coefficients; a square has 0, 0, 1.
+                let x: Vec<f64> = index.iter().map(|k| 0.5 * *k as f64).collect();
+                let product = |j: usize, k: usize| if j == k { f64::floor(x[j]) } else { x[j] * x[k] };
+                let squares = (0..n).flat_map(|j| (0..=j).map(move |k| (j, k)));
+                let squares = squares.map(|(j, k)| products[j][k] * product(j, k)).sum::<f64>();
+                squares + sum(&|e| 0.24 - 1.1 * x[e])
+            });
+            form.expect("a valid form")
+        })
+        .collect();
+    Named {
+        name,
+        system: System::new(&unit(n), &forms).expect("a valid system"),
+        roots: 1 << n,
+    }
+}
+
 /// All systems with points as solutions.
 pub fn all() -> Vec<Named> {
     vec![
@@ -185,5 +229,6 @@ pub fn all() -> Vec<Named> {
         dense_degree_8(),
         chebyshev_3d(),
         cyclohexane(),
+        quadrics(6, "quadrics_6"),
     ]
 }

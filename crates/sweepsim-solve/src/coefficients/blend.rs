@@ -35,6 +35,8 @@ pub(crate) struct Blend {
     degrees: [usize; MAX_UNKNOWNS],
     /// The most steps by which a part's degrees are raised.
     raises: usize,
+    /// Whether no part's degrees are: then the parts are combined as they are.
+    plain: bool,
 }
 
 impl Blend {
@@ -79,16 +81,19 @@ impl Blend {
         }
         let combined: usize = supports.iter().map(|s| s.len * s.members.len()).sum();
         let worthwhile = combined <= MOST * layout.len;
+        let plain = supports
+            .iter()
+            .all(|s| s.members.iter().all(|p| layout.parts[*p].len == s.len));
         worthwhile.then_some(Self {
             supports,
             degrees,
             raises: degrees.iter().sum(),
+            plain,
         })
     }
 
     /// The parts with common degrees, one after the other.
     fn raised(&self, layout: &Layout, cell: &Cell, out: &mut Vec<f64>) {
-        out.clear();
         for support in &self.supports {
             for number in &support.members {
                 let part = &layout.parts[*number];
@@ -128,7 +133,10 @@ impl Blend {
         window: &mut [(f64, f64); MAX_UNKNOWNS],
     ) {
         let n = layout.n;
-        self.raised(layout, cell, scratch);
+        scratch.clear();
+        if !self.plain {
+            self.raised(layout, cell, scratch);
+        }
         let len = scratch.len();
         let longest = self.supports.iter().map(|s| s.len).max().unwrap_or(0);
         scratch.resize(len + longest, 0.0);
@@ -142,9 +150,15 @@ impl Blend {
                 let sum = &mut sum[..support.len];
                 sum.fill(0.0);
                 for number in &support.members {
-                    let (own, others) = rest.split_at(support.len);
-                    kernel::accumulate(sum, own, k[i][layout.parts[*number].equation]);
-                    rest = others;
+                    let part = &layout.parts[*number];
+                    let own = if self.plain {
+                        part.of(&cell.c)
+                    } else {
+                        let (own, others) = rest.split_at(support.len);
+                        rest = others;
+                        own
+                    };
+                    kernel::accumulate(sum, own, k[i][part.equation]);
                 }
                 match support.axes.iter().find(|a| a.variable == i) {
                     Some(axis) => {

@@ -98,6 +98,16 @@ impl Layout {
     fn mean_row_slopes(&self, c: &[f64], slope: &mut [Row]) {
         for part in &self.parts {
             let values = part.of(c);
+            if values.len() >= tensor::MANY {
+                let mut axes = part.axes.iter().rev();
+                let shape = part.axes.iter().map(|a| (a.degree, a.inner));
+                tensor::mean_slopes(values, shape, |mean| {
+                    if let Some(axis) = axes.next() {
+                        slope[part.equation][axis.variable] = mean;
+                    }
+                });
+                continue;
+            }
             for axis in &part.axes {
                 slope[part.equation][axis.variable] = tensor::mean_slope(values, axis.degree, axis.inner);
             }
@@ -306,7 +316,7 @@ impl Layout {
     pub(crate) fn project(
         &self,
         cell: &Cell,
-        part_ranges: &[(f64, f64)],
+        part_ranges: &PartRanges,
         totals: &(Row, Row),
         variable: usize,
         window: &mut (f64, f64),
@@ -316,10 +326,24 @@ impl Layout {
             return;
         }
         let (mut low, mut high) = ([0.0; MAX_DEGREE + 1], [0.0; MAX_DEGREE + 1]);
-        for (part, own) in self.parts.iter().zip(part_ranges) {
+        let mut ends = &part_ranges.ends[..];
+        for (part, own) in self.parts.iter().zip(&part_ranges.whole) {
+            let mut envelopes = ends;
+            if part.len >= tensor::MANY {
+                (envelopes, ends) = ends.split_at(part.axes.iter().map(|a| a.degree + 1).sum());
+            }
             let Some(axis) = part.axis(variable) else { continue };
             let e = part.equation;
-            tensor::envelope(part.of(&cell.c), axis.degree, axis.inner, &mut low, &mut high);
+            if part.len >= tensor::MANY {
+                // The slowest axis comes first.
+                let before = part.axes.iter().rev().take_while(|a| a.variable != variable);
+                let start: usize = before.map(|a| a.degree + 1).sum();
+                for (k, (l, h)) in envelopes[start..=start + axis.degree].iter().enumerate() {
+                    (low[k], high[k]) = (*l, *h);
+                }
+            } else {
+                tensor::envelope(part.of(&cell.c), axis.degree, axis.inner, &mut low, &mut high);
+            }
             // The other parts' ranges: the equation's (padded) less this part's.
             let pad = 8.0 * EPSILON * cell.scale[e];
             let (below, above) = (totals.0[e] - own.0 - pad, totals.1[e] - own.1 + pad);
@@ -335,8 +359,24 @@ impl Layout {
     }
 
     /// Ranges of the parts, for [`project`](Self::project).
-    pub(crate) fn part_ranges(&self, cell: &Cell, out: &mut Vec<(f64, f64)>) {
-        out.clear();
-        out.extend(self.parts.iter().map(|p| tensor::range(p.of(&cell.c))));
+    pub(crate) fn part_ranges(&self, cell: &Cell, out: &mut PartRanges) {
+        out.whole.clear();
+        out.ends.clear();
+        for part in &self.parts {
+            let values = part.of(&cell.c);
+            out.whole.push(tensor::range(values));
+            if part.len >= tensor::MANY {
+                let shape = part.axes.iter().map(|a| (a.degree, a.inner));
+                tensor::envelopes(values, shape, |l, h| out.ends.push((l, h)));
+            }
+        }
     }
+}
+
+/// Ranges of parts: of each as a whole and, of large ones, of the slabs along each axis.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PartRanges {
+    whole: Vec<(f64, f64)>,
+    /// Of one large part after the other, the slowest axis first.
+    ends: Vec<(f64, f64)>,
 }

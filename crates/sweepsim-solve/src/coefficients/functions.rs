@@ -150,6 +150,12 @@ impl Function {
         self.range(Range::constant(x))
     }
 
+    /// The same, as two numbers; not finite where the function is not defined.
+    pub(crate) fn bounds_at(self, x: f64) -> (f64, f64) {
+        let range = self.at(x).interval();
+        (range.lo, range.hi)
+    }
+
     /// The values for arguments in a range, where the function is defined.
     pub(super) fn range(self, argument: Range) -> Range {
         if argument.empty() {

@@ -38,7 +38,7 @@ pub(crate) struct Summand {
 }
 
 impl Summand {
-    pub(super) fn of<'a>(&self, c: &'a [f64]) -> &'a [f64] {
+    pub(crate) fn of<'a>(&self, c: &'a [f64]) -> &'a [f64] {
         &c[self.offset..self.offset + self.len]
     }
 

@@ -15,8 +15,9 @@ mod tape;
 pub(crate) mod tensor;
 
 pub(crate) use blend::Blend;
+pub(crate) use enclose::PartRanges;
 pub(crate) use functions::{Function, value_range};
 pub use layout::MAX_DEGREE;
 pub(crate) use layout::{Affine, Axis, Cell, Layout, Slopes, Summand};
 pub(crate) use stack::{excluded, pop, push, within_domain};
-pub(crate) use tape::{Step, Tape};
+pub(crate) use tape::{Model, Step, Tape};

@@ -14,11 +14,58 @@ const FEW: usize = 16;
 pub(crate) fn rest_range(part: &Summand, c: &[f64], slope: &Row) -> (f64, f64) {
     match part.axes.first() {
         None => (c[0], c[0]),
+        Some(first) if c.len() >= tensor::MANY && first.degree < tensor::WIDE => rest_range_of_many(part, c, slope),
         Some(first) if first.degree < 4 => rest_range_in::<4>(part, *first, c, slope),
         Some(first) if first.degree < 8 => rest_range_in::<8>(part, *first, c, slope),
         Some(first) if first.degree < FEW => rest_range_in::<FEW>(part, *first, c, slope),
         Some(first) => rest_range_in::<{ MAX_DEGREE + 1 }>(part, *first, c, slope),
     }
+}
+
+/// The same for many coefficients: of the fastest axes, as many as fit are taken together as one.
+fn rest_range_of_many(part: &Summand, c: &[f64], slope: &Row) -> (f64, f64) {
+    const WIDE: usize = tensor::WIDE;
+    let (mut together, mut count) = (0, 1);
+    for axis in &part.axes {
+        if count * (axis.degree + 1) > WIDE {
+            break;
+        }
+        (together, count) = (together + 1, count * (axis.degree + 1));
+    }
+    let (inside, others) = part.axes.split_at(together);
+    let mut shifts = [0.0; WIDE];
+    for (k, shift) in shifts[..count].iter_mut().enumerate() {
+        for axis in inside {
+            let i = k / axis.inner % (axis.degree + 1);
+            *shift += slope[axis.variable] * (i as f64 / axis.degree as f64 - 0.5);
+        }
+    }
+    let (mut low, mut high) = ([f64::INFINITY; WIDE], [f64::NEG_INFINITY; WIDE]);
+    let mut index = [0.0; MAX_UNKNOWNS];
+    for row in c.chunks_exact(count) {
+        let mut base = 0.0;
+        for (axis, i) in others.iter().zip(&index) {
+            base += slope[axis.variable] * (i / axis.degree as f64 - 0.5);
+        }
+        for ((l, h), x) in low.iter_mut().zip(&mut high).zip(row) {
+            let rest = *x - base;
+            *l = tensor::lesser(*l, rest);
+            *h = tensor::greater(*h, rest);
+        }
+        for (axis, i) in others.iter().zip(&mut index) {
+            *i += 1.0;
+            if *i <= axis.degree as f64 {
+                break;
+            }
+            *i = 0.0;
+        }
+    }
+    let (mut lo, mut hi) = (f64::INFINITY, f64::NEG_INFINITY);
+    for ((l, h), shift) in low[..count].iter().zip(&high).zip(&shifts) {
+        lo = tensor::lesser(lo, l - shift);
+        hi = tensor::greater(hi, h - shift);
+    }
+    (lo, hi)
 }
 
 /// The same, with room for `N` coefficients along the fastest axis.
@@ -260,6 +307,41 @@ mod tests {
         let s = [0.3, 0.8, 0.5, 0.1, 0.0, 0.0, 0.0, 0.0];
         let (value, _) = evaluate_part(&part, &c, &s, &mut Vec::new());
         assert_eq!(part_value(&part, &c, &s, &mut Vec::new()), value);
+    }
+
+    #[test]
+    fn ranges_of_large_tensors_are_those_of_their_coefficients() {
+        for (degree, count) in [(2usize, 6), (1, 8), (3, 5), (40, 2)] {
+            let axes = (0..count).map(|k| Axis {
+                variable: k,
+                degree,
+                inner: (degree + 1).pow(k as u32),
+            });
+            let len = (degree + 1).pow(count as u32);
+            let part = Summand {
+                equation: 0,
+                offset: 0,
+                len,
+                axes: axes.collect(),
+            };
+            let c: Vec<f64> = (0..len).map(|i| ((i * 7919 + 13) % 1009) as f64 - 500.0).collect();
+            let mut slope = [0.0; MAX_UNKNOWNS];
+            for (k, s) in slope.iter_mut().enumerate().take(count) {
+                *s = 30.0 * k as f64 - 70.0;
+            }
+            let rest = |i: usize| {
+                let share = |a: &Axis| slope[a.variable] * ((i / a.inner % (degree + 1)) as f64 / degree as f64 - 0.5);
+                c[i] - part.axes.iter().map(share).sum::<f64>()
+            };
+            let (lo, hi) = (0..len)
+                .map(rest)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+            let found = rest_range(&part, &c, &slope);
+            assert!(
+                (found.0 - lo).abs() < 1e-11 && (found.1 - hi).abs() < 1e-11,
+                "{degree}: {found:?} {lo} {hi}"
+            );
+        }
     }
 
     #[test]

@@ -10,10 +10,13 @@
 //! y − c = −K r + (I − K J*)(y − c),   so   |y − c| ≤ |K r| + |I − K J| |y − c|,   entry by entry.
 //! ```
 //!
+//! With formulas, `r` is enclosed by a Taylor model instead ([`Strand`]).
+//!
 //! All of the curve between the two points is met, since the graph's variable goes through all values between theirs on the cubic.
 
 use super::graph::without;
-use crate::coefficients::{Cell, Layout, Summand};
+use super::strand::Strand;
+use crate::coefficients::{Cell, Layout, Model, Summand};
 use crate::numbers::{EPSILON, MAX_UNKNOWNS, Row, Square, ZERO, apply, inverse};
 
 /// Roundings of one level of de Casteljau's algorithm with polynomials as weights: the products' coefficients are means of at most four terms, each with a
@@ -107,27 +110,14 @@ impl Span {
 pub(super) fn distance(layout: &Layout, cell: &Cell, over: usize, control: &[[f64; 4]; MAX_UNKNOWNS]) -> Option<Row> {
     let (n, m) = (layout.n, layout.m);
     let inside = |c: &[f64; 4]| c.iter().all(|x| (0.0..=1.0).contains(x));
-    if layout.tape.is_some() || !control[..n].iter().all(inside) {
+    if !control[..n].iter().all(inside) {
         return None;
     }
     let (k, _) = inverse(&without(&layout.mean_slopes(&cell.c), over, m), m)?;
     let slopes = layout.slopes(cell);
     let (lo, hi) = (without(&slopes.lo, over, m), without(&slopes.hi, over, m));
     let (rest, contraction) = rest(&k, &lo, &hi, m)?;
-    // The residuals' sizes.
-    let mut size = [0.0; MAX_UNKNOWNS];
-    for e in 0..m {
-        let mut sum = vec![0.0];
-        let mut rounding = 0.0;
-        for part in layout.parts.iter().filter(|p| p.equation == e) {
-            let (terms, error) = compose(part, &cell.c, control);
-            rounding += error;
-            sum = add(&sum, &terms);
-        }
-        let largest = sum.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        // Sums of parts, after raising their degrees.
-        size[e] = largest + rounding + LEVEL * EPSILON * (layout.degrees + 1) as f64 * cell.scale[e];
-    }
+    let size = residuals(layout, cell, control);
     let mut direct = [0.0; MAX_UNKNOWNS];
     let mut largest: f64 = 0.0;
     for i in 0..m {
@@ -153,6 +143,36 @@ pub(super) fn distance(layout: &Layout, cell: &Cell, over: usize, control: &[[f6
         out[j] = errors[place];
     }
     Some(out)
+}
+
+/// Bounds of the equations' values along the cubic.
+fn residuals(layout: &Layout, cell: &Cell, control: &[[f64; 4]; MAX_UNKNOWNS]) -> Row {
+    let mut size = [0.0; MAX_UNKNOWNS];
+    if let Some(tape) = &layout.tape {
+        let cubics = control.each_ref().map(Strand::cubic);
+        let mut leaves = vec![Strand::constant(0.0); tape.leaves];
+        for part in &layout.parts {
+            let leaf = &mut leaves[part.equation];
+            *leaf = leaf.add(Strand::of_form(part, &cell.c, &cubics));
+        }
+        for (e, size) in size.iter_mut().enumerate().take(layout.m) {
+            *size = tape.run(e, |row| leaves[row]).size();
+        }
+        return size;
+    }
+    for (e, size) in size.iter_mut().enumerate().take(layout.m) {
+        let mut sum = vec![0.0];
+        let mut rounding = 0.0;
+        for part in layout.parts.iter().filter(|p| p.equation == e) {
+            let (terms, error) = compose(part, &cell.c, control);
+            rounding += error;
+            sum = add(&sum, &terms);
+        }
+        let largest = sum.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        // Sums of parts, after raising their degrees.
+        *size = largest + rounding + LEVEL * EPSILON * (layout.degrees + 1) as f64 * cell.scale[e];
+    }
+    size
 }
 
 /// `|I − K J|` entry by entry, and its largest row sum if that is below 1.
@@ -182,7 +202,7 @@ fn rest(k: &Square, lo: &Square, hi: &Square, m: usize) -> Option<(Square, f64)>
 
 /// The part as a polynomial of the cubic's parameter, in Bernstein form, with a bound on the error of its coefficients.
 fn compose(part: &Summand, c: &[f64], control: &[[f64; 4]; MAX_UNKNOWNS]) -> (Vec<f64>, f64) {
-    let values = &c[part.offset..part.offset + part.len];
+    let values = part.of(c);
     let size = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let mut rows: Vec<Vec<f64>> = values.iter().map(|x| vec![*x]).collect();
     let mut levels = 0;

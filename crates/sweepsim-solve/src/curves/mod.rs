@@ -20,6 +20,7 @@ mod faces;
 mod graph;
 #[cfg(feature = "rayon")]
 mod parallel;
+mod strand;
 mod subdivide;
 mod trace;
 
@@ -98,7 +99,7 @@ pub enum CurveShape {
     /// Chords between vertices: as many as the square root of the inverse tolerance.
     #[default]
     Chords,
-    /// Cubic Bézier curves between vertices, with common tangents there: far fewer, between the fourth and the sixth root. Not for systems with expressions.
+    /// Cubic Bézier curves between vertices, with common tangents there: far fewer, between the fourth and the sixth root.
     Cubics,
 }
 
@@ -231,8 +232,7 @@ impl CurveSolver {
     /// # Errors
     ///
     /// [`SolveError::Variables`] unless there are 2 to [`MAX_UNKNOWNS`](crate::MAX_UNKNOWNS) variables, [`SolveError::Equations`] unless
-    /// there is one equation fewer, [`SolveError::Smallest`] for an invalid size or tolerance, [`SolveError::Cubics`] for cubics of a system
-    /// with an expression.
+    /// there is one equation fewer, [`SolveError::Smallest`] for an invalid size or tolerance.
     pub fn solve(&mut self, system: &System, monitor: &dyn Monitor) -> Result<Curves, SolveError> {
         self.check(system)?;
         let mut search = self.search(system, monitor);
@@ -262,9 +262,6 @@ impl CurveSolver {
         if !possible {
             return Err(SolveError::Smallest);
         }
-        if self.shape == CurveShape::Cubics && system.layout.tape.is_some() {
-            return Err(SolveError::Cubics);
-        }
         Ok(())
     }
 
@@ -284,7 +281,7 @@ impl CurveSolver {
             pieces: Vec::new(),
             open: Vec::new(),
             statistics: SolveStatistics::default(),
-            ranges: Vec::new(),
+            ranges: crate::coefficients::PartRanges::default(),
             deadline: self.options.time.and_then(|t| Instant::now().checked_add(t)),
         }
     }

@@ -77,7 +77,7 @@ impl CurveSolver {
                 pieces: Vec::new(),
                 open: Vec::new(),
                 statistics: SolveStatistics::default(),
-                ranges: Vec::new(),
+                ranges: crate::coefficients::PartRanges::default(),
                 deadline,
             };
             part.run((next.cell, next.depth), next.crossings, &cancel, &mut |_, _| {});

@@ -2,7 +2,7 @@
 
 use super::graph::{graph, minor};
 use super::trace::{Trace, Tracer};
-use crate::coefficients::{Cell, excluded, pop, push, within_domain};
+use crate::coefficients::{Cell, PartRanges, excluded, pop, push, within_domain};
 use crate::numbers::{CUT, MAX_UNKNOWNS, Row};
 use crate::points::PointSolver;
 use crate::search::{Cause, Fate, SolveOptions, SolveStatistics, Watch};
@@ -58,7 +58,7 @@ pub(super) struct Search<'a> {
     pub pieces: Vec<GraphPiece>,
     pub open: Vec<OpenCell>,
     pub statistics: SolveStatistics,
-    pub ranges: Vec<(f64, f64)>,
+    pub ranges: PartRanges,
     pub deadline: Option<Instant>,
 }
 

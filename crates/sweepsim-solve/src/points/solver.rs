@@ -3,7 +3,7 @@
 use super::Points;
 use super::certify::Found;
 use super::flood::{COARSE, CROWD};
-use crate::coefficients::{Cell, pop, push};
+use crate::coefficients::{Cell, PartRanges, pop, push};
 use crate::numbers::{Double, Row};
 use crate::search::{
     Cause, Fate, Open, SolveError, SolveOptions, SolveStatistics, UnresolvedBox, Watch, cluster_box, clusters, unite,
@@ -71,7 +71,7 @@ pub struct PointSolver {
     pub(super) lower: Cell,
     pub(super) buffer: Vec<f64>,
     pub(super) doubles: Vec<Double>,
-    pub(super) ranges: Vec<(f64, f64)>,
+    pub(super) ranges: PartRanges,
     pub(super) failures: u32,
     pub(super) blending: Blending,
     /// When the search ends.

@@ -29,7 +29,4 @@ pub enum SolveError {
     /// [`SolveOptions::smallest`](super::SolveOptions::smallest) is not between 1e-14 and 1, or a tolerance is not positive.
     #[error("the smallest size must be between 1e-14 and 1, and the tolerance positive")]
     Smallest,
-    /// Cubic pieces of curves are only available for systems of forms, since a bound of their distance needs polynomials.
-    #[error("curves of a system with expressions cannot be made of cubics")]
-    Cubics,
 }

@@ -92,9 +92,54 @@ fn cubics_have_the_topology_of_chords() {
         }
         assert!(vertices < 4_000, "{form}: {vertices}");
     }
-    let wave = corner("sin(x) = y");
-    let error = CurveSolver::new(1e-3).cubics().solve(&wave, &()).unwrap_err();
-    assert_eq!(error, sweepsim_solve::SolveError::Cubics);
+}
+
+/// Graphs of functions, whose vertical distance bounds what a cubic may be off by.
+#[test]
+fn cubics_of_formulas_are_within_their_tolerance_and_few() {
+    type Plain = fn(f64) -> f64;
+    let graphs: [(&str, Plain); 9] = [
+        ("y = sin(3*x)", |x| (3.0 * x).sin()),
+        ("y = cos(2*x + 1) * x", |x| (2.0 * x + 1.0).cos() * x),
+        ("y = exp(x) / 2 - 1", |x| x.exp() / 2.0 - 1.0),
+        ("y = ln(x + 1.5)", |x| (x + 1.5).ln()),
+        ("y = sqrt(x + 1.25)", |x| (x + 1.25).sqrt()),
+        ("y = atan(4*x)", |x| (4.0 * x).atan()),
+        ("y = tan(x)", f64::tan),
+        ("y * (1 + 4*x^2) = 1", |x| 1.0 / (1.0 + 4.0 * x * x)),
+        ("y = 1 / (2 + sin(5*x))", |x| 1.0 / (2.0 + (5.0 * x).sin())),
+    ];
+    let domain = [Enclosure::new(-1.0, 1.1).unwrap(), Enclosure::new(-2.0, 2.1).unwrap()];
+    for (text, plain) in graphs {
+        let system = System::parse(&[text], &["x", "y"], &domain).unwrap();
+        let chords = CurveSolver::new(1e-3).solve(&system, &()).unwrap();
+        let mut counts = Vec::new();
+        for tolerance in [1e-4, 1e-7, 1e-10] {
+            let curves = CurveSolver::new(tolerance).cubics().solve(&system, &()).unwrap();
+            let kinds = |c: &sweepsim_solve::Curves| (c.loops().count(), c.arcs().count(), c.singular.len());
+            assert_eq!(kinds(&chords), kinds(&curves), "{text}");
+            assert!(curves.singular.is_empty() && !curves.curves.is_empty(), "{text}");
+            counts.push(curves.curves.iter().map(sweepsim_solve::Curve::segments).sum::<usize>());
+            for curve in &curves.curves {
+                for segment in 0..curve.segments() {
+                    let control = curve.cubic(segment).unwrap();
+                    for k in 0..=16 {
+                        let p = at(&control, f64::from(k) / 16.0);
+                        let (x, y) = (p[0], p[1]);
+                        // A point within `tolerance` of the graph is at most (1 + steepness) times that above or below it.
+                        let steepness = (plain(x + 1e-6) - plain(x - 1e-6)).abs() / 2e-6;
+                        let off = (plain(x) - y).abs();
+                        assert!(
+                            off <= tolerance * (1.1 + 1.1 * steepness) + 1e-14,
+                            "{text}, {tolerance:e}: {off:e}"
+                        );
+                    }
+                }
+            }
+        }
+        // Each thousandth of the tolerance takes about 1000^(1/6) to 1000^(1/4) times as many.
+        assert!(counts[2] < 400 && counts[2] <= 40 * counts[0], "{text}: {counts:?}");
+    }
 }
 
 #[test]
