@@ -143,12 +143,15 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
 /// How many of each kind were found, in words.
 pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
     let mut counts: Vec<(&str, u64)> = Vec::new();
-    for finding in findings {
+    let touching = findings.iter().filter(|finding| !finding.near);
+    for finding in touching {
         match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
             Some((_, count)) => *count += 1,
             None => counts.push((&finding.kind, 1)),
         }
     }
+    let near = findings.iter().filter(|finding| finding.near).count() as u64;
+    let near = (near > 0).then(|| format!("{} nearer than it should be", words::counted(near, "move")));
     counts
         .iter()
         .map(|(kind, count)| match *kind {
@@ -162,6 +165,7 @@ pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
             "feed" => format!("{} without a feed", words::counted(*count, "cut")),
             kind => words::counted(*count, kind),
         })
+        .chain(near)
         .collect()
 }
 
@@ -191,8 +195,14 @@ fn sentence(finding: &ReportedFinding, report: &Report) -> String {
     let [x, y, z] = finding.place.map(|c| format!("{c:.3}"));
     match &finding.detail {
         Some(detail) => text += &format!("{detail}, with the tip at ({x}, {y}, {z})"),
+        None if finding.near => text += &format!("too near at ({x}, {y}, {z})"),
         None => text += &format!("{} mm deep at ({x}, {y}, {z})", words::measure(finding.depth)),
     }
+    text += match finding.courses.as_deref() {
+        Some("straight") => ", if the rapid is straight",
+        Some("dog-leg") => ", if the rapid is a dog-leg",
+        _ => "",
+    };
     if let Some(time) = finding.time {
         text += &format!(", from {:.1} % of the move", 100.0 * time);
     }

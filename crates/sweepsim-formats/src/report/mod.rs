@@ -148,6 +148,12 @@ pub struct ReportedFinding {
     /// The move of the path, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub r#move: Option<usize>,
+    /// Nothing is touched: it only comes nearer than it should.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub near: bool,
+    /// The courses of a rapid on which this happens, where it is not known how the machine makes them: `straight`, `dog-leg` or `both`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub courses: Option<String>,
     /// The program's file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,

@@ -18,7 +18,7 @@ pub struct RapidPoint {
 impl Kinematics {
     /// The course of a rapid move between two positions: all axes move linearly in time from each point to the next.
     ///
-    /// Where rapids are [`Straight`](Rapid::Straight), that is from start to end. Where they are [`DogLeg`](Rapid::DogLeg), each axis goes at its own speed
+    /// Where rapids are [`Straight`](Rapid::Straight), or it is not known how they are, that is from start to end. Where they are [`DogLeg`](Rapid::DogLeg), each axis goes at its own speed
     /// until it is there, so that there is a corner wherever one arrives. A linear axis without a speed is as fast as the slowest one that has
     /// one; where none has, all are equally fast. A rotary axis without a speed arrives with the last of the others.
     ///
@@ -38,9 +38,14 @@ impl Kinematics {
     pub fn rapid_path(&self, from: &Position, to: &Position) -> Vec<RapidPoint> {
         let ends = [(0.0, *from), (1.0, *to)];
         let mut points: Vec<RapidPoint> = ends.map(|(time, position)| RapidPoint { time, position }).into();
-        if self.rapid() == Rapid::Straight || from == to {
-            return points;
+        if self.rapid() == Rapid::DogLeg {
+            points.splice(1..1, self.corners(from, to));
         }
+        points
+    }
+
+    /// The corners of a dog-leg.
+    fn corners(&self, from: &Position, to: &Position) -> Vec<RapidPoint> {
         let speeds = self.linear().clone().map(|axis| axis.speed);
         let slowest = speeds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
         let slowest = if slowest.is_finite() { slowest } else { 1.0 };
@@ -58,7 +63,7 @@ impl Kinematics {
         }
         let last = durations.iter().flatten().copied().fold(0.0, f64::max);
         if !(last > 0.0) {
-            return points;
+            return Vec::new();
         }
         let shares = durations.map(|duration| duration.map_or(1.0, |duration| duration / last));
         let mut times: Vec<f64> = shares.into_iter().filter(|time| *time > 0.0 && *time < 1.0).collect();
@@ -77,12 +82,11 @@ impl Kinematics {
                 abc: std::array::from_fn(|k| mix(3 + k, from.abc[k], to.abc[k])),
             }
         };
-        let corners = times.into_iter().map(|time| RapidPoint {
+        let corner = |time: f64| RapidPoint {
             time,
             position: at(time),
-        });
-        points.splice(1..1, corners);
-        points
+        };
+        times.into_iter().map(corner).collect()
     }
 }
 
@@ -90,18 +94,83 @@ impl Program {
     /// The course of the rapid move that ends at a pose, as the machine that the program was read with makes it: poses with their share of the
     /// move's duration, from 0 to 1. Between them the tip moves straight to within `tolerance`, in millimetres; without turns it does so exactly.
     ///
-    /// `None` where the machine makes it straight: rapids of its own kind [`Straight`](Rapid::Straight), feed moves, moves that nothing leads to, under tip
+    /// `None` where the machine makes it straight or does not say: rapids of a kind other than [`DogLeg`](Rapid::DogLeg), feed moves, moves that nothing leads to, under tip
     /// control with turning axes, and without a machine.
     #[must_use]
     pub fn dog_leg(&self, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
         let machine = self.machine.kinematics.as_deref()?;
+        if machine.rapid() == Rapid::DogLeg {
+            self.by_machine(machine, pose, tolerance)
+        } else {
+            None
+        }
+    }
+
+    /// The dog-leg that a rapid move may be where it is not known how the machine makes its rapids; otherwise as [`dog_leg`](Self::dog_leg). Where no machine is
+    /// known, X, Y and Z are equally fast, and moves that turn have no other course.
+    ///
+    /// ```
+    /// use sweepsim_nc::{ReadOptions, gcode};
+    /// let program = gcode::read("G21 G90\nT1 M6\nG0 X0 Y0 Z5\nX40 Y10\nM30\n", &ReadOptions::default())?;
+    /// let course = program.other_course(1, 1e-3).ok_or("a corner")?;
+    /// let corners: Vec<(f64, [f64; 3])> = course.iter().map(|(time, pose)| (*time, pose.tip())).collect();
+    /// assert_eq!(corners, [(0.0, [0.0, 0.0, 5.0]), (0.25, [10.0, 10.0, 5.0]), (1.0, [40.0, 10.0, 5.0])]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn other_course(&self, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
+        let Some(machine) = self.machine.kinematics.as_deref() else {
+            return self.by_equal_axes(pose);
+        };
+        if machine.rapid() == Rapid::Unknown {
+            self.by_machine(machine, pose, tolerance)
+        } else {
+            None
+        }
+    }
+
+    /// X, Y and Z go equally fast until they are there.
+    fn by_equal_axes(&self, pose: usize) -> Option<Vec<(f64, Pose)>> {
+        let end = self.poses.get(pose).filter(|end| end.rapid && end.joined)?.pose;
+        let start = self.poses.get(pose.checked_sub(1)?)?.pose;
+        let (from, to) = (start.tip(), end.tip());
+        if start.axis() != end.axis() {
+            return None;
+        }
+        let ways: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+        let last = ways.iter().fold(0.0, |last: f64, way| last.max(way.abs()));
+        let mut times: Vec<f64> = ways.iter().map(|way| way.abs() / last).collect();
+        times.retain(|time| *time > 0.0 && *time < 1.0);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let corner = |time: &f64| {
+            let tip = std::array::from_fn(|k| from[k] + (time * last).min(ways[k].abs()).copysign(ways[k]));
+            Some((*time, Pose::new(tip, start.axis()).ok()?))
+        };
+        let mut poses = vec![(0.0, start)];
+        poses.extend(times.iter().map(corner).collect::<Option<Vec<_>>>()?);
+        poses.push((1.0, end));
+        (poses.len() > 2).then_some(poses)
+    }
+
+    fn by_machine(&self, machine: &Kinematics, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
         let end = self.poses.get(pose).filter(|end| end.rapid && end.joined)?;
         let before = pose.checked_sub(1)?;
         let (from, to) = (self.positions.get(before)?, self.positions.get(pose)?);
-        if machine.rapid() == Rapid::Straight || end.tip_control && from.abc != to.abc {
+        if end.tip_control && from.abc != to.abc {
             return None;
         }
-        let points = machine.rapid_path(from, to);
+        let mut points = vec![
+            RapidPoint {
+                time: 0.0,
+                position: *from,
+            },
+            RapidPoint {
+                time: 1.0,
+                position: *to,
+            },
+        ];
+        points.splice(1..1, machine.corners(from, to));
         let length = machine.tool_length(end.tool);
         let mut poses = vec![(0.0, self.poses[before].pose)];
         for pair in points.windows(2) {

@@ -131,8 +131,10 @@ impl RotaryAxis {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum Rapid {
-    /// All axes arrive together.
+    /// Not known. They are taken to be straight, and verification looks at [the other course](crate::Program::other_course) as well.
     #[default]
+    Unknown,
+    /// All axes arrive together.
     Straight,
     /// Each axis moves at its largest speed, so that they arrive one after the other.
     DogLeg,

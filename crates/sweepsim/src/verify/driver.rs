@@ -9,6 +9,7 @@ use crate::error::SweepError;
 use crate::sweep::{CHUNK, Options};
 use std::ops::{ControlFlow, Range};
 use sweepsim_dexel::Dexels;
+use sweepsim_motion::{Assembly, Path};
 use sweepsim_solve::Monitor;
 
 /// The state between two runs.
@@ -100,7 +101,7 @@ pub fn verify(
             .clone()
             .path_number(u32::try_from(number).unwrap_or(u32::MAX));
         work.set_fixtures(toolpath.fixtures.or(scene.fixtures));
-        let solids = Solids::new(toolpath, &work)?;
+        let solids = Solids::new(toolpath, toolpath.path, &work)?;
         for moves in runs(toolpath) {
             let seen = work.done.findings.len();
             work.run(number, toolpath, &solids, moves.clone())?;
@@ -132,17 +133,44 @@ pub fn verify(
 pub(super) struct Solids<'a> {
     pub(super) cutter: MovingSolid<'a>,
     pub(super) bodies: Vec<MovingSolid<'a>>,
+    /// The same taken larger, if they are.
+    pub(super) larger: Option<Box<Self>>,
 }
 
 impl<'a> Solids<'a> {
-    fn new(toolpath: &ToolPath<'a>, work: &Work) -> Result<Self, SweepError> {
+    /// Along a path, which is the toolpath's or another course of one of its moves.
+    pub(super) fn new(toolpath: &ToolPath<'a>, path: &Path, work: &Work) -> Result<Self, SweepError> {
         let mut grids = vec![work.remaining.grid()];
         grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid()));
-        let solid = |tool| MovingSolid::new(tool, toolpath.path, &grids, &work.options);
-        let bodies = toolpath.assembly.bodies().iter();
+        let solid = |tool| MovingSolid::new(tool, path, &grids, &work.options);
+        let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
+            let bodies = assembly.bodies().iter();
+            Ok(Self {
+                cutter: solid(assembly.cutter())?,
+                bodies: bodies.map(|body| solid(&body.solid)).collect::<Result<_, _>>()?,
+                larger: None,
+            })
+        };
+        let larger = toolpath.larger.map(solids).transpose()?;
         Ok(Self {
-            cutter: solid(toolpath.assembly.cutter())?,
-            bodies: bodies.map(|body| solid(&body.solid)).collect::<Result<_, _>>()?,
+            larger: larger.map(Box::new),
+            ..solids(toolpath.assembly)?
+        })
+    }
+
+    /// The cutter, and the bodies by their numbers: each as it is looked for, and itself if that is a larger one.
+    pub(super) fn probes(&self) -> impl Iterator<Item = (Option<usize>, &MovingSolid<'a>, Option<&MovingSolid<'a>>)> {
+        let bodies = self.bodies.iter().enumerate();
+        let own = std::iter::once((None, &self.cutter)).chain(bodies.map(|(n, body)| (Some(n), body)));
+        own.map(|(number, itself)| {
+            let larger = self.larger.as_ref().and_then(|larger| match number {
+                None => Some(&larger.cutter),
+                Some(n) => larger.bodies.get(n),
+            });
+            match larger {
+                Some(larger) => (number, larger, Some(itself)),
+                None => (number, itself, None),
+            }
         })
     }
 }

@@ -53,6 +53,24 @@ pub struct Finding {
     pub depth: f64,
     /// The volume that the move harms: the lengths on all lines, times the area of a cell.
     pub volume: f64,
+    /// Nothing is touched: it only comes within what the solid [is taken larger](crate::verify::ToolPath::with_larger) by. Time, place, depth and volume are
+    /// those of the larger solid.
+    pub near: bool,
+    /// The courses of a rapid on which this happens, if it has [another course](crate::verify::OtherCourse). Time, place, depth and volume are those of the
+    /// straight one, unless nothing happens there.
+    pub courses: Option<RapidCourses>,
+}
+
+/// Courses of a rapid move, where it is not known which of them the machine takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum RapidCourses {
+    /// The path's own.
+    Own,
+    /// The other one.
+    Other,
+    /// Both.
+    Both,
 }
 
 /// The state of the machine during a move.

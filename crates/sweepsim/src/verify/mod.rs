@@ -20,7 +20,6 @@ mod driver;
 mod finding;
 mod heights;
 mod lines;
-mod removal;
 mod run;
 mod scene;
 mod search;
@@ -29,6 +28,6 @@ mod target;
 
 pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
 pub use driver::verify;
-pub use finding::{Finding, FindingKind, MoveState};
-pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
+pub use finding::{Finding, FindingKind, MoveState, RapidCourses};
+pub use scene::{MoveRemoval, OtherCourse, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 pub use target::{Target, TargetError};

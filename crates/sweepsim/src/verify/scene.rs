@@ -16,6 +16,10 @@ pub struct ToolPath<'a> {
     pub path: &'a Path,
     /// The state in each move; [`MoveState::FEED`] in moves beyond the end of the list.
     pub states: &'a [MoveState],
+    /// The same cutter and bodies, each as large as what must stay clear.
+    pub larger: Option<&'a Assembly>,
+    /// Other courses that moves may take, sorted by move.
+    pub other_courses: &'a [OtherCourse],
     /// What nothing must touch along this path, on a grid of its own in the frame of the stock's grid: the fixtures of its set-up. `None`: those of the [`Scene`].
     pub fixtures: Option<&'a Dexels>,
 }
@@ -28,6 +32,8 @@ impl<'a> ToolPath<'a> {
             assembly,
             path,
             states: &[],
+            larger: None,
+            other_courses: &[],
             fixtures: None,
         }
     }
@@ -46,8 +52,44 @@ impl<'a> ToolPath<'a> {
         Self { states, ..self }
     }
 
+    /// Looks for what larger solids touch: the same cutter and bodies in the same order, each holding its own. A [`Finding`] tells whether the solid itself
+    /// touches or only [comes near](Finding::near). Removal and gouges are those of the assembly's own cutter.
+    ///
+    /// A rapid that withdraws the cutter along its axis, away from where it has cut, is not near the walls there.
+    #[must_use]
+    pub fn with_larger(self, larger: &'a Assembly) -> Self {
+        let larger = Some(larger);
+        Self { larger, ..self }
+    }
+
+    /// Also judges moves on other courses, which may meet the stock before their run. Sorted by move.
+    #[must_use]
+    pub fn with_other_courses(self, other_courses: &'a [OtherCourse]) -> Self {
+        Self { other_courses, ..self }
+    }
+
     pub(super) fn state(&self, number: usize) -> MoveState {
         self.states.get(number).copied().unwrap_or_default()
+    }
+}
+
+/// Another course that a move may take: a rapid on a machine that may let each axis arrive in its own time.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OtherCourse {
+    /// The move of the path.
+    pub number: usize,
+    /// The course, from the move's start to its end.
+    pub path: Path,
+    /// When each move of the course ends, as a fraction of the whole, from 0 to 1.
+    pub times: Vec<f64>,
+}
+
+impl OtherCourse {
+    /// `times`: when each move of the course ends, as a fraction of the whole, from 0 to 1.
+    #[must_use]
+    pub fn new(number: usize, path: Path, times: Vec<f64>) -> Self {
+        Self { number, path, times }
     }
 }
 

@@ -47,6 +47,8 @@ fn title(finding: &ReportedFinding) -> String {
         .chain(initial)
         .collect();
     match finding.kind.as_str() {
+        "fixture" if finding.near => format!("{part} too near to a fixture"),
+        _ if finding.near => format!("{part} too near to the workpiece"),
         "collision" => format!("{part} hits the workpiece"),
         "fixture" => format!("{part} hits a fixture"),
         "rapid" => "Rapid move through material".to_owned(),
@@ -79,6 +81,9 @@ pub(super) fn findings(
         } else {
             fact("Depth", format!("{} mm", measure(found.depth)));
             fact("Volume", format!("{} mm³", measure(found.volume)));
+        }
+        if let Some(courses) = &found.courses {
+            fact("Course of the rapid", courses.clone());
         }
         if let Some(time) = found.time {
             fact("Begins after", format!("{:.1} % of the move", 100.0 * time));

@@ -12,10 +12,10 @@ use crate::session::{Failure, JobSession, phase, words};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use sweepsim::motion::{Assembly, BodyKind};
+use sweepsim::motion::{Assembly, BodyKind, Tool};
 use sweepsim::verify::{
-    Deviation, DeviationKind, Deviations, Finding, MoveState, Region, Scene, Target, ToolPath, Verification,
-    VerifyOptions, deviations, verify,
+    Deviation, DeviationKind, Deviations, Finding, MoveState, OtherCourse, RapidCourses, Region, Scene, Target,
+    ToolPath, Verification, VerifyOptions, deviations, verify,
 };
 use sweepsim::{Monitor, Statistics};
 use sweepsim_dexel::Dexels;
@@ -53,14 +53,24 @@ pub(super) fn verified(
     progress.phase("target");
     let target = phase(report, "target", || target(session))?;
     let larger = larger(job, judging, report);
-    let assemblies = assemblies(session, larger)?;
+    let assemblies = assemblies(session, [0.0; 2])?;
+    let larger = match larger {
+        [0.0, 0.0] => None,
+        margins => Some(self::assemblies(session, margins)?),
+    };
+    let courses: Vec<Vec<OtherCourse>> = job.paths.iter().map(other_courses).collect();
     let states: Vec<Vec<MoveState>> = job.paths.iter().map(states).collect();
     let program: Vec<ToolPath> = job
         .paths
         .iter()
-        .zip(&states)
-        .map(|(path, states)| {
-            let toolpath = ToolPath::new(&assemblies[&path.tool], &path.path).with_states(states);
+        .zip(states.iter().zip(&courses))
+        .map(|(path, (states, courses))| {
+            let toolpath = ToolPath::new(&assemblies[&path.tool], &path.path);
+            let toolpath = toolpath.with_states(states).with_other_courses(courses);
+            let toolpath = match &larger {
+                Some(larger) => toolpath.with_larger(&larger[&path.tool]),
+                None => toolpath,
+            };
             match &fixtures[path.setup] {
                 Some(fixtures) => toolpath.with_fixtures(fixtures),
                 None => toolpath,
@@ -107,24 +117,34 @@ pub(super) fn verified(
     })
 }
 
-/// The cutters, each with its bodies, which are taken `larger` all round.
-fn assemblies(session: &JobSession, larger: f64) -> Result<BTreeMap<u32, Assembly>, Failure> {
+/// The cutters, each with its bodies, all round larger by these margins.
+fn assemblies(session: &JobSession, [cutter, body]: [f64; 2]) -> Result<BTreeMap<u32, Assembly>, Failure> {
     let job = &session.job;
     let mut all = BTreeMap::new();
     for (number, tool) in &job.tools {
-        let mut whole = Assembly::new(tool.clone());
-        for body in job.bodies.get(number).into_iter().flatten() {
-            let solid = body.solid.offset(larger);
-            let solid = solid.map_err(|error| session.failure(format!("a body of tool {number}: {error}")))?;
-            whole = whole.with(body.kind, solid);
+        let taken = |solid: &Tool, larger: f64, name: &str| {
+            let taken = solid.offset(larger);
+            taken.map_err(|error| session.failure(format!("{name} of tool {number}: {error}")))
+        };
+        let mut whole = Assembly::new(taken(tool, cutter, "the cutter")?);
+        for own in job.bodies.get(number).into_iter().flatten() {
+            whole = whole.with(own.kind, taken(&own.solid, body, "a body")?);
         }
         all.insert(*number, whole);
     }
     Ok(all)
 }
 
-/// By how much bodies are taken larger, and why, in the notes.
-fn larger(job: &Job, judging: &JudgeOptions, report: &mut Report) -> f64 {
+/// The other courses of a path's rapids.
+fn other_courses(path: &JobPath) -> Vec<OtherCourse> {
+    let courses = path.other_courses.iter();
+    courses
+        .map(|course| OtherCourse::new(course.number, course.path.clone(), course.times.clone()))
+        .collect()
+}
+
+/// By how much cutters and bodies are taken larger, and why, in the notes.
+fn larger(job: &Job, judging: &JudgeOptions, report: &mut Report) -> [f64; 2] {
     let clearance = judging.clearance.unwrap_or(job.clearance);
     let [dx, dy] = job.grid.spacing();
     let between = if judging.sure { 0.5 * dx.hypot(dy) } else { 0.0 };
@@ -138,11 +158,17 @@ fn larger(job: &Job, judging: &JudgeOptions, report: &mut Report) -> f64 {
         .collect();
     if !reasons.is_empty() && !job.bodies.is_empty() {
         report.notes.push(format!(
-            "shanks and holders are taken larger all round, by {}: not each collision is a contact",
+            "shanks and holders are taken larger all round, by {}: findings say what touches and what only comes near",
             reasons.join(" and ")
         ));
     }
-    clearance + between
+    if between > 0.0 {
+        let between = words::length(between);
+        report.notes.push(format!(
+            "so are cutters in rapids and beside fixtures, by {between} mm; gouges are those on the dexels"
+        ));
+    }
+    [between, clearance + between]
 }
 
 fn states(path: &JobPath) -> Vec<MoveState> {
@@ -259,6 +285,15 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
         reported.text = texts.line(&file, line);
         (reported.file, reported.line) = (Some(file), Some(line));
     }
+    reported.near = finding.near;
+    reported.courses = finding.courses.map(|courses| {
+        match courses {
+            RapidCourses::Own => "straight",
+            RapidCourses::Other => "dog-leg",
+            _ => "both",
+        }
+        .to_owned()
+    });
     reported.time = Some(finding.time);
     (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);
     reported

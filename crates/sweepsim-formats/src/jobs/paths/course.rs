@@ -1,6 +1,7 @@
 //! The course of a section of a program: its poses, and between them the corners of rapids that the machine makes as dog-legs.
 
-use sweepsim_motion::{Move, Pose};
+use super::OtherCourse;
+use sweepsim_motion::{Move, Path, Pose};
 use sweepsim_nc::{AxisFinding, Program, ProgramPose};
 
 /// How far dog-legs may be from the machine's own course while rotary axes turn, in millimetres.
@@ -38,6 +39,20 @@ pub(crate) fn course(program: &Program, begin: usize, section: &[ProgramPose]) -
         }
     }
     steps
+}
+
+/// The dog-legs that moves of these steps may be, where that is not known.
+pub(crate) fn other_courses(program: &Program, steps: &[Step]) -> Vec<OtherCourse> {
+    let moves = steps.iter().skip(1).enumerate();
+    let course = |(number, step): (usize, &Step)| {
+        let (times, poses): (Vec<f64>, Vec<Pose>) = program.other_course(step.of, TURNING)?.into_iter().unzip();
+        Some(OtherCourse {
+            number,
+            path: Path::new(poses).ok()?,
+            times: times[1..].to_vec(),
+        })
+    };
+    moves.filter_map(course).collect()
 }
 
 /// The findings of these steps, at their places among them.

@@ -45,6 +45,10 @@ impl JobReader<'_> {
             if !frame.is_world() {
                 let moved = path.path.moved(&turn, frame.origin());
                 path.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
+                for course in &mut path.other_courses {
+                    let moved = course.path.moved(&turn, frame.origin());
+                    course.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
+                }
             }
         }
         Ok(paths)
@@ -87,6 +91,7 @@ impl JobReader<'_> {
                 setup: 0,
                 frame: Frame::WORLD,
                 rapid: vec![false; path.moves()],
+                other_courses: Vec::new(),
                 spindle_stopped: Vec::new(),
                 no_feed: Vec::new(),
                 beyond: Vec::new(),

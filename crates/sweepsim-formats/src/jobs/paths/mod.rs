@@ -41,6 +41,8 @@ pub struct JobPath {
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Vec<bool>,
+    /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, sorted by move.
+    pub other_courses: Vec<OtherCourse>,
     /// Whether the spindle stands still in each move; empty if the program never mentions the spindle.
     pub spindle_stopped: Vec<bool>,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
@@ -61,6 +63,18 @@ pub struct JobPath {
     pub calls: Arc<[Call]>,
     /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
+}
+
+/// Another course that a move of a path may take.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OtherCourse {
+    /// The move of the path.
+    pub number: usize,
+    /// The course, in the coordinates of the part.
+    pub path: Path,
+    /// When each move of the course ends, as a fraction of the whole, from 0 to 1.
+    pub times: Vec<f64>,
 }
 
 /// Where a pose of a program comes from.

@@ -7,7 +7,7 @@ use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, Move, Path, PathError};
 use sweepsim_nc::{Call, Event, EventKind, Note, Program, ProgramPose, Spindle, check};
 
-use super::course::{Step, at_steps, course};
+use super::course::{Step, at_steps, course, other_courses};
 use super::{JobPath, Origin};
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::jobs::tools::ToolBox;
@@ -97,6 +97,7 @@ pub(crate) fn of_program(
             path,
             source: shown.to_owned(),
             rapid: moved().map(|step| end(step).rapid).collect(),
+            other_courses: other_courses(&program, &steps),
             seconds: moved()
                 .map(|step| Some(times[step.of].seconds? * (step.share[1] - step.share[0])))
                 .collect(),

@@ -24,10 +24,25 @@ pub(super) struct Touching<'a> {
     pub probe: &'a MovingSolid<'a>,
     /// What removes material; `None` if nothing does.
     pub eater: Option<&'a MovingSolid<'a>>,
-    /// Whether the probe is the eater itself. It touches what it then removes.
+    /// Whether the probe is a cutter itself. It touches what it then removes.
     pub own: bool,
     /// Whether contact is no overlap.
     pub strict: bool,
+    /// The solid itself, if the probe is a larger one about it.
+    pub itself: Option<&'a MovingSolid<'a>>,
+}
+
+impl<'a> Touching<'a> {
+    /// Of what nothing removes.
+    pub fn still(probe: &'a MovingSolid<'a>, itself: Option<&'a MovingSolid<'a>>) -> Self {
+        Self {
+            probe,
+            eater: None,
+            own: false,
+            strict: true,
+            itself,
+        }
+    }
 }
 
 /// A move that touches material.
@@ -39,6 +54,8 @@ pub(super) struct Touch {
     pub time: f64,
     /// What it touches first.
     pub first: Lines,
+    /// Only the larger solid touches.
+    pub near: bool,
     /// All that it touches. For a body, what even the end of the move has not removed, if there is such material.
     pub all: Lines,
 }

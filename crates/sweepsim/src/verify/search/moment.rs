@@ -29,7 +29,8 @@ impl Arena<'_> {
         } = suspect;
         let number = *number;
         let parts = touching.probe.slice(touching.probe.parts(number..number + 1));
-        let met = if touching.own {
+        let removes = touching.eater.is_some_and(|eater| std::ptr::eq(eater, touching.probe));
+        let met = if touching.own && removes {
             let common = material.common(eaten, self.options.tolerance);
             if touching.strict {
                 self.confirmed(touching.probe, parts, common)?
@@ -53,6 +54,7 @@ impl Arena<'_> {
                 number,
                 time,
                 first,
+                near: false,
                 all,
             }));
         }
@@ -92,6 +94,7 @@ impl Arena<'_> {
             number,
             time,
             first,
+            near: false,
             all,
         }))
     }

@@ -57,10 +57,29 @@ impl Arena<'_> {
                     });
                 }
             }
-            let judged = self.each(&suspects, |arena, suspect| arena.judged(touching, suspect))?;
+            let judged = self.each(&suspects, |arena, suspect| arena.told_apart(touching, suspect))?;
             found.extend(judged.into_iter().flatten());
         }
         Ok(found)
+    }
+
+    /// Judges a move, and whether the solid itself touches or only a larger one about it.
+    fn told_apart(&mut self, touching: Touching, suspect: &Suspect) -> Result<Option<Touch>, SweepError> {
+        let found = self.judged(touching, suspect)?;
+        let (Some(found), Some(itself)) = (&found, touching.itself) else {
+            return Ok(found);
+        };
+        let own = Touching {
+            probe: itself,
+            itself: None,
+            ..touching
+        };
+        let touch = self.judged(own, suspect)?;
+        let near = Touch {
+            near: true,
+            ..found.clone()
+        };
+        Ok(touch.or(Some(near)))
     }
 
     /// The same for each item, on all threads, with the results in order.

@@ -1,11 +1,11 @@
 //! What runs and single moves remove, and how the cutter engages in it.
 
-use super::driver::{Solids, Work};
-use super::lines::Lines;
-use super::scene::MoveRemoval;
-use super::search::Swept;
 use crate::error::SweepError;
 use crate::time::path_parts::PathPart;
+use crate::verify::driver::{Solids, Work};
+use crate::verify::lines::Lines;
+use crate::verify::scene::MoveRemoval;
+use crate::verify::search::Swept;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;

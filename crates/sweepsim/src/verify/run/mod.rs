@@ -1,13 +1,16 @@
 //! One run of moves: what it touches, and what it removes.
 
-use super::depth::{Side, greatest};
-use super::driver::{Solids, Work};
-use super::finding::{Finding, FindingKind};
-use super::lines::Lines;
-use super::scene::ToolPath;
-use super::search::{Arena, Swept, Touch, Touching};
-use super::solid::MovingSolid;
+mod courses;
+mod removal;
+
 use crate::error::SweepError;
+use crate::verify::depth::{Side, greatest};
+use crate::verify::driver::{Solids, Work};
+use crate::verify::finding::{Finding, FindingKind};
+use crate::verify::lines::Lines;
+use crate::verify::scene::ToolPath;
+use crate::verify::search::{Arena, Swept, Touch, Touching};
+use crate::verify::solid::MovingSolid;
 use rayon::prelude::*;
 use std::ops::Range;
 use sweepsim_dexel::Grid;
@@ -33,14 +36,29 @@ impl Work<'_> {
         solids: &Solids,
         moves: Range<usize>,
     ) -> Result<(), SweepError> {
+        let seen = self.done.findings.len();
         self.judge_fixtures(path, solids, moves.clone())?;
         // What each move sweeps, if anything needs it.
         let mut each = None;
         if self.each_move {
             each = Some(self.swept_by_each(solids, moves.clone())?);
         }
-        for (number, body) in solids.bodies.iter().enumerate() {
-            self.judge_body(path, (number, body), solids, moves.clone(), &mut each)?;
+        for (body, probe, itself) in solids.probes().filter(|(body, ..)| body.is_some()) {
+            let touching = Touching {
+                probe,
+                eater: Some(&solids.cutter),
+                own: false,
+                strict: true,
+                itself,
+            };
+            let kind = FindingKind::Collision;
+            let question = Question {
+                path,
+                kind,
+                body,
+                touching,
+            };
+            self.judge_near_stock(question, solids, moves.clone(), &mut each)?;
         }
         let cut = self.sweep_near_stock(&solids.cutter, moves.clone())?;
         let cutting = |kind, strict| Question {
@@ -52,19 +70,19 @@ impl Work<'_> {
                 eater: Some(&solids.cutter),
                 own: true,
                 strict,
+                itself: None,
             },
         };
         let grid = *self.remaining.grid();
         if let Some(kind) = toolpath.state(moves.start).forbids_cutting() {
             let question = cutting(kind, true);
             let stock = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));
-            let met = self.more_than_contact(
-                &grid,
-                question,
-                moves.clone(),
-                stock.common(&cut, self.options.tolerance),
-            )?;
+            let common = stock.common(&cut, self.options.tolerance);
+            let met = self.more_than_contact(&grid, question, moves.clone(), common)?;
             self.locate(&grid, question, moves.clone(), stock.on_lines_of(&met), each.as_deref())?;
+            if kind == FindingKind::Rapid {
+                self.near_rapids(question, toolpath, solids, moves.clone(), seen)?;
+            }
         }
         if let Some(target) = self.target {
             // Only where the target's core is, and where there still is material.
@@ -81,6 +99,7 @@ impl Work<'_> {
                 each.as_deref(),
             )?;
         }
+        self.judge_other_courses(path, toolpath, moves.clone(), seen)?;
         if let Some(each) = &each
             && self.each_move
         {
@@ -90,32 +109,26 @@ impl Work<'_> {
         Ok(())
     }
 
+    /// All material of the stock on the lines that a solid comes near.
+    fn near_stock(&self, solid: &MovingSolid, moves: Range<usize>) -> Lines {
+        let near = solid.near(moves, self.remaining.grid(), &self.heights);
+        let mut lines: Vec<u32> = near.into_iter().flat_map(|(_, lines)| lines).collect();
+        lines.sort_unstable();
+        lines.dedup();
+        Lines::of(&self.remaining, lines.into_iter())
+    }
+
     /// Looks for collisions of a body with the stock.
-    fn judge_body(
+    fn judge_near_stock(
         &mut self,
-        path: usize,
-        (number, body): (usize, &MovingSolid),
+        question: Question,
         solids: &Solids,
         moves: Range<usize>,
         each: &mut Option<Vec<Swept>>,
     ) -> Result<(), SweepError> {
         let grid = *self.remaining.grid();
-        let question = Question {
-            path,
-            kind: FindingKind::Collision,
-            body: Some(number),
-            touching: Touching {
-                probe: body,
-                eater: Some(&solids.cutter),
-                own: false,
-                strict: true,
-            },
-        };
-        let near = body.near(moves.clone(), &grid, &self.heights);
-        let mut lines: Vec<u32> = near.into_iter().flat_map(|(_, lines)| lines).collect();
-        lines.sort_unstable();
-        lines.dedup();
-        let material = Lines::of(&self.remaining, lines.into_iter());
+        let body = question.touching.probe;
+        let material = self.near_stock(body, moves.clone());
         // Where a few lines show that the body runs through material at large, a sweep of the whole run would only tell so once more.
         let sample = material.sample(SAMPLE);
         let mut arena = Arena::new(&grid, &self.options, self.monitor);
@@ -149,28 +162,20 @@ impl Work<'_> {
         };
         let fixtures = *fixtures;
         let grid = *fixtures.grid();
-        let all =
-            std::iter::once((None, &solids.cutter)).chain(solids.bodies.iter().enumerate().map(|(n, b)| (Some(n), b)));
         let mut met = Vec::new();
-        for (body, solid) in all {
-            let swept = solid.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
-            met.push((body, solid, swept));
+        for (body, probe, itself) in solids.probes() {
+            let swept = probe.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
+            met.push((body, probe, itself, swept));
         }
-        for (body, probe, swept) in met {
+        for (body, probe, itself, swept) in met {
             self.done.unresolved.extend(swept.unresolved);
             let material = Lines::of(fixtures, swept.lines.iter().map(|(line, _)| *line));
             let touched = material.common(&swept.lines, self.options.tolerance);
-            let touching = Touching {
-                probe,
-                eater: None,
-                own: false,
-                strict: true,
-            };
             let question = Question {
                 path,
                 kind: FindingKind::Fixture,
                 body,
-                touching,
+                touching: Touching::still(probe, itself),
             };
             let touched = self.more_than_contact(&grid, question, moves.clone(), touched)?;
             self.locate(&grid, question, moves.clone(), material.on_lines_of(&touched), None)?;
@@ -234,6 +239,8 @@ impl Work<'_> {
             place: grid.frame().to_world([grid.x(i), grid.y(j), middle]),
             depth,
             volume: touch.all.length() * dx * dy,
+            near: touch.near,
+            courses: None,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! `verify`: verdicts, findings with their lines, exit status.
 
+mod nearness;
+
 use crate::support::{Workdir, text};
 use std::fs;
 use sweepsim_formats::{Report, ReportedFinding, Verdict};
@@ -44,7 +46,7 @@ fn workdir(job: &str) -> Workdir {
     folder
 }
 
-fn verified(folder: &Workdir, code: i32, more: &[&str]) -> (Report, Vec<ReportedFinding>) {
+pub fn verified(folder: &Workdir, code: i32, more: &[&str]) -> (Report, Vec<ReportedFinding>) {
     let output = folder.run_job("verify", &[&["--only", "report"], more].concat());
     assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
     let report: Report = serde_json::from_slice(&fs::read(folder.path("out/report.json")).unwrap()).unwrap();
@@ -233,77 +235,6 @@ fn axes_beyond_their_limits_are_findings() {
     fs::write(workdir.path("mill.ron"), machine.replace("(-40, 40)", "(-60, 60)")).expect("a file");
     let output = workdir.run_job("verify", &["--only", "report"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stdout));
-}
-
-#[test]
-fn rapids_go_as_the_machine_makes_them() {
-    // From (-20, -20) to (20, 0): straight past a post at (0, 0), or first along the diagonal into it.
-    let machine =
-        "Machine(name: \"mill\", linear: [(letter: 'X', speed: 6000), (letter: 'Y', speed: 6000)], rapid: DogLeg)";
-    let program = "G21 G90 G17\nT1 M6\nS900 M3\nG0 X-20 Y-20 Z5\nX20 Y0\nM30\n";
-    let job = r#"Job(
-        grid: Grid(min: (-30, -30), max: (30, 30), cells: (60, 60)),
-        stock: Block(min: (-30, -30, -10), max: (30, 30, 0)),
-        tools: { 1: Flat(radius: 2, length: 30) },
-        fixtures: [Cylinder(base: (-5, -5, 0), axis: (0, 0, 1), radius: 1, height: 20)],
-        paths: [Path(file: "part.nc", machine: "mill.ron", controller: "fanuc")],
-    )"#;
-    let workdir = Workdir::new(job);
-    fs::write(workdir.path("mill.ron"), machine).expect("a file");
-    fs::write(workdir.path("part.nc"), program).expect("a file");
-    let run = || {
-        let output = workdir.run_job("verify", &["--only", "report"]);
-        (output.status.code(), text(&output.stdout))
-    };
-    let (code, summary) = run();
-    assert_eq!(code, Some(1), "{summary}");
-    assert!(summary.contains("part.nc:5: cutter of tool 1"), "{summary}");
-    assert!(summary.contains("| X20 Y0"), "{summary}");
-    fs::write(workdir.path("mill.ron"), machine.replace("DogLeg", "Straight")).expect("a file");
-    let (code, summary) = run();
-    assert_eq!(code, Some(0), "{summary}");
-}
-
-#[test]
-fn clearances_of_holders() {
-    // The holder's end, of radius 10, is 4 mm above the block, and 2 mm beside a wall of 20 mm at y = 12.
-    let job = r#"Job(
-        grid: Grid(min: (-20, -20), max: (20, 20), cells: (80, 80)),
-        stock: Union([Block(min: (-20, -20, -10), max: (20, 20, 0)), Block(min: (-20, 12, -10), max: (20, 20, 20))]),
-        tools: { 1: Flat(radius: 2, length: 5) },
-        bodies: { 1: [Holder(Profile(start: (0, 5), segments: [Line((10, 5)), Line((10, 30)), Line((0, 30))]))] },
-        paths: [Path(tool: 1, poses: [((-8, 0, -1), (0, 0, 1)), ((8, 0, -1), (0, 0, 1))])],
-    )"#;
-    let workdir = Workdir::new(job);
-    let run = |more: &[&str]| {
-        let output = workdir.run_job("verify", &[&["--only", "report"], more].concat());
-        (output.status.code(), text(&output.stdout))
-    };
-    for (more, code) in [
-        (&[][..], 0),
-        (&["--clearance", "1.9"], 0),
-        (&["--clearance", "2.3"], 1),
-        (&["--sure"], 0),
-        // Half a diagonal of cells of 0.5 mm is 0.354 mm.
-        (&["--sure", "--clearance", "1.5"], 0),
-        (&["--sure", "--clearance", "1.95"], 1),
-    ] {
-        let (found, summary) = run(more);
-        assert_eq!(found, Some(code), "{more:?}: {summary}");
-        assert_eq!(summary.contains("FAIL: 1 collision"), code == 1, "{more:?}: {summary}");
-    }
-    let (_, summary) = run(&["--sure", "--clearance", "1.5"]);
-    assert!(
-        summary.contains("by 1.5 mm for their clearance and 0.35355 mm for what may hide between dexels"),
-        "{summary}"
-    );
-    // In the job.
-    let own = job.replace("Job(", "Job( clearance: 2.3,");
-    fs::write(workdir.path("job.ron"), own).expect("a file");
-    assert_eq!(run(&[]).0, Some(1));
-    fs::write(workdir.path("job.ron"), job.replace("Job(", "Job( clearance: -1,")).expect("a file");
-    let bad = workdir.bad(&["verify", "job.ron", "--out", "out"]);
-    assert!(bad.contains("clearance is -1, but must be 0 or greater"), "{bad}");
 }
 
 #[test]

@@ -1,0 +1,216 @@
+//! Rapids that only come near material, and rapids on other courses.
+
+use super::Question;
+use crate::error::SweepError;
+use crate::sweep::UnresolvedDexel;
+use crate::verify::driver::{Solids, Work};
+use crate::verify::finding::{Finding, FindingKind, RapidCourses};
+use crate::verify::heights::{HeightMap, window};
+use crate::verify::lines::Lines;
+use crate::verify::scene::{OtherCourse, ToolPath};
+use crate::verify::search::{Arena, Touch, Touching};
+use crate::verify::solid::MovingSolid;
+use std::ops::Range;
+use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_motion::{Assembly, Path, Pose};
+
+impl Work<'_> {
+    /// Rapids in which a cutter taken larger meets material, beside those in `seen..` in which the cutter itself does.
+    pub(super) fn near_rapids(
+        &mut self,
+        question: Question,
+        toolpath: &ToolPath,
+        solids: &Solids,
+        moves: Range<usize>,
+        seen: usize,
+    ) -> Result<(), SweepError> {
+        let (Some(larger), Some(assembly)) = (&solids.larger, toolpath.larger) else {
+            return Ok(());
+        };
+        if assembly.cutter().bounding_cylinder() == toolpath.assembly.cutter().bounding_cylinder() {
+            return Ok(());
+        }
+        let grid = *self.remaining.grid();
+        let mut material = self.near_stock(&larger.cutter, moves.clone());
+        if let Some(start) = toolpath.path.poses().get(moves.start) {
+            // Out of what it has cut, along its axis.
+            material = self.without_withdrawal(assembly, start, material)?;
+        }
+        let question = Question {
+            touching: Touching {
+                probe: &larger.cutter,
+                ..question.touching
+            },
+            ..question
+        };
+        let mut arena = Arena::new(&grid, &self.options, self.monitor);
+        let parts = larger.cutter.slice(larger.cutter.parts(moves.clone()));
+        let swept = arena.swept(&larger.cutter, parts, &material)?;
+        self.done.unresolved.extend(arena.unresolved);
+        let met = material.common(&swept, self.options.tolerance);
+        let met = self.more_than_contact(&grid, question, moves.clone(), met)?;
+        let before = self.done.findings.len();
+        self.locate(&grid, question, moves, material.on_lines_of(&met), None)?;
+        let near = self.done.findings.split_off(before);
+        let own: Vec<usize> = self.done.findings[seen..]
+            .iter()
+            .filter(|finding| finding.kind == FindingKind::Rapid)
+            .map(|finding| finding.number)
+            .collect();
+        let near = near.into_iter().filter(|finding| !own.contains(&finding.number));
+        self.done
+            .findings
+            .extend(near.map(|finding| Finding { near: true, ..finding }));
+        Ok(())
+    }
+
+    /// The material that a cutter does not meet on its way out of the stock along its axis.
+    fn without_withdrawal(&self, larger: &Assembly, start: &Pose, material: Lines) -> Result<Lines, SweepError> {
+        let grid = self.remaining.grid();
+        let ends = material.0.iter().flat_map(|(_, heights)| heights.iter().flatten());
+        let height =
+            ends.clone().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - ends.fold(f64::INFINITY, |a, b| a.min(*b));
+        let [dx, dy] = [0, 1].map(|k| grid.max()[k] - grid.min()[k]);
+        let bound = larger.cutter().bounding_cylinder();
+        let length = dx.hypot(dy).hypot(height.max(0.0)) + bound.radius + bound.z[1] - bound.z[0];
+        let (tip, axis) = (start.tip(), start.axis());
+        let out = std::array::from_fn(|k| tip[k] + length * axis[k]);
+        let (Ok(end), true) = (Pose::new(out, axis), length.is_finite()) else {
+            return Ok(material);
+        };
+        let Ok(path) = Path::new(vec![*start, end]) else {
+            return Ok(material);
+        };
+        let solid = MovingSolid::new(larger.cutter(), &path, &[grid], &self.options)?;
+        let mut arena = Arena::new(grid, &self.options, self.monitor);
+        let swept = arena.swept(&solid, solid.slice(solid.parts(0..1)), &material)?;
+        Ok(material.without(&swept).longer_than(self.options.tolerance))
+    }
+
+    /// Judges moves of a run on their other courses, and tells which of the courses do harm in the findings `seen..`.
+    pub(super) fn judge_other_courses(
+        &mut self,
+        path: usize,
+        toolpath: &ToolPath,
+        moves: Range<usize>,
+        seen: usize,
+    ) -> Result<(), SweepError> {
+        let courses = toolpath.other_courses;
+        let from = courses.partition_point(|course| course.number < moves.start);
+        let to = courses.partition_point(|course| course.number < moves.end);
+        for course in &courses[from..to] {
+            let (mut found, mut unresolved) = (Vec::new(), Vec::new());
+            if self.comes_near(toolpath, course) {
+                let solids = Solids::new(toolpath, &course.path, self)?;
+                for (body, probe, itself) in solids.probes() {
+                    let kind = if body.is_some() {
+                        FindingKind::Collision
+                    } else {
+                        FindingKind::Rapid
+                    };
+                    // A cutter that is taken larger leaves what it has cut.
+                    let (probe, itself) = match (body, itself) {
+                        (None, Some(itself)) => (itself, None),
+                        _ => (probe, itself),
+                    };
+                    let question = Question {
+                        path,
+                        kind,
+                        body,
+                        touching: Touching::still(probe, itself),
+                    };
+                    let place = (&self.remaining, &self.heights);
+                    found.extend(self.on_course(question, course, place, &mut unresolved)?);
+                }
+                if let Some((fixtures, heights)) = &self.fixtures {
+                    for (body, probe, itself) in solids.probes() {
+                        let question = Question {
+                            path,
+                            kind: FindingKind::Fixture,
+                            body,
+                            touching: Touching::still(probe, itself),
+                        };
+                        found.extend(self.on_course(question, course, (fixtures, heights), &mut unresolved)?);
+                    }
+                }
+            }
+            self.done.unresolved.extend(unresolved);
+            self.merge(course.number, seen, found);
+        }
+        Ok(())
+    }
+
+    /// Whether a course comes near any material, by the tool's reach from its tip.
+    fn comes_near(&self, toolpath: &ToolPath, course: &OtherCourse) -> bool {
+        let assembly = toolpath.larger.unwrap_or(toolpath.assembly);
+        let solids = std::iter::once(assembly.cutter()).chain(assembly.bodies().iter().map(|body| &body.solid));
+        let reaches = solids.map(|solid| {
+            let bound = solid.bounding_cylinder();
+            bound.radius.hypot(bound.z[0].abs().max(bound.z[1].abs()))
+        });
+        let reach = reaches.fold(0.0, f64::max) + self.options.tolerance;
+        let near = |grid: &Grid, heights: &HeightMap| {
+            let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+            for pose in course.path.poses() {
+                for (range, c) in reached.iter_mut().zip(grid.frame().from_world(pose.tip())) {
+                    *range = [range[0].min(c - reach), range[1].max(c + reach)];
+                }
+            }
+            window(grid, &reached).is_some_and(|window| !heights.visit(window, reached[2], &mut |_| false))
+        };
+        let beside = |(dexels, heights): &(&Dexels, HeightMap)| near(dexels.grid(), heights);
+        near(self.remaining.grid(), &self.heights) || self.fixtures.as_ref().is_some_and(beside)
+    }
+
+    fn on_course(
+        &self,
+        question: Question,
+        course: &OtherCourse,
+        (material, heights): (&Dexels, &HeightMap),
+        unresolved: &mut Vec<UnresolvedDexel>,
+    ) -> Result<Option<Finding>, SweepError> {
+        let (grid, probe) = (*material.grid(), question.touching.probe);
+        let moves = 0..course.path.moves();
+        let swept = probe.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
+        let material = Lines::of(material, swept.lines.iter().map(|(line, _)| *line));
+        let mut arena = Arena::new(&grid, &self.options, self.monitor);
+        let met = material.common(&swept.lines, self.options.tolerance);
+        let met = arena.certified(probe, probe.slice(probe.parts(moves.clone())), met)?;
+        let touches = arena.touches(question.touching, moves, material.on_lines_of(&met), None)?;
+        unresolved.extend(swept.unresolved.into_iter().chain(arena.unresolved));
+        // What only comes near is not what is touched later.
+        let first = touches.iter().find(|touch| !touch.near).or(touches.first());
+        Ok(first.map(|first| {
+            let share = |k: usize| course.times.get(k).copied().unwrap_or(1.0);
+            let begin = first.number.checked_sub(1).map_or(0.0, share);
+            let touch = Touch {
+                number: course.number,
+                time: begin + first.time * (share(first.number) - begin),
+                ..first.clone()
+            };
+            self.finding(&grid, question, &touch)
+        }))
+    }
+
+    /// Adds what is found on the other course of a move.
+    fn merge(&mut self, number: usize, seen: usize, found: Vec<Finding>) {
+        for own in &mut self.done.findings[seen..] {
+            // Gouges are not looked for on other courses.
+            if own.number == number && own.kind != FindingKind::Gouge {
+                own.courses = Some(RapidCourses::Own);
+            }
+        }
+        for other in found {
+            let own = self.done.findings[seen..]
+                .iter_mut()
+                .find(|own| own.number == number && (own.kind, own.body) == (other.kind, other.body));
+            let courses = Some(RapidCourses::Other);
+            match own {
+                Some(own) if own.near == other.near => own.courses = Some(RapidCourses::Both),
+                Some(own) if own.near => *own = Finding { courses, ..other },
+                Some(_) => {}
+                None => self.done.findings.push(Finding { courses, ..other }),
+            }
+        }
+    }
+}
