@@ -57,10 +57,10 @@ pub use dexels::{
 };
 pub use drafts::{Draft, DraftOptions, DraftStock, draft};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
-pub use jobs::{Job, JobPath, Limits, Origin, Setup, Target, Units};
+pub use jobs::{Job, JobPath, LimitRegion, Limits, Origin, RegionPlace, Setup, Target, Units};
 pub use meshes::{
-    MeshFormat, parse_stl, read_3mf, read_glb, read_mesh_file, read_ply, read_stl, read_vtp, write_3mf, write_glb,
-    write_mesh_file, write_ply, write_stl, write_vtp,
+    Colour, MeshFormat, parse_stl, read_3mf, read_coloured_mesh_file, read_glb, read_mesh_file, read_ply, read_stl,
+    read_vtp, write_3mf, write_glb, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
     ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, MoveSummary, PathSummary, Report,

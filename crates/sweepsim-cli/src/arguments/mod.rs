@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_picture::{CuttingPlane, View};
-use values::{area, camera, cells, length, parsed, plane, section, size, tolerance};
+pub(crate) use values::GivenLimits;
+use values::{area, camera, cells, length, limits, parsed, plane, section, size, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -172,6 +173,10 @@ pub(crate) struct CompareOptions {
     /// Distances up to this count as 0, in millimetres.
     #[arg(long, value_name = "MM", default_value = "1e-6", value_parser = tolerance)]
     pub tolerance: f64,
+    /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres; or a job, whose limits count, by region if it has
+    /// regions [default: 0.1 each].
+    #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits)]
+    pub limits: Option<GivenLimits>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub range: Option<f64>,

@@ -1,5 +1,6 @@
 //! Parsers of option values.
 
+use std::path::{Path, PathBuf};
 use sweepsim::systems::Plane;
 use sweepsim_formats::DraftStock;
 use sweepsim_picture::{Axis, CuttingPlane, Image, View};
@@ -30,6 +31,31 @@ pub(super) fn size(text: &str) -> Result<[usize; 2], String> {
         Ok(size)
     } else {
         Err(format!("expected 1 to {most} each way"))
+    }
+}
+
+/// Limits of deviations.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum GivenLimits {
+    /// For gouges and for excess.
+    Both([f64; 2]),
+    /// Those of a job.
+    Job(PathBuf),
+}
+
+pub(super) fn limits(text: &str) -> Result<GivenLimits, String> {
+    if Path::new(text)
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
+    {
+        return Ok(GivenLimits::Job(text.into()));
+    }
+    let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
+    match numbers[..] {
+        [Ok(gouge), Ok(excess)] if gouge >= 0.0 && excess >= 0.0 && gouge.is_finite() && excess.is_finite() => {
+            Ok(GivenLimits::Both([gouge, excess]))
+        }
+        _ => Err("expected two lengths, for gouges and for excess, like 0.02,0.1, or a job (.ron)".to_owned()),
     }
 }
 

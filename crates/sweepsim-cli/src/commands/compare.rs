@@ -1,13 +1,20 @@
 //! `compare`: reports how a part differs from its target.
 
-use crate::arguments::{CompareOptions, Output};
+use super::verify::targets;
+use crate::arguments::{CompareOptions, GivenLimits, Output};
 use crate::session::{Failure, Lines, Outputs, Solid, bounds, output_folder, picture, print, soup, words};
 use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::time::Instant;
-use sweepsim_dexel::{Comparison, Dexels, DistanceTo, Grid, Mesh, Nearest};
-use sweepsim_formats::{ComparisonReport, DeviationSummary, Furthest, HistogramBar};
+use sweepsim::verify::deviations;
+use sweepsim_dexel::{Comparison, Dexels, DistanceTo, Mesh, Nearest, Operation, TriangleSoup, compare_with_mesh};
+use sweepsim_formats::{
+    ComparisonReport, DeviationSummary, Furthest, HistogramBar, Job, LimitRegion, Limits, MeshFormat, RegionPlace,
+    ReportedRegion, Target as Goal, read_coloured_mesh_file,
+};
 
+/// The most regions that are named one by one.
+const NAMED: usize = 10;
 /// Bars of the histogram.
 const BARS: usize = 20;
 
@@ -35,8 +42,15 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     };
     report.seconds.insert("read".to_owned(), start.elapsed().as_secs_f64());
     let start = Instant::now();
-    let found = differences(options, &grid, [&part, &target], &goal)?;
+    let dexels = part.dexels(&options.part, &grid)?;
+    let surface = match &target {
+        Solid::Dexels(_) => soup(&goal),
+        Solid::Mesh(target) => soup(target),
+    };
+    let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
+    let found = compare_with_mesh(&dexels, &surface).map_err(|error| failed(&error))?;
     describe(&mut report, options, &found);
+    regions(&mut report, options, &dexels, surface)?;
     report.cells = grid.cells();
     let tree = DistanceTo::new(&soup(&goal))?;
     let [dx, dy] = grid.spacing();
@@ -110,20 +124,39 @@ fn read(options: &CompareOptions) -> Result<[Solid; 2], Failure> {
     }
 }
 
-/// Compares the part's dexels with those of the target on the same grid, or with its surface.
-fn differences(
+/// The connected regions beyond the limits: those of `--limits`.
+fn regions(
+    report: &mut ComparisonReport,
     options: &CompareOptions,
-    grid: &Grid,
-    [part, target]: [&Solid; 2],
-    goal: &Mesh,
-) -> Result<Comparison, Failure> {
-    let dexels = part.dexels(&options.part, grid)?;
-    let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
-    let target = match target {
-        Solid::Dexels(_) => soup(goal),
-        Solid::Mesh(target) => soup(target),
+    dexels: &Dexels,
+    surface: TriangleSoup,
+) -> Result<(), Failure> {
+    let limits = match &options.limits {
+        None => Limits::new(targets::LIMIT, targets::LIMIT),
+        Some(GivenLimits::Both([gouge, excess])) => Limits::new(*gouge, *excess),
+        Some(GivenLimits::Job(file)) => Job::read(file)?
+            .limits
+            .ok_or_else(|| Failure::message(format!("{}: this job has no limits", file.display())))?,
     };
-    sweepsim_dexel::compare_with_mesh(&dexels, &target).map_err(|error| failed(&error))
+    let by_colour = |region: &LimitRegion| matches!(region.place, RegionPlace::Colour(_));
+    let colours = if limits.regions.iter().any(by_colour) && MeshFormat::of(&options.target).is_some() {
+        read_coloured_mesh_file(&options.target)?.1
+    } else {
+        Vec::new()
+    };
+    let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
+    let parts = Goal::new(options.target.clone(), surface.clone(), colours).by_region(&limits);
+    let target = targets::with_limits(&surface, Some(parts), Some(&limits), dexels.grid(), options.tolerance);
+    let target = target.map_err(|error| failed(&error))?;
+    // What is missing is missing, whatever the stock was.
+    let mut stock = dexels.clone();
+    stock
+        .combine(Operation::Union, target.solid())
+        .map_err(|error| failed(&error))?;
+    let found = deviations(&stock, dexels, &target);
+    report.limits = [limits.gouge, limits.excess];
+    report.regions = targets::regions(&found, Some(&limits));
+    Ok(())
 }
 
 /// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has no counterpart.
@@ -264,6 +297,21 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
     let [mean, rms] = [report.mean, report.rms].map(length);
     let area = words::measure(report.area);
     line("distance", &format!("mean {mean}, RMS {rms} mm, over {area} mm²"));
+    let [gouge, excess] = report.limits.map(length);
+    let count = words::counted(report.regions.len() as u64, "region");
+    line(
+        "limits",
+        &format!("{count} deeper than {gouge} or higher than {excess} mm"),
+    );
+    for region in report.regions.iter().take(NAMED) {
+        line(&region.kind, &region_in_words(region));
+    }
+    if report.regions.len() > NAMED {
+        line(
+            "",
+            &format!("… and {} more, all in comparison.json", report.regions.len() - NAMED),
+        );
+    }
     for (label, furthest) in [("part", report.furthest_of_part), ("target", report.furthest_of_target)] {
         if let Some(Furthest { place, distance }) = furthest {
             let (distance, place) = (length(distance), words::point(place));
@@ -284,6 +332,15 @@ fn summary(report: &ComparisonReport, outputs: &Outputs) -> Lines {
     }
     line("out", &outputs.listed());
     lines
+}
+
+fn region_in_words(region: &ReportedRegion) -> String {
+    let [depth, area] = [region.depth, region.area].map(words::measure);
+    let of = region
+        .region
+        .as_ref()
+        .map_or(String::new(), |name| format!(", in region {name}"));
+    format!("{depth} mm at {}, {area} mm²{of}", words::point(region.place))
 }
 
 /// A distance. Values below the rounding errors of millimetres in `f64` are shown as 0.

@@ -1,5 +1,6 @@
 //! Triangles, going in and coming out.
 
+mod clip;
 mod distance;
 mod furthest;
 mod thicken;

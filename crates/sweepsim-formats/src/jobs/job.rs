@@ -1,12 +1,13 @@
 //! Jobs: what is cut, with which tools and along which paths.
 
 use std::collections::BTreeMap;
-use std::path::{Path as FilePath, PathBuf};
+use std::path::Path as FilePath;
 
-use sweepsim_dexel::{Grid, Stock, TriangleSoup};
+use sweepsim_dexel::{Grid, Stock};
 use sweepsim_motion::{Body, Tool};
 use sweepsim_nc::Note;
 
+use super::judging::{Limits, Target};
 use super::paths::JobPath;
 use super::read;
 use super::setups::Setup;
@@ -87,26 +88,6 @@ pub struct Job {
     pub clearance: f64,
     /// Warnings about the tools, with lines of the job's file.
     pub notes: Vec<Note>,
-}
-
-/// The design part of a job.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Target {
-    /// The file.
-    pub file: PathBuf,
-    /// Its triangles.
-    pub mesh: TriangleSoup,
-}
-
-/// How far a part may deviate from its target, in millimetres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Limits {
-    /// The permitted depth of gouges.
-    pub gouge: f64,
-    /// The permitted height of remaining material.
-    pub excess: f64,
 }
 
 impl Job {

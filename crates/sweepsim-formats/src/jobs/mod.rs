@@ -10,6 +10,7 @@ mod setups;
 mod solids;
 mod tools;
 
-pub use job::{Job, Limits, Target, Units};
+pub use job::{Job, Units};
+pub use judging::{LimitRegion, Limits, RegionPlace, Target};
 pub use paths::{JobPath, Origin};
 pub use setups::Setup;

@@ -80,7 +80,7 @@ impl JobReader<'_> {
             tools, bodies, notes, ..
         } = tool_box;
         let target = self.target(&raw, &grid)?;
-        let limits = self.limits(&raw)?;
+        let limits = self.limits(&raw, target.as_ref())?;
         let clearance = raw.clearance.unwrap_or(0.0);
         self.check(
             "clearance",

@@ -373,4 +373,25 @@ pub(crate) enum Target {
 pub(crate) struct Limits {
     pub gouge: f64,
     pub excess: f64,
+    #[serde(default)]
+    pub regions: Vec<LimitRegion>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields, rename = "Region")]
+pub(crate) struct LimitRegion {
+    #[serde(default)]
+    pub name: Option<String>,
+    #[serde(default)]
+    pub within: Option<RegionBox>,
+    #[serde(default)]
+    pub colour: Option<String>,
+    pub gouge: f64,
+    pub excess: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) enum RegionBox {
+    Block { min: [f64; 3], max: [f64; 3] },
 }

@@ -7,6 +7,7 @@ use std::io::{self, Write};
 use serde_json::{Value, json};
 use sweepsim_dexel::Mesh;
 
+use super::colours::{Colour, Colours};
 use crate::error::{FormatError, Problem};
 
 const FLOAT: u64 = 5126;
@@ -93,6 +94,11 @@ fn chunk<'a>(bytes: &mut &'a [u8], kind: &[u8; 4]) -> Option<&'a [u8]> {
 /// # Errors
 /// [`FormatError`]: not a GLB file, or a truncated one; a mesh that is not made of triangles, or whose data are not in the file.
 pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
+    coloured_glb(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Reads a mesh with the colour of each triangle: the base colour of its material.
+pub(crate) fn coloured_glb(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError> {
     let mut rest = bytes
         .strip_prefix(b"glTF\x02\0\0\0")
         .and_then(|rest| rest.get(4..))
@@ -102,7 +108,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let data = chunk(&mut rest, b"BIN\0").ok_or_else(cut_off)?;
     let document: Value =
         serde_json::from_slice(text).map_err(|error| problem(format!("the description in this GLB: {error}")))?;
-    let mut mesh = Mesh::default();
+    let (mut mesh, mut colours) = (Mesh::default(), Colours::new());
     let mut bare = false;
     for primitive in list(&document["meshes"])
         .iter()
@@ -126,6 +132,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
             }
             _ => bare = true,
         }
+        let colour = base_colour(&document, &primitive["material"]);
         let corners = read(&primitive["indices"], 1).ok_or_else(wrong)?;
         for corners in corners.as_chunks::<3>().0 {
             if corners.iter().any(|v| *v as usize >= places.len() / 3) {
@@ -133,6 +140,7 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
             }
             // Indices are `u32`; more vertices than they can number are an error above.
             mesh.triangles.push(corners.map(|v| (first + v as usize) as u32));
+            colours.push(colour);
         }
     }
     if bare {
@@ -141,7 +149,23 @@ pub fn read_glb(bytes: &[u8]) -> Result<Mesh, FormatError> {
     if !mesh.vertices.iter().flatten().all(|c| c.is_finite()) {
         return Err(problem("a vertex of this GLB is not finite"));
     }
-    Ok(mesh)
+    Ok((mesh, colours))
+}
+
+/// The base colour of a material, from linear light to sRGB (IEC 61966-2-1), as it is shown on screens.
+fn base_colour(document: &Value, material: &Value) -> Option<Colour> {
+    let material = list(&document["materials"]).get(material.as_u64()? as usize)?;
+    let factors = list(&material["pbrMetallicRoughness"]["baseColorFactor"]);
+    let channel = |k: usize| {
+        let linear = factors.get(k)?.as_f64()?;
+        let curved = if linear <= 0.003_130_8 {
+            12.92 * linear
+        } else {
+            1.055 * linear.powf(1.0 / 2.4) - 0.055
+        };
+        Some((255.0 * curved).round() as u8)
+    };
+    Some([channel(0)?, channel(1)?, channel(2)?])
 }
 
 fn list(value: &Value) -> &[Value] {

@@ -1,5 +1,6 @@
 //! Triangle meshes.
 
+mod colours;
 mod files;
 mod glb;
 mod ply;
@@ -13,6 +14,8 @@ use sweepsim_dexel::Mesh;
 
 use crate::error::{FormatError, Problem};
 
+pub(crate) use colours::parsed as parsed_colour;
+pub use colours::{Colour, read_coloured_mesh_file};
 pub use files::{MeshFormat, read_mesh_file, write_mesh_file};
 pub use glb::{read_glb, write_glb};
 pub use ply::{read_ply, write_ply};

@@ -7,6 +7,7 @@ use std::io::Write;
 
 use sweepsim_dexel::Mesh;
 
+use super::colours::{Colour, Colours};
 use crate::error::{FormatError, Problem};
 
 /// Writes a mesh.
@@ -166,8 +167,14 @@ impl Body<'_> {
 /// # Errors
 /// [`FormatError`]: not a PLY file, or a truncated one; faces with missing vertices; coordinates that are not finite.
 pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
+    coloured_ply(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Reads a mesh with the colour of each triangle: that of its face, or of its corners if they agree.
+pub(crate) fn coloured_ply(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError> {
     let (elements, mut body) = header(bytes)?;
     let mut mesh = Mesh::default();
+    let (mut of_corners, mut colours): (Vec<Option<Colour>>, Colours) = Default::default();
     for element in &elements {
         // A huge count of an element without data would take forever.
         if element.properties.is_empty() && element.count > 0 {
@@ -185,6 +192,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
         let position = [place("x"), place("y"), place("z")];
         let normal = [place("nx"), place("ny"), place("nz")];
         let cut = place("cut");
+        let channels = [place("red"), place("green"), place("blue")];
         let mut scalars = vec![0.0; element.properties.len()];
         for _ in 0..element.count {
             let mut corners: Vec<f64> = Vec::new();
@@ -205,7 +213,9 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
                     }
                 }
             }
+            let colour = colour(element, channels, &scalars);
             if element.name == "vertex" {
+                of_corners.push(colour);
                 let [Some(x), Some(y), Some(z)] = position else {
                     return fail("the vertices of this PLY have no x, y, z");
                 };
@@ -230,10 +240,24 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh, FormatError> {
                 };
                 let triangle = [corner(corners[0])?, corner(corners[k - 1])?, corner(corners[k])?];
                 mesh.triangles.push(triangle);
+                let [a, b, c] = triangle.map(|v| of_corners.get(v as usize).copied().flatten());
+                colours.push(colour.or(a.filter(|_| a == b && b == c)));
             }
         }
     }
-    Ok(mesh)
+    Ok((mesh, colours))
+}
+
+/// The colour of an element: whole numbers up to 255, or fractions.
+fn colour(element: &Element, channels: [Option<usize>; 3], scalars: &[f64]) -> Option<Colour> {
+    let [Some(red), Some(green), Some(blue)] = channels else {
+        return None;
+    };
+    Some([red, green, blue].map(|at| {
+        let real = matches!(element.properties[at].scalar, Scalar::F32 | Scalar::F64);
+        // A cast of what is out of range saturates.
+        (scalars[at] * if real { 255.0 } else { 1.0 }).round() as u8
+    }))
 }
 
 fn header(bytes: &[u8]) -> Result<(Vec<Element>, Body<'_>), FormatError> {

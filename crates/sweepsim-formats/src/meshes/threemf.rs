@@ -1,5 +1,6 @@
 //! 3MF, for additive manufacturing. Written in millimetres as one object, with numbers in the shortest form that reads back exactly.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -7,6 +8,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use sweepsim_dexel::Mesh;
 
+use super::colours::{self, Colour, Colours};
 use crate::archive::{self, Archive};
 use crate::error::{FormatError, Problem};
 use sweepsim_nc::shortest;
@@ -55,6 +57,11 @@ pub fn write_3mf(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
 /// [`FormatError`]: not an archive, or one without a model; several objects, components or transformations; vertices that are not
 /// finite; triangles with missing vertices.
 pub fn read_3mf(bytes: &[u8]) -> Result<Mesh, FormatError> {
+    coloured_3mf(bytes).map(|(mesh, _)| mesh)
+}
+
+/// Reads a mesh with the colour of each triangle: that of its base material or its colour group, if all its corners have the same.
+pub(crate) fn coloured_3mf(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError> {
     let mut archive = Archive::read(bytes)?;
     let model = model_entry(&mut archive)?;
     let text = text(archive.entry(&model)?)?;
@@ -69,7 +76,7 @@ pub fn read_3mf(bytes: &[u8]) -> Result<Mesh, FormatError> {
         }
     }
     if model.objects == 1 && model.complete {
-        Ok(model.mesh)
+        Ok((model.mesh, model.colours))
     } else {
         Err(problem("this 3MF does not have exactly one complete object"))
     }
@@ -128,13 +135,32 @@ struct Model {
     unit: f64,
     objects: usize,
     complete: bool,
+    /// The colours of each group, by its number.
+    groups: BTreeMap<String, Vec<Option<Colour>>>,
+    /// The group that is being read.
+    group: String,
+    /// Group and place of the object's own colour.
+    own: (Option<String>, Option<String>),
+    colours: Colours,
 }
 
 impl Model {
     fn tag(&mut self, tag: &BytesStart<'_>) -> Result<(), FormatError> {
         match tag.local_name().as_ref() {
             "model" => self.unit = unit(attribute(tag, "unit")?.as_deref())?,
-            "object" => self.objects += 1,
+            "object" => {
+                self.objects += 1;
+                self.own = (attribute(tag, "pid")?, attribute(tag, "pindex")?);
+            }
+            "basematerials" | "colorgroup" => {
+                self.group = attribute(tag, "id")?.unwrap_or_default();
+                self.groups.entry(self.group.clone()).or_default();
+            }
+            name @ ("base" | "color") => {
+                let value = attribute(tag, if name == "base" { "displaycolor" } else { "color" })?;
+                let colour = value.as_deref().and_then(colours::parsed);
+                self.groups.entry(self.group.clone()).or_default().push(colour);
+            }
             "components" => return Err(problem("this 3MF has components: expected one mesh")),
             "item" if attribute(tag, "transform")?.is_some() => {
                 return Err(problem("this 3MF has transformations: expected one mesh as it is"));
@@ -157,10 +183,32 @@ impl Model {
                     *corner = index.ok_or_else(|| problem("a triangle of this 3MF refers to a missing vertex"))?;
                 }
                 self.mesh.triangles.push(triangle);
+                let colour = self.colour(tag)?;
+                self.colours.push(colour);
             }
             _ => {}
         }
         Ok(())
+    }
+}
+
+impl Model {
+    /// The colour of a triangle.
+    fn colour(&self, tag: &BytesStart<'_>) -> Result<Option<Colour>, FormatError> {
+        if self.groups.is_empty() {
+            return Ok(None);
+        }
+        let group = attribute(tag, "pid")?.or_else(|| self.own.0.clone());
+        let first = attribute(tag, "p1")?;
+        for other in ["p2", "p3"] {
+            if attribute(tag, other)?.is_some_and(|other| Some(other) != first) {
+                return Ok(None);
+            }
+        }
+        let (group, place) = (group.as_deref(), first.or_else(|| self.own.1.clone()));
+        let place = place.and_then(|place| place.trim().parse::<usize>().ok());
+        let colours = group.and_then(|group| self.groups.get(group));
+        Ok(colours.zip(place).and_then(|(colours, place)| *colours.get(place)?))
     }
 }
 

@@ -163,6 +163,9 @@ pub struct ReportedFinding {
     /// The text of the line.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+    /// The region of the limits that it exceeds (`excess`); none for the limits of the whole part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
     /// What is beyond which limit (`limit`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub detail: Option<String>,
@@ -183,6 +186,9 @@ pub struct ReportedFinding {
 pub struct ReportedRegion {
     /// `gouge` or `excess`.
     pub kind: String,
+    /// The region of the limits that it exceeds; none for the limits of the whole part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<String>,
     /// The point farthest from the target's surface.
     pub place: [f64; 3],
     /// How far that is, in mm.
@@ -251,6 +257,12 @@ pub struct ComparisonReport {
     /// The furthest point of the target's surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub furthest_of_target: Option<Furthest>,
+    /// The limits for gouges and for excess, outside of regions with their own.
+    #[serde(default)]
+    pub limits: [f64; 2],
+    /// Connected pieces of material that are missing, or left, beyond their limits, the deepest first, gouges before excess.
+    #[serde(default)]
+    pub regions: Vec<ReportedRegion>,
     /// Area by distance.
     pub histogram: Vec<HistogramBar>,
 }

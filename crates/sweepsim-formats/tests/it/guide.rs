@@ -74,6 +74,31 @@ fn every_example_is_read() {
         write_stl(&CUBE, &mut stl).unwrap();
         fs::write(path(name), stl).unwrap();
     }
+    // A cube, whose bottom is orange.
+    let corners = [
+        [0, 0, 0],
+        [60, 0, 0],
+        [60, 40, 0],
+        [0, 40, 0],
+        [0, 0, 20],
+        [60, 0, 20],
+        [60, 40, 20],
+        [0, 40, 20],
+    ];
+    let faces = [
+        "0 3 2 1 255 128 0",
+        "4 5 6 7 9 9 9",
+        "0 1 5 4 9 9 9",
+        "1 2 6 5 9 9 9",
+        "2 3 7 6 9 9 9",
+        "3 0 4 7 9 9 9",
+    ];
+    let mut ply = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 6\n\
+        property list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n"
+        .to_owned();
+    corners.iter().for_each(|[x, y, z]| ply += &format!("{x} {y} {z}\n"));
+    faces.iter().for_each(|face| ply += &format!("4 {face}\n"));
+    fs::write(path("part.ply"), ply).unwrap();
     fs::write(path("finish.csv"), blocks(&guide, "csv")[0]).unwrap();
     fs::write(path("roughing.nc"), blocks(&guide, "gcode")[0]).unwrap();
     fs::write(path("tools.json"), blocks(&guide, "json")[0]).unwrap();

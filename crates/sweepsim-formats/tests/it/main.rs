@@ -4,6 +4,7 @@ mod archives;
 mod bad_jobs;
 mod bad_motions;
 mod bad_texts;
+mod colours;
 mod dexels_binary;
 mod drafts;
 mod exchange;

@@ -34,6 +34,8 @@ pub struct Region {
     pub area: f64,
     /// The volume beyond the limit.
     pub volume: f64,
+    /// The part of the target's surface nearest to its place, whose limits it exceeds: 1 plus the number of a [region](super::TargetRegion), or 0 outside all of them.
+    pub part: usize,
 }
 
 /// Distances of a surface from the target, on one side of it.
@@ -154,12 +156,12 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, distance: f64, area: f64, limit: f64) {
+    fn add(&mut self, distance: f64, area: f64, is_beyond: bool) {
         self.max = self.max.max(distance);
         self.area += area;
         self.first += area * distance;
         self.second += area * distance * distance;
-        if distance > limit {
+        if is_beyond {
             self.beyond.0 += 1;
             self.beyond.1 += area;
         }
@@ -191,7 +193,6 @@ fn surface(remaining: &Dexels, target: &Target) -> [Deviation; 2] {
     let grid = *remaining.grid();
     let [dx, dy] = grid.spacing();
     let lines: Vec<usize> = remaining.iter().map(|(line, _)| line).collect();
-    let limits = target.limits();
     // Blocks of fixed size, summed in order: rounding does not depend on the number of threads.
     let sums: Vec<[Sums; 2]> = lines
         .par_chunks(256)
@@ -206,11 +207,8 @@ fn surface(remaining: &Dexels, target: &Target) -> [Deviation; 2] {
                     };
                     // Of a steep wall, at most a thousand cells.
                     let area = dx * dy / f64::from(end.normal[2].abs()).max(1e-3);
-                    if near.distance < 0.0 {
-                        sums[0].add(-near.distance, area, limits[0]);
-                    } else {
-                        sums[1].add(near.distance, area, limits[1]);
-                    }
+                    let is_beyond = target.is_beyond(place, near.distance);
+                    sums[usize::from(near.distance >= 0.0)].add(near.distance.abs(), area, is_beyond);
                 }
             }
             sums
@@ -282,6 +280,7 @@ fn connected(material: &Lines, grid: &Grid, target: &Target, kind: DeviationKind
             let depth = depth.max(web);
             Region {
                 kind,
+                part: target.part_at(place),
                 place,
                 depth,
                 area: group.0.len() as f64 * dx * dy,

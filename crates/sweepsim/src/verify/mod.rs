@@ -30,4 +30,4 @@ pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
 pub use driver::verify;
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses};
 pub use scene::{MoveRemoval, OtherCourse, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
-pub use target::{Target, TargetError};
+pub use target::{Target, TargetError, TargetRegion};

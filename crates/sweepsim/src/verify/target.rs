@@ -15,6 +15,33 @@ pub struct Target {
     distance: DistanceTo,
     /// For gouges and for excess.
     limits: [f64; 2],
+    /// The surface outside all regions, then that of each region; none if there are no regions.
+    parts: Vec<Part>,
+}
+
+/// A part of the surface.
+#[derive(Clone, Debug)]
+struct Part {
+    distance: DistanceTo,
+    limits: [f64; 2],
+}
+
+/// A region of a target's surface with limits of its own.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct TargetRegion {
+    /// Its part of the surface. It need not be closed.
+    pub surface: TriangleSoup,
+    /// The limits for gouges and for excess.
+    pub limits: [f64; 2],
+}
+
+impl TargetRegion {
+    /// A part of the surface, and its limits for gouges and for excess.
+    #[must_use]
+    pub fn new(surface: TriangleSoup, limits: [f64; 2]) -> Self {
+        Self { surface, limits }
+    }
 }
 
 /// Why a target is invalid.
@@ -59,27 +86,86 @@ impl Target {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn new(mesh: &TriangleSoup, grid: &Grid, gouge: f64, excess: f64) -> Result<Self, TargetError> {
-        for (name, value) in [("gouges", gouge), ("excess", excess)] {
+        Self::with_regions(mesh, grid, TargetRegion::new(mesh.clone(), [gouge, excess]), &[])
+    }
+
+    /// A closed mesh as a target, some regions of which have limits of their own. `rest` is what of its surface is in no region.
+    ///
+    /// Each limit holds about its own part of the surface: what is allowed is the union of all balls about points of the surface, each with the radius of the part to which the point
+    /// belongs. So along the border of a region, up to the larger of both limits away from it, the larger one holds.
+    ///
+    /// # Errors
+    /// [`TargetError`]
+    pub fn with_regions(
+        mesh: &TriangleSoup,
+        grid: &Grid,
+        rest: TargetRegion,
+        regions: &[TargetRegion],
+    ) -> Result<Self, TargetError> {
+        let all = || std::iter::once(&rest).chain(regions);
+        for (name, value) in all().flat_map(|part| [("gouges", part.limits[0]), ("excess", part.limits[1])]) {
             if !(value >= 0.0 && value.is_finite()) {
                 return Err(TargetError::Limit { name, value });
             }
         }
         let solid = Stock::Mesh(mesh.clone()).dexels(grid)?;
-        let mut core = solid.clone();
-        if gouge > 0.0 {
-            core.combine(Operation::Difference, &mesh.thickened(grid, gouge))?;
+        let (mut core, mut allowed) = (solid.clone(), solid.clone());
+        for part in all() {
+            let [gouge, excess] = part.limits;
+            if gouge > 0.0 {
+                core.combine(Operation::Difference, &part.surface.thickened(grid, gouge))?;
+            }
+            if excess > 0.0 {
+                allowed.combine(Operation::Union, &part.surface.thickened(grid, excess))?;
+            }
         }
-        let mut allowed = solid.clone();
-        if excess > 0.0 {
-            allowed.combine(Operation::Union, &mesh.thickened(grid, excess))?;
-        }
+        let part = |part: &TargetRegion| {
+            let distance = DistanceTo::new(&part.surface)?;
+            Ok(Part {
+                distance,
+                limits: part.limits,
+            })
+        };
         Ok(Self {
             solid,
             core,
             allowed,
             distance: DistanceTo::new(mesh)?,
-            limits: [gouge, excess],
+            limits: rest.limits,
+            parts: if regions.is_empty() {
+                Vec::new()
+            } else {
+                all().map(part).collect::<Result<_, MeshError>>()?
+            },
         })
+    }
+
+    /// Whether a point at a (signed) distance from the surface is beyond the limit, which is that of any part of the surface.
+    pub(super) fn is_beyond(&self, place: [f64; 3], distance: f64) -> bool {
+        let side = usize::from(distance >= 0.0);
+        if self.parts.is_empty() {
+            return distance.abs() > self.limits[side];
+        }
+        let within = |part: &Part| {
+            let near = part.distance.nearest(place);
+            near.is_some_and(|near| near.distance.abs() <= part.limits[side])
+        };
+        !self.parts.iter().any(within)
+    }
+
+    /// The part of the surface nearest to a point: 0 outside all regions, or 1 plus the number of a region.
+    pub(super) fn part_at(&self, place: [f64; 3]) -> usize {
+        let mut best = (f64::INFINITY, 0);
+        for (number, part) in self.parts.iter().enumerate() {
+            let near = part
+                .distance
+                .nearest(place)
+                .map_or(f64::INFINITY, |near| near.distance.abs());
+            if near < best.0 {
+                best = (near, number);
+            }
+        }
+        best.1
     }
 
     /// The part.
@@ -100,7 +186,7 @@ impl Target {
         &self.allowed
     }
 
-    /// The limits for gouges and for excess.
+    /// The limits for gouges and for excess, outside all regions.
     #[must_use]
     pub fn limits(&self) -> [f64; 2] {
         self.limits

@@ -52,9 +52,13 @@ pub(super) fn setups(source: &PageSource) -> Vec<Table> {
     let mut tables: Vec<Table> = (0..job.setups.len()).map(|number| setup(source, number)).collect();
     let mut rows = Vec::new();
     let mut row = |name: &str, value: String| rows.push(vec![name.to_owned(), value]);
-    if let Some(limits) = job.limits {
-        let [gouge, excess] = [limits.gouge, limits.excess].map(measure);
-        row("Limits", format!("gouge {gouge} mm, excess {excess} mm"));
+    let words = |gouge, excess| format!("gouge {} mm, excess {} mm", measure(gouge), measure(excess));
+    if let Some(limits) = &job.limits {
+        row("Limits", words(limits.gouge, limits.excess));
+        for region in &limits.regions {
+            let name = format!("Region {}", region.name);
+            row(&name, words(region.gouge, region.excess));
+        }
     }
     let [dx, dy] = job.grid.spacing().map(measure);
     row("Grid", format!("a dexel every {dx} × {dy} mm"));

@@ -85,6 +85,9 @@ pub(super) fn findings(
         if let Some(courses) = &found.courses {
             fact("Course of the rapid", courses.clone());
         }
+        if let Some(region) = &found.region {
+            fact("Limits of", format!("region {region}"));
+        }
         if let Some(time) = found.time {
             fact("Begins after", format!("{:.1} % of the move", 100.0 * time));
         }

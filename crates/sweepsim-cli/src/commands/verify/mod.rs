@@ -2,6 +2,7 @@
 
 mod axes;
 mod fixtures;
+pub(super) mod targets;
 mod work;
 
 pub(super) use work::setups;
@@ -14,17 +15,13 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use sweepsim::motion::{Assembly, BodyKind, Tool};
 use sweepsim::verify::{
-    Deviation, DeviationKind, Deviations, Finding, MoveState, OtherCourse, RapidCourses, Region, Scene, Target,
-    ToolPath, Verification, VerifyOptions, deviations, verify,
+    DeviationKind, Deviations, Finding, MoveState, OtherCourse, RapidCourses, Scene, Target, ToolPath, Verification,
+    VerifyOptions, deviations, verify,
 };
 use sweepsim::{Monitor, Statistics};
 use sweepsim_dexel::Dexels;
-use sweepsim_formats::{
-    DeviationSummary, Job, JobPath, MoveSummary, PathSummary, Report, ReportedFinding, ReportedRegion, Verdict,
-};
+use sweepsim_formats::{Job, JobPath, MoveSummary, PathSummary, Report, ReportedFinding, Verdict};
 
-/// The limits of a target that comes without any, in millimetres.
-const LIMIT: f64 = 0.1;
 /// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
 const PLOTTED: usize = 1000;
 
@@ -51,7 +48,8 @@ pub(super) fn verified(
     let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
     let fixtures = phase(report, "stock", || fixtures::of_setups(session))?;
     progress.phase("target");
-    let target = phase(report, "target", || target(session))?;
+    let target = phase(report, "target", || targets::of_job(&session.job))
+        .map_err(|error| session.failure(format!("target: {error}")))?;
     let larger = larger(job, judging, report);
     let assemblies = assemblies(session, [0.0; 2])?;
     let larger = match larger {
@@ -182,17 +180,6 @@ fn states(path: &JobPath) -> Vec<MoveState> {
     path.rapid.iter().enumerate().map(state).collect()
 }
 
-fn target(session: &JobSession) -> Result<Option<Target>, Failure> {
-    let job = &session.job;
-    let Some(target) = &job.target else { return Ok(None) };
-    let [gouge, excess] = job.limits.map_or([LIMIT; 2], |limits| [limits.gouge, limits.excess]);
-    // Below the tolerance of the dexels there is nothing to judge.
-    let [gouge, excess] = [gouge, excess].map(|limit| limit.max(2.0 * job.tolerance));
-    Target::new(&target.mesh, &job.grid, gouge, excess)
-        .map(Some)
-        .map_err(|error| session.failure(format!("target: {error}")))
-}
-
 fn describe(report: &mut Report, session: &JobSession, done: &Verification, found: Option<&Deviations>) {
     let job = &session.job;
     let mut texts = ProgramTexts::new(session);
@@ -220,9 +207,9 @@ fn describe(report: &mut Report, session: &JobSession, done: &Verification, foun
     });
     report.paths = Some(paths.collect());
     if let Some(found) = found {
-        report.gouge = Some(summed(&found.gouge));
-        report.excess = Some(summed(&found.excess));
-        report.regions = Some(found.regions.iter().map(region).collect());
+        report.gouge = Some(targets::summed(&found.gouge));
+        report.excess = Some(targets::summed(&found.excess));
+        report.regions = Some(targets::regions(found, job.limits.as_ref()));
         let excess = found
             .regions
             .iter()
@@ -231,6 +218,7 @@ fn describe(report: &mut Report, session: &JobSession, done: &Verification, foun
             let mut finding = ReportedFinding::default();
             finding.kind = "excess".to_owned();
             (finding.place, finding.depth, finding.volume) = (region.place, region.depth, region.volume);
+            finding.region = targets::name(region, job.limits.as_ref());
             finding
         }));
         if found.beyond_stock > 0.0 {
@@ -241,7 +229,8 @@ fn describe(report: &mut Report, session: &JobSession, done: &Verification, foun
         }
         if job.limits.is_none() {
             report.notes.push(format!(
-                "the job has no limits: gouges and excess of more than {LIMIT} mm count"
+                "the job has no limits: gouges and excess of more than {} mm count",
+                targets::LIMIT
             ));
         }
     } else if job.target.is_none() {
@@ -296,25 +285,6 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     });
     reported.time = Some(finding.time);
     (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);
-    reported
-}
-
-fn summed(deviation: &Deviation) -> DeviationSummary {
-    let mut summary = DeviationSummary::default();
-    (summary.max, summary.mean, summary.rms) = (deviation.max, deviation.mean, deviation.rms);
-    (summary.count, summary.area) = (deviation.count, deviation.area);
-    summary
-}
-
-fn region(region: &Region) -> ReportedRegion {
-    let mut reported = ReportedRegion::default();
-    reported.kind = match region.kind {
-        DeviationKind::Gouge => "gouge",
-        DeviationKind::Excess => "excess",
-    }
-    .to_owned();
-    (reported.place, reported.depth) = (region.place, region.depth);
-    (reported.area, reported.volume) = (region.area, region.volume);
     reported
 }
 

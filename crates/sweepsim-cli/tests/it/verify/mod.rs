@@ -4,7 +4,7 @@ mod nearness;
 
 use crate::support::{Workdir, text};
 use std::fs;
-use sweepsim_formats::{Report, ReportedFinding, Verdict};
+use sweepsim_formats::{ComparisonReport, Report, ReportedFinding, Verdict};
 
 /// A slot 5 mm deep, in two passes, and a hole.
 const PROGRAM: &str = "G21 G90 G17
@@ -286,5 +286,72 @@ fn level_arcs_leave_nothing_unresolved() {
             .into_iter()
             .chain([gouge.depth, gouge.volume, gouge.time.unwrap()]);
         assert!(numbers.into_iter().all(f64::is_finite), "{gouge:?}");
+    }
+}
+
+/// A pass that is 0.06 too high, which only the floor's region forbids; and a comparison by the same limits.
+#[test]
+fn limits_by_region() {
+    let region = "Limits(gouge: 0.02, excess: 0.1, regions: [Region(name: \"floor\", within: Block(min: (-16, -3.5, 2.9), max: (16, 3.5, 3.1)), gouge: 0.02, excess: 0.03)])";
+    let loose = "Limits(gouge: 0.02, excess: 0.1)";
+    for (limits, code) in [(loose, 0), (region, 1)] {
+        let folder = workdir(&job("", 12.0, limits));
+        fs::write(folder.path("part.nc"), PROGRAM.replace("Z3\n", "Z3.06\n")).unwrap();
+        let (report, findings) = verified(&folder, code, &[]);
+        let found: Vec<_> = findings
+            .iter()
+            .map(|found| (found.kind.as_str(), found.region.as_deref()))
+            .collect();
+        let expected: &[_] = if code == 1 { &[("excess", Some("floor"))] } else { &[] };
+        assert_eq!(found, expected);
+        let page = fs::read_to_string(folder.path("out/report.html")).unwrap();
+        assert_eq!(page.contains("<dd>region floor</dd>"), code == 1);
+        if code == 0 {
+            continue;
+        }
+        // The same of the part as dexels.
+        folder.good(&["simulate", "job.ron", "--only", "binary", "--out", "made"]);
+        let json = folder.good(&[
+            "compare",
+            "made/part.dexels",
+            "part.ply",
+            "--limits",
+            "job.ron",
+            "--out",
+            "cmp",
+            "--size",
+            "60x40",
+            "--json",
+        ]);
+        let compared: ComparisonReport = serde_json::from_str(&json).unwrap();
+        let own = report.regions.unwrap();
+        assert_eq!(compared.regions, own);
+        assert_eq!(own.len(), expected.len());
+        for region in own {
+            assert_eq!(
+                (region.kind.as_str(), region.region.as_deref()),
+                ("excess", Some("floor"))
+            );
+            // On the floor of 30 × 6 mm.
+            assert!(
+                (region.depth - 0.06).abs() < 1e-3 && (region.area - 180.0).abs() < 35.0,
+                "{region:?}"
+            );
+        }
+        let words = folder.good(&[
+            "compare",
+            "made/part.dexels",
+            "part.ply",
+            "--limits",
+            "0.01,0.05",
+            "--out",
+            "cmp",
+            "--size",
+            "60x40",
+        ]);
+        assert!(
+            words.contains("limits  1 region deeper than 0.010000 or higher than 0.050000 mm"),
+            "{words}"
+        );
     }
 }

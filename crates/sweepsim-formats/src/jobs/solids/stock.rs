@@ -9,7 +9,7 @@ use crate::error::{FormatError, Problem};
 use crate::jobs::place::Step;
 use crate::jobs::read::JobReader;
 use crate::jobs::schema;
-use crate::meshes::{MeshFormat, read_mesh_file, read_stl};
+use crate::meshes::{Colour, MeshFormat, read_coloured_mesh_file, read_stl};
 
 impl JobReader<'_> {
     /// The stock, or a part of it, that the steps lead to.
@@ -73,7 +73,7 @@ impl JobReader<'_> {
                     radius: radius * self.unit,
                 })
             }
-            schema::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", at)?)),
+            schema::Stock::Mesh(ref name) => Ok(Stock::Mesh(self.mesh(name, "stock", at)?.0)),
             schema::Stock::Dexels(ref name) => self.dexels(name, at, grid),
             schema::Stock::Union(ref parts) => Ok(Stock::Union(list(parts, 0)?)),
             schema::Stock::Intersection(ref parts) => Ok(Stock::Intersection(list(parts, 0)?)),
@@ -104,23 +104,29 @@ impl JobReader<'_> {
         ))
     }
 
-    /// The triangles of a file that the job names, in millimetres.
-    pub(crate) fn mesh(&self, name: &str, what: &'static str, steps: &[Step]) -> Result<TriangleSoup, FormatError> {
+    /// The triangles of a file that the job names, in millimetres, and their colours.
+    pub(crate) fn mesh(
+        &self,
+        name: &str,
+        what: &'static str,
+        steps: &[Step],
+    ) -> Result<(TriangleSoup, Vec<Option<Colour>>), FormatError> {
         let file = self.beside(name);
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
-        let mesh = if known {
-            let mesh = self.named(read_mesh_file(&file), &file, what, steps)?;
-            mesh.soup().unwrap_or_default()
+        let (mesh, colours) = if known {
+            let (mesh, colours) = self.named(read_coloured_mesh_file(&file), &file, what, steps)?;
+            (mesh.soup().unwrap_or_default(), colours)
         } else {
-            self.named(read_stl(&file), &file, what, steps)?
+            (self.named(read_stl(&file), &file, what, steps)?, Vec::new())
         };
-        Ok(if self.unit == 1.0 {
+        let mesh = if self.unit == 1.0 {
             mesh
         } else {
             let scaled = mesh.triangles.iter().map(|t| t.map(|p| p.map(|c| c * self.unit)));
             TriangleSoup {
                 triangles: scaled.collect(),
             }
-        })
+        };
+        Ok((mesh, colours))
     }
 }

@@ -2,6 +2,7 @@
 
 mod by_force;
 mod deviation;
+mod regions;
 mod removal;
 mod setups;
 mod threads;
