@@ -3,6 +3,7 @@
 mod command;
 mod directions;
 mod exchange;
+mod inspect;
 mod page;
 mod programs;
 mod setups;

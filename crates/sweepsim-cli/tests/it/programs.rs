@@ -162,8 +162,9 @@ fn inspect_says_what_a_program_does() {
     let said = folder.good(&["inspect", "plate.cls"]);
     for line in [
         "title  plate",
-        "path  3 moves in 1 piece, 1 rapid",
-        "units  millimetres",
+        "program  APT or CLSF, in millimetres",
+        "moves  2 feed moves and 1 rapid, in 1 piece",
+        "tool axis  z all along",
         "tool  3: APT cutter, diameter 10.000, flutes 25.000, shank 10.000, \"10MM MILL\"",
         "2 feed moves, 57.000 mm, 6.8 s; 1 rapid, 22.000 mm",
         "stock  block of 30.000 × 20.000 × 6.0000 mm",

@@ -11,6 +11,7 @@ use super::nurbs::Nurbs;
 use super::statement::{Statement, Statements};
 use super::words::{IGNORED, REFUSED, ROTARY, is_geometry};
 use crate::model::event::{Event, EventKind};
+use crate::model::names::Format;
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
 use crate::model::read_options::ReadOptions;
 use crate::model::stock::StockDescription;
@@ -126,6 +127,7 @@ impl Reader<'_> {
     fn finish(mut self) -> Program {
         let tools = self.tools.finish(&mut self.notes);
         Program {
+            format: Some(Format::Apt),
             title: self.title,
             units: self.units.unwrap_or_default(),
             poses: self.poses,

@@ -10,7 +10,7 @@ use crate::machines::{Position, WorkFrame};
 use crate::model::event::{Event, EventKind};
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
-use crate::text::error::NcProblem;
+use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The most events and calls: bounds the memory that a file of a few bytes can demand.
 const MOST_EVENTS: usize = 5_000_000;
@@ -70,6 +70,29 @@ impl Track {
             exact_arcs: options.exact_arcs,
             contour: Contour::default(),
         }
+    }
+
+    /// Ends the contour that may be on, after all blocks of `text`. The problems found so far, and what is wrong with the program as a whole.
+    pub fn close(&mut self, text: &str, lenient: bool, mut errors: Vec<NcError>) -> Result<(), NcError> {
+        if let Err(problem) = self.end_compensation(None) {
+            if lenient {
+                self.note(format!("left out: {problem}"));
+            } else {
+                let line = self.place.line.max(1);
+                let whole = text.lines().nth(line - 1).unwrap_or("");
+                let position = TextPosition::in_line(line, whole, 1, whole.chars().count());
+                errors.push(NcError::new(problem, Some(position)));
+            }
+        }
+        if let Some(error) = NcError::all(errors) {
+            return Err(error);
+        }
+        if self.program.poses.is_empty() {
+            let line = text.lines().count().max(1);
+            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
+            return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
+        }
+        Ok(())
     }
 
     pub fn finish(mut self) -> Program {

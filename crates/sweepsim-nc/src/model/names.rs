@@ -37,6 +37,23 @@ impl Controller {
     /// The names that [`named`](Self::named) knows.
     pub const NAMES: [&str; 6] = ["linuxcnc", "fanuc", "haas", "siemens", "heidenhain", "grbl"];
 
+    /// Its name.
+    ///
+    /// ```
+    /// assert_eq!(sweepsim_nc::Controller::Haas.name(), "haas");
+    /// ```
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LinuxCnc => "linuxcnc",
+            Self::Fanuc => "fanuc",
+            Self::Haas => "haas",
+            Self::Siemens => "siemens",
+            Self::Heidenhain => "heidenhain",
+            Self::Grbl => "grbl",
+        }
+    }
+
     /// The control of this name, in any case.
     ///
     /// ```

@@ -8,6 +8,8 @@ use sweepsim_motion::{Move, Pose};
 
 use crate::machines::{Machine, Position};
 use crate::model::event::Event;
+use crate::model::names::Format;
+use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
 
@@ -147,6 +149,10 @@ impl std::fmt::Display for Note {
 pub struct Program {
     /// The files that were read, the main program first; empty if the program came as text.
     pub files: Vec<PathBuf>,
+    /// The format that it was read as.
+    pub format: Option<Format>,
+    /// The control that it was read for: as given, or as its text says.
+    pub controller: Option<Controller>,
     /// The name or title that the program gives itself.
     pub title: Option<String>,
     /// The units of the program's words at its first move. Poses are in millimetres whatever they are; feeds are as written.

@@ -21,6 +21,16 @@ pub struct ToolUsage {
     pub rapid_length: f64,
     /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known; axes do not accelerate here.
     pub seconds: f64,
+    /// The duration of the rapids, in seconds: see [`Program::times`].
+    pub rapid_seconds: f64,
+    /// How many of the feed moves are arcs.
+    pub arcs: usize,
+    /// The box around the tip in its feed moves: the smallest and the largest coordinates, in millimetres.
+    pub extent: Option<[[f64; 3]; 2]>,
+    /// The smallest and the largest feed, in millimetres per minute, of the moves whose feed counts minutes.
+    pub feeds: Option<[f64; 2]>,
+    /// The slowest and the fastest turn of the spindle in its feed moves, in revolutions per minute.
+    pub speeds: Option<[f64; 2]>,
     /// The number of feed moves of unknown duration: without a feed, or per revolution of a spindle of unknown speed.
     pub untimed: usize,
 }
@@ -42,6 +52,7 @@ impl Program {
         let mut events = self.events.iter().peekable();
         let mut rpm = None;
         let mut last: Option<&ProgramPose> = None;
+        let times = self.times();
         for (index, pose) in self.poses.iter().enumerate() {
             let at = all.iter().position(|usage| usage.tool == pose.tool).unwrap_or_else(|| {
                 all.push(ToolUsage {
@@ -65,6 +76,9 @@ impl Program {
             }
             if let (true, Some(last)) = (pose.joined, last) {
                 usage.add(last, pose, self.units.in_mm(), rpm);
+                if pose.rapid {
+                    usage.rapid_seconds += times[index].seconds.unwrap_or(0.0);
+                }
             }
             last = Some(pose);
         }
@@ -82,6 +96,24 @@ impl ToolUsage {
         }
         self.feed_moves += 1;
         self.feed_length += length;
+        self.arcs += usize::from(matches!(to.way.course, Course::Arc(_)));
+        for tip in [from.pose.tip(), to.pose.tip()] {
+            let [low, high] = self.extent.get_or_insert([tip; 2]);
+            for k in 0..3 {
+                low[k] = low[k].min(tip[k]);
+                high[k] = high[k].max(tip[k]);
+            }
+        }
+        let widen = |range: &mut Option<[f64; 2]>, value: f64| {
+            let [low, high] = range.get_or_insert([value; 2]);
+            (*low, *high) = (low.min(value), high.max(value));
+        };
+        if let (Some(feed), FeedMode::PerMinute) = (to.feed, to.feed_mode) {
+            widen(&mut self.feeds, feed * unit);
+        }
+        if let Some(rpm) = rpm {
+            widen(&mut self.speeds, rpm);
+        }
         let minutes = match (to.feed.filter(|feed| *feed > 0.0), to.feed_mode) {
             (Some(feed), FeedMode::PerMinute) => Some(length / (feed * unit)),
             (Some(feed), FeedMode::PerRevolution) => rpm.map(|rpm| length / (feed * unit * rpm)),

@@ -7,6 +7,7 @@ use std::io::Write;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use sweepsim_motion::{Move, Pose};
 
+use crate::model::names::Format;
 use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::text::numbers::shortest;
@@ -45,7 +46,10 @@ pub fn read(text: &str, unit: f64) -> Result<Program, NcError> {
         return Err(NcError::new(problem, None));
     }
     let mut columns: Option<Vec<usize>> = None;
-    let mut program = Program::default();
+    let mut program = Program {
+        format: Some(Format::Table),
+        ..Program::default()
+    };
     let mut record = StringRecord::new();
     loop {
         match reader.read_record(&mut record) {

@@ -2,13 +2,17 @@
 
 use sweepsim_motion::Pose;
 
+use crate::model::names::Format;
 use crate::model::program::{Note, Program, ProgramPose};
 use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// Reads rows `x y z i j k`, separated by white space, commas or semicolons. `None` if the first one does not have six numbers.
 pub(crate) fn read(text: &str, unit: f64) -> Option<Result<Program, NcError>> {
     let rows = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let mut program = Program::default();
+    let mut program = Program {
+        format: Some(Format::Rows),
+        ..Program::default()
+    };
     for (index, line) in rows {
         let words: Vec<&str> = line
             .split(|c: char| c.is_whitespace() || matches!(c, ',' | ';'))

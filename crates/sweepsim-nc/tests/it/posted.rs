@@ -61,39 +61,68 @@ fn runs() -> impl Strategy<Value = (usize, Vec<Axes>, f64)> {
     )
 }
 
+/// Posts positions of a machine as poses, and reads them back.
+#[track_caller]
+fn keeps_the_poses(name: &str, positions: &[Axes], length: f64, tip_control: bool, rotary_law: bool) {
+    let mut description = machine(name).1.description().clone();
+    description.tool_lengths.insert(3, length);
+    let machine = Machine::new(description).unwrap();
+    let kinematics = machine.kinematics.clone().unwrap();
+    let mut poses: Vec<Pose> = positions
+        .iter()
+        .map(|(xyz, abc)| kinematics.pose(&Position::new(*xyz, *abc), length).unwrap())
+        .collect();
+    // A block that moves nothing has no pose of its own.
+    poses.dedup();
+    let posted = write::GcodeOptions::for_machine(machine.clone(), tip_control);
+    let text = write::gcode(&program(&poses), &posted).unwrap().text;
+    let mut options = options(machine);
+    if rotary_law {
+        options.law = AxisLaw::Rotary;
+    }
+    let again = gcode::read(&text, &options).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let found = ends(&again);
+    assert_eq!(found.len(), poses.len(), "{}", text);
+    for (found, expected) in found.iter().zip(&poses) {
+        assert!(
+            apart(found.tip(), expected.tip()) < 1e-9,
+            "{found:?} {expected:?}\n{text}"
+        );
+        assert!(
+            apart(found.axis(), expected.axis()) < 1e-9,
+            "{found:?} {expected:?}\n{text}"
+        );
+    }
+    // The axes are known at each pose, and are where the machine is.
+    assert_eq!(again.positions.len(), again.poses.len());
+    for (position, pose) in again.positions.iter().zip(&again.poses) {
+        assert!(apart(kinematics.pose(position, length).unwrap().tip(), pose.pose.tip()) < 1e-9);
+    }
+}
+
+/// All twelve machines, whatever the random ones are.
+#[test]
+fn twelve_machines() {
+    let positions = [
+        ([10.0, -20.0, 30.0], [0.0; 3]),
+        ([11.0, -22.0, 33.0], [25.0, -35.0, 70.0]),
+        ([-60.0, 5.0, 12.0], [25.0, -35.0, -80.0]),
+        ([0.5, 0.25, -4.0], [-15.0, 60.0, 10.0]),
+    ];
+    assert_eq!(Machine::names().len(), 12);
+    for name in Machine::names() {
+        for (tip_control, rotary_law) in [(false, false), (false, true), (true, false), (true, true)] {
+            keeps_the_poses(name, &positions, 87.5, tip_control, rotary_law);
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
     fn every_machine_keeps_the_poses((index, positions, length) in runs(), tip_control: bool, rotary_law: bool) {
-        let mut description = machine(Machine::names()[index]).1.description().clone();
-        description.tool_lengths.insert(3, length);
-        let machine = Machine::new(description).unwrap();
-        let kinematics = machine.kinematics.clone().unwrap();
-        let mut poses: Vec<Pose> = positions
-            .iter()
-            .map(|(xyz, abc)| kinematics.pose(&Position::new(*xyz, *abc), length).unwrap())
-            .collect();
-        // A block that moves nothing has no pose of its own.
-        poses.dedup();
-        let posted = write::GcodeOptions::for_machine(machine.clone(), tip_control);
-        let text = write::gcode(&program(&poses), &posted).unwrap().text;
-        let mut options = options(machine);
-        if rotary_law {
-            options.law = AxisLaw::Rotary;
-        }
-        let again = gcode::read(&text, &options).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let found = ends(&again);
-        prop_assert_eq!(found.len(), poses.len(), "{}", text);
-        for (found, expected) in found.iter().zip(&poses) {
-            prop_assert!(apart(found.tip(), expected.tip()) < 1e-9, "{found:?} {expected:?}\n{text}");
-            prop_assert!(apart(found.axis(), expected.axis()) < 1e-9, "{found:?} {expected:?}\n{text}");
-        }
-        // The axes are known at each pose, and are where the machine is.
-        prop_assert_eq!(again.positions.len(), again.poses.len());
-        for (position, pose) in again.positions.iter().zip(&again.poses) {
-            prop_assert!(apart(kinematics.pose(position, length).unwrap().tip(), pose.pose.tip()) < 1e-9);
-        }
+        keeps_the_poses(Machine::names()[index], &positions, length, tip_control, rotary_law);
     }
 
     /// Between the poses of a block, the tool is where the machine's axes put it, within the tolerance.

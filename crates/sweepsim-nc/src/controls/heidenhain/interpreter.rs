@@ -11,8 +11,9 @@ use super::unit::Unit;
 use super::values::Parameters;
 use crate::drive::{Place, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
+use crate::model::names::Format;
 use crate::model::program::{Program, Units};
-use crate::model::read_options::ReadOptions;
+use crate::model::read_options::{Controller, ReadOptions};
 use crate::model::stock::StockDescription;
 use crate::text::error::{NcError, NcProblem, TextPosition};
 
@@ -147,24 +148,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
             }
         }
     }
-    if let Err(problem) = reader.track.end_compensation(None) {
-        if options.lenient {
-            reader.track.note(format!("left out: {problem}"));
-        } else {
-            let line = reader.track.place.line.max(1);
-            let text = text.lines().nth(line - 1).unwrap_or("");
-            let position = TextPosition::in_line(line, text, 1, text.chars().count());
-            errors.push(NcError::new(problem, Some(position)));
-        }
-    }
-    if let Some(error) = NcError::all(errors) {
-        return Err(error);
-    }
-    if reader.track.program.poses.is_empty() {
-        let line = text.lines().count().max(1);
-        let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
-        return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
-    }
+    reader.track.close(text, options.lenient, errors)?;
     Ok(reader.finish())
 }
 
@@ -176,6 +160,8 @@ impl Reader<'_> {
                 max: [x0.max(x1), y0.max(y1), z0.max(z1)],
             });
         }
+        self.track.program.format = Some(Format::Gcode);
+        self.track.program.controller = Some(Controller::Heidenhain);
         self.track.program.units = if self.inch { Units::Inch } else { Units::Mm };
         self.track.finish()
     }

@@ -11,9 +11,11 @@ use super::language::unit::{Unit, parts};
 use super::variables::{DEEPEST_CALL, MOST_VARIABLES};
 use super::words::Modes;
 use crate::drive::{Sense, Track};
+use crate::model::names::Format;
 use crate::model::program::Program;
-use crate::model::read_options::ReadOptions;
+use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::tools::comments;
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
@@ -114,25 +116,14 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
             }
         }
     }
-    if let Err(problem) = reader.track.end_compensation(None) {
-        let place = reader.track.place;
-        if options.lenient {
-            reader.track.note(format!("left out: {problem}"));
-        } else {
-            let line = text.lines().nth(place.line.saturating_sub(1)).unwrap_or("");
-            let position = TextPosition::in_line(place.line.max(1), line, 1, line.chars().count());
-            errors.push(NcError::new(problem, Some(position)));
-        }
-    }
-    if let Some(error) = NcError::all(errors) {
-        return Err(error);
-    }
-    if reader.track.program.poses.is_empty() {
-        let line = text.lines().count().max(1);
-        let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
-        return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
-    }
-    Ok(reader.track.finish())
+    reader.track.close(text, options.lenient, errors)?;
+    let mut program = reader.track.finish();
+    program.format = Some(Format::Gcode);
+    program.controller = Some(Controller::Siemens);
+    let comments = comments::read(text, program.units.in_mm());
+    program.tools = comments.tools;
+    program.stock = comments.stock;
+    Ok(program)
 }
 
 fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<usize>, files: &[PathBuf]) -> NcError {

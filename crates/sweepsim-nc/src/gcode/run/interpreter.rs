@@ -21,6 +21,7 @@ use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
 use crate::gcode::trace::Canonical;
+use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{NcError, NcProblem, TextPosition};
@@ -150,6 +151,8 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         }
         None => {
             let mut program = reader.state.finish();
+            program.format = Some(Format::Gcode);
+            program.controller = reader.controller;
             program.files = reader.files;
             Ok(program)
         }

@@ -152,18 +152,6 @@ pub fn gcode(program: &Program, options: &GcodeOptions) -> Result<GcodeText, Gco
     Ok(GcodeText { text, lost: plan.lost })
 }
 
-/// The name of a control, as users write it.
-fn name(dialect: Controller) -> &'static str {
-    match dialect {
-        Controller::LinuxCnc => "linuxcnc",
-        Controller::Fanuc => "fanuc",
-        Controller::Haas => "haas",
-        Controller::Siemens => "siemens",
-        Controller::Heidenhain => "heidenhain",
-        Controller::Grbl => "grbl",
-    }
-}
-
 /// A number with at most this many decimals, without exponent.
 fn number(value: f64, decimals: usize) -> String {
     let mut text = format!("{value:.decimals$}");

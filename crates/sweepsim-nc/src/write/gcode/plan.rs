@@ -6,7 +6,7 @@ use sweepsim_motion::{Course, Pose, TipArc, Turning};
 
 use super::arcs::{chords, in_plane, is_whole};
 use super::steps::{Aim, Block, Language, PlaneArc, Step};
-use super::{GcodeError, GcodeOptions, name, number};
+use super::{GcodeError, GcodeOptions, number};
 use crate::machines::{Kinematics, Position};
 use crate::model::event::EventKind;
 use crate::model::program::{FeedMode, Program, ProgramPose};
@@ -40,7 +40,7 @@ pub(super) struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     pub fn new(program: &'a Program, options: &'a GcodeOptions) -> Result<Self, GcodeError> {
-        let control = name(options.dialect);
+        let control = options.dialect.name();
         let machine = match &options.machine {
             None => None,
             Some(machine) => Some(machine.kinematics.as_deref().ok_or(GcodeError::NoAxes)?),
