@@ -8,11 +8,12 @@ use sweepsim_nc::{Program, ReadOptions, read_file};
 /// The end of a block: X, Y, Z in millimetres and A, B, C.
 type End = ([f64; 3], [f64; 3]);
 
-/// The ends of the blocks of a program that has no offsets but 0, no cycles, variables or subprograms, by line. `None`: it has some.
+/// The ends of the blocks of a program that has no offsets of tools, no cycles, variables or subprograms, by line. `None`: it has some.
 fn ends(text: &str) -> Option<BTreeMap<usize, End>> {
     let mut found = BTreeMap::new();
     let (mut at, mut absolute, mut unit, mut moving) = ([None::<f64>; 3], true, 1.0, false);
     let mut turned = [0.0; 3];
+    let (mut zeros, mut zero) = ([[0.0; 3]; 2], 0);
     for (index, line) in text.lines().enumerate() {
         let mut code = String::new();
         let mut comment = false;
@@ -55,20 +56,21 @@ fn ends(text: &str) -> Option<BTreeMap<usize, End>> {
                 // Where that is only the machine knows.
                 ('G', 530) => by_machine = true,
                 ('G', 100) => sets = true,
-                ('G', 40 | 170 | 400 | 430 | 490 | 540 | 550 | 610 | 611 | 640 | 800 | 930 | 940 | 980 | 911) => {}
+                ('G', 540) => zero = 0,
+                ('G', 550) => zero = 1,
+                ('G', 40 | 170 | 400 | 430 | 490 | 610 | 611 | 640 | 800 | 930 | 940 | 980 | 911) => {}
                 ('G', 180 | 190) => {}
                 ('G', _) | ('U' | 'V' | 'W', _) => return None,
                 _ => {}
             }
         }
         if sets {
-            // Work offsets of 0 change nothing.
-            if words
-                .iter()
-                .any(|(letter, value)| "XYZR".contains(*letter) && *value != 0.0)
-            {
+            // G10 L2 P: where the zero of a work offset is.
+            let word = |wanted: char| words.iter().find(|(letter, _)| *letter == wanted).map(|word| word.1);
+            let (Some(2.0), Some(number @ (1.0 | 2.0)), None) = (word('L'), word('P'), word('R')) else {
                 return None;
-            }
+            };
+            zeros[number as usize - 1] = ['X', 'Y', 'Z'].map(|axis| word(axis).unwrap_or(0.0) * unit);
             continue;
         }
         for (letter, value) in words {
@@ -78,7 +80,7 @@ fn ends(text: &str) -> Option<BTreeMap<usize, End>> {
             if let Some(k) = "XYZ".find(letter) {
                 at[k] = match at[k] {
                     _ if by_machine => None,
-                    _ if absolute => Some(value * unit),
+                    _ if absolute => Some(value * unit + zeros[zero][k]),
                     Some(now) => Some(now + value * unit),
                     None => return None,
                 };

@@ -20,6 +20,12 @@ pub(crate) struct MoveEnd {
     pub abc: [f64; 3],
 }
 
+/// Whether two poses are the same but for the rounding of a change of coordinates.
+fn is_same(a: &Pose, b: &Pose) -> bool {
+    let near = |(a, b): (f64, f64)| (a - b).abs() <= 1e-14 * (1.0 + a.abs());
+    a.axis() == b.axis() && a.tip().into_iter().zip(b.tip()).all(near)
+}
+
 /// The state of the interpreter.
 pub(crate) struct State {
     pub xyz: [Option<f64>; 3],
@@ -275,7 +281,7 @@ impl State {
             _ => self.driver.pose(&at, coordinates)?,
         };
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
-        let same = !moves && self.joined && self.poses.last().is_some_and(|last| last.pose == pose);
+        let same = !moves && self.joined && self.poses.last().is_some_and(|last| is_same(&last.pose, &pose));
         if !same {
             if self.poses.len() >= self.most_poses {
                 return Err(self.too_many());

@@ -213,3 +213,12 @@ fn bezier_curves() {
         assert!((tip[1] - tip[0] * tip[0]).abs() < 1e-9);
     }
 }
+
+/// A change of coordinates moves nothing, not even by a rounding.
+#[test]
+fn offsets_leave_no_moves() {
+    let found = program(
+        "G10 L2 P2 X0 Y0 Z0\nG55\nG0 X-33.306 Y-11.01 Z2\nG1 X1 F9\nG0 X-33.306 Y-11.01\nG10 L2 P2 Y-101.6\nG55\nZ2\nG1 Y101.6\n",
+    );
+    assert_near(&tips(&found)[2..], &[[-33.306, -11.01, 2.0], [-33.306, 0.0, 2.0]]);
+}
