@@ -1,8 +1,8 @@
 //! A three-axis program of short moves: what the closed forms of translations are for.
 
 use super::{on, shortest};
-use sweepsim::{Method, Options, sweep};
-use sweepsim_dexel::Grid;
+use sweepsim::{Cut, Method, Options, simulate, sweep};
+use sweepsim_dexel::{Grid, Stock};
 use sweepsim_motion::{Apt, Path, Pose, Tool};
 
 /// Side of the square, in millimetres.
@@ -66,17 +66,34 @@ pub fn once(name: &str, cells: usize, method: Method) -> Result<u64, String> {
     }
 }
 
-/// The program with several tools on 1,000 × 1,000 lines, one thread.
+/// Removes the program from a block once, which its lowest cuts leave a bottom. The number of crossings.
+pub fn cut(name: &str, cells: usize) -> Result<u64, String> {
+    let half = 0.5 * SIDE;
+    let grid = Grid::new([-half, -half], [half, half], [cells; 2]).map_err(|error| error.to_string())?;
+    let block = Stock::Block {
+        min: [-half, -half, -10.0],
+        max: [half, half, 2.0],
+    };
+    let stock = block.dexels(&grid).map_err(|error| error.to_string())?;
+    let (tool, path) = (tool(name)?, path()?);
+    let done = simulate(stock, &[Cut::new(&tool, &path)], &Options::new(1e-6), &());
+    done.map(|done| done.statistics.crossings)
+        .map_err(|error| error.to_string())
+}
+
+/// The program with several tools on 1,000 × 1,000 lines, one thread: swept by closed forms and by charts, and removed from a block.
 pub fn three_axis() -> Result<(), String> {
-    println!("{:<8} {:>11} {:>9} {:>9}", "tool", "crossings", "s", "charts, s");
+    println!(
+        "{:<8} {:>11} {:>9} {:>9} {:>11} {:>9}",
+        "tool", "crossings", "sweep, s", "charts, s", "crossings", "cut, s"
+    );
     for name in TOOLS {
         let timed = |method| on(1, || shortest(|| once(name, 1000, method).map(drop)))?;
         let crossings = once(name, 1000, Method::default())?;
-        println!(
-            "{name:<8} {crossings:>11} {:>9.3} {:>9.3}",
-            timed(Method::default())?,
-            timed(Method::Charts)?
-        );
+        let (closed, charts) = (timed(Method::default())?, timed(Method::Charts)?);
+        let removed = cut(name, 1000)?;
+        let simulated = on(1, || shortest(|| cut(name, 1000).map(drop)))??;
+        println!("{name:<8} {crossings:>11} {closed:>9.3} {charts:>9.3} {removed:>11} {simulated:>9.3}");
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! A tool of revolution, prepared for closed forms.
 
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::Range;
 use sweepsim_motion::{MeridianCurve, MeridianShape, Tool};
 
@@ -46,6 +47,8 @@ pub(crate) struct Rim {
 /// The outline of a tool of revolution, as far as it has closed forms.
 #[derive(Clone, Debug)]
 pub(crate) struct Outline {
+    /// Whether all pieces have a closed form.
+    pub(crate) complete: bool,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) rims: Vec<Rim>,
 }
@@ -62,7 +65,7 @@ impl Outline {
         if curves.is_empty() {
             return None;
         }
-        let pieces = curves.iter().filter_map(piece).collect();
+        let pieces: Vec<Piece> = curves.iter().filter_map(piece).collect();
         let rim = |pair: &[MeridianCurve]| {
             let [before, after] = pair else { return None };
             (!after.edges.is_empty()).then(|| Rim {
@@ -73,7 +76,45 @@ impl Outline {
             })
         };
         let rims = curves.windows(2).filter_map(rim).collect();
-        Some(Self { pieces, rims })
+        let complete = pieces.len() == curves.len();
+        Some(Self { complete, pieces, rims })
+    }
+}
+
+impl Piece {
+    /// The ends of a line as far as it is below a height, at least; some of it is.
+    pub(crate) fn below(&self, height: f64) -> [[f64; 2]; 2] {
+        let cut = |from: [f64; 2], to: [f64; 2]| {
+            if to[1] <= height {
+                return to;
+            }
+            let share = (height - from[1]) / (to[1] - from[1]);
+            [from[0] + share * (to[0] - from[0]), height]
+        };
+        if self.from[1] <= self.to[1] {
+            [self.from, cut(self.from, self.to)]
+        } else {
+            [cut(self.to, self.from), self.to]
+        }
+    }
+
+    /// The range of `ζ`.
+    pub(crate) fn heights(&self) -> [f64; 2] {
+        let ends = [self.from[1].min(self.to[1]), self.from[1].max(self.to[1])];
+        match self.shape {
+            Shape::Line { .. } => ends,
+            // Of the whole circle, if it passes its lowest or highest point.
+            Shape::Arc {
+                centre, radius, angles, ..
+            } => {
+                let turns = |angle: f64| ((angle - FRAC_PI_2) / PI).floor();
+                if turns(angles[0]) == turns(angles[1]) {
+                    ends
+                } else {
+                    [ends[0].min(centre[1] - radius), ends[1].max(centre[1] + radius)]
+                }
+            }
+        }
     }
 }
 

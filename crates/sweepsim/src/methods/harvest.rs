@@ -59,6 +59,22 @@ impl Harvest {
         }
     }
 
+    /// Drops the crossings since a mark that are above a height; the lines of those nearer to it than `near` are open.
+    pub fn keep_below(&mut self, mark: usize, height: f64, near: f64) {
+        let mut kept = mark;
+        for at in mark..self.crossings.len() {
+            let (line, crossing) = self.crossings[at];
+            // NaN is near.
+            if !((crossing.z - height).abs() > near) {
+                self.open.push((line, Cause::Smallest));
+            } else if crossing.z < height {
+                self.crossings[kept] = self.crossings[at];
+                kept += 1;
+            }
+        }
+        self.crossings.truncate(kept);
+    }
+
     /// Adds the statistics of another search.
     pub fn count(&mut self, statistics: &ChartStatistics) {
         self.statistics.boxes += statistics.boxes;

@@ -8,7 +8,7 @@ use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::placement::sides;
-use crate::methods::translation::{self, Collector, Heading, Neighbour};
+use crate::methods::translation::{self, Ceiling, Collector, Heading, Neighbour};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
 use crate::time::path_parts::PathPart;
@@ -26,6 +26,10 @@ pub(crate) struct Search<'a, M> {
     pub size: Size,
     /// The tool's meridian, if moves without rotation are to be solved in closed form.
     pub outline: Option<&'a Outline>,
+    /// A height above which crossings are not wanted.
+    pub ceiling: Option<&'a Ceiling>,
+    /// Heights closer than this may be the same.
+    pub near: f64,
     /// Number of the path, for sources.
     pub path: u32,
     pub monitor: &'a dyn Monitor,
@@ -38,6 +42,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         if !self.reaches(segment) {
             return;
         }
+        let mark = harvest.crossings.len();
         space.solvers.limit(self.lines.len());
         space.done.clear();
         if let Some(outline) = self.outline {
@@ -51,6 +56,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         self.placed(at, SegmentEnd::Start, space, harvest);
         if at + 1 == self.parts.len() {
             self.placed(at, SegmentEnd::Finish, space, harvest);
+        }
+        if let Some(ceiling) = self.ceiling {
+            harvest.keep_below(mark, ceiling.z, self.near);
         }
         harvest.count(&space.solvers.take_statistics());
         for cells in space.patches.iter_mut().chain(&mut space.edges) {
@@ -70,7 +78,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let source = |t: f64| self.source(at, t);
         let settled = [&mut done.patches[..], &mut done.edges[..]];
-        translation::envelope(outline, &heading, &mut collector, &source, settled);
+        translation::envelope(outline, &heading, (&mut collector, self.ceiling), &source, settled);
     }
 
     /// Settles what it can of the placement of a tool that stands along the lines between two moves without rotation.
@@ -101,7 +109,8 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             harvest,
         };
         let place = (tip, translation::slack(self.size.slack));
-        translation::placements(outline, place, sides, &mut collector, source, &mut space.done.placed);
+        let collector = (&mut collector, self.ceiling);
+        translation::placements(outline, place, sides, collector, source, &mut space.done.placed);
     }
 
     /// Whether any line passes near the segment.

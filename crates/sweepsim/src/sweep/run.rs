@@ -2,10 +2,13 @@
 
 use crate::error::SweepError;
 use crate::sweep::boundary_operator::BoundaryOperator;
-use crate::sweep::options::Options;
+use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
 use crate::sweep::report::{Statistics, Sweep, UnresolvedDexel};
-use crate::sweep::schedule::CHUNK;
+use crate::sweep::schedule::{CHUNK, SweepJob};
+use crate::sweep::simulation::heights::HeightMap;
+use crate::sweep::simulation::runs::Runs;
+use crate::time::path_parts::PathPart;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
@@ -23,10 +26,21 @@ pub fn sweep(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Sweep, SweepError> {
+    sweep_near(tool, path, grid, options, monitor, None)
+}
+
+/// As [`sweep`], but only where the tool comes near this material: elsewhere, nothing is certain.
+pub(crate) fn sweep_near(
+    tool: &Tool,
+    path: &Path,
+    grid: &Grid,
+    options: &Options,
+    monitor: &dyn Monitor,
+    material: Option<&HeightMap>,
+) -> Result<Sweep, SweepError> {
     let extent = grid.min().into_iter().chain(grid.max());
     let plan = Plan::new(tool, path, grid.frame(), extent, options)?;
-    let job = plan.job(tool, grid, options, monitor);
-    let parts = &plan.parts;
+    let mut job = plan.job(tool, grid, options, monitor);
     let mut volume = Dexels::empty(*grid);
     let mut statistics = Statistics {
         moves: path.moves(),
@@ -38,13 +52,29 @@ pub fn sweep(
         BoundaryOperator::Coverage => CHUNK,
         BoundaryOperator::Paper => 1,
     };
-    for (number, chunk) in parts.chunks(length).enumerate() {
+    let mut one = |job: &SweepJob, chunk: &[PathPart], done: usize| {
         let harvest = job.harvest(chunk)?;
         statistics.crossings += harvest.crossings.len() as u64;
         statistics.boxes += harvest.statistics.boxes;
         statistics.charts += harvest.statistics.charts;
         job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;
-        monitor.advance((number * length + chunk.len()).min(parts.len()), parts.len());
+        monitor.advance(done, plan.parts.len());
+        Ok::<(), SweepError>(())
+    };
+    match material {
+        None => {
+            for (number, chunk) in plan.parts.chunks(length).enumerate() {
+                one(&job, chunk, number * length + chunk.len())?;
+            }
+        }
+        Some(material) => {
+            let closed = options.method == Method::Auto && options.boundary == BoundaryOperator::Coverage;
+            for run in Runs::new(tool, &plan, (grid, material), length, closed) {
+                (job.mask, job.ceiling) = (run.mask, run.ceiling);
+                one(&job, &run.parts, run.done)?;
+            }
+            monitor.advance(plan.parts.len(), plan.parts.len());
+        }
     }
     statistics.covered = volume.covered();
     failed.sort_by_key(|u| (u.i, u.j));

@@ -12,6 +12,7 @@ use crate::methods::method::CrossingMethod;
 use crate::methods::planes::Planes;
 use crate::methods::search::Search;
 use crate::methods::surface::Surfaces;
+use crate::methods::translation::{self, Ceiling, Collector};
 use crate::methods::workspace::Workspace;
 use crate::repair_budget::RepairBudget;
 use crate::sweep::boundary_operator::BoundaryOperator;
@@ -20,6 +21,7 @@ use crate::sweep::plan::Plan;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
@@ -45,6 +47,7 @@ impl Plan {
             boundary: options.boundary,
             path: options.path_number,
             mask: None,
+            ceiling: None,
             size: Size {
                 spacing: grid.spacing(),
                 slack: self.tolerances.rounding(),
@@ -66,7 +69,9 @@ pub(crate) struct SweepJob<'a> {
     pub boundary: BoundaryOperator,
     pub path: u32,
     /// The lines that are asked for; `None` if all are.
-    pub mask: Option<&'a LineMask>,
+    pub mask: Option<Cow<'a, LineMask>>,
+    /// A height above which crossings are not wanted.
+    pub ceiling: Option<Ceiling>,
     pub size: Size,
     /// What repairs may cost.
     pub repairs: RepairBudget,
@@ -105,6 +110,8 @@ impl SweepJob<'_> {
             lines,
             size: self.size,
             outline: None,
+            ceiling: None,
+            near: self.tolerances.same_height(),
             path: self.path,
             monitor: self.monitor,
         }
@@ -116,10 +123,11 @@ impl SweepJob<'_> {
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
             .map(|share| {
-                let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask);
+                let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask.as_deref());
                 let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Auto);
                 let search = Search {
                     outline,
+                    ceiling: self.ceiling.as_ref(),
                     ..self.search(&method, chunk, &lines)
                 };
                 let mut harvest = Harvest::default();
@@ -142,6 +150,14 @@ impl SweepJob<'_> {
             .reserve(found.iter().map(|part| part.crossings.len()).sum());
         for part in found {
             all.merge(part);
+        }
+        if let Some(ceiling) = &self.ceiling {
+            let lines = Lattice::all(self.grid, shift).masked(self.mask.as_deref());
+            let mut collector = Collector {
+                lines: &lines,
+                harvest: &mut all,
+            };
+            translation::close(ceiling, chunk, self.size.slack, &mut collector);
         }
         Ok(all)
     }

@@ -1,11 +1,11 @@
 //! A program in its order: runs of moves, one after the other.
 
 use super::finding::Finding;
-use super::heights::HeightMap;
 use super::scene::{PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 use super::solid::MovingSolid;
 use super::target::Target;
 use crate::error::SweepError;
+use crate::sweep::heights::HeightMap;
 use crate::sweep::{CHUNK, Options};
 use std::ops::{ControlFlow, Range};
 use sweepsim_dexel::Dexels;

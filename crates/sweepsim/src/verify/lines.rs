@@ -1,6 +1,6 @@
 //! Material on some lines of a grid: as heights, which is all that the search for events needs.
 
-use super::heights::{Box3, window};
+use crate::sweep::heights::{Box3, window};
 use smallvec::SmallVec;
 use sweepsim_dexel::{Dexels, Grid, Interval};
 

@@ -18,7 +18,6 @@ mod depth;
 mod deviation;
 mod driver;
 mod finding;
-mod heights;
 mod lines;
 mod run;
 mod scene;

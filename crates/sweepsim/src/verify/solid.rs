@@ -1,13 +1,14 @@
 //! A solid that moves along a path: the cutter, or a body that moves with it.
 
-use super::heights::{Box3, HeightMap, window};
 use crate::error::SweepError;
 use crate::methods::line_mask::LineMask;
 use crate::methods::workspace::Workspace;
+use crate::sweep::heights::{Box3, HeightMap, window};
 use crate::sweep::{CHUNK, Method, Options, Plan, SweptLines};
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 use sweepsim_dexel::Grid;
@@ -173,7 +174,7 @@ impl<'a> MovingSolid<'a> {
         };
         let options = options.clone().method(method);
         let mut job = self.plan.job(self.tool, grid, &options, monitor);
-        job.mask = Some(mask);
+        job.mask = Some(Cow::Borrowed(mask));
         job.spaces = Arc::clone(&self.spaces);
         let mut swept = SweptLines::default();
         for chunk in parts.chunks(CHUNK) {

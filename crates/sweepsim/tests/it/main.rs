@@ -10,6 +10,7 @@ mod loops;
 mod methods;
 mod misuse;
 mod near_degenerate;
+mod near_material;
 mod rays;
 mod sections;
 mod spline_profiles;

@@ -7,8 +7,8 @@ use sweepsim::{Method, Options, Sweep, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid, Interval};
 use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Path, Pose, Profile, ProfileSegment, Taper, Tool, Turn};
 
-const TOLERANCE: f64 = 1e-6;
-const UP: [f64; 3] = [0.0, 0.0, 1.0];
+pub const TOLERANCE: f64 = 1e-6;
+pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 
 fn line(to: [f64; 2]) -> ProfileSegment {
     ProfileSegment::Line { to }
@@ -32,7 +32,7 @@ fn apt(a: f64, b: f64) -> Tool {
 }
 
 /// Every kind of tool, with whether all of its outline has closed forms.
-fn tools() -> Vec<(&'static str, Tool, bool)> {
+pub fn tools() -> Vec<(&'static str, Tool, bool)> {
     let barrel = Barrel {
         radius: 2.5,
         flank: 6.0,
@@ -103,13 +103,13 @@ fn tools() -> Vec<(&'static str, Tool, bool)> {
     ]
 }
 
-fn path(tips: &[[f64; 3]], axis: [f64; 3]) -> Path {
+pub fn path(tips: &[[f64; 3]], axis: [f64; 3]) -> Path {
     let poses = tips.iter().map(|tip| Pose::new(*tip, axis).expect("a pose"));
     Path::new(poses.collect()).expect("a path")
 }
 
 /// Whether the ends agree, each within the tolerance measured across the surface.
-fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
+pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
     let near = |(a, b): (&Interval, &Interval)| {
         [(a.lower, b.lower), (a.upper, b.upper)].iter().all(|(a, b)| {
             let steep = f64::from(a.normal[2]).abs().max(f64::from(b.normal[2]).abs()).max(1e-3);
@@ -180,7 +180,7 @@ fn tip() -> impl Strategy<Value = [f64; 3]> {
 }
 
 /// Few, unless the environment asks for a number.
-fn cases() -> u32 {
+pub fn cases() -> u32 {
     std::env::var("PROPTEST_CASES").map_or(24, |_| ProptestConfig::default().cases)
 }
 

@@ -39,7 +39,7 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
 }
 
 /// Whether a segment does not turn, and its tool stands exactly along the dexels.
-pub(super) fn stands(segment: &Segment) -> bool {
+pub(crate) fn stands(segment: &Segment) -> bool {
     segment.is_arc() && segment.turns().len() == 1 && is_upright(&segment.turns()[0])
 }
 

@@ -8,6 +8,7 @@
 //! Every decision (which curve, which time, which sign) is taken only beyond its rounding error; a line for which one is closer is left open, and
 //! solved by the general method.
 
+mod ceiling;
 mod graph;
 mod heading;
 
@@ -18,7 +19,8 @@ mod slant;
 mod strip;
 mod torus;
 
-pub(crate) use heading::{Heading, slack};
+pub(crate) use ceiling::{Ceiling, GAP, close};
+pub(crate) use heading::{Heading, slack, stands};
 
 pub(crate) use placed::{Neighbour, placements};
 pub(crate) use strip::envelope;

@@ -1,9 +1,9 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
-use super::Collector;
 use super::heading::stands;
 use super::rows::numbers;
+use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use std::f64::consts::PI;
@@ -45,11 +45,13 @@ pub(crate) fn placements(
     outline: &Outline,
     (tip, slack): ([f64; 3], f64),
     sides: [Neighbour; 2],
-    lines: &mut Collector,
+    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
     source: Source,
     done: &mut [bool],
 ) {
+    let spacing = lines.lines.spacing();
     let mut placed = Placed {
+        highest: ceiling.map_or(f64::INFINITY, |ceiling| ceiling.above(tip[2], spacing)),
         tip,
         slack,
         sides,
@@ -63,6 +65,8 @@ pub(crate) fn placements(
 }
 
 struct Placed<'a, 'b> {
+    /// What is this high above the tip is above the ceiling.
+    highest: f64,
     tip: [f64; 3],
     slack: f64,
     sides: [Neighbour; 2],
@@ -84,13 +88,13 @@ fn negative(g: f64, error: f64) -> Option<bool> {
 
 impl Placed<'_, '_> {
     fn piece(&mut self, piece: &Piece) {
+        if piece.heights()[0] > self.highest {
+            return;
+        }
         match piece.shape {
             Shape::Line { normal } => {
-                let ends = if piece.from[0] <= piece.to[0] {
-                    [piece.from, piece.to]
-                } else {
-                    [piece.to, piece.from]
-                };
+                let [from, to] = piece.below(self.highest);
+                let ends = if from[0] <= to[0] { [from, to] } else { [to, from] };
                 let slope = (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
                 let line = Radial::Line {
                     height: ends[0][1],

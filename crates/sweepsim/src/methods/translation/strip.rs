@@ -2,7 +2,7 @@
 
 use super::graph::Graph;
 use super::rows::{Row, rows};
-use super::{Collector, Heading, ring, slant, torus};
+use super::{Ceiling, Collector, Heading, ring, slant, torus};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
 use sweepsim_dexel::Source;
@@ -18,7 +18,7 @@ const LINES: f64 = 6.0;
 pub(crate) fn envelope(
     outline: &Outline,
     heading: &Heading,
-    lines: &mut Collector,
+    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
     source: &dyn Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
@@ -28,8 +28,13 @@ pub(crate) fn envelope(
         lines,
         source,
         spacing: 0.0,
+        highest: f64::INFINITY,
     };
     strip.spacing = strip.lines.lines.spacing();
+    if let Some(ceiling) = ceiling {
+        let lowest = heading.tip[2].min(heading.tip[2] + heading.way[2]);
+        strip.highest = ceiling.above(lowest, strip.spacing);
+    }
     for piece in &outline.pieces {
         if strip.piece(piece).is_some() {
             patches[piece.patches.clone()].fill(true);
@@ -48,6 +53,8 @@ struct Strip<'a, 'b> {
     lines: &'a mut Collector<'b>,
     source: &'a dyn Fn(f64) -> Source,
     spacing: f64,
+    /// What is this high above the tip is above the ceiling at all times.
+    highest: f64,
 }
 
 impl Strip<'_, '_> {
@@ -55,9 +62,12 @@ impl Strip<'_, '_> {
     fn piece(&mut self, piece: &Piece) -> Option<()> {
         let heading = self.heading;
         let poles = [piece.from[0] == 0.0, piece.to[0] == 0.0];
+        if piece.heights()[0] > self.highest {
+            return Some(());
+        }
         match piece.shape {
             Shape::Line { normal } => {
-                let graphs = slant::slants(heading, [piece.from, piece.to], normal)?;
+                let graphs = slant::slants(heading, piece.below(self.highest), normal)?;
                 self.all(&graphs);
             }
             Shape::Arc {
@@ -82,6 +92,9 @@ impl Strip<'_, '_> {
     }
 
     fn rim(&mut self, rim: &Rim) -> Option<()> {
+        if rim.height > self.highest {
+            return Some(());
+        }
         let graphs = ring::rim(self.heading, rim)?;
         self.all(&graphs);
         Some(())

@@ -1,9 +1,9 @@
 //! Cuts in tri-dexels: for walls of any direction, the lines of one set meet them at a steep angle.
 
+use super::simulate::{Cut, Simulation, simulate};
 use crate::error::SweepError;
 use crate::sweep::options::Options;
 use crate::sweep::report::Statistics;
-use crate::sweep::simulate::{Cut, Simulation, simulate};
 use sweepsim_dexel::{Dexels, TriDexels};
 use sweepsim_solve::Monitor;
 

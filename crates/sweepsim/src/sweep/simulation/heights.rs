@@ -7,7 +7,7 @@ const BLOCK: usize = 16;
 
 /// The lowest and the highest material of each line, and of blocks of lines. Since stock only shrinks, an old state stays an upper bound.
 #[derive(Clone, Debug)]
-pub(super) struct HeightMap {
+pub(crate) struct HeightMap {
     cells: [usize; 2],
     lines: Vec<[f64; 2]>,
     blocks: Vec<[f64; 2]>,
@@ -16,7 +16,7 @@ pub(super) struct HeightMap {
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 /// A box in the frame of a grid: its lowest and highest coordinate in each direction.
-pub(super) type Box3 = [[f64; 2]; 3];
+pub(crate) type Box3 = [[f64; 2]; 3];
 
 impl HeightMap {
     pub fn new(dexels: &Dexels) -> Self {
@@ -43,6 +43,14 @@ impl HeightMap {
             }
         }
         map
+    }
+
+    /// The highest material; −∞ without any.
+    pub fn top(&self) -> f64 {
+        self.blocks
+            .iter()
+            .map(|[_, upper]| *upper)
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn block(&self, i: usize, j: usize) -> usize {
@@ -97,7 +105,7 @@ impl HeightMap {
 }
 
 /// The columns and rows that a box covers, and one more on each side.
-pub(super) fn window(grid: &Grid, solid: &Box3) -> Option<[(usize, usize); 2]> {
+pub(crate) fn window(grid: &Grid, solid: &Box3) -> Option<[(usize, usize); 2]> {
     let spacing = grid.spacing();
     let range = |k: usize| {
         let cells = grid.cells()[k] as f64;

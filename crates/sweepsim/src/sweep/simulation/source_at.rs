@@ -1,7 +1,7 @@
 //! Finds the move that made a point of a surface.
 
-use crate::sweep::simulate::Simulation;
-use crate::sweep::tri::TriSimulation;
+use super::simulate::Simulation;
+use super::tri::TriSimulation;
 use sweepsim_dexel::{Dexels, Source};
 
 /// The end of a dexel near a point: its source and position.

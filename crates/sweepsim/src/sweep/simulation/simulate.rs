@@ -1,9 +1,10 @@
 //! Several cuts: removed from a stock, or swept together.
 
+use super::heights::HeightMap;
 use crate::error::SweepError;
 use crate::sweep::options::Options;
-use crate::sweep::report::Statistics;
-use crate::sweep::run::sweep;
+use crate::sweep::report::{Statistics, Sweep};
+use crate::sweep::run::sweep_near;
 use crate::time::swept_box::swept_box;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
@@ -83,13 +84,28 @@ impl Monitor for Share<'_> {
     }
 }
 
+/// One of several cuts.
+struct SweepCut<'a> {
+    cut: &'a Cut<'a>,
+    grid: &'a Grid,
+    options: Options,
+    share: Share<'a>,
+}
+
+impl SweepCut<'_> {
+    fn near(&self, material: Option<&HeightMap>) -> Result<Sweep, SweepError> {
+        let Cut { tool, path } = self.cut;
+        sweep_near(tool, path, self.grid, &self.options, &self.share, material)
+    }
+}
+
 /// Sweeps the cuts one after the other; the number of a cut becomes the path number of its sources.
 fn each(
     cuts: &[Cut],
     grid: &Grid,
     options: &Options,
     monitor: &dyn Monitor,
-    mut take: impl FnMut(Dexels),
+    mut take: impl FnMut(&SweepCut) -> Result<Statistics, SweepError>,
 ) -> Result<Statistics, SweepError> {
     let total = cuts.iter().map(|cut| cut.path.moves()).sum();
     let mut statistics = Statistics::default();
@@ -103,9 +119,13 @@ fn each(
             total,
         };
         let options = options.clone().path_number(u32::try_from(number).unwrap_or(u32::MAX));
-        let swept = sweep(cut.tool, cut.path, grid, &options, &share)?;
-        statistics.merge(&swept.statistics);
-        take(swept.volume);
+        let one = SweepCut {
+            cut,
+            grid,
+            options,
+            share,
+        };
+        statistics.merge(&take(&one)?);
         before += moves;
     }
     // A dexel may stay unresolved in several cuts; only the first reason is kept.
@@ -116,7 +136,7 @@ fn each(
 
 /// Removes the volumes that the cuts sweep, one after the other, from `stock`.
 ///
-/// [`Options::path_number`] is set to the number of each cut.
+/// Only what comes near material is computed, and counted in the statistics. [`Options::path_number`] is set to the number of each cut.
 ///
 /// # Errors
 /// Those of [`sweep`](crate::sweep).
@@ -145,10 +165,12 @@ pub fn simulate(
 ) -> Result<Simulation, SweepError> {
     let mut remaining = stock;
     let grid = *remaining.grid();
-    let mut statistics = each(cuts, &grid, options, monitor, |volume| {
+    let mut statistics = each(cuts, &grid, options, monitor, |cut| {
+        let swept = cut.near(Some(&HeightMap::new(&remaining)))?;
         remaining
-            .remove_all(&volume, options.tolerance)
+            .remove_all(&swept.volume, options.tolerance)
             .expect("all on one grid");
+        Ok(swept.statistics)
     })?;
     statistics.covered = remaining.covered();
     Ok(Simulation { remaining, statistics })
@@ -158,18 +180,15 @@ pub fn simulate(
 ///
 /// # Errors
 /// Those of [`sweep`](crate::sweep).
-pub fn sweep_all(
-    cuts: &[Cut],
-    grid: &Grid,
-    options: &Options,
-    monitor: &dyn Monitor,
-) -> Result<crate::Sweep, SweepError> {
+pub fn sweep_all(cuts: &[Cut], grid: &Grid, options: &Options, monitor: &dyn Monitor) -> Result<Sweep, SweepError> {
     let mut union = Dexels::empty(*grid);
-    let mut statistics = each(cuts, grid, options, monitor, |volume| {
-        union.unite_all(&volume).expect("all on one grid");
+    let mut statistics = each(cuts, grid, options, monitor, |cut| {
+        let swept = cut.near(None)?;
+        union.unite_all(&swept.volume).expect("all on one grid");
+        Ok(swept.statistics)
     })?;
     statistics.covered = union.covered();
-    Ok(crate::Sweep {
+    Ok(Sweep {
         volume: union,
         statistics,
     })

@@ -1,0 +1,284 @@
+//! A height above all material: what the tool sweeps above it is not searched for crossings, only counted.
+//!
+//! Over a line, the coverage count at the ceiling is the number of components of the times at which the tool covers the point at that height. At a
+//! height at which a tool that stands along the lines is a cone or a cylinder, its section is a disc whose radius is linear in the time of a move: it covers a
+//! point for one interval of times, or never. So the count is the number of moves whose discs cover the line, less the number of joints whose
+//! disc does. Along a row of lines each of these sets is an interval, found from its two ends: the count of all its lines costs two additions.
+//!
+//! The jumps below the ceiling must add up to this number, which is as independent of them as the crossings above would be.
+
+use super::Collector;
+use super::heading::{slack, stands};
+use super::rows::numbers;
+use crate::cutter::outline::{Outline, Shape};
+use crate::methods::lattice::Lattice;
+use crate::time::path_parts::PathPart;
+use sweepsim_dexel::Source;
+
+/// How far the ceiling is from material and from the ends of the cone or cylinder, at least, in reaches of the tool.
+pub(crate) const GAP: f64 = 1e-3;
+
+/// A height above all material, at which the tool is a cone or a cylinder along some moves.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ceiling {
+    pub z: f64,
+    /// The tool's radius at the height `ζ` above its tip is `base + rate ζ`.
+    base: f64,
+    rate: f64,
+}
+
+impl Ceiling {
+    /// The lowest one for these moves, if there is any. `top`: the highest material.
+    pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
+        if !outline.complete || !parts.iter().all(|part| stands(&part.segment)) {
+            return None;
+        }
+        let tips = || parts.iter().flat_map(|part| part.segment.tips()).map(|tip| tip[2]);
+        let low = tips().fold(f64::INFINITY, f64::min);
+        let high = tips().fold(f64::NEG_INFINITY, f64::max);
+        let gap = GAP * reach;
+        let mut best: Option<Self> = None;
+        for piece in &outline.pieces {
+            let Shape::Line { normal } = piece.shape else { continue };
+            let (from, to) = (piece.from[1], piece.to[1]);
+            if normal[0] <= 0.0 || to <= from {
+                continue;
+            }
+            let z = top.max(high + from) + gap;
+            let span = [z - high, z - low];
+            // No other piece may be there: the section is one disc.
+            let alone = outline
+                .pieces
+                .iter()
+                .filter(|other| {
+                    let [a, b] = other.heights();
+                    a <= span[1] + gap && b >= span[0] - 0.5 * gap
+                })
+                .count()
+                == 1;
+            if alone && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
+                let rate = (piece.to[0] - piece.from[0]) / (to - from);
+                best = Some(Self {
+                    z,
+                    base: piece.from[0] - rate * from,
+                    rate,
+                });
+            }
+        }
+        best
+    }
+
+    /// The largest height above the tip that matters, for a tip no lower than this.
+    pub fn above(&self, tip: f64, gap: f64) -> f64 {
+        self.z - tip + gap
+    }
+
+    fn disc(&self, [x, y, z]: [f64; 3]) -> Disc {
+        Disc {
+            centre: [x, y],
+            radius: self.base + self.rate * (self.z - z),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Disc {
+    centre: [f64; 2],
+    radius: f64,
+}
+
+/// All discs between two, with radii linear in the way.
+struct Capsule {
+    ends: [Disc; 2],
+    ahead: [f64; 2],
+    length: f64,
+    /// Sine and cosine of the angle between the way and its outer tangents.
+    lean: [f64; 2],
+}
+
+impl Capsule {
+    fn new(a: Disc, b: Disc) -> Self {
+        let way = [0, 1].map(|k| b.centre[k] - a.centre[k]);
+        let length = way[0].hypot(way[1]);
+        let sine = (a.radius - b.radius) / length;
+        // One disc holds the other: the larger one, alone. So if they are one.
+        if !(sine.abs() < 1.0) {
+            let larger = if a.radius >= b.radius { a } else { b };
+            return Self {
+                ends: [larger; 2],
+                ahead: [1.0, 0.0],
+                length: 0.0,
+                lean: [0.0, 1.0],
+            };
+        }
+        Self {
+            ends: [a, b],
+            ahead: way.map(|c| c / length),
+            length,
+            lean: [sine, ((1.0 - sine) * (1.0 + sine)).sqrt()],
+        }
+    }
+
+    /// The distance from the boundary, negative inside.
+    fn distance(&self, x: f64, y: f64) -> f64 {
+        let [a, b] = &self.ends;
+        let (dx, dy) = (x - a.centre[0], y - a.centre[1]);
+        let q = self.ahead[0] * dx + self.ahead[1] * dy;
+        let p = (self.ahead[0] * dy - self.ahead[1] * dx).abs();
+        let [s, c] = self.lean;
+        let foot = q * c - p * s;
+        if self.length == 0.0 || foot < 0.0 {
+            dx.hypot(dy) - a.radius
+        } else if foot > c * self.length {
+            (x - b.centre[0]).hypot(y - b.centre[1]) - b.radius
+        } else {
+            p * c + q * s - a.radius
+        }
+    }
+
+    fn columns(&self) -> [f64; 2] {
+        self.extent(0)
+    }
+
+    fn extent(&self, k: usize) -> [f64; 2] {
+        let [a, b] = &self.ends;
+        [
+            (a.centre[k] - a.radius).min(b.centre[k] - b.radius),
+            (a.centre[k] + a.radius).max(b.centre[k] + b.radius),
+        ]
+    }
+
+    /// About where a column enters and leaves it.
+    fn crossed(&self, x: f64, slack: f64) -> Option<[f64; 2]> {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut add = |y: f64| range = [range[0].min(y), range[1].max(y)];
+        for disc in &self.ends {
+            let across = x - disc.centre[0];
+            let square = (disc.radius - across) * (disc.radius + across);
+            if square > -8.0 * disc.radius * slack {
+                let half = square.max(0.0).sqrt();
+                add(disc.centre[1] - half);
+                add(disc.centre[1] + half);
+            }
+        }
+        let [ux, uy] = self.ahead;
+        let [s, c] = self.lean;
+        for side in [1.0, -1.0] {
+            let out = [s * ux - side * c * uy, s * uy + side * c * ux];
+            let [a, b] = self
+                .ends
+                .map(|disc| [0, 1].map(|k| disc.centre[k] + disc.radius * out[k]));
+            let share = (x - a[0]) / (b[0] - a[0]);
+            if (0.0..=1.0).contains(&share) {
+                add(a[1] + share * (b[1] - a[1]));
+            }
+        }
+        (range[0] <= range[1]).then_some(range)
+    }
+}
+
+/// The counts of the lines of a window.
+struct Counts {
+    first: [usize; 2],
+    width: usize,
+    /// By how much the count grows from one line of a column to the next.
+    steps: Vec<i32>,
+}
+
+/// Adds a crossing at the ceiling to each line that is covered there, which takes the count back to 0.
+pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines: &mut Collector) {
+    let slack = slack(rounding);
+    let tips = |part: &PathPart| part.segment.tips().map(|tip| ceiling.disc(tip));
+    let moves: Vec<Capsule> = parts
+        .iter()
+        .map(|part| {
+            let [a, b] = tips(part);
+            Capsule::new(a, b)
+        })
+        .collect();
+    let joints = parts.iter().skip(1).map(|part| {
+        let [a, _] = tips(part);
+        Capsule::new(a, a)
+    });
+    let lattice = lines.lines;
+    let hull = |k: usize| {
+        let ranges = moves.iter().map(|capsule| capsule.extent(k));
+        let whole = ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
+            [a[0].min(b[0]), a[1].max(b[1])]
+        });
+        numbers(lattice, k, [whole[0] - slack, whole[1] + slack])
+    };
+    let (Some(is), Some(js)) = (hull(0), hull(1)) else {
+        return;
+    };
+    let width = js[1] - js[0] + 2;
+    let mut counts = Counts {
+        first: [is[0], js[0]],
+        width,
+        steps: vec![0; (is[1] - is[0] + 1) * width],
+    };
+    for capsule in &moves {
+        counts.add(lattice, capsule, 1, slack, lines);
+    }
+    for capsule in joints {
+        counts.add(lattice, &capsule, -1, slack, lines);
+    }
+    for (column, steps) in counts.steps.chunks_exact(width).enumerate() {
+        let mut count = 0;
+        for (row, step) in steps[..width - 1].iter().enumerate() {
+            count += step;
+            let (i, j) = (is[0] + column, js[0] + row);
+            if count != 0 && lattice.asks(i, j) {
+                let line = lattice.line(i, j);
+                // A jump has one byte. What is below 0 fails its audit.
+                let mut left = -count;
+                while left != 0 {
+                    let jump = left.clamp(-100, 100);
+                    lines.crossing(line, ceiling.z, jump as i8, [0.0, 0.0, 1.0], Source::Stock);
+                    left -= jump;
+                }
+            }
+        }
+    }
+}
+
+impl Counts {
+    /// Counts the lines in a capsule once; those at its boundary are open.
+    fn add(&mut self, lattice: &Lattice, capsule: &Capsule, by: i32, slack: f64, lines: &mut Collector) {
+        let [low, high] = capsule.columns();
+        let Some(is) = numbers(lattice, 0, [low - slack, high + slack]) else {
+            return;
+        };
+        for i in is[0]..=is[1] {
+            let x = lattice.coordinate(0, i);
+            let Some([from, to]) = capsule.crossed(x, slack) else {
+                continue;
+            };
+            let around = lattice.grid.spacing()[1];
+            let Some([mut a, mut b]) = numbers(lattice, 1, [from - around, to + around]) else {
+                continue;
+            };
+            // A convex set: from the ends inwards.
+            let mut outside = |j: usize| {
+                let distance = capsule.distance(x, lattice.coordinate(1, j));
+                let near = !(distance.abs() > slack);
+                if near && lattice.asks(i, j) {
+                    lines.open(lattice.line(i, j));
+                }
+                near || distance > 0.0
+            };
+            while a <= b && outside(a) {
+                a += 1;
+            }
+            while b > a && outside(b) {
+                b -= 1;
+            }
+            if a <= b {
+                let at = (i - self.first[0]) * self.width;
+                let clamp = |j: usize| j.max(self.first[1]) - self.first[1];
+                self.steps[at + clamp(a)] += by;
+                self.steps[at + (clamp(b) + 1).min(self.width - 1)] -= by;
+            }
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The moves that come near material, in runs that are swept as one motion each, and the lines that they meet there.
+//!
+//! What a tool that stands along the lines does with its lowest point above all material is left out, also of moves that dive into it.
+
+use super::heights::{Box3, HeightMap, window};
+use crate::methods::line_mask::LineMask;
+use crate::methods::translation::{Ceiling, GAP, stands};
+use crate::sweep::plan::Plan;
+use crate::time::path_parts::PathPart;
+use crate::time::swept_box::swept_box;
+use std::borrow::Cow;
+use sweepsim_dexel::Grid;
+use sweepsim_motion::Tool;
+
+/// Consecutive parts of a path, and where they meet material.
+pub(crate) struct Run {
+    pub parts: Vec<PathPart>,
+    /// How many parts of the path lie before its end.
+    pub done: usize,
+    /// `None` if all lines near have some.
+    pub mask: Option<Cow<'static, LineMask>>,
+    /// A height above all material.
+    pub ceiling: Option<Ceiling>,
+}
+
+/// Divides the path into runs of at most `length` parts near material.
+pub(crate) struct Runs<'a> {
+    plan: &'a Plan,
+    grid: &'a Grid,
+    material: &'a HeightMap,
+    boxes: Vec<Box3>,
+    length: usize,
+    /// Whether ceilings are wanted.
+    closed: bool,
+    /// A little above the highest material, less the height of the lowest point of the tool above its tip.
+    over: f64,
+    at: usize,
+}
+
+impl<'a> Runs<'a> {
+    pub fn new(
+        tool: &Tool,
+        plan: &'a Plan,
+        (grid, material): (&'a Grid, &'a HeightMap),
+        length: usize,
+        closed: bool,
+    ) -> Self {
+        let cylinder = tool.bounding_cylinder();
+        // Lines and tips are displaced by less than this.
+        let margin = plan.tolerances.outside() + plan.tolerances.rounding();
+        let boxes = plan.parts.iter().map(|part| swept_box(&part.segment, cylinder, margin));
+        Self {
+            boxes: boxes.collect(),
+            plan,
+            grid,
+            material,
+            length,
+            closed,
+            over: material.top() - cylinder.z[0] + margin.max(GAP * plan.cutter.reach),
+            at: 0,
+        }
+    }
+
+    /// Whether any material is near a part.
+    fn is_near(&self, at: usize) -> bool {
+        let own = &self.boxes[at];
+        window(self.grid, own).is_some_and(|window| !self.material.visit(window, own[2], &mut |_| false))
+    }
+
+    /// A part without the beginning or the end during which the tool is above all material; `None` if that is all of it.
+    fn trimmed(&self, at: usize) -> Option<(PathPart, [bool; 2])> {
+        let part = &self.plan.parts[at];
+        let [from, to] = part.segment.tips().map(|tip| tip[2]);
+        let whole = Some((part.clone(), [false; 2]));
+        if !stands(&part.segment) || (from <= self.over && to <= self.over) {
+            return whole;
+        }
+        if from > self.over && to > self.over {
+            return None;
+        }
+        let t = (self.over - from) / (to - from);
+        let range = if from > self.over { [t, 1.0] } else { [0.0, t] };
+        // A move that barely rises is taken whole: its direction would not survive.
+        if !(range[1] - range[0] > 1e-3 && (to - from).abs() > GAP * self.plan.cutter.reach) {
+            return whole;
+        }
+        let span = [range[0] as f32, (range[1] - range[0]) as f32];
+        let short = PathPart {
+            segment: part.segment.part(range[0], range[1]),
+            number: part.number,
+            start: part.start + part.share * span[0],
+            share: part.share * span[1],
+        };
+        Some((short, [range[0] > 0.0, range[1] < 1.0]))
+    }
+
+    /// The lines with material near parts with these boxes.
+    fn run(&self, parts: Vec<PathPart>, boxes: &[Box3]) -> Option<Run> {
+        let hull = |a: Box3, b: &Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
+        let (first, rest) = boxes.split_first()?;
+        let whole: Box3 = rest.iter().fold(*first, hull);
+        let [is, js] = window(self.grid, &whole)?;
+        let mut lines = Vec::new();
+        self.material.visit([is, js], whole[2], &mut |line| {
+            lines.push(line);
+            true
+        });
+        let outline = self.plan.cutter.outline.as_ref().filter(|_| self.closed);
+        let ceiling =
+            outline.and_then(|outline| Ceiling::new(outline, self.plan.cutter.reach, &parts, self.material.top()));
+        let all = (is.1 + 1 - is.0) * (js.1 + 1 - js.0);
+        let mask = if lines.len() == all {
+            None
+        } else {
+            Some(Cow::Owned(LineMask::new(self.grid, lines)?))
+        };
+        Some(Run {
+            parts,
+            done: self.at,
+            mask,
+            ceiling,
+        })
+    }
+}
+
+impl Iterator for Runs<'_> {
+    type Item = Run;
+
+    fn next(&mut self) -> Option<Run> {
+        loop {
+            let mut parts = Vec::new();
+            let mut first = self.at;
+            while self.at < self.boxes.len() && parts.len() < self.length {
+                let near = if self.is_near(self.at) {
+                    self.trimmed(self.at)
+                } else {
+                    None
+                };
+                // Where the path has a gap, the run ends.
+                let Some((part, [late, early])) = near else {
+                    if parts.is_empty() {
+                        self.at += 1;
+                        first = self.at;
+                        continue;
+                    }
+                    break;
+                };
+                if late && !parts.is_empty() {
+                    break;
+                }
+                parts.push(part);
+                self.at += 1;
+                if early {
+                    break;
+                }
+            }
+            if parts.is_empty() {
+                return None;
+            }
+            if let Some(run) = self.run(parts, &self.boxes[first..self.at]) {
+                return Some(run);
+            }
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! A simulation computes only what comes near material, and gives the same part.
+
+use crate::translations::{TOLERANCE, UP, cases, path, same, tools};
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
+use sweepsim::{Cut, Method, Options, simulate, sweep};
+use sweepsim_dexel::{Dexels, Grid, Stock};
+use sweepsim_motion::{Path, Profile, ProfileSegment, Tool};
+
+fn grid() -> Grid {
+    Grid::new([-10.03, -9.96], [10.04, 10.02], [41, 37]).expect("a grid")
+}
+
+/// Stock minus the whole sweep by charts.
+fn reference(stock: &Dexels, tool: &Tool, path: &Path, grid: &Grid) -> Dexels {
+    let options = Options::new(TOLERANCE).method(Method::Charts);
+    let swept = sweep(tool, path, grid, &options, &()).expect("a sweep");
+    assert!(swept.statistics.unresolved.is_empty());
+    let mut left = stock.clone();
+    left.subtract_all(&swept.volume).expect("the same grid");
+    left
+}
+
+fn agree(stock: &Dexels, name: &str, tool: &Tool, path: &Path) -> TestCaseResult {
+    let grid = *stock.grid();
+    let done = simulate(stock.clone(), &[Cut::new(tool, path)], &Options::new(TOLERANCE), &()).expect("a part");
+    prop_assert!(done.statistics.unresolved.is_empty(), "{name}: {:?}", done.statistics);
+    let expected = reference(stock, tool, path, &grid);
+    let mut wrong = 0;
+    for index in 0..grid.len() {
+        let [a, b] = [&done.remaining, &expected].map(|part| {
+            // Without what is thinner than the tolerance.
+            let thick = part
+                .at(index)
+                .to_vec()
+                .into_iter()
+                .filter(|i| i.upper.z - i.lower.z > 10.0 * TOLERANCE);
+            thick.collect::<Vec<_>>()
+        });
+        if !same(&a, &b, TOLERANCE) {
+            wrong += 1;
+            // A line in a wall may be on either side of it.
+            prop_assert!(wrong <= 1, "{name}: {:?}: {a:?} {b:?}", grid.place(index));
+        }
+    }
+    Ok(())
+}
+
+/// A block with a step, an island, and lines without material.
+fn stock() -> Dexels {
+    let block = |min, max| Stock::Block { min, max }.dexels(&grid()).expect("a stock");
+    let mut stock = block([-8.0, -8.0, -5.0], [2.0, 8.0, 0.0]);
+    stock
+        .unite_all(&block([2.0, -8.0, -5.0], [6.0, 5.0, 1.5]))
+        .expect("the same grid");
+    stock
+        .unite_all(&block([7.0, 6.0, -2.0], [9.5, 9.0, -1.0]))
+        .expect("the same grid");
+    stock
+}
+
+/// Tips below, in and above the stock.
+fn tips() -> impl Strategy<Value = Vec<[f64; 3]>> {
+    let level = prop_oneof![Just(-0.5), Just(-1.25), -4.0..3.0, Just(6.0)];
+    prop::collection::vec((-9.0..9.0, -9.0..9.0, level).prop_map(|(x, y, z)| [x, y, z]), 2..9)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    #[test]
+    fn the_part_is_the_same(number in 0..13usize, tips in tips(), dive in any::<bool>()) {
+        let mut all = Vec::new();
+        for pair in tips.windows(2) {
+            all.push(pair[0]);
+            // A retract, a rapid and a plunge.
+            if dive {
+                all.push([pair[0][0], pair[0][1], 6.0]);
+                all.push([pair[1][0], pair[1][1], 6.0]);
+            }
+        }
+        let (name, tool, _) = &tools()[number];
+        agree(&stock(), name, tool, &path(&all, UP))?;
+    }
+
+    #[test]
+    fn engraving(half in 20.0..70.0f64, flat in 0.0..0.3f64, tips in tips()) {
+        let slope = half.to_radians().tan();
+        let corners = [[flat, 0.0], [flat + 20.0 * slope, 20.0], [0.0, 20.0]];
+        let corners: Vec<[f64; 2]> = if flat < 0.1 { vec![[20.0 * slope, 20.0], [0.0, 20.0]] } else { corners.to_vec() };
+        let segments = corners.into_iter().map(|to| ProfileSegment::Line { to }).collect();
+        let tool = Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"));
+        let tips: Vec<[f64; 3]> = tips.into_iter().map(|[x, y, z]| [x, y, z.max(-1.0)]).collect();
+        agree(&stock(), "engraver", &tool, &path(&tips, UP))?;
+    }
+}
+
+/// An engraver of 60° and this length.
+fn engraver(length: f64) -> Tool {
+    let corners = [[length * 30f64.to_radians().tan(), length], [0.0, length]];
+    let segments = corners.map(|to| ProfileSegment::Line { to });
+    Tool::from_profile(Profile::new([0.0, 0.0], segments.into()).expect("a profile"))
+}
+
+/// Letters, as polygons half a millimetre deep, with retracts.
+fn letters() -> Path {
+    let mut tips = Vec::new();
+    for n in 0..40 {
+        let centre = [-7.0 + f64::from(n % 8) * 2.0, -6.0 + f64::from(n / 8) * 2.5];
+        for k in 0..=24 {
+            let angle = f64::from(k) * 0.26;
+            let radius = 0.6 + 0.3 * (3.0 * angle).sin();
+            let [x, y] = [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()];
+            if k == 0 {
+                tips.push([x, y, 3.0]);
+            }
+            tips.push([x, y, -0.5]);
+            if k == 24 {
+                tips.push([x, y, 3.0]);
+            }
+        }
+    }
+    path(&tips, UP)
+}
+
+#[test]
+fn a_long_engraver_costs_as_much_as_a_short_one() {
+    let grid = Grid::new([-10.0, -10.0], [10.0, 10.0], [200, 200]).expect("a grid");
+    let block = Stock::Block {
+        min: [-10.0, -10.0, -2.0],
+        max: [10.0, 10.0, 0.0],
+    };
+    let stock = block.dexels(&grid).expect("a stock");
+    let letters = letters();
+    let crossings = |length: f64| {
+        let tool = engraver(length);
+        let done = simulate(
+            stock.clone(),
+            &[Cut::new(&tool, &letters)],
+            &Options::new(TOLERANCE),
+            &(),
+        )
+        .expect("a part");
+        assert!(done.statistics.unresolved.is_empty());
+        (done.statistics.crossings, done.remaining.volume())
+    };
+    let [(long, part), (short, other)] = [20.0, 0.7].map(crossings);
+    assert!((part - other).abs() < 1e-6, "{part} {other}");
+    assert!(2 * long <= 3 * short, "{long} {short}");
+}
