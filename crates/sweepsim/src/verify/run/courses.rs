@@ -3,9 +3,9 @@
 use super::Question;
 use crate::error::SweepError;
 use crate::sweep::UnresolvedDexel;
+use crate::sweep::heights::{HeightMap, window};
 use crate::verify::driver::{Solids, Work};
 use crate::verify::finding::{Finding, FindingKind, RapidCourses};
-use crate::verify::heights::{HeightMap, window};
 use crate::verify::lines::Lines;
 use crate::verify::scene::{OtherCourse, ToolPath};
 use crate::verify::search::{Arena, Touch, Touching};
