@@ -127,9 +127,11 @@ pub struct GcodeText {
 ///
 /// ```
 /// use sweepsim_nc::{Machine, ReadOptions, gcode, write};
-/// let program = gcode::read("T1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F200\nG2 X4 I2", &ReadOptions::default())?;
+/// let mut reading = ReadOptions::default();
+/// reading.exact_arcs = true;
+/// let program = gcode::read("T1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F200\nG2 X4 I2", &reading)?;
 /// let written = write::gcode(&program, &write::GcodeOptions::default())?;
-/// assert!(written.text.ends_with("G0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F200\nX4 Y0 Z-1\nM30\n%\n"), "{}", written.text);
+/// assert!(written.text.ends_with("G0 X0 Y0\nG43 H1 Z5\nG1 Z-1 F200\nG2 X4 Y0 Z-1 I2 J0\nM30\n%\n"), "{}", written.text);
 ///
 /// let path = gcode::read("M428 G0 X0 Y0 Z5 B0 C0\nG1 X10 B30 C45 F500", &ReadOptions::default())?;
 /// let machine = Machine::named("head-bc").ok_or("no such machine")?;
