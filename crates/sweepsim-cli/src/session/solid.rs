@@ -68,6 +68,8 @@ impl Solid {
                 )))
             }
             Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
+            // Says what to do about STEP files.
+            Kind::Path if is_step(file) => Ok(Self::Mesh(read_mesh_file(file)?)),
             Kind::Job | Kind::Tools | Kind::Path => Err(Failure::message(format!(
                 "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz)",
                 file.display()
@@ -100,6 +102,11 @@ impl Solid {
                 .map_err(|error| Failure::message(format!("{}: {error}", file.display()))),
         }
     }
+}
+
+fn is_step(file: &Path) -> bool {
+    let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    matches!(extension.as_deref(), Some("step" | "stp"))
 }
 
 /// The triangles of a mesh; readers have checked that their vertices exist.

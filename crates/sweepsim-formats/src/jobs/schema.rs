@@ -227,6 +227,8 @@ pub(crate) struct Path {
     #[serde(default)]
     pub frame: Option<Frame>,
     #[serde(default)]
+    pub feed: Option<f64>,
+    #[serde(default)]
     pub poses: Option<Vec<Pose>>,
     #[serde(default)]
     pub moves: Option<Vec<Move>>,
@@ -285,6 +287,7 @@ impl<'de> Deserialize<'de> for Pose {
 pub(crate) enum Move {
     Start(Pose),
     Line(Pose),
+    Rapid(Pose),
     Arc {
         to: Pose,
         centre: [f64; 3],

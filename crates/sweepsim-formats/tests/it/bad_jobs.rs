@@ -293,6 +293,11 @@ fn one_message_with_its_place() {
             "    ],\n    limits: Some(Limits(gouge: -1, excess: 0)),\n)".into(),
             "job.ron:12:32: gouge is -1",
         ),
+        (
+            "    ],\n)",
+            "    ],\n    target: Mesh(\"part.STEP\"),\n)".into(),
+            "job.ron:12:13: STEP files are not read: export the part from the CAD system as a closed mesh (.stl, .3mf, .glb, .ply)",
+        ),
         // Set-ups.
         (
             "    paths: [",

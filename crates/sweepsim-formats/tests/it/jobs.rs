@@ -172,3 +172,67 @@ fn set_ups_are_in_the_coordinates_of_the_part() {
         (1, false, None)
     );
 }
+
+#[test]
+fn paths_in_the_job_have_times_and_rapids() {
+    let text = r#"Job(
+    units: Inch,
+    stock: Block(min: (0, 0, 0), max: (4, 2, 1)),
+    tools: { 1: Flat(radius: 0.1, length: 1) },
+    paths: [
+        Path(tool: 1, feed: 30, moves: [
+            Start(((0, 0, 2), (0, 0, 1))),
+            Rapid(((3, 4, 2), (0, 0, 1))),
+            Rapid(((3, 4, 2), (1, 0, 0))),
+            Line(((3, 4, 1), (1, 0, 0))),
+            Line(((3, 4, 1), (0, 0, 1))),
+            Line(((3, 4, 1), (0, 0, 1))),
+            Arc(to: ((3, 4, 1), (0, 0, 1)), centre: (2, 4, 0), turn: Ccw),
+        ]),
+        Path(tool: 1, poses: [((0, 0, 2), (0, 0, 1)), ((3, 4, 2), (0, 0, 1))]),
+    ],
+)"#;
+    let job = Job::parse(text, Path::new("part.ron")).unwrap();
+    let path = &job.paths[0];
+    assert_eq!(path.rapid, [true, true, false, false, false, false]);
+    assert!(path.assumed_rapids && !job.paths[1].assumed_rapids);
+    // 5 inches at 10 m/min; a quarter turn at 7,200 degrees per minute; an inch at 30 inches per minute; a turn in place; nothing; a circle.
+    let expected = [
+        Some(60.0 * 5.0 * 25.4 / 10_000.0),
+        Some(60.0 * 90.0 / 7200.0),
+        Some(2.0),
+        None,
+        Some(0.0),
+        Some(2.0 * std::f64::consts::TAU),
+    ];
+    for (found, expected) in path.seconds.iter().zip(expected) {
+        let same = match (found, expected) {
+            (Some(found), Some(expected)) => (found - expected).abs() < 1e-9,
+            (found, expected) => *found == expected,
+        };
+        assert!(same, "{:?}", path.seconds);
+    }
+    assert!(job.paths[1].seconds.is_empty() && job.paths[1].rapid == [false]);
+    for (from, to, message) in [
+        (
+            "feed: 30",
+            "feed: 0",
+            "part.ron:6:29: feed is 0, but must be a positive number",
+        ),
+        (
+            "Start(((0",
+            "Rapid(((0",
+            "expected `Start(..)` as the first of the moves",
+        ),
+        (
+            "feed: 30, moves",
+            "feed: 30, file: \"a.nc\", moves",
+            "part.ron:6:29: `feed` with `file`",
+        ),
+    ] {
+        let error = Job::parse(&text.replacen(from, to, 1), Path::new("part.ron"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains(message), "{error}");
+    }
+}

@@ -85,19 +85,33 @@ impl JobReader<'_> {
                 self.error(problem, &steps(&[]))
             })
         };
+        if let Some(feed) = raw.feed {
+            let at = steps(&["feed".into()]);
+            self.check("feed", feed, feed > 0.0, "a positive number", &at)?;
+            if raw.file.is_some() {
+                let problem =
+                    Problem::syntax("`feed` with `file`: a program says its feeds itself, expected one of them");
+                return Err(self.error(problem, &at));
+            }
+        }
         let whole = |tool: u32, path: Path, source: String| {
+            let rapid = match &raw.moves {
+                Some(moves) => inline::rapids(moves),
+                None => vec![false; path.moves()],
+            };
+            let seconds = inline::seconds(&path, &rapid, raw.feed.map(|feed| feed * self.unit));
             vec![JobPath {
                 tool,
                 setup: 0,
                 frame: Frame::WORLD,
-                rapid: vec![false; path.moves()],
+                assumed_rapids: rapid.contains(&true),
+                rapid,
+                seconds,
                 other_courses: Vec::new(),
                 spindle_stopped: Vec::new(),
                 no_feed: Vec::new(),
                 beyond: Vec::new(),
-                seconds: Vec::new(),
                 dwell_seconds: 0.0,
-                assumed_rapids: false,
                 path,
                 source,
                 origins: Vec::new(),

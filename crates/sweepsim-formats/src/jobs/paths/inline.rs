@@ -2,6 +2,8 @@
 
 use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipArc, Turning};
 
+use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
+
 use crate::error::Problem;
 use crate::jobs::schema;
 
@@ -49,7 +51,7 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
     for (index, raw) in raw.iter().enumerate() {
         let fault = |problem: Problem| (problem, Some((index, 0)));
         let (to, arc) = match raw {
-            schema::Move::Start(to) | schema::Move::Line(to) => (to, None),
+            schema::Move::Start(to) | schema::Move::Line(to) | schema::Move::Rapid(to) => (to, None),
             schema::Move::Arc {
                 to,
                 centre,
@@ -89,4 +91,32 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
         };
     }
     Path::with_moves(poses, moves).map_err(path_fault)
+}
+
+/// Which of these moves are rapids.
+pub(crate) fn rapids(raw: &[schema::Move]) -> Vec<bool> {
+    let moves = raw.iter().skip(1);
+    moves.map(|way| matches!(way, schema::Move::Rapid(_))).collect()
+}
+
+/// How long each move takes, in seconds: at `feed` in millimetres per minute, or as fast as axes of unknown speed are assumed to be. The duration of a turn in place at a feed is not known.
+pub(crate) fn seconds(path: &Path, rapid: &[bool], feed: Option<f64>) -> Vec<Option<f64>> {
+    let of_move = |number: usize| {
+        let length = path.tip_length(number);
+        if rapid.get(number) == Some(&true) {
+            let [a, b] = [number, number + 1].map(|k| path.poses()[k].axis());
+            let cosine: f64 = (0..3).map(|k| a[k] * b[k]).sum();
+            let degrees = cosine.clamp(-1.0, 1.0).acos().to_degrees();
+            return Some(60.0 * (length / RAPID_SPEED).max(degrees / RAPID_TURN));
+        }
+        let seconds = 60.0 * length / feed?;
+        (seconds > 0.0 || path.rests(number, number + 1)).then_some(seconds)
+    };
+    let all: Vec<Option<f64>> = (0..path.moves()).map(of_move).collect();
+    // Without any feed or rapid nothing is known of the times.
+    if all.iter().all(Option::is_none) {
+        Vec::new()
+    } else {
+        all
+    }
 }

@@ -6,6 +6,7 @@ use sweepsim_dexel::{Grid, Stock, TriangleSoup};
 
 use crate::dexels::read_dexels_file;
 use crate::error::{FormatError, Problem};
+use crate::extension::{is_step, step_problem};
 use crate::jobs::place::Step;
 use crate::jobs::read::JobReader;
 use crate::jobs::schema;
@@ -112,6 +113,9 @@ impl JobReader<'_> {
         steps: &[Step],
     ) -> Result<(TriangleSoup, Vec<Option<Colour>>), FormatError> {
         let file = self.beside(name);
+        if is_step(&file) {
+            return Err(self.error(step_problem(), steps));
+        }
         let known = MeshFormat::of(&file).is_some_and(|format| format != MeshFormat::Stl);
         let (mesh, colours) = if known {
             let (mesh, colours) = self.named(read_coloured_mesh_file(&file), &file, what, steps)?;
