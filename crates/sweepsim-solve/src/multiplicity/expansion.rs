@@ -33,8 +33,14 @@ pub(super) struct Expansion {
 }
 
 impl Expansion {
-    /// Over a cell whose centre lies in the domain, in coordinates in which that is `[0,1]ⁿ`; `None` for degrees that are too high.
-    pub(super) fn new(layout: &Layout, lo: &Row, hi: &Row, buffer: &mut Vec<Double>) -> Option<Self> {
+    /// Over a cell whose centre lies in the domain, in coordinates in which that is `[0,1]ⁿ`; `None` for degrees that are too high, or once it is `late`.
+    pub(super) fn new(
+        layout: &Layout,
+        lo: &Row,
+        hi: &Row,
+        buffer: &mut Vec<Double>,
+        late: &dyn Fn() -> bool,
+    ) -> Option<Self> {
         let n = layout.n;
         let mut expansion = Self {
             n,
@@ -51,7 +57,7 @@ impl Expansion {
         let growth = growth.powi(degrees);
         let nearby = (1.0 + 2.0 * radius).powi(degrees) * (1.0 + 1e-9);
         for part in &layout.parts {
-            if part.axes.iter().any(|a| a.degree > HIGHEST) {
+            if part.axes.iter().any(|a| a.degree > HIGHEST) || late() {
                 return None;
             }
             layout.originals(part, buffer);
@@ -134,8 +140,8 @@ impl Expansion {
         self.parts.iter().map(|p| p.c.len()).sum()
     }
 
-    /// The equations along `z = curve(t)`, without their value errors.
-    pub(super) fn compose(&self, powers: &Powers, curve: &[Series]) -> Vec<Series> {
+    /// The equations along `z = curve(t)`, without their value errors; `None` once it is `late`.
+    pub(super) fn compose(&self, powers: &Powers, curve: &[Series], late: &dyn Fn() -> bool) -> Option<Vec<Series>> {
         let mut equations = vec![Series::zero(powers); self.n];
         // Powers of each coordinate, as far as any part needs them.
         let mut raised: Vec<Vec<Series>> = Vec::with_capacity(self.n);
@@ -151,6 +157,9 @@ impl Expansion {
             raised.push(list);
         }
         for part in &self.parts {
+            if late() {
+                return None;
+            }
             let Some(((variable, _), others)) = part.axes.split_last() else {
                 equations[part.equation].add_multiple(&raised[0][0], part.c[0]);
                 continue;
@@ -177,7 +186,7 @@ impl Expansion {
             }
             equations[part.equation].add_multiple(&sums[0], Double::new(1.0));
         }
-        equations
+        Some(equations)
     }
 }
 

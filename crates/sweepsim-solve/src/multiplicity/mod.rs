@@ -66,7 +66,7 @@ pub(crate) fn zeros(
             return None;
         }
     }
-    let expansion = Expansion::new(layout, &lo, &hi, buffer)?;
+    let expansion = Expansion::new(layout, &lo, &hi, buffer, late)?;
     let slopes = expansion.slopes();
     let decomposition = decompose(&slopes, n);
     let found = (1..=n.min(MOST)).find_map(|m| {
@@ -130,8 +130,8 @@ impl<'a> Corank<'a> {
     }
 
     /// The combined equations along the curve or surface, without the equations' own errors.
-    fn combined(&self, powers: &Powers, curve: &[Series]) -> Vec<Series> {
-        let equations = self.expansion.compose(powers, curve);
+    fn combined(&self, powers: &Powers, curve: &[Series], late: &dyn Fn() -> bool) -> Option<Vec<Series>> {
+        let equations = self.expansion.compose(powers, curve, late)?;
         let combine = |weights: &Row| {
             let mut sum = Series::zero(powers);
             for (equation, weight) in equations.iter().zip(weights) {
@@ -139,7 +139,7 @@ impl<'a> Corank<'a> {
             }
             sum
         };
-        self.weights[..self.n].iter().map(combine).collect()
+        Some(self.weights[..self.n].iter().map(combine).collect())
     }
 
     /// `z` at `w = 0`.
@@ -182,10 +182,7 @@ impl<'a> Corank<'a> {
 
         let mut phi = vec![Series::zero(&powers); regular];
         for _ in 0..=TOPS[m - 1] {
-            if late() {
-                return None;
-            }
-            let values = self.combined(&powers, &self.curve(&powers, &phi, tau));
+            let values = self.combined(&powers, &self.curve(&powers, &phi, tau), late)?;
             for (phi, value) in phi.iter_mut().zip(&values) {
                 for (x, y) in phi.c.iter_mut().zip(&value.c) {
                     *x = x.sub(*y);
@@ -193,14 +190,14 @@ impl<'a> Corank<'a> {
             }
         }
         let curve = self.curve(&powers, &phi, tau);
-        let mut values = self.combined(&powers, &curve);
+        let mut values = self.combined(&powers, &curve, late)?;
         let (degrees, mix) = leading::degrees(&powers, &values[regular..]);
         if m > 1 {
             let old = self.weights;
             for (i, row) in mix[..m].iter().enumerate() {
                 self.weights[regular + i] = std::array::from_fn(|e| (0..m).map(|k| row[k] * old[regular + k][e]).sum());
             }
-            values = self.combined(&powers, &curve);
+            values = self.combined(&powers, &curve, late)?;
         }
 
         let noise = |i: usize| sum(&|e| self.weights[i][e].abs() * self.expansion.value_error[e]);

@@ -79,6 +79,7 @@ impl PointSolver {
             self.open.extend(part.open);
             self.statistics.merge(&part.statistics);
         }
+        self.deadline = self.end;
         self.finish(system);
         Ok(self.points(system))
     }

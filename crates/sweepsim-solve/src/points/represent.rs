@@ -47,6 +47,9 @@ impl PointSolver {
             reach = reach.max(UNITS * unit).max(root.hi[j] - root.lo[j]);
         }
         for _ in 0..TRIES {
+            if self.late() {
+                return None;
+            }
             if let Some(mut wider) = self.only_root_around(system, &root.point, &root.point, reach) {
                 // The wider box holds the first one, hence its root.
                 wider.boundary = root.boundary;
@@ -80,6 +83,9 @@ impl PointSolver {
             reach = sides.iter().fold(reach, |r, s| r.max(*s));
         }
         for _ in 0..TRIES {
+            if self.late() {
+                return false;
+            }
             if self.only_root_around(system, &lo, &hi, reach).is_some() {
                 return true;
             }

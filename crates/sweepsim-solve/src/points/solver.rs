@@ -41,7 +41,7 @@ impl Blending {
     }
 }
 
-/// This part of the time is kept for grouping the boxes that are left open, which takes up to a fifth as long as finding them.
+/// This part of the time is kept for what follows the search. Grouping the open boxes usually takes less; if it takes longer, it ends with the time, in coarser groups.
 const KEPT: u32 = 10;
 
 /// The 0-D solver. It reuses its memory from one system to the next.
@@ -74,8 +74,10 @@ pub struct PointSolver {
     pub(super) ranges: PartRanges,
     pub(super) failures: u32,
     pub(super) blending: Blending,
-    /// When the search ends.
+    /// When the search ends and, once it has ended, what follows.
     pub(super) deadline: Option<Instant>,
+    /// When all ends.
+    pub(super) end: Option<Instant>,
     /// Boxes of at most this size (in sides of the domain) stay open where noise hides the solution.
     pub(super) coarsest: f64,
     pub(crate) found: Vec<Found>,
@@ -109,15 +111,21 @@ impl PointSolver {
         self.restart();
         self.coarsest = COARSE;
         self.search(system, &system.root(), 0, monitor, Order::LargestInCrowds);
+        // Several systems may share one time: the next one's search ends when this one's would have.
+        let deadline = std::mem::replace(&mut self.deadline, self.end);
         self.finish(system);
-        self.points(system)
+        let points = self.points(system);
+        self.deadline = deadline;
+        points
     }
 
     pub(super) fn start_clock(&mut self) {
-        self.deadline = self.options.time.and_then(|t| Instant::now().checked_add(t - t / KEPT));
+        let now = Instant::now();
+        self.deadline = self.options.time.and_then(|t| now.checked_add(t - t / KEPT));
+        self.end = self.options.time.and_then(|t| now.checked_add(t));
     }
 
-    /// Whether the time of the search is used up.
+    /// Whether the time of the search, or of what follows it, is used up.
     pub(super) fn late(&self) -> bool {
         self.deadline.is_some_and(|d| Instant::now() >= d)
     }
@@ -153,7 +161,7 @@ impl PointSolver {
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         let roots = self.represent(system);
-        let mut clusters = clusters(&self.open, n, self.options.unresolved);
+        let mut clusters = clusters(&self.open, n, self.options.unresolved, &|| self.late());
         let counts = self.counts(system, &mut clusters);
         let unresolved = clusters
             .iter()

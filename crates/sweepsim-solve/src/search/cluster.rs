@@ -24,14 +24,19 @@ pub(crate) struct Cluster {
 }
 
 /// Groups the boxes into clusters of boxes near one another. Those that are wide and mostly empty are cut, the widest first, until there are `most`: a
-/// cluster covers its boxes and little else.
-pub(crate) fn clusters(open: &[Open], n: usize, most: usize) -> Vec<Cluster> {
+/// cluster covers its boxes and little else. Once it is `late`, boxes are grouped by their places alone.
+pub(crate) fn clusters(open: &[Open], n: usize, most: usize, late: &dyn Fn() -> bool) -> Vec<Cluster> {
     let mut found = Vec::new();
-    for group in groups(open, n) {
+    for group in groups(open, (0..open.len()).collect(), n, GROUP) {
+        if late() {
+            let places = groups(open, group, n, open.len().div_ceil(most.max(1)));
+            found.extend(places.into_iter().map(|members| cluster(open, members, n)));
+            continue;
+        }
         let start = found.len();
         let near = components(open, group, n).into_iter();
         found.extend(near.map(|members| cluster(open, members, n)));
-        join(open, &mut found, start, n);
+        join(open, &mut found, start, n, late);
     }
     let excess = |c: &Cluster| {
         let single = c.members.len() == 1;
@@ -59,7 +64,7 @@ pub(crate) fn clusters(open: &[Open], n: usize, most: usize) -> Vec<Cluster> {
     for c in found.drain(..) {
         sort(c, &mut wide, &mut done);
     }
-    while wide.len() + done.len() < most {
+    while wide.len() + done.len() < most && !late() {
         let Some((_, c)) = wide.pop_last() else { break };
         let axis = widest(&c.lo, &c.hi, n);
         let middle = |k: &usize| 0.5 * (open[*k].lo[axis] + open[*k].hi[axis]);
@@ -121,12 +126,12 @@ fn widest(lo: &Row, hi: &Row, n: usize) -> usize {
     (0..n).fold(0, |best, j| if hi[j] - lo[j] > hi[best] - lo[best] { j } else { best })
 }
 
-/// Cuts the boxes into groups of at most [`GROUP`] in different places, so that comparing all of a group's is affordable.
-fn groups(open: &[Open], n: usize) -> Vec<Vec<usize>> {
+/// Cuts boxes into groups of at most this many in different places, so that comparing all of a group's is affordable.
+fn groups(open: &[Open], boxes: Vec<usize>, n: usize, most: usize) -> Vec<Vec<usize>> {
     let mut done = Vec::new();
-    let mut waiting = vec![(0..open.len()).collect::<Vec<usize>>()];
+    let mut waiting = vec![boxes];
     while let Some(group) = waiting.pop() {
-        if group.len() <= GROUP {
+        if group.len() <= most {
             done.push(group);
             continue;
         }
@@ -153,11 +158,11 @@ fn groups(open: &[Open], n: usize) -> Vec<Vec<usize>> {
 
 /// Joins small clusters from number `start` that lie within half the size of the larger one, until there are no more: the boxes of one singular point may
 /// have gaps between them.
-fn join(open: &[Open], found: &mut Vec<Cluster>, start: usize, n: usize) {
-    loop {
+fn join(open: &[Open], found: &mut Vec<Cluster>, start: usize, n: usize, late: &dyn Fn() -> bool) {
+    while !late() {
         let before = found.len();
         let mut k = start;
-        while k < found.len() {
+        while k < found.len() && !late() {
             let near = (start..k).find(|i| {
                 let (a, b) = (&found[*i], &found[k]);
                 (0..n).all(|j| {
