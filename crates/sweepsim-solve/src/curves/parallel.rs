@@ -12,8 +12,8 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The number of cells that are searched independently: many more than threads, since they differ in cost.
-const PARTS: usize = 128;
+/// The number of cells that are searched independently: more than threads, since they differ in cost, but not so many that most pieces are traced before.
+const PARTS: usize = 32;
 
 /// A cell to be searched.
 struct Waiting {
@@ -36,7 +36,7 @@ struct Part {
 
 impl CurveSolver {
     /// As [`solve`](Self::solve), on the threads of the current rayon pool. The result is the same for any number of threads, and that of `solve`, unless a
-    /// budget ends the search: [`vertices`](crate::SolveOptions::vertices) is divided among at most 128 parts of the search, and other budgets apply to each of them.
+    /// budget ends the search: [`vertices`](crate::SolveOptions::vertices) is divided among at most 32 parts of the search, and other budgets apply to each of them.
     /// [`time`](crate::SolveOptions::time) is that of the whole. The monitor [advances](Monitor::advance) by parts, and [visits](Monitor::visit) no boxes.
     ///
     /// ```
