@@ -106,7 +106,8 @@ pub(crate) struct JudgeOptions {
     /// How near shanks and holders may come to the workpiece and to fixtures, in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = length)]
     pub clearance: Option<f64>,
-    /// Takes shanks and holders larger by half the diagonal between dexels: what they touch beside a dexel is found as well.
+    /// Takes shanks and holders larger by half the diagonal between dexels, and cutters in rapids and beside fixtures: what they touch beside a dexel is
+    /// found as well.
     #[arg(long)]
     pub sure: bool,
     /// Also writes moves.csv: what each move removes, how deep and how wide, and how long it takes.

@@ -1,5 +1,7 @@
 //! Programs that nobody here wrote.
 
+mod verified;
+
 use super::folder;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

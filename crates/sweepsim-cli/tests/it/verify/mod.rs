@@ -1,6 +1,7 @@
 //! `verify`: verdicts, findings with their lines, exit status.
 
 mod nearness;
+mod planted;
 
 use crate::support::{Workdir, text};
 use std::fs;

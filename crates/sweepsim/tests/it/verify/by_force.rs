@@ -6,16 +6,16 @@
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use sweepsim::dexel::TriangleSoup;
+use sweepsim::motion::{Assembly, BodyKind, Move, Profile, ProfileSegment};
 use sweepsim::nalgebra::{Matrix3, Vector3};
 use sweepsim::prelude::*;
 use sweepsim::verify::{Finding, FindingKind, MoveState, Scene, Target, ToolPath, VerifyOptions, verify};
-use sweepsim_dexel::TriangleSoup;
-use sweepsim_motion::{Assembly, BodyKind, Move, Profile, ProfileSegment};
 
 /// Cylinders and boxes differ by this between the two bounds.
 const MARGIN: f64 = 0.03;
 /// Times at which the tool is placed in each move.
-const STEPS: usize = 300;
+pub const STEPS: usize = 300;
 
 /// A cylinder about the tool's axis.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    fn grown(self, by: f64) -> Self {
+    pub fn grown(self, by: f64) -> Self {
         Self {
             radius: self.radius + by,
             z: [self.z[0] - by, self.z[1] + by],
@@ -40,7 +40,7 @@ impl Cylinder {
     }
 
     /// Where the vertical line through `(x, y)` is inside.
-    fn on_line(self, placed: &Placement, x: f64, y: f64) -> Option<[f64; 2]> {
+    pub fn on_line(self, placed: &Placement, x: f64, y: f64) -> Option<[f64; 2]> {
         let tip = placed.tip;
         // In the tool's frame the line is p + z q.
         let p = placed.back * Vector3::new(x - tip[0], y - tip[1], -tip[2]);
@@ -74,18 +74,18 @@ impl Cylinder {
 }
 
 /// The tool at one time of a move.
-struct Placement {
-    number: usize,
-    state: MoveState,
-    time: f64,
+pub struct Placement {
+    pub number: usize,
+    pub state: MoveState,
+    pub time: f64,
     /// From the world to the tool.
-    back: Matrix3<f64>,
-    tip: [f64; 3],
+    pub back: Matrix3<f64>,
+    pub tip: [f64; 3],
 }
 
-type Intervals = Vec<[f64; 2]>;
+pub type Intervals = Vec<[f64; 2]>;
 
-fn subtract(list: &mut Intervals, [low, high]: [f64; 2]) {
+pub fn subtract(list: &mut Intervals, [low, high]: [f64; 2]) {
     let mut out = Vec::new();
     for [a, b] in list.iter().copied() {
         if high <= a || low >= b {
@@ -102,7 +102,7 @@ fn subtract(list: &mut Intervals, [low, high]: [f64; 2]) {
     *list = out;
 }
 
-fn meets(list: &Intervals, [low, high]: [f64; 2]) -> bool {
+pub fn meets(list: &Intervals, [low, high]: [f64; 2]) -> bool {
     list.iter().any(|[a, b]| a.max(low) < b.min(high))
 }
 
@@ -120,7 +120,7 @@ pub struct Case {
     pub target: Option<([[f64; 3]; 2], f64)>,
 }
 
-type Key = (FindingKind, usize, Option<usize>);
+pub type Key = (FindingKind, usize, Option<usize>);
 
 impl Case {
     pub fn grid(&self) -> Grid {
@@ -128,10 +128,11 @@ impl Case {
         Grid::new([min[0], min[1]], [max[0], max[1]], [23, 19]).unwrap()
     }
 
-    /// The fixtures' grid is wider than the stock's.
-    fn clamp_grid(&self) -> Grid {
-        let [min, max] = self.stock;
-        Grid::new([min[0] - 12.0, min[1] - 12.0], [max[0] + 12.0, max[1] + 12.0], [53, 49]).unwrap()
+    /// Fixtures have a grid of their own, with about the spacing of the stock's.
+    fn clamp_grid(&self, [min, max]: [[f64; 3]; 2]) -> Grid {
+        let spacing = self.grid().spacing();
+        let cells = [0, 1].map(|k| ((max[k] - min[k]) / spacing[k]).ceil() as usize);
+        Grid::new([min[0], min[1]], [max[0], max[1]], cells).unwrap()
     }
 
     fn placements(&self) -> Vec<Placement> {
@@ -157,32 +158,47 @@ impl Case {
         all
     }
 
-    /// Findings by brute force, with their first times.
-    fn by_force(&self, sure: bool) -> BTreeMap<Key, f64> {
+    /// Findings of some tools one after the other, by brute force, with the number of the tool and their first times. Stock, clamp and target are those of
+    /// the first.
+    pub fn by_force(cases: &[Self], sure: bool) -> BTreeMap<(usize, Key), f64> {
         let sign = if sure { -1.0 } else { 1.0 };
-        let (probe, holder) = (self.cutter.grown(sign * MARGIN), self.holder.grown(sign * MARGIN));
-        let eater = if sure { self.cutter.grown(MARGIN) } else { self.cutter };
+        let first = &cases[0];
+        let solids: Vec<[Cylinder; 3]> = cases
+            .iter()
+            .map(|case| {
+                let eater = if sure { case.cutter.grown(MARGIN) } else { case.cutter };
+                [
+                    case.cutter.grown(sign * MARGIN),
+                    case.holder.grown(sign * MARGIN),
+                    eater,
+                ]
+            })
+            .collect();
         let mut found = BTreeMap::new();
         let boxed = |solid: [[f64; 3]; 2], x: f64, y: f64| -> Intervals {
             let [min, max] = solid;
             let inside = min[0] < x && x < max[0] && min[1] < y && y < max[1];
             if inside { vec![[min[2], max[2]]] } else { Vec::new() }
         };
-        let mut note = |kind, number, body, time: f64| {
-            let first = found.entry((kind, number, body)).or_insert(time);
+        let mut note = |case: usize, kind, number, body, time: f64| {
+            let first = found.entry((case, (kind, number, body))).or_insert(time);
             *first = first.min(time);
         };
-        let placements = self.placements();
-        let grid = self.grid();
+        let placements: Vec<(usize, Placement)> = (0..)
+            .zip(cases)
+            .flat_map(|(n, case)| case.placements().into_iter().map(move |placed| (n, placed)))
+            .collect();
+        let grid = first.grid();
         for index in 0..grid.len() {
             let (i, j) = grid.place(index);
             let (x, y) = (grid.x(i), grid.y(j));
-            let mut stock = boxed(self.stock, x, y);
-            let core = self.target.map(|([min, max], limit)| {
+            let mut stock = boxed(first.stock, x, y);
+            let core = first.target.map(|([min, max], limit)| {
                 let limit = limit - sign * MARGIN;
                 boxed([min.map(|c| c + limit), max.map(|c| c - limit)], x, y)
             });
-            for placed in &placements {
+            for (case, placed) in &placements {
+                let [probe, holder, eater] = &solids[*case];
                 if stock.is_empty() {
                     break;
                 }
@@ -191,28 +207,28 @@ impl Case {
                 } = *placed;
                 if let Some(cut) = probe.on_line(placed, x, y) {
                     if state.rapid && meets(&stock, cut) {
-                        note(FindingKind::Rapid, number, None, time);
+                        note(*case, FindingKind::Rapid, number, None, time);
                     } else if state.spindle_stopped && meets(&stock, cut) {
-                        note(FindingKind::Spindle, number, None, time);
+                        note(*case, FindingKind::Spindle, number, None, time);
                     }
                     let both = core.iter().flatten().map(|[a, b]| [a.max(cut[0]), b.min(cut[1])]);
                     if both
                         .into_iter()
                         .any(|range| range[0] < range[1] && meets(&stock, range))
                     {
-                        note(FindingKind::Gouge, number, None, time);
+                        note(*case, FindingKind::Gouge, number, None, time);
                     }
                 }
                 if let Some(cut) = eater.on_line(placed, x, y) {
                     subtract(&mut stock, cut);
                 }
                 if holder.on_line(placed, x, y).is_some_and(|range| meets(&stock, range)) {
-                    note(FindingKind::Collision, number, Some(0), time);
+                    note(*case, FindingKind::Collision, number, Some(0), time);
                 }
             }
         }
-        if let Some(clamp) = self.clamp {
-            let grid = self.clamp_grid();
+        if let Some(clamp) = first.clamp {
+            let grid = first.clamp_grid(clamp);
             for index in 0..grid.len() {
                 let (i, j) = grid.place(index);
                 let (x, y) = (grid.x(i), grid.y(j));
@@ -220,10 +236,11 @@ impl Case {
                 if material.is_empty() {
                     continue;
                 }
-                for placed in &placements {
+                for (case, placed) in &placements {
+                    let [probe, holder, _] = &solids[*case];
                     for (body, solid) in [(None, probe), (Some(0), holder)] {
                         if solid.on_line(placed, x, y).is_some_and(|range| meets(&material, range)) {
-                            note(FindingKind::Fixture, placed.number, body, placed.time);
+                            note(*case, FindingKind::Fixture, placed.number, body, placed.time);
                         }
                     }
                 }
@@ -248,7 +265,7 @@ impl Case {
         let program = [ToolPath::new(&assembly, &path).with_states(&self.states)];
         let clamp = self
             .clamp
-            .map(|[min, max]| Stock::Block { min, max }.dexels(&self.clamp_grid()).unwrap());
+            .map(|[min, max]| Stock::Block { min, max }.dexels(&self.clamp_grid([min, max])).unwrap());
         let target = self
             .target
             .map(|(solid, limit)| Target::new(&box_mesh(solid), &grid, limit, limit).unwrap());
@@ -283,7 +300,11 @@ impl Case {
             .iter()
             .map(|f| ((f.kind, f.number, f.body), *f))
             .collect();
-        let (sure, possible) = (self.by_force(true), self.by_force(false));
+        let of_one = |sure| -> BTreeMap<Key, f64> {
+            let found = Self::by_force(std::slice::from_ref(self), sure).into_iter();
+            found.map(|((_, key), time)| (key, time)).collect()
+        };
+        let (sure, possible) = (of_one(true), of_one(false));
         let step = 1.0 / STEPS as f64;
         for (key, time) in &sure {
             let finding = found
