@@ -202,6 +202,18 @@ impl Browser {
         Ok(())
     }
 
+    /// Puts fingers down, moves them step by step, and lifts them: each step has a place for each finger.
+    pub fn touch(&mut self, steps: &[Vec<[f64; 2]>]) -> Result<(), String> {
+        for (n, fingers) in steps.iter().enumerate() {
+            let point = |(id, [x, y]): (usize, &[f64; 2])| json!({"x": x, "y": y, "id": id});
+            let points: Vec<Value> = fingers.iter().enumerate().map(point).collect();
+            let kind = if n == 0 { "touchStart" } else { "touchMove" };
+            self.call("Input.dispatchTouchEvent", json!({"type": kind, "touchPoints": points}))?;
+        }
+        let lifted = json!({"type": "touchEnd", "touchPoints": []});
+        self.call("Input.dispatchTouchEvent", lifted).map(drop)
+    }
+
     /// The page as it is seen, as a PNG in base64.
     pub fn screenshot(&mut self) -> Result<Value, String> {
         Ok(self.call("Page.captureScreenshot", json!({"format": "png"}))?["data"].take())

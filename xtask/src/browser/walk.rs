@@ -12,11 +12,12 @@ const DESKTOP: [u32; 2] = [1280, 800];
 const PHONE: [u32; 2] = [390, 844];
 
 /// Name, size of the page, flags of the browser, and what to do.
-pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 4] {
+pub fn all() -> [(&'static str, [u32; 2], &'static [&'static str], Walk); 5] {
     [
         ("mouse", DESKTOP, &[], mouse),
         ("keyboard", DESKTOP, &[], keyboard),
         ("phone", PHONE, &[], phone),
+        ("paper", DESKTOP, &[], paper),
         (
             "no WebGL",
             DESKTOP,
@@ -258,6 +259,7 @@ fn phone(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
         &format!("the page is {} wide on {}", wide[0], wide[1]),
     )?;
     save(browser, docs, "report-phone.png")?;
+    pinch(browser)?;
     browser.call(
         "Emulation.setEmulatedMedia",
         json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]}),
@@ -268,6 +270,80 @@ fn phone(browser: &mut Browser, report: &Path, docs: Option<&Path>) -> Result<St
     expect(ground == "rgb(17, 22, 28)", &format!("the page stays light: {ground}"))?;
     quiet(browser)?;
     Ok(format!("{} wide", wide[0]))
+}
+
+/// Two fingers that part come nearer without turning the part; one finger turns it.
+fn pinch(browser: &mut Browser) -> Result<(), String> {
+    browser.call(
+        "Emulation.setTouchEmulationEnabled",
+        json!({"enabled": true, "maxTouchPoints": 5}),
+    )?;
+    let [x, y] = middle(browser, "#canvas")?;
+    let seen = |browser: &mut Browser| -> Result<Vec<f64>, String> {
+        let words = camera(browser)?;
+        let numbers = words.as_str().unwrap_or_default().split(' ').map(str::parse);
+        numbers
+            .collect::<Result<_, _>>()
+            .map_err(|_| format!("the camera is {words}"))
+    };
+    let before = seen(browser)?;
+    let steps: Vec<Vec<[f64; 2]>> = (0..=6)
+        .map(|n| 40.0 + 10.0 * f64::from(n))
+        .map(|far| vec![[x - far, y], [x + far, y]])
+        .collect();
+    browser.touch(&steps)?;
+    let near = seen(browser)?;
+    // 80 pixels become 200: two fifths of the distance.
+    expect(
+        (near[3] / before[3] - 0.4).abs() < 0.02 && near[4..] == before[4..],
+        &format!("parting fingers take the camera from {before:?} to {near:?}"),
+    )?;
+    browser.touch(&[vec![[x, y]], vec![[x + 30.0, y]], vec![[x + 60.0, y]]])?;
+    let turned = seen(browser)?;
+    expect(
+        turned[3] == near[3] && turned[4] != near[4],
+        &format!("a finger takes the camera from {near:?} to {turned:?}"),
+    )
+}
+
+/// What comes out of a printer: set-up before findings, the picture as on the screen, nothing beside the page.
+fn paper(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
+    browser.open(report)?;
+    pixels(browser)?;
+    let pdf = browser.call(
+        "Page.printToPDF",
+        json!({"paperWidth": 8.27, "paperHeight": 11.69, "preferCSSPageSize": true}),
+    )?;
+    let size = pdf["data"].as_str().map_or(0, str::len);
+    expect(size > 50_000, &format!("the printed pages have {size} bytes"))?;
+    // The same by the rules for paper, in the width of its type area.
+    browser.value("dispatchEvent(new Event('beforeprint'))")?;
+    browser.call("Emulation.setEmulatedMedia", json!({"media": "print"}))?;
+    browser.resize([688, 1000])?;
+    let seen = browser.value(
+        "(async () => {
+            const picture = document.getElementById('print-picture');
+            await picture.decode();
+            const top = (e) => e.getBoundingClientRect().top;
+            const setup = [...document.querySelectorAll('.card h2')].find((h) => h.innerText.startsWith('Set-up'));
+            const shown = [...document.querySelectorAll('.finding-body')].filter((e) => e.getBoundingClientRect().height > 10);
+            const lines = [...document.querySelectorAll('.finding .code .line')].filter((e) => e.getBoundingClientRect().height > 0);
+            return [document.documentElement.scrollWidth <= innerWidth, picture.naturalWidth, picture.getBoundingClientRect().width,
+                top(picture) < top(setup) && top(setup) < top(document.querySelector('.finding')),
+                shown.length === document.querySelectorAll('.finding').length, lines.length / shown.length,
+                document.getElementById('canvas').getBoundingClientRect().width];
+        })()",
+    )?;
+    let good = seen[0] == true
+        && seen[1].as_f64() > Some(300.0)
+        && seen[2].as_f64() > Some(300.0)
+        && seen[3] == true
+        && seen[4] == true
+        && seen[5].as_f64() <= Some(3.0)
+        && seen[6] == 0;
+    expect(good, &format!("the sheet is not as it should be: {seen}"))?;
+    quiet(browser)?;
+    Ok(format!("{size} bytes of PDF in base64"))
 }
 
 fn without_webgl(browser: &mut Browser, report: &Path, _: Option<&Path>) -> Result<String, String> {
