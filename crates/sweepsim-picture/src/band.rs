@@ -1,11 +1,11 @@
 //! A band of rows: which triangle each sample sees, and the colours of its pixels.
 
+use crate::base::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
 use crate::camera::Camera;
 use crate::frame::{BAND, ImagePoint, RIM, SAMPLES, STEP, area};
 use crate::light::{Around, Lights};
 use crate::scene::Scene;
 use crate::shade::{self, Matter, Spot};
-use crate::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
 
 /// Marks a sample that sees no triangle.
 const EMPTY: u32 = u32::MAX;

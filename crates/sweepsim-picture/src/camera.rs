@@ -1,7 +1,7 @@
 //! The camera: its position, and the projection onto the image.
 
+use crate::base::vector::{Vector, add, along, cross, dot, scale, sub, unit};
 use crate::scene::Scene;
-use crate::vector::{Vector, add, along, cross, dot, scale, sub, unit};
 use crate::view::View;
 
 /// A camera that sees the whole scene.

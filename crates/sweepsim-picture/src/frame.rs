@@ -1,11 +1,11 @@
 //! From triangles to pixels.
 
 use crate::band::Band;
+use crate::base::image::Image;
+use crate::base::steps::Steps;
 use crate::camera::Camera;
-use crate::image::Image;
 use crate::light::Lights;
 use crate::scene::Scene;
-use crate::steps::Steps;
 use rayon::prelude::*;
 
 /// Samples across a pixel.

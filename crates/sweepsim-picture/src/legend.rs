@@ -1,9 +1,9 @@
 //! The colour map of values, and the scale beside a picture that explains it.
 
-use crate::image::Image;
-use crate::marks::glyphs::{ink, write};
+use crate::base::glyphs::{ink, write};
+use crate::base::image::Image;
+use crate::base::vector::{Vector, mix};
 use crate::shade::srgb;
-use crate::vector::{Vector, mix};
 
 /// The share of an image's width that the scale needs: a value for [`View::legend`](crate::View::legend).
 pub const WIDTH: f64 = 0.13;

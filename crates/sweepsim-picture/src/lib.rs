@@ -35,18 +35,17 @@
 //! 4. `marks` draws the axes and a scale.
 
 mod band;
+mod base;
 mod camera;
+mod depth_maps;
 mod frame;
-mod image;
 pub mod legend;
 mod light;
 mod marks;
 mod scene;
 mod shade;
-mod steps;
-mod vector;
 mod view;
 
-pub use image::{Image, ImageError};
+pub use base::image::{Image, ImageError};
 pub use sweepsim_dexel::Mesh;
 pub use view::{Axis, CuttingPlane, Drawing, View, render};

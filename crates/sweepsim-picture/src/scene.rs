@@ -1,6 +1,6 @@
 //! The mesh to draw: checked, clipped at the sections, and scaled.
 
-use crate::vector::{Vector, cross, sub, unit};
+use crate::base::vector::{Vector, cross, sub, unit};
 use crate::view::{CuttingPlane, Drawing};
 use sweepsim_dexel::Mesh;
 

@@ -1,9 +1,9 @@
 //! Colours of surfaces and of the background.
 
+use crate::base::vector::{Vector, add, along, dot, mix, scale, smooth_step, times, unit};
 use crate::camera::Camera;
 use crate::legend;
 use crate::light::{Around, Lights, NET_REACH};
-use crate::vector::{Vector, add, along, dot, mix, scale, smooth_step, times, unit};
 
 /// A patch of surface within a pixel.
 #[derive(Clone, Copy)]

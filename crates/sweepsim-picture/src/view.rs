@@ -1,12 +1,12 @@
 //! What is drawn, and from where.
 
+use crate::base::image::Image;
+use crate::base::steps::Steps;
 use crate::camera::Camera;
 use crate::frame;
-use crate::image::Image;
 use crate::light::Lights;
 use crate::marks;
 use crate::scene::Scene;
-use crate::steps::Steps;
 use std::ops::ControlFlow;
 use sweepsim_dexel::Mesh;
 

@@ -1,12 +1,10 @@
 //! Light and shadow, from depth maps seen from each light.
 
-mod depth_maps;
-
+use crate::base::steps::Steps;
+use crate::base::vector::{Vector, add, along, cross, dot, scale, unit};
 use crate::camera::Camera;
+use crate::depth_maps::DepthMaps;
 use crate::scene::Scene;
-use crate::steps::Steps;
-use crate::vector::{Vector, add, along, cross, dot, scale, unit};
-use depth_maps::DepthMaps;
 use rayon::prelude::*;
 use std::collections::HashMap;
 

@@ -1,8 +1,8 @@
 //! Depth maps: how far light from distant sources gets.
 
+use crate::base::steps::Steps;
+use crate::base::vector::{Vector, cross, dot, unit};
 use crate::scene::Scene;
-use crate::steps::Steps;
-use crate::vector::{Vector, cross, dot, unit};
 use rayon::prelude::*;
 
 /// Texels across a tile of a depth map.

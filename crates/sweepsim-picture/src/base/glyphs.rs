@@ -1,7 +1,7 @@
 //! Strokes, and characters drawn by them: digits, signs, the unit of lengths and the names of the axes.
 
-use crate::image::Image;
-use crate::vector::smooth_step;
+use crate::base::image::Image;
+use crate::base::vector::smooth_step;
 
 /// A character's strokes as polylines on a field of 4 × 6 with `y` down, and its width.
 fn strokes(character: char) -> (&'static [&'static [[f32; 2]]], f32) {

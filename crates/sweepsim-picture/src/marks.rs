@@ -1,12 +1,10 @@
 //! What explains a picture: its axes and its scale.
 
-pub(crate) mod glyphs;
-
+use crate::base::glyphs::{stroke, write};
+use crate::base::image::Image;
+use crate::base::vector::dot;
 use crate::camera::Camera;
-use crate::image::Image;
 use crate::scene::Scene;
-use crate::vector::dot;
-use glyphs::{stroke, write};
 
 /// Smaller images have neither axes nor scale: there is no room.
 const LEAST: f32 = 240.0;

@@ -1,0 +1,6 @@
+//! What all else builds on: vectors, pixels, strokes, and the steps of the work.
+
+pub(crate) mod glyphs;
+pub(crate) mod image;
+pub(crate) mod steps;
+pub(crate) mod vector;
