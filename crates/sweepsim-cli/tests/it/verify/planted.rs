@@ -363,5 +363,5 @@ fn faults_in_the_text_of_programs() {
 #[test]
 #[ignore = "takes minutes"]
 fn many_faults_in_the_text_of_programs() {
-    judged(0..220, 5);
+    judged(0..220, 2);
 }
