@@ -50,14 +50,14 @@ fn placements_that_stand_still_fill_the_sweep_from_below() {
     let poses = &job.paths[0].path.poses()[9..11];
     let grid = Grid::new([10.0, -12.0], [35.0, 12.0], [25, 24]).expect("a grid");
     let ends = [0.0, 1.0].map(|t| between(&poses[0], &poses[1], t));
-    let whole = swept(tool, ends.to_vec(), &grid, Method::Charts);
+    let whole = swept(tool, ends.to_vec(), &grid, Method::General);
     assert!(whole.volume() > 1000.0);
     let missing = |count: usize| {
         let mut union = Dexels::empty(grid);
         for n in 0..=count {
             let pose = between(&poses[0], &poses[1], n as f64 / count as f64);
             union
-                .unite_all(&swept(tool, vec![pose], &grid, Method::Charts))
+                .unite_all(&swept(tool, vec![pose], &grid, Method::General))
                 .expect("one grid");
         }
         let mut outside = union.clone();
@@ -80,7 +80,7 @@ fn the_methods_agree() {
     let grid = Grid::new([0.0, 0.0], [60.0, 24.0], [20, 8]).expect("a grid");
     let poses = &job.paths[0].path.poses()[8..13];
     let [charts, lines] =
-        [Method::Charts, Method::Lines].map(|method| swept(&job.tools[&1], poses.to_vec(), &grid, method));
+        [Method::General, Method::Lines].map(|method| swept(&job.tools[&1], poses.to_vec(), &grid, method));
     assert!(charts.covered() > 20);
     for index in 0..grid.len() {
         let (a, b) = (charts.at(index), lines.at(index));

@@ -10,7 +10,7 @@ use sweepsim_formats::Job;
 const JOBS: [&str; 2] = ["quickstart", "motions"];
 /// Cells of Table 1 that are counted.
 const CELLS: usize = 200;
-const METHODS: [Method; 4] = [Method::Charts, Method::Planes, Method::Lines, Method::Surface];
+const METHODS: [Method; 4] = [Method::General, Method::Planes, Method::Lines, Method::Surface];
 
 /// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process.
 ///

@@ -90,7 +90,7 @@ pub fn three_axis() -> Result<(), String> {
     for name in TOOLS {
         let timed = |method| on(1, || shortest(|| once(name, 1000, method).map(drop)))?;
         let crossings = once(name, 1000, Method::default())?;
-        let (closed, charts) = (timed(Method::default())?, timed(Method::Charts)?);
+        let (closed, charts) = (timed(Method::default())?, timed(Method::General)?);
         let removed = cut(name, 1000)?;
         let simulated = on(1, || shortest(|| cut(name, 1000).map(drop)))??;
         println!("{name:<8} {crossings:>11} {closed:>9.3} {charts:>9.3} {removed:>11} {simulated:>9.3}");

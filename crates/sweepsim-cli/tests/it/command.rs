@@ -39,7 +39,7 @@ fn simulate_writes_everything() {
     assert!(summary.contains("2 moves of 2 tools on 40 × 20 dexels"), "{summary}");
     let report = report(&workdir);
     assert_eq!(report["job"], "job");
-    assert_eq!(report["method"], "auto");
+    assert_eq!(report["method"], "charts");
     assert_eq!(report["cells"], serde_json::json!([40, 20]));
     assert_eq!(report["moves"], 2);
     assert_eq!(report["dexels"]["unresolved"], serde_json::json!([]));
@@ -111,7 +111,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
 fn the_methods_agree() {
     let workdir = Workdir::new(JOB);
     let mut tables: Vec<Vec<Vec<f64>>> = Vec::new();
-    for method in ["auto", "charts", "planes", "lines", "surface"] {
+    for method in ["charts", "general", "planes", "lines", "surface"] {
         let output = workdir.run_job("simulate", &["--quiet", "--only", "dexels", "--method", method]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         let table = fs::read_to_string(workdir.path("out/dexels.csv")).unwrap();

@@ -9,11 +9,12 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// Closed forms for the moves of tools of revolution that do not turn, as far as there are any, and [charts](Self::Charts) for everything else.
+    /// One subdivision for all lines: boxes on which the envelope system is injective. The moves of tools of revolution that do not turn are solved in closed
+    /// form instead, as far as there is one.
     #[default]
-    Auto,
-    /// One subdivision for all lines: boxes on which the envelope system is injective. The reference for closed forms.
     Charts,
+    /// Charts for all moves: the reference for closed forms.
+    General,
     /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision.
     Lines,
     /// Curves in the planes `x = const`, intersected with the lines: the paper's Algorithm 3.
@@ -25,8 +26,8 @@ pub enum Method {
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Auto => "auto",
             Self::Charts => "charts",
+            Self::General => "general",
             Self::Lines => "lines",
             Self::Planes => "planes",
             Self::Surface => "surface",
@@ -36,7 +37,7 @@ impl fmt::Display for Method {
 
 /// The error for an unknown name of a method.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("unknown method `{0}`: expected `auto`, `charts`, `planes`, `lines` or `surface`")]
+#[error("unknown method `{0}`: expected `charts`, `general`, `planes`, `lines` or `surface`")]
 pub struct UnknownMethod(pub String);
 
 impl FromStr for Method {
@@ -44,8 +45,8 @@ impl FromStr for Method {
 
     fn from_str(name: &str) -> Result<Self, UnknownMethod> {
         match name {
-            "auto" => Ok(Self::Auto),
             "charts" => Ok(Self::Charts),
+            "general" => Ok(Self::General),
             "lines" => Ok(Self::Lines),
             "planes" => Ok(Self::Planes),
             "surface" => Ok(Self::Surface),
@@ -72,7 +73,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             tolerance: 1e-6,
-            method: Method::Auto,
+            method: Method::Charts,
             boundary: BoundaryOperator::Coverage,
             path_number: 0,
         }

@@ -68,7 +68,7 @@ pub(crate) fn sweep_near(
             }
         }
         Some(material) => {
-            let closed = options.method == Method::Auto && options.boundary == BoundaryOperator::Coverage;
+            let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
             for run in Runs::new(tool, &plan, (grid, material), length, closed) {
                 (job.mask, job.ceiling) = (run.mask, run.ceiling);
                 one(&job, &run.parts, run.done)?;

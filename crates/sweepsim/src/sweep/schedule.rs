@@ -95,7 +95,7 @@ impl SweepJob<'_> {
     /// All crossings of a chunk, in an order that does not depend on the number of threads.
     pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
         match self.method {
-            Method::Auto | Method::Charts => self.by::<Charts>(chunk),
+            Method::Charts | Method::General => self.by::<Charts>(chunk),
             Method::Lines => self.by::<Lines>(chunk),
             Method::Planes => self.by::<Planes>(chunk),
             Method::Surface => self.by::<Surfaces>(chunk),
@@ -124,7 +124,7 @@ impl SweepJob<'_> {
             .into_par_iter()
             .map(|share| {
                 let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask.as_deref());
-                let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Auto);
+                let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Charts);
                 let search = Search {
                     outline,
                     ceiling: self.ceiling.as_ref(),

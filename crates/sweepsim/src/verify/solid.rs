@@ -169,8 +169,8 @@ impl<'a> MovingSolid<'a> {
     ) -> Result<SweptLines, SweepError> {
         // Masks are for charts and closed forms.
         let method = match options.method {
-            Method::Charts => Method::Charts,
-            _ => Method::Auto,
+            Method::General => Method::General,
+            _ => Method::Charts,
         };
         let options = options.clone().method(method);
         let mut job = self.plan.job(self.tool, grid, &options, monitor);

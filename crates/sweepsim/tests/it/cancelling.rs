@@ -67,7 +67,7 @@ fn check(name: &str, run: &dyn Fn(&dyn Monitor) -> Result<(), SweepError>) {
 fn every_method_stops_within_a_move() {
     let (tool, path) = one_move();
     let grid = Grid::new([-30.0, -12.0], [30.0, 12.0], [60, 24]).unwrap();
-    for method in [Method::Charts, Method::Lines, Method::Planes, Method::Surface] {
+    for method in [Method::General, Method::Lines, Method::Planes, Method::Surface] {
         let options = Options::new(1e-6).method(method);
         check(&method.to_string(), &|monitor| {
             sweep(&tool, &path, &grid, &options, monitor).map(drop)

@@ -10,7 +10,7 @@ use sweepsim_solve::Monitor;
 
 /// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour. For a move a million times as long as the tool is
 /// wide, the time of a crossing takes twenty halvings more.
-const THRIFTY: [(Method, f64); 2] = [(Method::Charts, 4.2), (Method::Surface, 4.2)];
+const THRIFTY: [(Method, f64); 2] = [(Method::General, 4.2), (Method::Surface, 4.2)];
 /// These cannot tell a wall at the least tolerance from the lines beside it, and leave them to charts.
 const OTHERS: [(Method, f64); 2] = [(Method::Planes, 50.0), (Method::Lines, 300.0)];
 

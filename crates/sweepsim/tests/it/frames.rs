@@ -58,7 +58,7 @@ proptest! {
         let moved: Vec<Pose> = poses.iter().map(|pose| seen(pose, &frame)).collect();
         let (Ok(path), Ok(moved)) = (Path::with_law(poses, law), Path::with_law(moved, law)) else { return Ok(()) };
         let grid = Grid::new([-9.03, -8.91], [9.07, 9.05], [24, 24]).unwrap();
-        for method in [Method::Charts, Method::Lines] {
+        for method in [Method::General, Method::Lines] {
             let options = Options::new(TOLERANCE).method(method);
             let framed = sweep(&tool, &path, &grid.in_frame(frame), &options, &()).unwrap();
             let world = sweep(&tool, &moved, &grid, &options, &()).unwrap();

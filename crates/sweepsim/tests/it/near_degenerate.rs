@@ -155,7 +155,7 @@ fn tools() -> Vec<(&'static str, Tool)> {
 }
 
 fn cost(tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
-    sweep(tool, path, grid, &Options::default().method(Method::Charts), &())
+    sweep(tool, path, grid, &Options::default().method(Method::General), &())
         .expect("a sweep")
         .statistics
 }

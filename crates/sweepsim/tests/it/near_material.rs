@@ -13,7 +13,7 @@ fn grid() -> Grid {
 
 /// Stock minus the whole sweep by charts.
 fn reference(stock: &Dexels, tool: &Tool, path: &Path, grid: &Grid) -> Dexels {
-    let options = Options::new(TOLERANCE).method(Method::Charts);
+    let options = Options::new(TOLERANCE).method(Method::General);
     let swept = sweep(tool, path, grid, &options, &()).expect("a sweep");
     assert!(swept.statistics.unresolved.is_empty());
     let mut left = stock.clone();
