@@ -75,7 +75,7 @@ pub(crate) struct RunOptions {
     #[arg(long, value_name = "NXxNY", value_parser = cells)]
     pub cells: Option<[usize; 2]>,
     /// The dexels that the mesh and the picture are made of: with `xyz` steep walls are as accurate as flat faces and edges are sharp, at
-    /// three times the cost of `z` [default: xyz, if the job allows it].
+    /// three times the cost of `z` [default: xyz, if the job allows it]. If `xyz` is given, `verify` looks for harm along x and y, too.
     #[arg(long, value_name = "AXES")]
     pub directions: Option<Directions>,
     /// The tolerance in millimetres, instead of the job's.

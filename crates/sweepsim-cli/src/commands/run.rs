@@ -187,7 +187,7 @@ fn compute(
                 dexels: done.remaining,
                 statistics: done.statistics,
                 volume_removed: Some(done.volume_removed),
-                uncertified: 0,
+                uncertified: done.uncertified,
                 target: done.target,
                 moves: done.moves,
                 picture: None,
@@ -292,7 +292,7 @@ fn mesh(
         return Ok(phase(report, "mesh", || outcome.dexels.surface())?);
     }
     let surface = tri_surface::surface(task, session, options, &outcome.dexels, report)?;
-    outcome.uncertified = surface.uncertified;
+    outcome.uncertified += surface.uncertified;
     if surface.uncertified > 0 {
         let lines = words::counted(surface.uncertified as u64, "dexel");
         report.notes.push(format!(

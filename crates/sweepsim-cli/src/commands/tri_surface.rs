@@ -4,7 +4,7 @@ use super::task::{Task, sweeping};
 use crate::arguments::RunOptions;
 use crate::session::{CRISP, Failure, JobSession, phase};
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};
-use sweepsim_dexel::{Dexels, Mesh, Stock, TriDexels};
+use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels, TriDexelsError};
 use sweepsim_formats::{Job, Report};
 
 /// A surface, and the number of uncertified dexels along x and y.
@@ -58,6 +58,28 @@ fn heights(dexels: &Dexels) -> Option<[f64; 2]> {
         })
 }
 
+/// The box and the cells of dexels along three axes: on this grid along z, over these heights and a margin, with the same distances along the others.
+fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
+    let [dx, dy] = grid.spacing();
+    let step = (dx * dy).sqrt();
+    let levels = ((high - low) / step + 2.0 * ROOM).ceil();
+    let room = 0.5 * (levels * step - (high - low));
+    let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
+    ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize])
+}
+
+/// The stock of a job along x and along y; nothing if it is empty.
+pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
+    // All of it: what stands between the dexels along z may be higher than they are.
+    let Some([low, high]) = job.stock.bounds() else {
+        return Ok(Vec::new());
+    };
+    let range = [low[2], high[2]];
+    let (min, max, cells) = lattice(&job.grid, range);
+    let [along_x, along_y, _] = TriDexels::new(min, max, cells, &job.stock)?.into_sets();
+    Ok(vec![along_x, along_y])
+}
+
 /// The surface of a result whose dexels along z are known.
 pub(crate) fn surface(
     task: Task,
@@ -73,13 +95,7 @@ pub(crate) fn surface(
             uncertified: 0,
         });
     };
-    let grid = &job.grid;
-    let [dx, dy] = grid.spacing();
-    let step = (dx * dy).sqrt();
-    let levels = ((high - low) / step + 2.0 * ROOM).ceil();
-    let room = 0.5 * (levels * step - (high - low));
-    let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
-    let (min, max, cells) = ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize]);
+    let (min, max, cells) = lattice(&job.grid, [low, high]);
     let wrong = |error: &dyn std::error::Error| Failure::message(format!("--directions xyz: {error}"));
     let stock = phase(report, "stock", || match task {
         Task::Simulate | Task::Verify => TriDexels::new(min, max, cells, &job.stock),

@@ -12,7 +12,8 @@
 //!
 //! What is left at the end is compared with the target by [`deviations`].
 //!
-//! No such move is missed on the lines of the grid; what is narrower than their distance may hide between them.
+//! No such move is missed on the lines of the grid; what is narrower than their distance may hide between them. Grids in [frames](sweepsim_dexel::Frame) look along other directions;
+//! [`joined`] makes one list of what is found along several.
 
 mod depth;
 mod deviation;
@@ -27,6 +28,6 @@ mod target;
 
 pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
 pub use driver::verify;
-pub use finding::{Finding, FindingKind, MoveState, RapidCourses};
+pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use scene::{MoveRemoval, OtherCourse, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 pub use target::{Target, TargetError, TargetRegion};

@@ -6,16 +6,15 @@ use sweepsim_dexel::{Dexels, Grid, Operation, Stock};
 /// The most lines of a grid of fixtures.
 const MOST_LINES: f64 = 4e6;
 
-/// Those of each set-up.
-pub(super) fn of_setups(session: &JobSession) -> Result<Vec<Option<Dexels>>, Failure> {
+/// Those of each set-up, for a stock on this grid.
+pub(super) fn of_setups(session: &JobSession, stock: &Grid) -> Result<Vec<Option<Dexels>>, Failure> {
     let setups = session.job.setups.iter();
-    setups.map(|setup| together(session, &setup.fixtures)).collect()
+    setups.map(|setup| together(session, stock, &setup.fixtures)).collect()
 }
 
 /// Fixtures on a grid that holds all of them, with lines as far apart as the stock's.
-fn together(session: &JobSession, fixtures: &[Stock]) -> Result<Option<Dexels>, Failure> {
-    let job = &session.job;
-    let frame = job.grid.frame();
+fn together(session: &JobSession, stock: &Grid, fixtures: &[Stock]) -> Result<Option<Dexels>, Failure> {
+    let frame = stock.frame();
     let corners = fixtures.iter().filter_map(|fixture| fixture.bounds());
     let corners = corners.flat_map(|[low, high]| {
         (0..8).map(move |n| frame.from_world([0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] })))
@@ -29,7 +28,7 @@ fn together(session: &JobSession, fixtures: &[Stock]) -> Result<Option<Dexels>, 
     if range[0][0] > range[0][1] {
         return Ok(None);
     }
-    let spacing = job.grid.spacing();
+    let spacing = stock.spacing();
     let mut cells = [0, 1].map(|k| ((range[k][1] - range[k][0]) / spacing[k]).ceil().max(1.0));
     let too_many = (cells[0] * cells[1] / MOST_LINES).sqrt();
     if too_many > 1.0 {

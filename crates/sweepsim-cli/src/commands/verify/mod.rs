@@ -8,7 +8,8 @@ mod work;
 pub(super) use work::setups;
 
 use super::task::sweeping;
-use crate::arguments::{JudgeOptions, Output, RunOptions};
+use super::tri_surface::stock_aside;
+use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobSession, phase, words};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 use sweepsim::motion::{Assembly, BodyKind, Tool};
 use sweepsim::verify::{
     DeviationKind, Deviations, Finding, MoveState, OtherCourse, RapidCourses, Scene, Target, ToolPath, Verification,
-    VerifyOptions, deviations, verify,
+    VerifyOptions, deviations, joined, verify,
 };
 use sweepsim::{Monitor, Statistics};
 use sweepsim_dexel::Dexels;
@@ -30,6 +31,8 @@ pub(super) struct Verified {
     pub remaining: Dexels,
     pub statistics: Statistics,
     pub volume_removed: f64,
+    /// The number of uncertified dexels along x and y.
+    pub uncertified: usize,
     pub target: Option<Target>,
     /// What each move does, if asked for.
     pub moves: Vec<MoveSummary>,
@@ -46,10 +49,7 @@ pub(super) fn verified(
     progress.phase("stock");
     let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
     let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
-    let fixtures = phase(report, "stock", || fixtures::of_setups(session))?;
-    progress.phase("target");
-    let target = phase(report, "target", || targets::of_job(&session.job))
-        .map_err(|error| session.failure(format!("target: {error}")))?;
+    let look = Look::new(session, stock.clone(), report)?;
     let larger = larger(job, judging, report);
     let assemblies = assemblies(session, [0.0; 2])?;
     let larger = match larger {
@@ -58,40 +58,58 @@ pub(super) fn verified(
     };
     let courses: Vec<Vec<OtherCourse>> = job.paths.iter().map(other_courses).collect();
     let states: Vec<Vec<MoveState>> = job.paths.iter().map(states).collect();
-    let program: Vec<ToolPath> = job
-        .paths
-        .iter()
-        .zip(states.iter().zip(&courses))
-        .map(|(path, (states, courses))| {
+    let go_on = if judging.first {
+        ControlFlow::Break(())
+    } else {
+        ControlFlow::Continue(())
+    };
+    let judge = |look: &Look, verifying: &VerifyOptions, report: &mut Report| {
+        let states = states.iter().zip(&courses);
+        let toolpaths = job.paths.iter().zip(states).map(|(path, (states, courses))| {
             let toolpath = ToolPath::new(&assemblies[&path.tool], &path.path);
             let toolpath = toolpath.with_states(states).with_other_courses(courses);
             let toolpath = match &larger {
                 Some(larger) => toolpath.with_larger(&larger[&path.tool]),
                 None => toolpath,
             };
-            match &fixtures[path.setup] {
+            match &look.fixtures[path.setup] {
                 Some(fixtures) => toolpath.with_fixtures(fixtures),
                 None => toolpath,
             }
-        })
-        .collect();
-    let mut scene = Scene::new(stock.clone());
-    if let Some(target) = &target {
-        scene = scene.with_target(target);
-    }
-    progress.phase("verify");
-    let go_on = if judging.first {
-        ControlFlow::Break(())
-    } else {
-        ControlFlow::Continue(())
+        });
+        let program: Vec<ToolPath> = toolpaths.collect();
+        let mut scene = Scene::new(look.stock.clone());
+        if let Some(target) = &look.target {
+            scene = scene.with_target(target);
+        }
+        let done = phase(report, "sweep", || {
+            verify(scene, &program, verifying, &mut |_| go_on, progress as &dyn Monitor)
+        });
+        done.map_err(|error| session.failed(error))
     };
+    progress.phase("verify");
     // The page plots what each move does, where that costs little.
     let plotted = session.outputs.wants(Output::Report) && job.moves() <= PLOTTED;
-    let verifying = VerifyOptions::new(sweeping(job, options)).each_move(judging.moves || plotted);
-    let done = phase(report, "sweep", || {
-        verify(scene, &program, &verifying, &mut |_| go_on, progress as &dyn Monitor)
-    });
-    let done = done.map_err(|error| session.failed(error))?;
+    let verifying = VerifyOptions::new(sweeping(job, options));
+    let each = verifying.clone().each_move(judging.moves || plotted);
+    let mut done = judge(&look, &each, report)?;
+    let mut uncertified = 0;
+    if options.directions == Some(Directions::Xyz) {
+        let aside = phase(report, "stock", || stock_aside(job));
+        let aside = aside.map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
+        for (stock, name) in aside.into_iter().zip(["along x", "along y"]) {
+            let look = Look::new(session, stock, report)?;
+            progress.phase(name);
+            let more = judge(&look, &verifying, report)?;
+            done.findings = joined([done.findings, more.findings]);
+            done.undecided.extend(more.undecided);
+            done.stopped |= more.stopped;
+            uncertified += more.unresolved.len();
+        }
+        done.undecided.sort_unstable();
+        done.undecided.dedup();
+    }
+    let Look { target, .. } = look;
     progress.phase("deviation");
     let found = target
         .as_ref()
@@ -110,9 +128,33 @@ pub(super) fn verified(
         volume_removed: stock.volume() - done.remaining.volume(),
         remaining: done.remaining,
         statistics,
+        uncertified,
         target,
         moves,
     })
+}
+
+/// What is judged along one direction.
+struct Look {
+    stock: Dexels,
+    /// The fixtures of each set-up.
+    fixtures: Vec<Option<Dexels>>,
+    target: Option<Target>,
+}
+
+impl Look {
+    fn new(session: &JobSession, stock: Dexels, report: &mut Report) -> Result<Self, Failure> {
+        let grid = *stock.grid();
+        let fixtures = phase(report, "stock", || fixtures::of_setups(session, &grid))?;
+        session.progress.phase("target");
+        let target = phase(report, "target", || targets::of_job(&session.job, &grid))
+            .map_err(|error| session.failure(format!("target: {error}")))?;
+        Ok(Self {
+            stock,
+            fixtures,
+            target,
+        })
+    }
 }
 
 /// The cutters, each with its bodies, all round larger by these margins.

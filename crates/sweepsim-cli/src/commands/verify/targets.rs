@@ -7,11 +7,11 @@ use sweepsim_formats::{DeviationSummary, Job, Limits, ReportedRegion};
 /// The limits of a target that comes without any, in millimetres.
 pub(in crate::commands) const LIMIT: f64 = 0.1;
 
-/// The target of a job.
-pub(super) fn of_job(job: &Job) -> Result<Option<Target>, TargetError> {
+/// The target of a job, for a stock on this grid.
+pub(super) fn of_job(job: &Job, grid: &Grid) -> Result<Option<Target>, TargetError> {
     let Some(target) = &job.target else { return Ok(None) };
     let parts = job.limits.as_ref().map(|limits| target.by_region(limits));
-    with_limits(&target.mesh, parts, job.limits.as_ref(), &job.grid, job.tolerance).map(Some)
+    with_limits(&target.mesh, parts, job.limits.as_ref(), grid, job.tolerance).map(Some)
 }
 
 /// A target by region: `parts` has what of its surface is in no region, then each region.
