@@ -21,7 +21,7 @@ const JOB: &str = r#"Job(
 
 fn findings(workdir: &Workdir, more: &[&str]) -> (Option<i32>, Vec<ReportedFinding>) {
     let output = workdir.run_job("verify", &[&["--only", "report"], more].concat());
-    let report = fs::read(workdir.path("out/report.json")).expect(&text(&output.stderr));
+    let report = fs::read(workdir.path("out/report.json")).unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     let report: Report = serde_json::from_slice(&report).expect("a report");
     (output.status.code(), report.findings.expect("findings"))
 }
@@ -51,7 +51,10 @@ fn what_stands_between_dexels_is_found_along_the_others() {
     }
     // The web is as thick as it is along x, and no dexel along y meets it; of the plate the cutter covers 4 along z.
     let depths = [&all[0], &all[1]].map(|finding| finding.depth);
-    assert!((depths[0] - 0.2).abs() < 1e-3 && (depths[1] - 4.0).abs() < 1e-3, "{depths:?}");
+    assert!(
+        (depths[0] - 0.2).abs() < 1e-3 && (depths[1] - 4.0).abs() < 1e-3,
+        "{depths:?}"
+    );
     // The first alone.
     let (code, first) = findings(&workdir, &["--directions", "xyz", "--first"]);
     assert_eq!(code, Some(1));
