@@ -45,6 +45,7 @@ pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,
 };
+pub use model::accelerations::CORNER_DEVIATION;
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};

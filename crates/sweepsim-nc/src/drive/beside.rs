@@ -173,6 +173,7 @@ impl Track {
             place: self.place,
             feed: self.feed,
             feed_mode: self.feed_mode,
+            exact_stop: self.exact_stop,
         }
     }
 
@@ -292,6 +293,7 @@ impl Track {
         let place = std::mem::replace(&mut self.place, stroke.place);
         let feed = std::mem::replace(&mut self.feed, stroke.feed);
         let mode = std::mem::replace(&mut self.feed_mode, stroke.feed_mode);
+        let exact_stop = std::mem::replace(&mut self.exact_stop, stroke.exact_stop);
         let result = match (stroke.bend, self.known()) {
             (Some(bend), Some(start)) => {
                 let [u, v, w] = stroke.plane;
@@ -311,6 +313,7 @@ impl Track {
             _ => self.straight(stroke.end, stroke.abc, stroke.rapid),
         };
         (self.place, self.feed, self.feed_mode) = (place, feed, mode);
+        self.exact_stop = exact_stop;
         self.contour.actual = Some(stroke.end);
         result
     }

@@ -27,6 +27,7 @@ pub(crate) struct Track {
     pub tool: Option<u32>,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
+    pub exact_stop: bool,
     /// The direction of the tool, where the program gives it rather than the angles of axes.
     pub(super) direct: Option<[f64; 3]>,
     pub(super) frame: WorkFrame,
@@ -56,6 +57,7 @@ impl Track {
             tool: None,
             feed: None,
             feed_mode: FeedMode::default(),
+            exact_stop: false,
             direct: None,
             frame: WorkFrame::default(),
             coordinates: if options.machine.tip_control {
@@ -366,6 +368,7 @@ impl Track {
             made.tool = self.tool;
             made.feed = if rapid { None } else { self.feed };
             made.feed_mode = self.feed_mode;
+            made.exact_stop = self.exact_stop;
             made.tip_control = self.coordinates == Coordinates::Tip || self.driver.kinematics().is_none();
             made.way = if self.joined { way } else { Move::default() };
             self.program.poses.push(made);

@@ -117,6 +117,10 @@ pub(crate) enum Code {
     SplineOrMode,
     /// G5.1: a spline, or a high-speed mode.
     SplineOrContouring,
+    /// G9: the axes rest after this block.
+    StopHere,
+    /// G61, G61.1, and G62, G63, which end them: whether the axes rest after each block.
+    ExactStop(bool),
     /// G64: corners may be rounded.
     Blending,
     /// Changes no geometry; its words are its own. What to note.
@@ -258,8 +262,11 @@ fn g(value: f64) -> Code {
         2540 => Code::DynamicOffset(true),
         2550 => Code::DynamicOffset(false),
         2340 => Code::TipControlByLetters,
-        // Exact stop, look-ahead, speed modes, diameter mode off.
-        90 | 610 | 611 | 620 | 630 | 80 | 960 | 970 => Code::Harmless,
+        90 => Code::StopHere,
+        610 | 611 => Code::ExactStop(true),
+        620 | 630 => Code::ExactStop(false),
+        // Look-ahead, speed modes, diameter mode off.
+        80 | 960 | 970 => Code::Harmless,
         70 => Code::Refused("lathe diameters are"),
         _ => Code::Unknown,
     }

@@ -28,6 +28,9 @@ pub(crate) struct Modes {
     pub absolute_centres: bool,
     pub inch: bool,
     pub feed_mode: FeedMode,
+    /// Whether the axes rest after each block (G61), and after this one (G9).
+    pub exact_stop: bool,
+    pub stops_here: bool,
     pub feed: Option<f64>,
     pub speed: Option<f64>,
     pub spindle: Turning,
@@ -60,6 +63,8 @@ impl Modes {
             absolute_centres: false,
             inch,
             feed_mode: FeedMode::PerMinute,
+            exact_stop: false,
+            stops_here: false,
             feed: None,
             speed: None,
             spindle: Turning::Stopped,

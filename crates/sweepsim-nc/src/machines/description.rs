@@ -34,6 +34,10 @@ pub struct MachineDescription {
     /// How rapid moves are made.
     #[serde(default)]
     pub rapid: Rapid,
+    /// How tightly feed moves take their corners, in mm; without it [`CORNER_DEVIATION`](crate::CORNER_DEVIATION). Only
+    /// [`Program::times`](crate::Program::times) counts it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub corner_deviation: Option<f64>,
     /// Whether programs are under tip control from the start.
     #[serde(default)]
     pub tip_control: bool,

@@ -178,6 +178,10 @@ impl Kinematics {
                 "three numbers",
             )?;
         }
+        if let Some(deviation) = description.corner_deviation {
+            let good = deviation > 0.0 && deviation.is_finite();
+            check(|| "corner_deviation".into(), deviation, good, "a positive number")?;
+        }
         let zero = Vector3::from(description.part_zero);
         let table: Vec<Joint> = description
             .table
@@ -285,6 +289,11 @@ impl Kinematics {
     #[must_use]
     pub fn axis(&self, abc: [f64; 3]) -> [f64; 3] {
         self.rotaries.axis(abc).into()
+    }
+
+    /// From X, Y, Z to directions in space, and back.
+    pub(crate) fn directions(&self) -> [&Matrix3<f64>; 2] {
+        [&self.directions, &self.inverse_directions]
     }
 
     pub(crate) fn rotaries(&self) -> &Rotaries {

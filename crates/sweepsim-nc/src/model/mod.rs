@@ -1,7 +1,9 @@
 //! What reading a program takes and gives.
 
+pub(crate) mod accelerations;
 pub(crate) mod event;
 pub(crate) mod names;
+pub(crate) mod profile;
 pub(crate) mod program;
 pub(crate) mod read_options;
 pub(crate) mod stock;

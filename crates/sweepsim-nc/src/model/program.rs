@@ -41,6 +41,8 @@ pub struct ProgramPose {
     /// Whether the tip follows the move: under tip control, in tilted planes, in programs of poses, and without a machine. Otherwise each axis of the
     /// machine moves at constant speed.
     pub tip_control: bool,
+    /// Whether the axes rest at the end of the block that this move is part of (`G9`, `G61`, Siemens's `G60`).
+    pub exact_stop: bool,
 }
 
 impl ProgramPose {
@@ -59,6 +61,7 @@ impl ProgramPose {
             call: None,
             way: Move::default(),
             tip_control: true,
+            exact_stop: false,
         }
     }
 }

@@ -27,7 +27,8 @@ pub struct MoveTime {
 impl Program {
     /// How long the moves to all poses take; nothing for those that no move leads to.
     ///
-    /// A feed move takes as long as its feed says, or as its slowest axis needs at its largest speed: axes do not accelerate, as controls look ahead. In
+    /// A feed move takes as long as its feed says, or as its slowest axis needs at its largest speed. Where the machine says how its axes accelerate,
+    /// feed moves that follow one another start and end at rest together, and slow down for corners and exact stops; `docs/machines.md` has the rules. In
     /// a rapid each axis starts and ends at rest and moves as fast as it can, accelerating if the machine says how; the last to arrive ends the move. That
     /// holds for straight rapids and for dog-legs.
     ///
@@ -76,6 +77,9 @@ impl Program {
         }
         if let Some(machine) = self.machine.kinematics.as_deref().filter(|_| known) {
             self.join_chords(machine, &mut all);
+        }
+        if let Some(machine) = self.accelerates() {
+            self.accelerate(machine, &mut all);
         }
         all
     }

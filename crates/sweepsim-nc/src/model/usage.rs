@@ -19,7 +19,8 @@ pub struct ToolUsage {
     pub feed_length: f64,
     /// and of its rapids.
     pub rapid_length: f64,
-    /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known; axes do not accelerate here.
+    /// The duration of the feed moves and dwells, in seconds, as far as their feeds are known; with the accelerations of the axes, where the machine has
+    /// them: see [`Program::times`].
     pub seconds: f64,
     /// The duration of the rapids, in seconds: see [`Program::times`].
     pub rapid_seconds: f64,
@@ -53,6 +54,7 @@ impl Program {
         let mut rpm = None;
         let mut last: Option<&ProgramPose> = None;
         let times = self.times();
+        let accelerates = self.accelerates().is_some();
         for (index, pose) in self.poses.iter().enumerate() {
             let at = all.iter().position(|usage| usage.tool == pose.tool).unwrap_or_else(|| {
                 all.push(ToolUsage {
@@ -75,7 +77,8 @@ impl Program {
                 }
             }
             if let (true, Some(last)) = (pose.joined, last) {
-                usage.add(last, pose, self.units.in_mm(), rpm);
+                let least = times[index].seconds.filter(|_| accelerates).unwrap_or(0.0);
+                usage.add(last, pose, (self.units.in_mm(), rpm), least);
                 if pose.rapid {
                     usage.rapid_seconds += times[index].seconds.unwrap_or(0.0);
                 }
@@ -87,7 +90,8 @@ impl Program {
 }
 
 impl ToolUsage {
-    fn add(&mut self, from: &ProgramPose, to: &ProgramPose, unit: f64, rpm: Option<f64>) {
+    /// Adds a move that takes at least so many seconds.
+    fn add(&mut self, from: &ProgramPose, to: &ProgramPose, (unit, rpm): (f64, Option<f64>), least: f64) {
         let length = length(from, to);
         if to.rapid {
             self.rapid_moves += 1;
@@ -121,7 +125,7 @@ impl ToolUsage {
             (None, _) => None,
         };
         match minutes.filter(|minutes| minutes.is_finite()) {
-            Some(minutes) => self.seconds += 60.0 * minutes,
+            Some(minutes) => self.seconds += (60.0 * minutes).max(least),
             None => self.untimed += 1,
         }
     }

@@ -217,6 +217,7 @@ impl Row<'_> {
             call: None,
             way: Move::default(),
             tip_control: true,
+            exact_stop: false,
         })
     }
 }

@@ -76,10 +76,10 @@ fn moves_take_as_long_as_their_feeds_and_axes() {
         0.8 + 320.0 / 200.0,
         // Z at its largest 10 mm/s.
         3.0,
-        // Half a minute by inverse time.
-        30.0,
-        // 100 mm/min.
-        6.0,
+        // Half a minute by inverse time: at 1/3 mm/s from the corner on, which is fast enough, to rest for the dwell.
+        30.0 + 0.5 / 3.0 / 1000.0,
+        // 100 mm/min, from rest to rest.
+        6.0 + 100.0 / 60.0 / 1000.0,
         // 60 degrees per second after half a second and 15 degrees.
         1.0 + 60.0 / 60.0,
     ];

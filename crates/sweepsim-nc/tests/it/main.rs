@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-nc`, in one binary: it links once.
 
+mod accelerations;
 mod apt;
 mod contents;
 mod contours;

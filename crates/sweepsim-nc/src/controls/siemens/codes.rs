@@ -66,8 +66,11 @@ impl Reader<'_> {
             110 => action.pole = Some(PoleFrom::Position),
             111 => action.pole = Some(PoleFrom::Zero),
             112 => action.pole = Some(PoleFrom::Pole),
-            // Exact stop and continuous-path modes, corner feeds, approach behind the contour, speeds.
-            9 | 60 | 64 | 96 | 97 | 452 | 453 | 458..=461 | 601..=603 | 621 | 641..=645 | 961 | 962 | 971..=973 => {}
+            9 => self.track.exact_stop = true,
+            60 => (self.modes.exact_stop, self.track.exact_stop) = (true, true),
+            64 | 641..=645 => (self.modes.exact_stop, self.track.exact_stop) = (false, false),
+            // Kinds of exact stops, corner feeds, approach behind the contour, speeds.
+            96 | 97 | 452 | 453 | 458..=461 | 601..=603 | 621 | 961 | 962 | 971..=973 => {}
             140..=143 | 147 | 148 | 247 | 248 | 340 | 341 | 347 | 348 => {
                 return refuse("smooth approach and retraction are");
             }

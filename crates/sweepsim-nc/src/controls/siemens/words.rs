@@ -37,6 +37,8 @@ pub(super) struct Modes {
     pub absolute: bool,
     pub(super) inch: bool,
     pub tip_control: bool,
+    /// `G60`: the axes rest after each block.
+    pub exact_stop: bool,
     /// `D0`: without the tool's length.
     pub(super) without_length: bool,
     /// A cycle or subprogram at each position of the program at this depth.
@@ -79,6 +81,7 @@ impl Modes {
             absolute: true,
             inch: options.inch,
             tip_control: options.machine.tip_control,
+            exact_stop: false,
             without_length: false,
             modal_call: None,
             edge: 1,
@@ -181,6 +184,7 @@ impl Reader<'_> {
     pub(super) fn block(&mut self, items: &[Item]) -> Result<(), Located> {
         let mut words = Words::default();
         let mut action = Action::default();
+        self.track.exact_stop = self.modes.exact_stop;
         let mut tool_name = None;
         for item in items {
             match item {

@@ -34,6 +34,7 @@ pub(crate) struct Stroke {
     pub place: Place,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
+    pub exact_stop: bool,
 }
 
 /// What waits for the next move.

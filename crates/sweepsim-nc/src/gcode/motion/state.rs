@@ -34,6 +34,7 @@ pub(crate) struct State {
     pub tool: Option<u32>,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
+    pub exact_stop: bool,
     /// The block that moves belong to.
     pub place: Place,
     pub title: Option<String>,
@@ -64,6 +65,7 @@ impl State {
             tool: None,
             feed: None,
             feed_mode: FeedMode::default(),
+            exact_stop: false,
             place: Place::default(),
             title: None,
             units: None,
@@ -298,6 +300,7 @@ impl State {
                 call: self.place.call,
                 way,
                 tip_control: coordinates == Coordinates::Tip || self.driver.kinematics().is_none(),
+                exact_stop: self.exact_stop,
             });
             if self.driver.kinematics().is_some() {
                 let position = match coordinates {

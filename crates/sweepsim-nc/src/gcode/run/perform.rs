@@ -175,6 +175,7 @@ impl Reader {
     /// The G words: modes at once, the rest as a plan.
     fn modal(&mut self, block: &Block) -> Result<Plan, Located> {
         let mut plan = Plan::default();
+        self.modes.stops_here = false;
         if !block.has('G') {
             return Ok(plan);
         }
@@ -210,7 +211,11 @@ impl Reader {
                     self.modes.inch = inch;
                     self.state.note("G70 and G71 are taken as inches and millimetres");
                 }
+                Code::StopHere => self.modes.stops_here = true,
+                // Grbl's G61 is its only mode: an exact path.
+                Code::ExactStop(on) => self.modes.exact_stop = on && self.controller != Some(Controller::Grbl),
                 Code::Blending => {
+                    self.modes.exact_stop = false;
                     if let Some(tolerance) = block.get('P').filter(|p| *p > 0.0) {
                         self.state.note(format!(
                             "G64 P{tolerance}: corners may be rounded by as much; the path is read as programmed"

@@ -76,6 +76,7 @@ impl Reader {
             place: self.state.place,
             feed: if rapid { None } else { self.modes.feed },
             feed_mode: self.modes.feed_mode,
+            exact_stop: self.modes.exact_stop || self.modes.stops_here,
         }
     }
 

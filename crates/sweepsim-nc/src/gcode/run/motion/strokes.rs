@@ -71,6 +71,7 @@ impl Reader {
         let place = std::mem::replace(&mut self.state.place, stroke.place);
         self.state.feed = stroke.feed;
         self.state.feed_mode = stroke.feed_mode;
+        self.state.exact_stop = stroke.exact_stop;
         let target = MoveEnd {
             xyz: self.map.apply(stroke.end),
             abc: stroke.abc,
