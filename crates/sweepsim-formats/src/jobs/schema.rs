@@ -254,6 +254,8 @@ pub(crate) struct Path {
     pub machine: Option<String>,
     #[serde(default)]
     pub lenient: Option<bool>,
+    #[serde(default)]
+    pub diameters: BTreeMap<u32, f64>,
 }
 
 /// The tip, the axis, and optionally the direction of the tool's x axis: two or three triples in parentheses.

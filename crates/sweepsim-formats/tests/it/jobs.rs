@@ -236,3 +236,49 @@ fn paths_in_the_job_have_times_and_rapids() {
         assert!(error.contains(message), "{error}");
     }
 }
+
+/// A contour along y = 1 (inches), compensated to the left, by three controls: D is 1, 7 or the tool's own.
+#[test]
+fn a_job_says_what_d_means() {
+    let folder = tempfile::tempdir().unwrap();
+    let fanuc = "G20 G90 G17\nT1 M6\nS900 M3\nG0 X-1 Y1 Z0\nG41 D7 G1 X0 Y1 F10\nX2\nG40 X3\nM30\n";
+    let siemens = "G70 G90 G17\nT1 D1\nM6\nS900 M3\nG0 X-1 Y1 Z0\nG41 G1 X0 Y1 F10\nX2\nG40 X3\nM30\n";
+    let klartext = "0 BEGIN PGM A INCH\n1 TOOL CALL 1 Z S900\n2 L X-1 Y+1 Z+0 R0 FMAX M3\n3 L X+0 Y+1 RL F10\n4 L X+2\n5 L X+3 R0\n6 END PGM A INCH\n";
+    for (name, text, number, control) in [
+        ("a.nc", fanuc, 7, "fanuc"),
+        ("a.mpf", siemens, 1, "siemens"),
+        ("a.h", klartext, 1, "heidenhain"),
+    ] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+        let job = |more: &str| {
+            let text = format!(
+                r#"Job(units: Inch, grid: Grid(min: (-2, -2), max: (4, 4), cells: (6, 6)), stock: Block(min: (0, 0, -1), max: (2, 2, 0)),
+                tools: {{ 1: Flat(radius: 0.25, length: 2) }}, paths: [Path(file: "{name}", controller: "{control}"{more})])"#
+            );
+            Job::parse(&text, &folder.path().join("job.ron"))
+        };
+        let message = job("").unwrap_err().to_string();
+        assert!(
+            message.contains("compensation") || message.contains("radius"),
+            "{message}"
+        );
+        for diameter in [0.5, 0.0] {
+            let read = job(&format!(", diameters: {{{number}: {diameter:?}}}")).unwrap();
+            let tips = read
+                .paths
+                .iter()
+                .flat_map(|path| path.path.poses())
+                .map(|pose| pose.tip());
+            let highest = tips.map(|tip| tip[1]).fold(f64::MIN, f64::max);
+            assert!(
+                (highest - 25.4 * (1.0 + 0.5 * diameter)).abs() < 1e-9,
+                "{control}: {highest}"
+            );
+        }
+        let message = job(&format!(", diameters: {{{number}: -1}}")).unwrap_err().to_string();
+        assert!(
+            message.contains("a diameter is -1, but must be a positive number, or 0"),
+            "{message}"
+        );
+    }
+}

@@ -39,6 +39,9 @@ pub struct ReadOptions {
     pub block_delete: bool,
     /// The control's table of tool lengths and diameters, by number: what `H` and `D` mean.
     pub tool_offsets: BTreeMap<u32, ToolOffset>,
+    /// Diameters that `D` means, by number, in millimetres, where the table has no row of it: without one, nothing is known of a length, but the
+    /// contour can be compensated. In Siemens's and Heidenhain's programs the number is the tool's.
+    pub diameters: BTreeMap<u32, f64>,
     /// The control's numbered variables when the program starts, as in LinuxCNC's `.var` file: work offsets from `#5221`, homes from `#5161`.
     /// With them, positions in machine coordinates are known, and work offsets that the program does not set.
     pub variables: BTreeMap<u32, f64>,
@@ -66,6 +69,7 @@ impl Default for ReadOptions {
             lenient: false,
             block_delete: false,
             tool_offsets: BTreeMap::new(),
+            diameters: BTreeMap::new(),
             variables: BTreeMap::new(),
             subprograms: Vec::new(),
             most_blocks: 20_000_000,

@@ -236,6 +236,17 @@ impl JobReader<'_> {
         steps: &impl Fn(&[Step]) -> Vec<Step>,
     ) -> Result<(), FormatError> {
         options.lenient = raw.lenient.unwrap_or(false);
+        for (number, diameter) in &raw.diameters {
+            let place = steps(&["diameters".into(), number.to_string().as_str().into()]);
+            self.check(
+                "a diameter",
+                *diameter,
+                *diameter >= 0.0,
+                "a positive number, or 0",
+                &place,
+            )?;
+            options.diameters.insert(*number, diameter * self.unit);
+        }
         if let Some(name) = &raw.format {
             let format = Format::named(name).ok_or_else(|| {
                 let expected = format!("one of {}", Format::NAMES.join(", "));

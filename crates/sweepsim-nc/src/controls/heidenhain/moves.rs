@@ -337,7 +337,10 @@ impl Reader<'_> {
     /// The radius of the tool with the oversize of its call.
     pub(super) fn cutter_radius(&self) -> Option<f64> {
         let tool = self.track.tool?;
-        let table = self.options.tool_offsets.get(&tool).map(|offset| 0.5 * offset.diameter);
+        let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
+        let table = table
+            .or(self.options.diameters.get(&tool).copied())
+            .map(|diameter| 0.5 * diameter);
         Some(self.radii.get(&tool).copied().or(table)? + self.oversize)
     }
 }

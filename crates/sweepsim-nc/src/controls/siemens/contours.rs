@@ -63,13 +63,16 @@ impl Reader<'_> {
             ));
         };
         let own = self.globals.get(&format!("$TC_DP6[{tool}][{edge}]"));
-        let table = self.options.tool_offsets.get(&tool).filter(|_| edge == 1);
+        let table = self.options.tool_offsets.get(&tool).map(|offset| offset.diameter);
+        let table = table
+            .or(self.options.diameters.get(&tool).copied())
+            .filter(|_| edge == 1);
         let radius = match (own, table) {
             (Some(Value::Number(radius)), _) => *radius,
-            (_, Some(offset)) => 0.5 * offset.diameter,
+            (_, Some(diameter)) => 0.5 * diameter,
             _ => {
                 return Err(NcProblem::syntax(format!(
-                    "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table, or \
+                    "the radius of T{tool} D{edge} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or \
                      $TC_DP6[{tool},{edge}]= before it"
                 )));
             }

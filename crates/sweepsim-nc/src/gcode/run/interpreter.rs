@@ -176,7 +176,7 @@ impl Reader {
             modes: Modes::new(options.inch),
             offsets,
             variables: Store::new(&options.variables),
-            tools: ToolTable::new(&options.tool_offsets),
+            tools: ToolTable::new(&options.tool_offsets, &options.diameters),
             controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
             strict: options.controller.is_some(),
             modal_macro: None,

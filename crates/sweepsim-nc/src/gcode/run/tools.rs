@@ -19,19 +19,31 @@ pub(crate) struct ToolRow {
 
 /// The table.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct ToolTable(BTreeMap<u32, ToolRow>);
+pub(crate) struct ToolTable {
+    rows: BTreeMap<u32, ToolRow>,
+    /// Diameters of numbers without a row.
+    diameters: BTreeMap<u32, f64>,
+}
 
 impl ToolTable {
-    pub(crate) fn new(offsets: &BTreeMap<u32, ToolOffset>) -> Self {
+    pub(crate) fn new(offsets: &BTreeMap<u32, ToolOffset>, diameters: &BTreeMap<u32, f64>) -> Self {
         let row = |tool: &ToolOffset| ToolRow {
             offset: [0.0, 0.0, tool.length],
             diameter: tool.diameter,
         };
-        Self(offsets.iter().map(|(&number, tool)| (number, row(tool))).collect())
+        Self {
+            rows: offsets.iter().map(|(&number, tool)| (number, row(tool))).collect(),
+            diameters: diameters.clone(),
+        }
     }
 
     pub(crate) fn get(&self, number: u32) -> Option<ToolRow> {
-        self.0.get(&number).copied()
+        self.rows.get(&number).copied()
+    }
+
+    /// What is known of a tool without a row.
+    pub(crate) fn diameter(&self, number: u32) -> Option<f64> {
+        self.diameters.get(&number).copied()
     }
 }
 
@@ -74,7 +86,7 @@ impl Reader {
             let row = match self.tools.get(number) {
                 Some(row) => row,
                 None => {
-                    if number != 0 && !self.tools.0.is_empty() {
+                    if number != 0 && !self.tools.rows.is_empty() {
                         self.state.note(format!(
                             "the length of tool offset H{number} is not in the table: taken as that of the tool"
                         ));
@@ -155,7 +167,7 @@ impl Reader {
                 _ => self.measure_tool(l == 11, words, &mut row)?,
             }
         }
-        self.tools.0.insert(number, row);
+        self.tools.rows.insert(number, row);
         self.update_map();
         Ok(())
     }

@@ -140,10 +140,11 @@ impl Reader {
             Some(d) => Self::tool_number(d)?,
             None => self.state.tool.unwrap_or(0),
         };
-        match self.tools.get(number).or((number == 0).then(ToolRow::default)) {
-            Some(row) => Ok(row.diameter),
+        let row = self.tools.get(number).or((number == 0).then(ToolRow::default));
+        match row.map(|row| row.diameter).or(self.tools.diameter(number)) {
+            Some(diameter) => Ok(diameter),
             None => Err(NcProblem::syntax(format!(
-                "the diameter D{number} for cutter compensation is not known: expected it in the tool table, or G41.1 D with the diameter"
+                "the diameter D{number} for cutter compensation is not known: expected it in the tool table (in a job: `diameters`), or G41.1 D with the diameter"
             ))),
         }
     }
