@@ -222,37 +222,21 @@ pub(crate) enum Turn {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Path {
-    #[serde(default)]
     pub tool: Option<u32>,
-    #[serde(default)]
     pub frame: Option<Frame>,
-    #[serde(default)]
     pub feed: Option<f64>,
-    #[serde(default)]
     pub poses: Option<Vec<Pose>>,
-    #[serde(default)]
     pub moves: Option<Vec<Move>>,
-    #[serde(default)]
     pub motion: Option<Motion>,
-    #[serde(default)]
     pub law: Option<Law>,
-    #[serde(default)]
     pub arcs: Option<Arcs>,
-    #[serde(default)]
     pub file: Option<String>,
-    #[serde(default)]
     pub arc_tolerance: Option<f64>,
-    #[serde(default)]
     pub table: Option<Table>,
-    #[serde(default)]
     pub tip_control: Option<bool>,
-    #[serde(default)]
     pub format: Option<String>,
-    #[serde(default)]
     pub controller: Option<String>,
-    #[serde(default)]
     pub machine: Option<String>,
-    #[serde(default)]
     pub lenient: Option<bool>,
     #[serde(default)]
     pub diameters: BTreeMap<u32, f64>,
