@@ -31,7 +31,7 @@ mod surface;
 mod tri;
 mod vector;
 
-pub use compare::{Comparison, Deviation, compare, compare_with_mesh};
+pub use compare::{Comparison, Deviation, compare, compare_tri_with_mesh, compare_with_mesh};
 pub use dexels::{
     Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, pack_normal, unpack_normal,
 };

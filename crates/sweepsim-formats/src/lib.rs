@@ -25,6 +25,7 @@
 //! | meshes for 3D printers (3MF) | [`read_3mf`] | [`write_3mf`] |
 //! | dexels (`dexels.csv`) | [`read_dexels_csv`] | [`write_dexels_csv`] |
 //! | dexels, compact and exact (`.dexels`) | [`read_dexels_binary`] | [`write_dexels_binary`] |
+//! | dexels along three axes (`.tridexels`) | [`read_tri_dexels`] | [`write_tri_dexels`] |
 //! | dexels as NumPy arrays (`.npz`) | [`read_dexels_npz`] | [`write_dexels_npz`] |
 //! | meshes for ParaView (`.vtp`) | [`read_vtp`] | [`write_vtp`] |
 //! | dexels for ParaView (`.vtu`) | | [`write_dexels_vtu`] |
@@ -52,8 +53,8 @@ mod vtk;
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels::{
     DexelFormat, DexelRow, Fixture, FixtureDifference, dexels_from_rows, is_dexels_csv, read_dexels_binary,
-    read_dexels_csv, read_dexels_file, read_dexels_npz, write_dexels_binary, write_dexels_csv, write_dexels_file,
-    write_dexels_npz, write_dexels_vtu,
+    read_dexels_csv, read_dexels_file, read_dexels_npz, read_tri_dexels, read_tri_dexels_file, write_dexels_binary,
+    write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_tri_dexels,
 };
 pub use drafts::{Draft, DraftOptions, DraftStock, draft};
 pub use error::{FormatError, Problem, TextPosition, io_reason};

@@ -238,6 +238,8 @@ pub(crate) enum Output {
     Report,
     /// part.dexels: exact and with normals, for later runs; not written by default
     Binary,
+    /// part.tridexels: the same along x, y and z, so that later runs go on with sharp walls; not written by default
+    Tridexels,
 }
 
 /// The directions of the dexels that meshes and pictures are made of.

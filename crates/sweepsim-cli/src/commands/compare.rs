@@ -7,7 +7,9 @@ use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use sweepsim::verify::deviations;
-use sweepsim_dexel::{Comparison, Dexels, DistanceTo, Mesh, Nearest, Operation, TriangleSoup, compare_with_mesh};
+use sweepsim_dexel::{
+    Comparison, Dexels, DistanceTo, Mesh, Nearest, Operation, TriangleSoup, compare_tri_with_mesh, compare_with_mesh,
+};
 use sweepsim_formats::{
     ComparisonReport, DeviationSummary, Furthest, HistogramBar, Job, LimitRegion, Limits, MeshFormat, RegionPlace,
     ReportedRegion, Target as Goal, read_coloured_mesh_file,
@@ -44,11 +46,15 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     let start = Instant::now();
     let dexels = part.dexels(&options.part, &grid)?;
     let surface = match &target {
-        Solid::Dexels(_) => soup(&goal),
+        Solid::Dexels(_) | Solid::TriDexels(_) => soup(&goal),
         Solid::Mesh(target) => soup(target),
     };
     let failed = |error: &dyn std::fmt::Display| Failure::message(format!("{}: {error}", options.target.display()));
-    let found = compare_with_mesh(&dexels, &surface).map_err(|error| failed(&error))?;
+    let found = match &part {
+        Solid::TriDexels(part) => compare_tri_with_mesh(part, &surface),
+        Solid::Dexels(_) | Solid::Mesh(_) => compare_with_mesh(&dexels, &surface),
+    };
+    let found = found.map_err(|error| failed(&error))?;
     describe(&mut report, options, &found);
     regions(&mut report, options, &dexels, surface)?;
     report.cells = grid.cells();
@@ -59,11 +65,19 @@ pub(crate) fn compare(options: &CompareOptions) -> Result<(), Failure> {
     report.furthest_of_part = match &part {
         Solid::Mesh(_) => tree.furthest(&soup(&mesh), spacing).map(furthest_of),
         Solid::Dexels(dexels) => furthest_end(dexels, |place, _| tree.nearest(place)),
+        Solid::TriDexels(part) => {
+            let of = |set| furthest_end(set, |place, _| tree.nearest(place));
+            part.sets().iter().filter_map(of).reduce(further)
+        }
     };
     let own = DistanceTo::new(&soup(&mesh))?;
     report.furthest_of_target = match &target {
         Solid::Mesh(_) => own.most_missing(&soup(&goal), &tree, spacing).map(furthest_of),
         Solid::Dexels(dexels) => furthest_end(dexels, |place, normal| own.missing_at(place, normal, &tree)),
+        Solid::TriDexels(target) => {
+            let of = |set| furthest_end(set, |place, normal| own.missing_at(place, normal, &tree));
+            target.sets().iter().filter_map(of).reduce(further)
+        }
     };
     worst(&mut report, options.tolerance);
     report

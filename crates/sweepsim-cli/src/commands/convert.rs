@@ -1,10 +1,14 @@
 //! `convert`: from one format to another.
 
+use super::tri_surface::lattice;
 use crate::arguments::ConvertOptions;
 use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
 use std::io::Write as _;
 use std::ops::ControlFlow;
-use sweepsim_formats::{DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file};
+use sweepsim_dexel::{Dexels, Grid, Stock, TriDexels};
+use sweepsim_formats::{
+    DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file, write_tri_dexels,
+};
 use sweepsim_nc::tools::{read_library, to_ron};
 use sweepsim_nc::{Program, read_file, table, write};
 
@@ -60,8 +64,10 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
         let mesh = match solid {
             Solid::Mesh(mesh) => mesh.clone(),
             // 3D printers need triangles that share vertices.
-            Solid::Dexels(_) if format == MeshFormat::ThreeMf => soup(&solid.surface()?).indexed()?,
-            Solid::Dexels(_) => solid.surface()?,
+            Solid::Dexels(_) | Solid::TriDexels(_) if format == MeshFormat::ThreeMf => {
+                soup(&solid.surface()?).indexed()?
+            }
+            Solid::Dexels(_) | Solid::TriDexels(_) => solid.surface()?,
         };
         line("triangles", &words::count(mesh.triangles.len() as u64));
         if format == MeshFormat::Stl || format == MeshFormat::Glb {
@@ -74,17 +80,21 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     }
     if DexelFormat::of(output).is_none() {
         return Err(Failure::message(format!(
-            "{}: unknown extension: expected .stl, .ply, .glb, .3mf, .vtp, .csv, .dexels, .npz, .vtu or .png",
+            "{}: unknown extension: expected .stl, .ply, .glb, .3mf, .vtp, .csv, .dexels, .tridexels, .npz, .vtu or .png",
             output.display()
         )));
     }
     let grid = match solid {
         Solid::Dexels(dexels) => *dexels.grid(),
+        Solid::TriDexels(solid) => *solid.sets()[2].grid(),
         Solid::Mesh(mesh) => options
             .grid
             .grid(bounds(mesh))?
             .ok_or_else(|| Failure::message(format!("{}: this mesh has no triangles", input.display())))?,
     };
+    if DexelFormat::of(output) == Some(DexelFormat::Tri) {
+        return write_tri(solid, &grid, options, line);
+    }
     let dexels = solid.dexels(input, &grid)?;
     let [nx, ny] = grid.cells().map(|n| words::count(n as u64));
     let intervals = words::counted(dexels.count() as u64, "interval");
@@ -93,6 +103,35 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
         line("note", "a table contains neither the grid nor normals and sources");
     }
     Ok(write_dexels_file(&dexels, output)?)
+}
+
+/// Writes dexels along three axes.
+fn write_tri(
+    solid: &Solid,
+    grid: &Grid,
+    options: &ConvertOptions,
+    line: &mut impl FnMut(&str, &str),
+) -> Result<(), Failure> {
+    let file = options.input.display();
+    let failed = |error: &dyn std::error::Error| Failure::message(format!("{file}: {error}"));
+    let made = match solid {
+        Solid::TriDexels(solid) => solid.clone(),
+        Solid::Mesh(mesh) => {
+            let heights = bounds(mesh).map_or([0.0; 2], |[low, high]| [low[2], high[2]]);
+            let (min, max, cells) = lattice(grid, heights);
+            TriDexels::new(min, max, cells, &Stock::Mesh(soup(mesh))).map_err(|error| failed(&error))?
+        }
+        Solid::Dexels(_) => {
+            return Err(Failure::message(format!(
+                "{file}: these dexels are along z only: expected .tridexels (--only tridexels) or a mesh"
+            )));
+        }
+    };
+    let intervals: usize = made.sets().iter().map(Dexels::count).sum();
+    let [nx, ny, nz] = made.cells().map(|n| words::count(n as u64));
+    let intervals = words::counted(intervals as u64, "interval");
+    line("dexels", &format!("{nx} × {ny} × {nz}, {intervals}"));
+    Ok(write_atomically(&options.output, |out| write_tri_dexels(&made, out))?)
 }
 
 /// Reads a program as its output needs it: tables have no arcs.

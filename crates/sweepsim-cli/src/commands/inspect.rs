@@ -6,8 +6,8 @@ use crate::session::words::{self, count, counted, measure, point};
 use crate::session::{Failure, Kind, Lines, soup, tool_in_words};
 use std::fs::File;
 use std::io::BufReader;
-use sweepsim_dexel::{Dexels, Grid, Mesh, Stock};
-use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file};
+use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels};
+use sweepsim_formats::{DexelFormat, Job, read_dexels_csv, read_dexels_file, read_mesh_file, read_tri_dexels_file};
 use sweepsim_nc::tools::read_library;
 use sweepsim_nc::{Note, read_file};
 
@@ -28,6 +28,9 @@ pub(crate) fn inspect(options: &InspectOptions) -> Result<(), Failure> {
             let rows =
                 read_dexels_csv(reader).map_err(|error| Failure::message(format!("{}:{error}", file.display())))?;
             table(&mut text, &rows);
+        }
+        Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Tri) => {
+            tri_dexels(&mut text, &read_tri_dexels_file(file)?);
         }
         Kind::Dexels => dexels(&mut text, &read_dexels_file(file, None)?),
         Kind::Tools => library(&mut text, &read_library(file, false)?),
@@ -109,6 +112,10 @@ fn job(text: &mut Lines, job: &Job) {
         Stock::Mesh(soup) => counted(soup.triangles.len() as u64, "triangle"),
         Stock::Ball { centre, radius } => format!("ball around {}, radius {radius} mm", point(*centre)),
         Stock::Dexels(dexels) => counted(dexels.count() as u64, "interval"),
+        Stock::TriDexels(sets) => {
+            let all: usize = sets.iter().map(Dexels::count).sum();
+            format!("{} along x, y and z", counted(all as u64, "interval"))
+        }
         Stock::Union(parts) => format!("union of {}", counted(parts.len() as u64, "piece")),
         Stock::Intersection(parts) => format!("intersection of {}", counted(parts.len() as u64, "piece")),
         Stock::Difference(_, parts) => format!("difference from {}", counted(parts.len() as u64, "piece")),
@@ -197,6 +204,20 @@ fn dexels(text: &mut Lines, dexels: &Dexels) {
         &format!("{} of {}", count(cut as u64), counted(2 * dexels.count() as u64, "end")),
     );
     text.line("memory", &words::bytes(dexels.bytes() as u64));
+}
+
+fn tri_dexels(text: &mut Lines, solid: &TriDexels) {
+    let [nx, ny, nz] = solid.cells().map(|n| count(n as u64));
+    let (min, max) = (point(solid.min()), point(solid.max()));
+    text.line("lattice", &format!("{nx} × {ny} × {nz}, {min} … {max} mm"));
+    for (set, axis) in solid.sets().iter().zip(["x", "y", "z"]) {
+        let intervals = counted(set.count() as u64, "interval");
+        let volume = measure(set.volume());
+        text.line(&format!("along {axis}"), &format!("{intervals}, {volume} mm³"));
+    }
+    text.line("volume", &format!("{} mm³", measure(solid.volume())));
+    let all: usize = solid.sets().iter().map(Dexels::bytes).sum();
+    text.line("memory", &words::bytes(all as u64));
 }
 
 fn table(text: &mut Lines, rows: &[sweepsim_formats::DexelRow]) {

@@ -13,9 +13,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
-use sweepsim_dexel::{Dexels, Grid, Mesh};
+use sweepsim_dexel::{Dexels, Grid, Mesh, TriDexels};
 use sweepsim_formats::{
     MoveSummary, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_moves_csv, write_ply,
+    write_tri_dexels,
 };
 
 /// The largest deviation of the triangles of envelope.ply, in millimetres.
@@ -41,8 +42,17 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
     let start = Instant::now();
     let mut report = Report::default();
     let read = phase(&mut report, "read", || read(options))?;
-    if options.directions == Some(Directions::Xyz) {
-        tri_surface::check(&read.job).map_err(|what| Failure::message(format!("--directions xyz: expected {what}")))?;
+    let asked = match (options.directions, options.only.contains(&Output::Tridexels)) {
+        (Some(Directions::Z), true) => {
+            let message = "--directions z: part.tridexels has dexels along x, y and z: expected --directions xyz";
+            return Err(Failure::message(message));
+        }
+        (_, true) => Some("--only tridexels"),
+        (Some(Directions::Xyz), _) => Some("--directions xyz"),
+        _ => None,
+    };
+    if let Some(asked) = asked {
+        tri_surface::check(&read.job).map_err(|what| Failure::message(format!("{asked}: expected {what}")))?;
     }
     let out = options.out.as_deref();
     let mut session = JobSession::new(&options.job, read, out, &options.only, options.quiet)?;
@@ -132,9 +142,16 @@ fn work(
             .outputs
             .write("moves.csv", |file| write_moves_csv(&outcome.moves, file))?;
     }
-    if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
-        let mesh = mesh(task, session, options, &mut outcome, report)?;
-        outcome.picture = write_mesh(options, &mesh, session, report)?;
+    let wants = |output| session.outputs.wants(output);
+    if wants(Output::Mesh) || wants(Output::Picture) || wants(Output::Tridexels) {
+        let solid = along_three_axes(task, session, options, &mut outcome, report)?;
+        if let (Some(solid), true) = (&solid, session.outputs.wants(Output::Tridexels)) {
+            write_tri(solid, session, report)?;
+        }
+        if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
+            let mesh = mesh(solid.as_ref(), session, &outcome, report)?;
+            outcome.picture = write_mesh(options, &mesh, session, report)?;
+        }
     }
     if task == Task::Sweep && options.method == Method::Surface && session.outputs.wants(Output::Mesh) {
         write_envelope(session, report)?;
@@ -261,8 +278,11 @@ fn write_dexels(outcome: &Outcome, session: &mut JobSession, report: &mut Report
     Ok(())
 }
 
-/// Whether the surface is made of dexels along x and y, too. A job that has none, or far too many, says so.
-fn along_three_axes(session: &JobSession, options: &RunOptions, outcome: &Outcome, report: &mut Report) -> bool {
+/// Whether the result is made along x and y, too. A job that has no such dexels, or far too many, says so.
+fn wants_three_axes(session: &JobSession, options: &RunOptions, outcome: &Outcome, report: &mut Report) -> bool {
+    if session.outputs.wants(Output::Tridexels) {
+        return true;
+    }
     if let Some(directions) = options.directions {
         return directions == Directions::Xyz;
     }
@@ -279,27 +299,48 @@ fn along_three_axes(session: &JobSession, options: &RunOptions, outcome: &Outcom
     false
 }
 
-/// The surface of the result.
-fn mesh(
+/// The result along three axes, if it is wanted.
+fn along_three_axes(
     task: Task,
     session: &JobSession,
     options: &RunOptions,
     outcome: &mut Outcome,
     report: &mut Report,
-) -> Result<Mesh, Failure> {
-    if !along_three_axes(session, options, outcome, report) {
-        session.progress.phase("mesh");
-        return Ok(phase(report, "mesh", || outcome.dexels.surface())?);
+) -> Result<Option<TriDexels>, Failure> {
+    if !wants_three_axes(session, options, outcome, report) {
+        return Ok(None);
     }
-    let surface = tri_surface::surface(task, session, options, &outcome.dexels, report)?;
-    outcome.uncertified += surface.uncertified;
-    if surface.uncertified > 0 {
-        let lines = words::counted(surface.uncertified as u64, "dexel");
+    let made = tri_surface::solid(task, session, options, &outcome.dexels, report)?;
+    outcome.uncertified += made.uncertified;
+    if made.uncertified > 0 {
+        let lines = words::counted(made.uncertified as u64, "dexel");
         report.notes.push(format!(
             "{lines} along x or y could not be certified: the mesh may be wrong there"
         ));
     }
-    Ok(surface.mesh)
+    Ok(Some(made.solid))
+}
+
+fn write_tri(solid: &TriDexels, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
+    let JobSession { outputs, progress, .. } = session;
+    progress.phase("dexels");
+    phase(report, "dexels", || {
+        outputs.write("part.tridexels", |file| write_tri_dexels(solid, file))
+    })
+}
+
+/// The surface of the result.
+fn mesh(
+    solid: Option<&TriDexels>,
+    session: &JobSession,
+    outcome: &Outcome,
+    report: &mut Report,
+) -> Result<Mesh, Failure> {
+    if let Some(solid) = solid {
+        return tri_surface::surface(solid, session, report);
+    }
+    session.progress.phase("mesh");
+    Ok(phase(report, "mesh", || outcome.dexels.surface())?)
 }
 
 /// Writes the mesh and the picture, and returns the latter.

@@ -1,15 +1,16 @@
-//! `--directions xyz`: a surface from dexels along all three axes.
+//! `--directions xyz`: dexels along all three axes, and surfaces made of them.
 
 use super::task::{Task, sweeping};
 use crate::arguments::RunOptions;
 use crate::session::{CRISP, Failure, JobSession, phase};
+use std::sync::Arc;
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh, Stock, TriDexels, TriDexelsError};
 use sweepsim_formats::{Job, Report};
 
-/// A surface, and the number of uncertified dexels along x and y.
-pub(crate) struct TriSurface {
-    pub mesh: Mesh,
+/// Dexels along three axes, and the number of uncertified ones along x and y.
+pub(crate) struct TriSolid {
+    pub solid: TriDexels,
     pub uncertified: usize,
 }
 
@@ -22,21 +23,50 @@ const MOST: f64 = 4.0;
 
 /// Checks that a job can be cut along three axes; what stands in the way.
 pub(crate) fn check(job: &Job) -> Result<(), &'static str> {
-    fn turns(stock: &Stock) -> bool {
+    fn along_z_only(stock: &Stock) -> bool {
         match stock {
-            Stock::Dexels(_) => false,
-            Stock::Union(parts) | Stock::Intersection(parts) => parts.iter().all(turns),
-            Stock::Difference(whole, parts) => turns(whole) && parts.iter().all(turns),
-            _ => true,
+            Stock::Dexels(_) => true,
+            Stock::Union(parts) | Stock::Intersection(parts) => parts.iter().any(along_z_only),
+            Stock::Difference(whole, parts) => along_z_only(whole) || parts.iter().any(along_z_only),
+            _ => false,
         }
     }
     if !job.grid.frame().is_world() {
         return Err("a grid without a frame: dexels run along x, y and z");
     }
-    if !turns(&job.stock) {
-        return Err("a stock without dexels of an earlier run, which exist along z only");
+    if along_z_only(&job.stock) {
+        return Err(
+            "a stock without dexels of an earlier run along z only: part.tridexels has those along x and y, too",
+        );
     }
-    Ok(())
+    let earlier = earlier(&job.stock);
+    let Some((first, others)) = earlier.split_first() else {
+        return Ok(());
+    };
+    let grids = |sets: &[Dexels; 3]| sets.each_ref().map(|set| *set.grid());
+    if others.iter().any(|sets| grids(sets) != grids(first)) {
+        return Err("all .tridexels files of the stock in the same box");
+    }
+    let [low, high] = [first[0].grid().min()[1], first[0].grid().max()[1]];
+    match job.stock.bounds() {
+        Some([from, to]) if from[2] < low || to[2] > high => {
+            Err("a stock that is no lower or higher than the box of its .tridexels file")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The results of earlier runs along three axes, of which a stock is made.
+fn earlier(stock: &Stock) -> Vec<&Arc<[Dexels; 3]>> {
+    match stock {
+        Stock::TriDexels(sets) => vec![sets],
+        Stock::Union(parts) | Stock::Intersection(parts) => parts.iter().flat_map(earlier).collect(),
+        Stock::Difference(whole, parts) => {
+            let parts = parts.iter().flat_map(earlier);
+            earlier(whole).into_iter().chain(parts).collect()
+        }
+        _ => Vec::new(),
+    }
 }
 
 /// Whether the dexels along x and y are so many more than those along z that they must be asked for.
@@ -59,13 +89,24 @@ fn heights(dexels: &Dexels) -> Option<[f64; 2]> {
 }
 
 /// The box and the cells of dexels along three axes: on this grid along z, over these heights and a margin, with the same distances along the others.
-fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
+pub(crate) fn lattice(grid: &Grid, [low, high]: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
     let [dx, dy] = grid.spacing();
     let step = (dx * dy).sqrt();
     let levels = ((high - low) / step + 2.0 * ROOM).ceil();
     let room = 0.5 * (levels * step - (high - low));
     let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
     ([x0, y0, low - room], [x1, y1, high + room], [nx, ny, levels as usize])
+}
+
+/// The box and the cells of a job: those of an earlier run, if it goes on with one; else over these heights.
+fn lattice_of(job: &Job, heights: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) {
+    let Some(sets) = earlier(&job.stock).first().copied() else {
+        return lattice(&job.grid, heights);
+    };
+    let ([x0, y0], [x1, y1], [nx, ny]) = (job.grid.min(), job.grid.max(), job.grid.cells());
+    let along_x = sets[0].grid();
+    let (low, high, levels) = (along_x.min()[1], along_x.max()[1], along_x.cells()[1]);
+    ([x0, y0, low], [x1, y1, high], [nx, ny, levels])
 }
 
 /// The stock of a job along x and along y; nothing if it is empty.
@@ -75,27 +116,21 @@ pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
         return Ok(Vec::new());
     };
     let range = [low[2], high[2]];
-    let (min, max, cells) = lattice(&job.grid, range);
+    let (min, max, cells) = lattice_of(job, range);
     let [along_x, along_y, _] = TriDexels::new(min, max, cells, &job.stock)?.into_sets();
     Ok(vec![along_x, along_y])
 }
 
-/// The surface of a result whose dexels along z are known.
-pub(crate) fn surface(
+/// The result along three axes, of which the dexels along z are known.
+pub(crate) fn solid(
     task: Task,
     session: &JobSession,
     options: &RunOptions,
     along_z: &Dexels,
     report: &mut Report,
-) -> Result<TriSurface, Failure> {
+) -> Result<TriSolid, Failure> {
     let (job, progress) = (&session.job, &session.progress);
-    let Some([low, high]) = heights(along_z) else {
-        return Ok(TriSurface {
-            mesh: Mesh::default(),
-            uncertified: 0,
-        });
-    };
-    let (min, max, cells) = lattice(&job.grid, [low, high]);
+    let (min, max, cells) = lattice_of(job, heights(along_z).unwrap_or_default());
     let wrong = |error: &dyn std::error::Error| Failure::message(format!("--directions xyz: {error}"));
     let stock = phase(report, "stock", || match task {
         Task::Simulate | Task::Verify => TriDexels::new(min, max, cells, &job.stock),
@@ -112,14 +147,16 @@ pub(crate) fn surface(
         Ok(set)
     };
     let sets = [pass(along_x, "along x")?, pass(along_y, "along y")?, along_z.clone()];
-    progress.phase("mesh");
-    let mesh = phase(report, "mesh", || {
-        TriDexels::from_sets(sets).map(|solid| solid.surface().and_then(|mesh| mesh.crisp(CRISP)))
-    });
-    Ok(TriSurface {
-        mesh: mesh.map_err(|error| wrong(&error))??,
-        uncertified,
-    })
+    let solid = TriDexels::from_sets(sets).map_err(|error| wrong(&error))?;
+    Ok(TriSolid { solid, uncertified })
+}
+
+/// The surface of dexels along three axes, with sharp edges drawn sharp.
+pub(crate) fn surface(solid: &TriDexels, session: &JobSession, report: &mut Report) -> Result<Mesh, Failure> {
+    session.progress.phase("mesh");
+    Ok(phase(report, "mesh", || {
+        solid.surface().and_then(|mesh| mesh.crisp(CRISP))
+    })?)
 }
 
 /// One set of dexels after the cuts, and the number of uncertified ones.

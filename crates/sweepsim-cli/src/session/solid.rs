@@ -5,8 +5,10 @@ use super::words::length;
 use crate::arguments::{GridOptions, ViewOptions};
 use std::ops::ControlFlow;
 use std::path::Path;
-use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriangleSoup};
-use sweepsim_formats::{DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file};
+use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriDexels, TriangleSoup};
+use sweepsim_formats::{
+    DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file, read_tri_dexels_file,
+};
 use sweepsim_picture::{CuttingPlane, Drawing, legend};
 
 /// The default number of dexels along the longer side of a mesh.
@@ -18,6 +20,7 @@ pub(crate) const CRISP: f64 = 0.766;
 pub(crate) enum Solid {
     Mesh(Mesh),
     Dexels(Dexels),
+    TriDexels(TriDexels),
 }
 
 /// The kind of a file by its extension, and by its first line for tables.
@@ -67,11 +70,14 @@ impl Solid {
                     file.display()
                 )))
             }
+            Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Tri) => {
+                Ok(Self::TriDexels(read_tri_dexels_file(file)?))
+            }
             Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
             // Says what to do about STEP files.
             Kind::Path if is_step(file) => Ok(Self::Mesh(read_mesh_file(file)?)),
             Kind::Job | Kind::Tools | Kind::Path => Err(Failure::message(format!(
-                "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .npz)",
+                "{}: expected a mesh (.stl .ply .glb .3mf .vtp) or dexels (dexels.csv .dexels .tridexels .npz)",
                 file.display()
             ))),
         }
@@ -81,6 +87,7 @@ impl Solid {
     pub fn grid(&self) -> Option<Grid> {
         match self {
             Self::Dexels(dexels) => Some(*dexels.grid()),
+            Self::TriDexels(solid) => Some(*solid.sets()[2].grid()),
             Self::Mesh(_) => None,
         }
     }
@@ -89,14 +96,16 @@ impl Solid {
     pub fn surface(&self) -> Result<Mesh, MeshError> {
         match self {
             Self::Dexels(dexels) => dexels.surface(),
+            Self::TriDexels(solid) => solid.surface()?.crisp(CRISP),
             Self::Mesh(mesh) => mesh.crisp(CRISP),
         }
     }
 
-    /// A mesh as dexels on a grid; dexels are returned as they are.
+    /// A mesh as dexels on a grid; dexels are returned as they are, of three sets the one along z.
     pub fn dexels(&self, file: &Path, grid: &Grid) -> Result<Dexels, Failure> {
         match self {
             Self::Dexels(dexels) => Ok(dexels.clone()),
+            Self::TriDexels(solid) => Ok(solid.sets()[2].clone()),
             Self::Mesh(mesh) => Stock::Mesh(soup(mesh))
                 .dexels(grid)
                 .map_err(|error| Failure::message(format!("{}: {error}", file.display()))),

@@ -49,7 +49,7 @@ pub(super) fn uncovered(job: &Job) -> Option<String> {
 
 fn has_dexels(stock: &Stock) -> bool {
     match stock {
-        Stock::Dexels(_) => true,
+        Stock::Dexels(_) | Stock::TriDexels(_) => true,
         Stock::Union(parts) | Stock::Intersection(parts) => parts.iter().any(has_dexels),
         Stock::Difference(whole, _) => has_dexels(whole),
         _ => false,

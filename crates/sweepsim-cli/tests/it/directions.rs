@@ -2,7 +2,8 @@
 
 use crate::support::Workdir;
 use std::fs;
-use sweepsim_formats::{read_dexels_file, read_mesh_file};
+use sweepsim_dexel::Dexels;
+use sweepsim_formats::{read_dexels_file, read_mesh_file, read_tri_dexels_file};
 
 /// A groove 4 wide and 3.1 deep, whose walls lie between lines: lines are half a millimetre apart.
 const JOB: &str = r#"Job(
@@ -159,4 +160,113 @@ fn what_has_no_three_axes_is_said() {
     assert!(report("needle").contains("must be asked for"), "{}", report("needle"));
     simulate(&workdir, "asked", &["--only", "mesh,report", "--directions", "xyz"]).unwrap();
     assert!(!report("asked").contains("along z only"));
+}
+
+/// A second groove, across the first, in a later job.
+const LATER: &str = "((10.17, -4, 1.7), (0, 0, 1)), ((10.17, 14, 1.7), (0, 0, 1))";
+const FIRST: &str = "((-4, 5.13, 2.9), (0, 0, 1)), ((24, 5.13, 2.9), (0, 0, 1))";
+
+#[test]
+fn a_later_run_goes_on_with_sharp_walls() {
+    let both = JOB.replace(FIRST, &format!("{FIRST}]), Path(tool: 1, poses: [{LATER}"));
+    let workdir = Workdir::new(&both);
+    let only = ["--only", "tridexels,dexels,mesh,picture"];
+    simulate(&workdir, "whole", &only).unwrap();
+    fs::write(workdir.path("job.ron"), JOB).unwrap();
+    simulate(&workdir, "first", &only).unwrap();
+    let stock = JOB.replace(STOCK, "Dexels(\"first/part.tridexels\")");
+    fs::write(workdir.path("job.ron"), stock.replace(FIRST, LATER)).unwrap();
+    simulate(&workdir, "second", &only).unwrap();
+    let read = |out: &str, file: &str| fs::read(workdir.path(&format!("{out}/{file}"))).unwrap();
+    for file in ["dexels.csv", "part.png"] {
+        assert!(read("whole", file) == read("second", file), "{file}");
+    }
+    let solid = |out: &str| read_tri_dexels_file(&workdir.path(&format!("{out}/part.tridexels"))).unwrap();
+    // The same heights; sources count paths anew.
+    for (whole, second) in solid("whole").sets().iter().zip(solid("second").sets()) {
+        assert_eq!(whole.grid(), second.grid());
+        let ends = |set: &Dexels| -> Vec<[f64; 2]> { set.iter().flat_map(|(_, line)| line.heights()).collect() };
+        assert_eq!(ends(whole), ends(second));
+    }
+    // 3.1 and 4.3 deep, where they cross the deeper.
+    let exact = 1200.0 - REMOVED - 10.0 * 4.0 * 4.3 + 4.0 * 4.0 * 3.1;
+    let off = (volume(&workdir, "second/part.ply") - exact).abs();
+    assert!(off < 1e-3 * exact, "{off}");
+    // An earlier run along z only cannot go on so.
+    fs::write(workdir.path("job.ron"), JOB).unwrap();
+    simulate(&workdir, "z", &["--only", "binary"]).unwrap();
+    let stock = JOB.replace(STOCK, "Dexels(\"z/part.dexels\")");
+    fs::write(workdir.path("job.ron"), &stock).unwrap();
+    let message = simulate(&workdir, "none", &["--only", "tridexels"]).unwrap_err();
+    assert!(
+        message.contains("--only tridexels: expected a stock without dexels of an earlier run along z only"),
+        "{message}"
+    );
+    let higher = "Union([Dexels(\"first/part.tridexels\"), Block(min: (0, 0, 5), max: (3, 3, 12))])";
+    fs::write(workdir.path("job.ron"), JOB.replace(STOCK, higher)).unwrap();
+    let message = simulate(&workdir, "none", &["--only", "tridexels"]).unwrap_err();
+    assert!(message.contains("no lower or higher than the box"), "{message}");
+    // Its mesh is made along z, and says so.
+    simulate(&workdir, "higher", &["--only", "mesh,report"]).unwrap();
+    assert!(
+        String::from_utf8(read("higher", "report.json"))
+            .unwrap()
+            .contains("no lower or higher than the box")
+    );
+    let message = simulate(&workdir, "none", &["--only", "tridexels", "--directions", "z"]).unwrap_err();
+    assert!(message.contains("expected --directions xyz"), "{message}");
+}
+
+#[test]
+fn dexels_along_three_axes_are_inspected_compared_and_converted() {
+    let workdir = Workdir::new(JOB);
+    simulate(&workdir, "out", &["--only", "tridexels,mesh"]).unwrap();
+    let run = |arguments: &[&str]| {
+        let output = workdir.run(arguments);
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (output.status.code(), text(output.stdout) + &text(output.stderr))
+    };
+    let (code, said) = run(&["inspect", "out/part.tridexels"]);
+    assert!(
+        code == Some(0) && said.contains("44 × 24 × ") && said.contains("along x"),
+        "{said}"
+    );
+    // A wall moved by 0.1 along y, which no dexel along z can see.
+    fs::write(workdir.path("job.ron"), JOB.replace("5.13", "5.23")).unwrap();
+    simulate(&workdir, "moved", &["--only", "tridexels"]).unwrap();
+    let (code, said) = run(&["compare", "moved/part.tridexels", "out/part.ply", "--out", "c"]);
+    assert_eq!(code, Some(0), "{said}");
+    let report: serde_json::Value =
+        serde_json::from_slice(&fs::read(workdir.path("c/comparison.json")).unwrap()).unwrap();
+    for side in ["gouge", "excess"] {
+        let most = report[side]["max"].as_f64().unwrap();
+        assert!((most - 0.1).abs() < 1e-3, "{side}: {most}");
+    }
+    // As along z, and as a mesh; a mesh as dexels along three axes; but not those along z.
+    for out in ["a.dexels", "a.npz", "a.stl", "a.png", "a.3mf"] {
+        let (code, said) = run(&["convert", "out/part.tridexels", out, "--size", "160x120"]);
+        assert_eq!(code, Some(0), "{said}");
+    }
+    let along_z = read_dexels_file(&workdir.path("a.dexels"), None).unwrap();
+    assert_eq!(
+        &along_z,
+        &read_tri_dexels_file(&workdir.path("out/part.tridexels"))
+            .unwrap()
+            .sets()[2]
+    );
+    let (code, said) = run(&["convert", "out/part.ply", "b.tridexels", "--cells", "40x20"]);
+    assert!(code == Some(0) && said.contains("40 × 20 × "), "{said}");
+    // Along z, a wall between lines may be off by half their distance.
+    let back = read_tri_dexels_file(&workdir.path("b.tridexels")).unwrap();
+    assert!((back.volume() - (1200.0 - REMOVED)).abs() < 10.0, "{}", back.volume());
+    let (code, said) = run(&["convert", "a.dexels", "c.tridexels"]);
+    assert!(code == Some(2) && said.contains("along z only"), "{said}");
+    // Damaged anywhere, it is refused.
+    let whole = fs::read(workdir.path("out/part.tridexels")).unwrap();
+    for at in (0..whole.len()).step_by(97).chain([8, 12, whole.len() - 1]) {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0x10;
+        fs::write(workdir.path("d.tridexels"), bytes).unwrap();
+        assert!(read_tri_dexels_file(&workdir.path("d.tridexels")).is_err(), "{at}");
+    }
 }

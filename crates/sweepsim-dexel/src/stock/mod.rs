@@ -44,6 +44,8 @@ pub enum Stock {
     Mesh(TriangleSoup),
     /// The result of an earlier run, on the same grid.
     Dexels(Arc<Dexels>),
+    /// The result of an earlier run along `x`, `y` and `z`, as [`TriDexels::into_sets`](crate::TriDexels::into_sets) returns it, on the same grids.
+    TriDexels(Arc<[Dexels; 3]>),
     /// The union of these.
     Union(Vec<Stock>),
     /// The intersection of these; empty if there are none.
@@ -116,6 +118,27 @@ fn hull(corners: impl Iterator<Item = [f64; 3]>) -> Option<Corners> {
     })
 }
 
+/// The box of dexels, which are as wide as their cells.
+fn of_dexels(dexels: &Dexels) -> Option<Corners> {
+    let (grid, spacing) = (dexels.grid(), dexels.grid().spacing());
+    let half = spacing.map(|s| 0.5 * s);
+    let corners = dexels.iter().flat_map(|(line, intervals)| {
+        let (i, j) = grid.place(line);
+        let (x, y) = (grid.x(i), grid.y(j));
+        let ends: Vec<f64> = intervals.heights().flatten().collect();
+        ends.into_iter().flat_map(move |z| {
+            let corner = |a: f64, b: f64| grid.frame().to_world([x + a * half[0], y + b * half[1], z]);
+            [
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(-1.0, 1.0),
+                corner(1.0, 1.0),
+            ]
+        })
+    });
+    hull(corners)
+}
+
 impl Stock {
     /// A box along the axes of the world that holds the stock: its lowest and highest corner. `None` if there is no material.
     ///
@@ -147,25 +170,8 @@ impl Stock {
             }
             Self::Ball { centre, radius } => Some([centre.map(|c| c - radius), centre.map(|c| c + radius)]),
             Self::Mesh(soup) => hull(soup.triangles.iter().flatten().copied()),
-            Self::Dexels(dexels) => {
-                let (grid, spacing) = (dexels.grid(), dexels.grid().spacing());
-                let corners = dexels.iter().flat_map(|(line, intervals)| {
-                    let (i, j) = grid.place(line);
-                    let (x, y) = (grid.x(i), grid.y(j));
-                    let ends: Vec<f64> = intervals.heights().flatten().collect();
-                    ends.into_iter().flat_map(move |z| {
-                        let half = spacing.map(|s| 0.5 * s);
-                        let corner = |a: f64, b: f64| grid.frame().to_world([x + a * half[0], y + b * half[1], z]);
-                        [
-                            corner(-1.0, -1.0),
-                            corner(1.0, -1.0),
-                            corner(-1.0, 1.0),
-                            corner(1.0, 1.0),
-                        ]
-                    })
-                });
-                hull(corners)
-            }
+            Self::Dexels(dexels) => of_dexels(dexels),
+            Self::TriDexels(sets) => hull(sets.iter().filter_map(of_dexels).flatten()),
             Self::Union(parts) => hull(parts.iter().filter_map(Self::bounds).flatten()),
             Self::Intersection(parts) => {
                 let mut all: Option<Corners> = None;
@@ -212,6 +218,10 @@ impl Stock {
             Self::Mesh(soup) => mesh_dexels(grid, soup),
             Self::Dexels(dexels) if dexels.grid() == grid => Ok(Dexels::clone(dexels)),
             Self::Dexels(_) => Err(GridMismatch.into()),
+            Self::TriDexels(sets) => match sets.iter().find(|set| set.grid() == grid) {
+                Some(set) => Ok(set.clone()),
+                None => Err(GridMismatch.into()),
+            },
             Self::Union(parts) => all(grid, Dexels::empty(*grid), Operation::Union, parts),
             Self::Difference(whole, parts) => all(grid, whole.dexels(grid)?, Operation::Difference, parts),
             Self::Intersection(parts) => match parts.split_first() {

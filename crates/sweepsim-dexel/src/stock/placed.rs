@@ -49,8 +49,8 @@ impl Stock {
             Self::Mesh(soup) => Self::Mesh(TriangleSoup {
                 triangles: soup.triangles.iter().map(|t| t.map(|p| frame.to_world(p))).collect(),
             }),
-            Self::Dexels(_) if frame.is_world() => self.clone(),
-            Self::Dexels(_) => return None,
+            Self::Dexels(_) | Self::TriDexels(_) if frame.is_world() => self.clone(),
+            Self::Dexels(_) | Self::TriDexels(_) => return None,
             Self::Union(parts) => Self::Union(all(parts)?),
             Self::Intersection(parts) => Self::Intersection(all(parts)?),
             Self::Difference(whole, parts) => Self::Difference(whole.placed(frame)?.into(), all(parts)?),

@@ -76,7 +76,8 @@ impl TriDexels {
     /// The part of a stock that lies inside a box.
     ///
     /// # Errors
-    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run cannot be part of the stock, since they run in one direction only.
+    /// [`TriDexelsError`]: the box or the stock is invalid. Dexels of an earlier run can be part of the stock only if they run along all three
+    /// axes ([`Stock::TriDexels`]), in the same box.
     ///
     /// ```
     /// use sweepsim_dexel::{Stock, TriDexels};

@@ -4,20 +4,21 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::Path;
 
-use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_dexel::{Dexels, Grid, TriDexels};
 
 use super::binary_read::read_dexels_binary;
 use super::binary_write::write_dexels_binary;
 use super::csv::{HEADER, dexels_from_rows, read_dexels_csv, write_dexels_csv};
 use super::fixture::Fixture;
 use super::npz::{read_dexels_npz, write_dexels_npz};
+use super::tri::read_tri_dexels;
 use super::vtu::write_dexels_vtu;
 use crate::atomic::write_atomically;
 use crate::error::{FormatError, Problem};
 use crate::extension::{extension, unknown};
 
 /// The extensions of [`DexelFormat`] that are read, for messages.
-const DEXELS: &str = ".csv, .dexels, .npz";
+const DEXELS: &str = ".csv, .dexels, .tridexels, .npz";
 
 /// A format of dexels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +28,9 @@ pub enum DexelFormat {
     Csv,
     /// `.dexels`: everything, bit for bit.
     Binary,
+    /// `.tridexels`: dexels along three axes; read as those along z where one set is wanted, and written by
+    /// [`write_tri_dexels`](super::write_tri_dexels) only.
+    Tri,
     /// `.npz`: NumPy arrays.
     Npz,
     /// `.vtu`: lines for ParaView; written only.
@@ -40,6 +44,7 @@ impl DexelFormat {
         Some(match extension(file).as_str() {
             "csv" => Self::Csv,
             "dexels" => Self::Binary,
+            "tridexels" => Self::Tri,
             "npz" => Self::Npz,
             "vtu" => Self::Vtu,
             _ => return None,
@@ -64,7 +69,7 @@ pub fn is_dexels_csv(file: &Path) -> Result<bool, FormatError> {
     read().map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))
 }
 
-/// Reads dexels: `.csv`, `.dexels` or `.npz`. Tables do not contain their grid, and need `grid`; the others have their own.
+/// Reads dexels: `.csv`, `.dexels`, `.tridexels` (those along z) or `.npz`. Tables do not contain their grid, and need `grid`; the others have their own.
 ///
 /// # Errors
 /// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, its content is invalid, or a table comes
@@ -94,6 +99,10 @@ pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, Form
                 Ok(Fixture::parse(&text)?.dexels())
             }
             DexelFormat::Binary => read_dexels_binary(&mut reader),
+            DexelFormat::Tri => {
+                let [_, _, along_z] = read_tri_dexels(&mut reader)?.into_sets();
+                Ok(along_z)
+            }
             DexelFormat::Vtu => Err(unknown(file, "dexel", format!("{DEXELS}, as .vtu is only written"))),
         }
     };
@@ -108,18 +117,30 @@ fn starts_with(reader: &mut BufReader<File>, magic: &[u8]) -> io::Result<bool> {
     Ok(bytes == magic)
 }
 
+/// Reads dexels along three axes.
+///
+/// # Errors
+/// [`FormatError`] with the file's name: the file cannot be read, or its content is invalid.
+pub fn read_tri_dexels_file(file: &Path) -> Result<TriDexels, FormatError> {
+    let open = File::open(file).map_err(|error| FormatError::new(Problem::Read(error), None));
+    open.and_then(|file| read_tri_dexels(&mut BufReader::new(file)))
+        .map_err(|error| error.in_file(file))
+}
+
 /// Writes dexels, completely or not at all: `.csv`, `.dexels`, `.npz` or `.vtu`.
 ///
 /// # Errors
 /// [`FormatError`] with the file's name: the extension is unknown, or the data cannot be written.
 pub fn write_dexels_file(dexels: &Dexels, file: &Path) -> Result<(), FormatError> {
-    let Some(format) = DexelFormat::of(file) else {
-        return Err(unknown(file, "dexel", format!("{DEXELS}, .vtu")));
+    let format = DexelFormat::of(file).filter(|format| *format != DexelFormat::Tri);
+    let Some(format) = format else {
+        return Err(unknown(file, "dexel", ".csv, .dexels, .npz, .vtu"));
     };
     write_atomically(file, |out| {
         match format {
             DexelFormat::Csv => write_dexels_csv(dexels, out),
-            DexelFormat::Binary => write_dexels_binary(dexels, out),
+            // One set is not three: refused above.
+            DexelFormat::Binary | DexelFormat::Tri => write_dexels_binary(dexels, out),
             DexelFormat::Npz => write_dexels_npz(dexels, out),
             DexelFormat::Vtu => write_dexels_vtu(dexels, out),
         }?;

@@ -7,7 +7,7 @@ use sweepsim_dexel::{Grid, TriangleSoup};
 use super::place::Step;
 use super::read::JobReader;
 use super::schema;
-use crate::dexels::read_dexels_file;
+use crate::dexels::{DexelFormat, read_dexels_file, read_tri_dexels_file};
 use crate::error::{FormatError, Problem};
 use crate::meshes::{Colour, parsed_colour};
 
@@ -138,8 +138,13 @@ impl JobReader<'_> {
     /// The surface of the result of an earlier run, in millimetres like all its outputs.
     fn target_of_dexels(&self, name: &str, grid: &Grid) -> Result<Target, FormatError> {
         let (file, steps) = (self.beside(name), ["target".into()]);
-        let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "target", &steps)?;
-        let surface = dexels.surface();
+        let surface = if DexelFormat::of(&file) == Some(DexelFormat::Tri) {
+            self.named(read_tri_dexels_file(&file), &file, "target", &steps)?
+                .surface()
+        } else {
+            self.named(read_dexels_file(&file, Some(grid)), &file, "target", &steps)?
+                .surface()
+        };
         let surface = surface.map_err(|error| self.error(Problem::syntax(format!("{name}: {error}")), &steps))?;
         Ok(Target {
             file,

@@ -2,7 +2,7 @@
 
 use crate::commands::task::Task;
 use sweepsim::motion::{BodyKind, ProfileSegment, Tool, Turn};
-use sweepsim_dexel::{Stock, TriangleSoup};
+use sweepsim_dexel::{Stock, TriDexels, TriangleSoup};
 use sweepsim_formats::Job;
 use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
 
@@ -52,6 +52,12 @@ fn meshes(stock: &Stock) -> Vec<Triangles> {
         } => vec![cylinder(*base, *axis, *radius, *height)],
         Stock::Ball { centre, radius } => vec![ball(*centre, *radius)],
         Stock::Mesh(soup) => of_soup(soup).into_iter().collect(),
+        Stock::TriDexels(sets) => {
+            let solid = TriDexels::from_sets((**sets).clone()).ok();
+            let mesh = solid.and_then(|solid| solid.surface().ok());
+            let mesh = mesh.filter(|mesh| mesh.triangles.len() <= LARGEST);
+            mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
+        }
         Stock::Dexels(dexels) => {
             let mesh = dexels.surface().ok().filter(|mesh| mesh.triangles.len() <= LARGEST);
             mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()

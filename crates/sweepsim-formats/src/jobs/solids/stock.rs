@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use sweepsim_dexel::{Grid, Stock, TriangleSoup};
 
-use crate::dexels::read_dexels_file;
+use crate::dexels::{DexelFormat, read_dexels_file, read_tri_dexels_file};
 use crate::error::{FormatError, Problem};
 use crate::extension::{is_step, step_problem};
 use crate::jobs::place::Step;
@@ -89,9 +89,17 @@ impl JobReader<'_> {
     /// The result of an earlier run, in millimetres like all its outputs.
     fn dexels(&self, name: &str, steps: &[Step], grid: &Grid) -> Result<Stock, FormatError> {
         let file = self.beside(name);
-        let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
-        if dexels.grid() == grid {
-            return Ok(Stock::Dexels(Arc::new(dexels)));
+        let (found, stock) = if DexelFormat::of(&file) == Some(DexelFormat::Tri) {
+            let sets = self
+                .named(read_tri_dexels_file(&file), &file, "stock", steps)?
+                .into_sets();
+            (*sets[2].grid(), Stock::TriDexels(Arc::new(sets)))
+        } else {
+            let dexels = self.named(read_dexels_file(&file, Some(grid)), &file, "stock", steps)?;
+            (*dexels.grid(), Stock::Dexels(Arc::new(dexels)))
+        };
+        if found == *grid {
+            return Ok(stock);
         }
         let words = |grid: &Grid| {
             let ([x0, y0], [x1, y1], [nx, ny]) = (grid.min(), grid.max(), grid.cells());
@@ -100,7 +108,7 @@ impl JobReader<'_> {
         };
         let what = format!("the grid of {name}");
         Err(self.error(
-            Problem::value(what, words(dexels.grid()), format!("that of the job, {}", words(grid))),
+            Problem::value(what, words(&found), format!("that of the job, {}", words(grid))),
             steps,
         ))
     }
