@@ -6,31 +6,92 @@ use super::{Dexels, GridMismatch, Operation};
 use crate::intervals::{AuditFailure, Crossing, Interval, IntervalError, check_lengths, cover, difference, normalise};
 use rayon::prelude::*;
 
-/// The lines of crossings (or intervals) and their numbers, sorted: counted into chunks of lines, then sorted in each. Those beyond the last
-/// chunk are left out.
-fn numbered_by_line<T>(crossings: &[(u32, T)], chunks: usize) -> Vec<(u32, u32)> {
-    let chunk = |line: u32| line as usize / LINES;
-    let mut ends = vec![0_usize; chunks + 1];
-    for (line, _) in crossings {
-        if let Some(end) = ends.get_mut(chunk(*line) + 1) {
-            *end += 1;
+/// Items (crossings or intervals) of several lists by chunk of lines, in the order of the lists. Those beyond the grid are left out.
+struct ByChunk<'a, T> {
+    /// Where the items of each chunk end.
+    ends: Vec<usize>,
+    items: Vec<&'a (u32, T)>,
+}
+
+impl<'a, T> ByChunk<'a, T> {
+    /// `lines`: their number in the grid.
+    fn new(lists: &[&'a [(u32, T)]], lines: usize) -> Self {
+        let chunks = lines.div_ceil(LINES);
+        let all = || {
+            lists
+                .iter()
+                .copied()
+                .flatten()
+                .filter(|(line, _)| (*line as usize) < lines)
+        };
+        let mut ends = vec![0_usize; chunks + 1];
+        for (line, _) in all() {
+            ends[*line as usize / LINES + 1] += 1;
+        }
+        for k in 0..chunks {
+            ends[k + 1] += ends[k];
+        }
+        let mut items = Vec::new();
+        if let Some(any) = all().next() {
+            items.resize(ends[chunks], any);
+            for item in all() {
+                let end = &mut ends[item.0 as usize / LINES];
+                items[*end] = item;
+                *end += 1;
+            }
+        }
+        // Each has moved on to where the next one began.
+        ends.truncate(chunks);
+        Self { ends, items }
+    }
+
+    fn of(&self, chunk: usize) -> &[&'a (u32, T)] {
+        let begin = chunk.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.items[begin..self.ends[chunk]]
+    }
+}
+
+/// Memory for the items of one chunk, sorted by line.
+struct Sorted<T> {
+    /// Where those of each line begin.
+    begin: [u32; LINES + 1],
+    items: Vec<T>,
+}
+
+impl<T> Default for Sorted<T> {
+    fn default() -> Self {
+        Self {
+            begin: [0; LINES + 1],
+            items: Vec::new(),
         }
     }
-    for k in 0..chunks {
-        ends[k + 1] += ends[k];
-    }
-    let mut sorted = vec![(0, 0); ends[chunks]];
-    for ((line, _), number) in crossings.iter().zip(0_u32..) {
-        let at = chunk(*line);
-        if at < chunks {
-            sorted[ends[at]] = (*line, number);
-            ends[at] += 1;
+}
+
+impl<T: Copy> Sorted<T> {
+    /// Sorts the items of the chunk that begins with line `first`, those of a line in their order.
+    fn fill(&mut self, items: &[&(u32, T)], first: usize) {
+        self.items.clear();
+        self.begin = [0; LINES + 1];
+        let Some((_, any)) = items.first() else { return };
+        self.items.resize(items.len(), *any);
+        let line = |item: &(u32, T)| item.0 as usize - first;
+        for item in items {
+            self.begin[line(item) + 1] += 1;
+        }
+        for k in 0..LINES {
+            self.begin[k + 1] += self.begin[k];
+        }
+        let mut next = self.begin;
+        for item in items {
+            let at = &mut next[line(item)];
+            self.items[*at as usize] = item.1;
+            *at += 1;
         }
     }
-    sorted
-        .par_chunk_by_mut(|(a, _), (b, _)| chunk(*a) == chunk(*b))
-        .for_each(<[(u32, u32)]>::sort_unstable);
-    sorted
+
+    fn of(&mut self, line: usize) -> &mut [T] {
+        &mut self.items[self.begin[line] as usize..self.begin[line + 1] as usize]
+    }
 }
 
 /// Subtracts `cut` from `old`. An end that moves by at most `tolerance` remains part of the face that it was on.
@@ -102,9 +163,8 @@ impl Dexels {
             let line = *line as usize;
             return Err(IntervalError::Line { line, lines });
         }
-        let sorted = numbered_by_line(intervals, self.chunks.len());
-        self.update_by(operation, run, &sorted, |group, (): &mut (), out| {
-            out.extend(group.iter().map(|(_, number)| intervals[*number as usize].1));
+        self.update_by(operation, run, &[intervals], |_, group, out| {
+            out.extend_from_slice(group);
             // Mostly one. A stable sort: the order of equal heights does not depend on threads.
             out.sort_by(|a, b| a.lower.z.total_cmp(&b.lower.z));
             normalise(out);
@@ -121,45 +181,47 @@ impl Dexels {
         crossings: &[(u32, Crossing)],
         same: f64,
     ) -> Vec<(u32, AuditFailure)> {
-        let sorted = numbered_by_line(crossings, self.chunks.len());
+        self.update_by_lists(operation, &[crossings], &[], same)
+    }
+
+    /// As [`update_by_crossings`](Self::update_by_crossings), with crossings in several lists, of which a line may have some in each. Those of the lines
+    /// in `except`, which are sorted, are ignored.
+    pub fn update_by_lists(
+        &mut self,
+        operation: Operation,
+        crossings: &[&[(u32, Crossing)]],
+        except: &[u32],
+        same: f64,
+    ) -> Vec<(u32, AuditFailure)> {
         let failures = std::sync::Mutex::new(Vec::new());
-        self.update_by(
-            operation,
-            operation.run(),
-            &sorted,
-            |group, line: &mut Vec<Crossing>, out| {
-                line.clear();
-                line.extend(group.iter().map(|(_, number)| crossings[*number as usize].1));
-                if let Err(failure) = cover(line, same, out)
-                    && let (Some((number, _)), Ok(mut failures)) = (group.first(), failures.lock())
-                {
-                    failures.push((*number, failure));
-                }
-            },
-        );
+        self.update_by(operation, operation.run(), crossings, |line, group, out| {
+            if except.binary_search(&line).is_err()
+                && let Err(failure) = cover(group, same, out)
+                && let Ok(mut failures) = failures.lock()
+            {
+                failures.push((line, failure));
+            }
+        });
         let mut failures = failures.into_inner().unwrap_or_default();
         failures.sort_by_key(|(line, _)| *line);
         failures
     }
 
-    /// Updates from items sorted by line, by `run`, which does the operation: `read` turns all items of a line into intervals in normal form. Its scratch memory is reused
-    /// for the next line.
-    fn update_by<T: Sync, W: Default>(
+    /// Updates from numbered items by `run`, which does the operation: `read` turns all items of a line, which it may reorder, into intervals in normal form.
+    fn update_by<T: Copy + Send + Sync>(
         &mut self,
         operation: Operation,
         run: impl Fn(&[PackedInterval], &[PackedInterval], &mut Vec<PackedInterval>) + Sync,
-        sorted: &[(u32, T)],
-        read: impl Fn(&[(u32, T)], &mut W, &mut Vec<Interval>) + Sync,
+        lists: &[&[(u32, T)]],
+        read: impl Fn(u32, &mut [T], &mut Vec<Interval>) + Sync,
     ) {
-        let lines = self.grid.len();
+        let by_chunk = ByChunk::new(lists, self.grid.len());
         let chunks = self.chunks.par_iter_mut().enumerate();
-        type Lists<W> = (W, Vec<Interval>, Vec<PackedInterval>, Vec<PackedInterval>);
+        type Lists<T> = (Sorted<T>, Vec<Interval>, Vec<PackedInterval>, Vec<PackedInterval>);
         chunks.for_each_init(
-            Lists::<W>::default,
-            |(work, intervals, packed, scratch), (number, slot)| {
-                let begin = |line: usize| sorted.partition_point(|(at, _)| (*at as usize) < line);
-                let (first, last) = (number * LINES, ((number + 1) * LINES).min(lines));
-                let mut mine = &sorted[begin(first)..begin(last)];
+            Lists::<T>::default,
+            |(sorted, intervals, packed, scratch), (number, slot)| {
+                let mine = by_chunk.of(number);
                 let idle = if operation == Operation::Union {
                     mine.is_empty()
                 } else {
@@ -168,16 +230,17 @@ impl Dexels {
                 if idle || (mine.is_empty() && operation == Operation::Difference) {
                     return;
                 }
+                let first = number * LINES;
+                sorted.fill(mine, first);
                 let chunk = slot.get_or_insert_default();
                 let mut ends = [0; LINES + 1];
                 packed.clear();
                 for line in 0..LINES {
-                    let here = mine.partition_point(|(at, _)| *at as usize == first + line);
-                    if here > 0 {
+                    let group = sorted.of(line);
+                    if !group.is_empty() {
                         intervals.clear();
-                        read(&mine[..here], work, intervals);
+                        read((first + line) as u32, group, intervals);
                         chunk.pack(intervals, packed);
-                        mine = &mine[here..];
                     }
                     ends[line + 1] = packed.len();
                 }

@@ -115,18 +115,21 @@ impl Grid {
         [0, 1].map(|k| (self.max[k] - self.min[k]) / self.cells[k] as f64)
     }
 
+    #[inline]
     fn centre(&self, k: usize, n: usize) -> f64 {
         self.min[k] + (n as f64 + 0.5) * (self.max[k] - self.min[k]) / self.cells[k] as f64
     }
 
     /// The position of column `i`: `min + (i + 1/2)·(max − min)/cells`.
     #[must_use]
+    #[inline]
     pub fn x(&self, i: usize) -> f64 {
         self.centre(0, i)
     }
 
     /// The position of row `j`.
     #[must_use]
+    #[inline]
     pub fn y(&self, j: usize) -> f64 {
         self.centre(1, j)
     }

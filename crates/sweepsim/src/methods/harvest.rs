@@ -16,6 +16,28 @@ pub(crate) struct Harvest {
     pub statistics: ChartStatistics,
 }
 
+/// The results of all searches of a chunk, in an order that does not depend on the number of threads.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Gathered {
+    pub crossings: Vec<Vec<Numbered>>,
+    pub open: Vec<(u32, Cause)>,
+    pub statistics: ChartStatistics,
+}
+
+impl Gathered {
+    /// Adds the results of another search.
+    pub fn add(&mut self, harvest: Harvest) {
+        self.crossings.push(harvest.crossings);
+        self.open.extend(harvest.open);
+        self.statistics.add(&harvest.statistics);
+    }
+
+    /// The number of crossings.
+    pub fn len(&self) -> usize {
+        self.crossings.iter().map(Vec::len).sum()
+    }
+}
+
 /// Turns preimages into crossings as they are found.
 pub(super) struct Reaper<'a, F> {
     crossings: &'a mut Vec<Numbered>,
@@ -77,15 +99,19 @@ impl Harvest {
 
     /// Adds the statistics of another search.
     pub fn count(&mut self, statistics: &ChartStatistics) {
-        self.statistics.boxes += statistics.boxes;
-        self.statistics.charts += statistics.charts;
-        self.statistics.evaluations += statistics.evaluations;
+        self.statistics.add(statistics);
     }
+}
 
-    /// Adds the results of another search.
-    pub fn merge(&mut self, other: Self) {
-        self.crossings.extend(other.crossings);
-        self.open.extend(other.open);
-        self.count(&other.statistics);
+/// Sums of statistics.
+trait Add {
+    fn add(&mut self, other: &Self);
+}
+
+impl Add for ChartStatistics {
+    fn add(&mut self, other: &Self) {
+        self.boxes += other.boxes;
+        self.charts += other.charts;
+        self.evaluations += other.evaluations;
     }
 }

@@ -78,7 +78,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let source = |t: f64| self.source(at, t);
         let settled = [&mut done.patches[..], &mut done.edges[..]];
-        translation::envelope(outline, &heading, (&mut collector, self.ceiling), &source, settled);
+        translation::envelope(outline, &heading, (&mut collector, self.ceiling), source, settled);
     }
 
     /// Settles what it can of the placement of a tool that stands along the lines between two moves without rotation.

@@ -1,7 +1,7 @@
 //! Crossings are counted into intervals, audited, and repaired.
 
 use crate::error::SweepError;
-use crate::methods::harvest::{Harvest, Numbered};
+use crate::methods::harvest::{Gathered, Harvest, Numbered};
 use crate::methods::workspace::Workspace;
 use crate::sweep::boundary_operator::{self, BoundaryOperator};
 use crate::sweep::report::{Statistics, UnresolvedDexel, UnresolvedReason};
@@ -58,11 +58,13 @@ impl SweepJob<'_> {
     /// The swept intervals of the lines that have any, counted, audited, and repaired where they do not add up. For few lines of a large grid, where
     /// [`count`](Self::count) would visit all.
     pub fn swept_lines(&self, chunk: &[PathPart]) -> Result<SweptLines, SweepError> {
-        let Harvest {
-            mut crossings,
+        let Gathered {
+            crossings: lists,
             mut open,
             ..
         } = self.harvest(chunk)?;
+        let mut crossings = lists.concat();
+        self.reuse(lists);
         open.sort_by_key(|(line, _)| *line);
         open.dedup_by_key(|(line, _)| *line);
         // A stable sort: the order of crossings on a line does not depend on threads.
@@ -111,29 +113,29 @@ impl SweepJob<'_> {
     pub fn count(
         &self,
         chunk: &[PathPart],
-        harvest: Harvest,
+        harvest: Gathered,
         volume: &mut Dexels,
         statistics: &mut Statistics,
         failed: &mut Vec<UnresolvedDexel>,
     ) -> Result<(), SweepError> {
-        let Harvest {
-            mut crossings,
+        let Gathered {
+            crossings: lists,
             mut open,
             ..
         } = harvest;
         open.sort_by_key(|(line, _)| *line);
         let mut bad: Vec<u32> = open.iter().map(|(line, _)| *line).collect();
         bad.dedup();
-        if !bad.is_empty() {
-            crossings.retain(|(line, _)| bad.binary_search(line).is_err());
-        }
         let mut wrong: Vec<u32> = match self.boundary {
             BoundaryOperator::Coverage => {
                 let same = self.tolerances.same_height();
-                let failures = volume.update_by_crossings(Operation::Union, &crossings, same);
+                let slices: Vec<&[Numbered]> = lists.iter().map(Vec::as_slice).collect();
+                let failures = volume.update_by_lists(Operation::Union, &slices, &bad, same);
                 failures.into_iter().map(|(line, _)| line).collect()
             }
             BoundaryOperator::Paper => {
+                let mut crossings = lists.concat();
+                crossings.retain(|(line, _)| bad.binary_search(line).is_err());
                 crossings.sort_by_key(|(line, _)| *line);
                 let mut wrong = Vec::new();
                 for group in crossings.chunk_by(|a, b| a.0 == b.0) {
@@ -145,6 +147,7 @@ impl SweepJob<'_> {
                 wrong
             }
         };
+        self.reuse(lists);
         wrong.extend(&bad);
         wrong.sort_unstable();
         wrong.dedup();

@@ -54,7 +54,7 @@ pub(crate) fn sweep_near(
     };
     let mut one = |job: &SweepJob, chunk: &[PathPart], done: usize| {
         let harvest = job.harvest(chunk)?;
-        statistics.crossings += harvest.crossings.len() as u64;
+        statistics.crossings += harvest.len() as u64;
         statistics.boxes += harvest.statistics.boxes;
         statistics.charts += harvest.statistics.charts;
         job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;

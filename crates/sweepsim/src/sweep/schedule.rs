@@ -4,7 +4,7 @@ use crate::cutter::Cutter;
 use crate::envelope::Size;
 use crate::error::SweepError;
 use crate::methods::charts::Charts;
-use crate::methods::harvest::Harvest;
+use crate::methods::harvest::{Gathered, Harvest, Numbered};
 use crate::methods::lattice::Lattice;
 use crate::methods::line_mask::LineMask;
 use crate::methods::lines::Lines;
@@ -53,6 +53,7 @@ impl Plan {
                 slack: self.tolerances.rounding(),
             },
             spaces: Arc::default(),
+            lists: Arc::default(),
             repairs: RepairBudget::new(self.parts.len()),
             monitor,
         }
@@ -77,6 +78,8 @@ pub(crate) struct SweepJob<'a> {
     pub repairs: RepairBudget,
     /// Workspaces that are not in use.
     pub spaces: Arc<Mutex<Vec<Workspace>>>,
+    /// Lists of crossings that are not in use, empty.
+    pub lists: Arc<Mutex<Vec<Vec<Numbered>>>>,
     pub monitor: &'a dyn Monitor,
 }
 
@@ -92,8 +95,24 @@ impl SweepJob<'_> {
         result
     }
 
+    /// A list of crossings: empty, perhaps with memory.
+    fn list(&self) -> Vec<Numbered> {
+        let kept = self.lists.lock().map(|mut lists| lists.pop()).unwrap_or_default();
+        kept.unwrap_or_default()
+    }
+
+    /// Keeps the memory of lists of crossings.
+    pub fn reuse(&self, lists: Vec<Vec<Numbered>>) {
+        if let Ok(mut kept) = self.lists.lock() {
+            kept.extend(lists.into_iter().map(|mut list| {
+                list.clear();
+                list
+            }));
+        }
+    }
+
     /// All crossings of a chunk, in an order that does not depend on the number of threads.
-    pub fn harvest(&self, chunk: &[PathPart]) -> Result<Harvest, SweepError> {
+    pub fn harvest(&self, chunk: &[PathPart]) -> Result<Gathered, SweepError> {
         match self.method {
             Method::Charts | Method::General => self.by::<Charts>(chunk),
             Method::Lines => self.by::<Lines>(chunk),
@@ -117,7 +136,7 @@ impl SweepJob<'_> {
         }
     }
 
-    fn by<'c, M: CrossingMethod<'c>>(&'c self, chunk: &'c [PathPart]) -> Result<Harvest, SweepError> {
+    fn by<'c, M: CrossingMethod<'c>>(&'c self, chunk: &'c [PathPart]) -> Result<Gathered, SweepError> {
         let method = M::prepare(self.tool, chunk);
         let shift = self.tolerances.line_displacement(0);
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
@@ -130,7 +149,10 @@ impl SweepJob<'_> {
                     ceiling: self.ceiling.as_ref(),
                     ..self.search(&method, chunk, &lines)
                 };
-                let mut harvest = Harvest::default();
+                let mut harvest = Harvest {
+                    crossings: self.list(),
+                    ..Harvest::default()
+                };
                 self.with_space(|space| {
                     for at in share.parts {
                         if self.monitor.cancelled() {
@@ -145,19 +167,19 @@ impl SweepJob<'_> {
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
         }
-        let mut all = Harvest::default();
-        all.crossings
-            .reserve(found.iter().map(|part| part.crossings.len()).sum());
+        let mut all = Gathered::default();
         for part in found {
-            all.merge(part);
+            all.add(part);
         }
         if let Some(ceiling) = &self.ceiling {
             let lines = Lattice::all(self.grid, shift).masked(self.mask.as_deref());
+            let mut harvest = Harvest::default();
             let mut collector = Collector {
                 lines: &lines,
-                harvest: &mut all,
+                harvest: &mut harvest,
             };
             translation::close(ceiling, chunk, self.size.slack, &mut collector);
+            all.add(harvest);
         }
         Ok(all)
     }

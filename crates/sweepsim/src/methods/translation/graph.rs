@@ -37,8 +37,35 @@ pub(super) trait Graph {
         lo + share * (hi - lo)
     }
 
-    /// Whether no point between these values bounds the sweep.
-    fn idle(&self, _: f64, _: f64) -> bool {
-        false
+    /// The jump of all points between these values, if it is the same and certain.
+    fn jump(&self, between: [f64; 2]) -> Option<i8>;
+
+    /// A bound of `|dq/dp|` between these values; `None` if each point has to tell.
+    fn steepest(&self, between: [f64; 2]) -> Option<f64>;
+
+    /// `q` at many values: as [`at`](Self::at) has it.
+    fn many_q(&self, p: &[f64], q: &mut [f64]) {
+        for (p, q) in p.iter().zip(q) {
+            *q = self.at(*p).q;
+        }
     }
+
+    /// Heights and normals at many values, between two of which all jumps are the same, and not 0.
+    fn many(&self, p: &[f64], points: &mut [Point]) {
+        for (p, point) in p.iter().zip(points) {
+            let spot = self.at(*p);
+            *point = Point {
+                z: spot.z,
+                normal: spot.normal,
+            };
+        }
+    }
+}
+
+/// What a crossing has of a graph.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Point {
+    pub z: f64,
+    /// As that of a [`Spot`].
+    pub normal: Local,
 }

@@ -105,6 +105,15 @@ impl Heading {
         [x * q - y * p, y * q + x * p, z]
     }
 
+    /// As [`in_space`](Self::in_space), of length 1.
+    #[inline]
+    pub fn unit_in_space(&self, direction: Local) -> [f32; 3] {
+        let [x, y, z] = self.in_space(direction);
+        let square = x * x + y * y + z * z;
+        let scale = if square > 0.0 { square.sqrt().recip() } else { 1.0 };
+        [x, y, z].map(|c| (c * scale) as f32)
+    }
+
     /// A point of the tool's frame: `radius` in the direction with cosine `c` and sine `s` from that of the travel, at a height.
     pub fn point(&self, radius: f64, [c, s]: [f64; 2], height: f64) -> Local {
         let [e, f, a] = &self.axes;

@@ -49,6 +49,7 @@ pub(crate) struct Collector<'a> {
 }
 
 impl Collector<'_> {
+    #[inline]
     fn crossing(&mut self, line: usize, z: f64, jump: i8, normal: [f32; 3], source: Source) {
         let crossing = Crossing {
             z,

@@ -1,6 +1,6 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
-use super::graph::{Graph, Spot};
+use super::graph::{Graph, Point, Spot};
 use super::{Heading, Local, along, dot};
 use crate::cutter::outline::Rim;
 use std::f64::consts::PI;
@@ -206,9 +206,25 @@ pub(super) fn ball(
 }
 
 impl Ring {
+    #[inline]
     fn turn(&self, p: f64) -> [f64; 2] {
         let c = ((p - self.centre[1]) / self.width).clamp(-1.0, 1.0);
         [c, self.half * ((1.0 - c) * (1.0 + c)).sqrt()]
+    }
+
+    /// `dq/dp`.
+    #[inline]
+    fn slope(&self, [c, s]: [f64; 2]) -> f64 {
+        (self.first[0] - self.second[0] * c / s) / self.width
+    }
+
+    /// By how much the count changes at an edge, by `g` on both faces.
+    fn change(&self, [a, b]: [f64; 2]) -> i8 {
+        match (a < 0.0, b < 0.0) {
+            (true, false) => -self.half as i8,
+            (false, true) => self.half as i8,
+            _ => 0,
+        }
     }
 
     /// The signs of `g` on both faces of an edge, and whether they are certain.
@@ -239,21 +255,17 @@ impl Graph for Ring {
     fn at(&self, p: f64) -> Spot {
         let [c, s] = self.turn(p);
         let arm = along(&self.first.map(|x| c * x), s, &self.second);
-        let slope = (self.first[0] - self.second[0] * c / s) / self.width;
+        let slope = self.slope([c, s]);
         let (jump, normal, certain) = match &self.role {
             Role::Ball { jump, out } => (*jump, arm.map(|x| out * x), true),
             Role::Rim {
                 normals, radius, axis, ..
             } => {
                 let ([a, b], certain) = self.sides([c, s]);
-                let jump = match (a < 0.0, b < 0.0) {
-                    (true, false) => -self.half,
-                    (false, true) => self.half,
-                    _ => 0.0,
-                };
+                let jump = self.change([a, b]);
                 // In the fan of the two faces, where g = 0.
                 let [n, m] = [0, 1].map(|k| normals[0][k] * b.abs() + normals[1][k] * a.abs());
-                (jump as i8, along(&arm.map(|x| x * n / radius), m, axis), certain)
+                (jump, along(&arm.map(|x| x * n / radius), m, axis), certain)
             }
         };
         Spot {
@@ -288,13 +300,60 @@ impl Graph for Ring {
     }
 
     /// `g` of each face is monotone along the part.
-    fn idle(&self, low: f64, high: f64) -> bool {
-        if let Role::Ball { .. } = self.role {
-            return false;
+    fn jump(&self, between: [f64; 2]) -> Option<i8> {
+        if let Role::Ball { jump, .. } = self.role {
+            return Some(jump);
         }
-        let [(a, a_sure), (b, b_sure)] = [low, high].map(|p| self.sides(self.turn(p)));
+        let [(a, a_sure), (b, b_sure)] = between.map(|p| self.sides(self.turn(p)));
         let negative = |sides: [f64; 2]| sides.map(|g| g < 0.0);
-        let (a, b) = (negative(a), negative(b));
-        a_sure && b_sure && a == b && a[0] == a[1]
+        (a_sure && b_sure && negative(a) == negative(b)).then(|| self.change(a))
+    }
+
+    /// It changes with the angle in one direction.
+    fn steepest(&self, between: [f64; 2]) -> Option<f64> {
+        let [a, b] = between.map(|p| self.slope(self.turn(p)).abs());
+        Some(a.max(b))
+    }
+
+    fn many_q(&self, p: &[f64], q: &mut [f64]) {
+        for (p, q) in p.iter().zip(q) {
+            let [c, s] = self.turn(*p);
+            *q = self.centre[0] + (c * self.first[0] + s * self.second[0]);
+        }
+    }
+
+    fn many(&self, p: &[f64], points: &mut [Point]) {
+        match &self.role {
+            Role::Ball { out, .. } => {
+                for (p, point) in p.iter().zip(points) {
+                    let [c, s] = self.turn(*p);
+                    let arm = along(&self.first.map(|x| c * x), s, &self.second);
+                    *point = Point {
+                        z: self.centre[2] + arm[2],
+                        normal: arm.map(|x| out * x),
+                    };
+                }
+            }
+            Role::Rim {
+                azimuth,
+                rates,
+                normals,
+                radius,
+                axis,
+                ..
+            } => {
+                for (p, point) in p.iter().zip(points) {
+                    let turn = self.turn(*p);
+                    let arm = along(&self.first.map(|x| turn[0] * x), turn[1], &self.second);
+                    let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
+                    let [a, b] = rates.map(|[ahead, up]| (ahead * cosine + up).abs());
+                    let [n, m] = [0, 1].map(|k| normals[0][k] * b + normals[1][k] * a);
+                    *point = Point {
+                        z: self.centre[2] + arm[2],
+                        normal: along(&arm.map(|x| x * n / radius), m, axis),
+                    };
+                }
+            }
+        }
     }
 }

@@ -13,29 +13,53 @@ pub(super) struct Row {
     pub x: f64,
 }
 
-/// The values of `y` for which `low ≤ base + rate y ≤ high`.
-fn within([low, high]: [f64; 2], base: f64, rate: f64) -> [f64; 2] {
-    if rate == 0.0 {
-        return if base >= low && base <= high {
-            [f64::NEG_INFINITY, f64::INFINITY]
-        } else {
-            [f64::INFINITY, f64::NEG_INFINITY]
-        };
+/// A condition `low ≤ base + rate y ≤ high` on `y`.
+#[derive(Clone, Copy)]
+struct Band {
+    range: [f64; 2],
+    /// `1/rate`; 0 if it does not depend on `y`.
+    inverse: f64,
+}
+
+impl Band {
+    fn new(range: [f64; 2], rate: f64) -> Self {
+        let inverse = if rate == 0.0 { 0.0 } else { rate.recip() };
+        Self { range, inverse }
     }
-    let (a, b) = ((low - base) / rate, (high - base) / rate);
-    if rate > 0.0 { [a, b] } else { [b, a] }
+
+    /// The values of `y`, about.
+    #[inline]
+    fn within(&self, base: f64) -> [f64; 2] {
+        let [low, high] = self.range;
+        if self.inverse == 0.0 {
+            return if base >= low && base <= high {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            } else {
+                [f64::INFINITY, f64::NEG_INFINITY]
+            };
+        }
+        let (a, b) = ((low - base) * self.inverse, (high - base) * self.inverse);
+        [a.min(b), a.max(b)]
+    }
 }
 
 /// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is greater than the last.
+#[inline]
 pub(super) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
     let window = if axis == 0 { lines.i } else { lines.j };
     let (first, density) = lines.scale(axis);
     // A fraction of a line more, since the scale is rounded.
     let (a, b) = (
-        ((low - first) * density - 1e-3).ceil().max(window[0] as f64),
-        ((high - first) * density + 1e-3).floor().min(window[1] as f64),
+        ((low - first) * density - 1e-3).max(window[0] as f64),
+        ((high - first) * density + 1e-3).min(window[1] as f64),
     );
-    (a <= b).then_some([a as usize, b as usize])
+    // False for NaN, too.
+    if !(a <= b) {
+        return None;
+    }
+    // Both are in the window now, so casts round down.
+    let (a, b) = (a as usize + usize::from((a as usize as f64) < a), b as usize);
+    (a <= b).then_some([a, b])
 }
 
 /// Visits all lines with `p` and `q` in these ranges, and a few others.
@@ -52,10 +76,10 @@ pub(super) fn rows(lines: &Lattice, heading: &Heading, [p, q]: [[f64; 2]; 2], mu
     let Some([first, last]) = numbers(lines, 0, xs) else {
         return;
     };
+    let (across, along) = (Band::new(p, ux), Band::new(q, uy));
     for i in first..=last {
         let x = lines.coordinate(0, i) - heading.tip[0];
-        let a = within(p, -uy * x, ux);
-        let b = within(q, ux * x, uy);
+        let (a, b) = (across.within(-uy * x), along.within(ux * x));
         let ys = [heading.tip[1] + a[0].max(b[0]), heading.tip[1] + a[1].min(b[1])];
         if let Some(j) = numbers(lines, 1, ys) {
             visit(Row { i, j, x });

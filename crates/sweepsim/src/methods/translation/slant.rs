@@ -1,6 +1,6 @@
 //! The grazing curve of a cone or cylinder: two straight lines.
 
-use super::graph::{Graph, Spot};
+use super::graph::{Graph, Point, Spot};
 use super::{Heading, Local};
 
 /// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
@@ -54,14 +54,21 @@ pub(super) fn slants(heading: &Heading, [from, to]: [[f64; 2]; 2], normal: [f64;
     Some(vec![line(1.0), line(-1.0)])
 }
 
-impl Graph for Slant {
+impl Slant {
     #[inline]
-    fn at(&self, p: f64) -> Spot {
+    fn place(&self, p: f64) -> [f64; 2] {
         let from = &self.ends[0];
         let run = p - from[1];
+        [from[0] + run * self.slope, from[2] + run * self.rise]
+    }
+}
+
+impl Graph for Slant {
+    fn at(&self, p: f64) -> Spot {
+        let [q, z] = self.place(p);
         Spot {
-            q: from[0] + run * self.slope,
-            z: from[2] + run * self.rise,
+            q,
+            z,
             slope: self.slope,
             jump: self.jump,
             normal: self.normal,
@@ -80,5 +87,28 @@ impl Graph for Slant {
     fn reach(&self) -> [f64; 2] {
         let [a, b] = [self.ends[0][0], self.ends[1][0]];
         [a.min(b), a.max(b)]
+    }
+
+    fn jump(&self, _: [f64; 2]) -> Option<i8> {
+        Some(self.jump)
+    }
+
+    fn steepest(&self, _: [f64; 2]) -> Option<f64> {
+        Some(self.slope.abs())
+    }
+
+    fn many_q(&self, p: &[f64], q: &mut [f64]) {
+        for (p, q) in p.iter().zip(q) {
+            *q = self.place(*p)[0];
+        }
+    }
+
+    fn many(&self, p: &[f64], points: &mut [Point]) {
+        for (p, point) in p.iter().zip(points) {
+            *point = Point {
+                z: self.place(*p)[1],
+                normal: self.normal,
+            };
+        }
     }
 }

@@ -1,10 +1,9 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::graph::Graph;
+use super::graph::{Graph, Point};
 use super::rows::{Row, rows};
 use super::{Ceiling, Collector, Heading, ring, slant, torus};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
-use crate::methods::harvest::unit;
 use sweepsim_dexel::Source;
 
 /// A strip narrower than this many margins is not searched: its lines are open.
@@ -13,13 +12,15 @@ const NARROW: f64 = 16.0;
 const PARTS: f64 = 16.0;
 /// A part is about as long as the way, or this many lines.
 const LINES: f64 = 6.0;
+/// Lines of a row that are computed together.
+const LANES: usize = 64;
 
 /// A sweep of the grazing curves and edges of a tool along one move. `source` gives the source at a time.
 pub(crate) fn envelope(
     outline: &Outline,
     heading: &Heading,
     (lines, ceiling): (&mut Collector, Option<&Ceiling>),
-    source: &dyn Fn(f64) -> Source,
+    source: impl Fn(f64) -> Source,
     done: [&mut [bool]; 2],
 ) {
     let [patches, edges] = done;
@@ -29,6 +30,7 @@ pub(crate) fn envelope(
         source,
         spacing: 0.0,
         highest: f64::INFINITY,
+        lanes: Lanes::default(),
     };
     strip.spacing = strip.lines.lines.spacing();
     if let Some(ceiling) = ceiling {
@@ -48,16 +50,58 @@ pub(crate) fn envelope(
 }
 
 /// The search along one move.
-struct Strip<'a, 'b> {
+struct Strip<'a, 'b, S> {
     heading: &'a Heading,
     lines: &'a mut Collector<'b>,
-    source: &'a dyn Fn(f64) -> Source,
+    source: S,
     spacing: f64,
     /// What is this high above the tip is above the ceiling at all times.
     highest: f64,
+    lanes: Lanes,
 }
 
-impl Strip<'_, '_> {
+/// Lines of a row, and those of them that the strip meets beyond doubt: how far along the row, `p`, and the way there.
+struct Lanes {
+    p: [f64; LANES],
+    q: [f64; LANES],
+    curve: [f64; LANES],
+    place: [usize; LANES],
+    met: [f64; LANES],
+    ahead: [f64; LANES],
+    points: [Point; LANES],
+}
+
+impl Default for Lanes {
+    fn default() -> Self {
+        let none = [0.0; LANES];
+        Self {
+            p: none,
+            q: none,
+            curve: none,
+            place: [0; LANES],
+            met: none,
+            ahead: none,
+            points: [Point::default(); LANES],
+        }
+    }
+}
+
+/// What part of a strip is searched.
+struct Part {
+    /// The range of `p`, with the ends of the span a little wider, and a little narrower.
+    wide: [f64; 2],
+    sure: [f64; 2],
+    /// The range of `p` over the whole span.
+    span: [f64; 2],
+    /// How far `q` may be off next to the ends of the span.
+    blurs: [f64; 2],
+    /// The jump of all its points, if it is known.
+    jump: Option<i8>,
+    /// The error of the way to a line; `None` if each point has to tell.
+    error: Option<f64>,
+}
+
+impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
     /// `None` if there is no closed form.
     fn piece(&mut self, piece: &Piece) -> Option<()> {
         let heading = self.heading;
@@ -130,7 +174,7 @@ impl Strip<'_, '_> {
 
     /// The lines with `p` in one part of the span.
     fn part<G: Graph>(&mut self, graph: &G, [a, b]: [f64; 2]) {
-        if graph.idle(a, b) {
+        if graph.jump([a, b]) == Some(0) {
             return;
         }
         let [low, high] = graph.span();
@@ -156,48 +200,130 @@ impl Strip<'_, '_> {
             back - blur - heading.slack,
             front + blur + heading.slack + heading.length,
         ];
+        let jump = graph.jump(sure);
+        let part = Part {
+            wide,
+            sure,
+            span: [low, high],
+            blurs,
+            jump,
+            error: jump.and_then(|_| {
+                let steepest = graph.steepest(sure)?;
+                Some(heading.slack * (2.0 + steepest))
+            }),
+        };
         let lattice = self.lines.lines;
-        let source = self.source;
-        let collector = &mut *self.lines;
-        let [ux, uy] = heading.ahead;
         rows(lattice, heading, [wide, reach], |Row { i, j, x }| {
-            let (p_base, q_base) = (-uy * x, ux * x);
-            for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - heading.tip[1];
-                let p = p_base + ux * y;
-                if p < wide[0] || p >= wide[1] {
-                    continue;
-                }
-                let q = q_base + uy * y;
-                if p < sure[0] || (above && p >= sure[1]) {
-                    let end = usize::from(p >= sure[0]);
-                    let ahead = q - graph.at(p.clamp(low, high)).q;
-                    if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks(i, j) {
-                        collector.open(lattice.line(i, j));
-                    }
-                    continue;
-                }
-                let spot = graph.at(p);
-                let ahead = q - spot.q;
-                let error = heading.slack * (2.0 + spot.slope.abs());
-                if ahead < -error || ahead > heading.length + error || (spot.jump == 0 && spot.certain) {
-                    continue;
-                }
-                if !lattice.asks(i, j) {
-                    continue;
-                }
-                let line = lattice.line(i, j);
-                // NaN is uncertain.
-                if !(spot.certain && ahead > error && ahead < heading.length - error) {
-                    collector.open(line);
-                    continue;
-                }
-                let t = ahead / heading.length;
-                let [nx, ny, nz] = heading.in_space(spot.normal);
-                let z = heading.tip[2] + t * heading.way[2] + spot.z;
-                collector.crossing(line, z, spot.jump, unit(nalgebra::Vector3::new(nx, ny, nz)), source(t));
+            let mut first = j[0];
+            while first <= j[1] {
+                let last = j[1].min(first + LANES - 1);
+                self.row(graph, &part, (i, x), [first, last]);
+                first = last + 1;
             }
         });
+    }
+
+    /// Some lines of one column.
+    #[inline]
+    fn row<G: Graph>(&mut self, graph: &G, part: &Part, (i, x): (usize, f64), [first, last]: [usize; 2]) {
+        let heading = self.heading;
+        let lattice = self.lines.lines;
+        let count = last + 1 - first;
+        let [ux, uy] = heading.ahead;
+        let (p_base, q_base) = (-uy * x, ux * x);
+        let lanes = &mut self.lanes;
+        for (k, (p, q)) in lanes.p.iter_mut().zip(&mut lanes.q).take(count).enumerate() {
+            let y = lattice.coordinate(1, first + k) - heading.tip[1];
+            (*p, *q) = (p_base + ux * y, q_base + uy * y);
+        }
+        let Part { wide, sure, .. } = part;
+        let (Some(error), Some(jump)) = (part.error, part.jump) else {
+            for k in 0..count {
+                let [p, q] = [self.lanes.p[k], self.lanes.q[k]];
+                if p >= wide[0] && p < wide[1] {
+                    self.one(graph, part, (i, first + k), [p, q]);
+                }
+            }
+            return;
+        };
+        graph.many_q(&lanes.p[..count], &mut lanes.curve[..count]);
+        let doubt = error.max(part.blurs[0]).max(part.blurs[1]);
+        let mut met = 0;
+        let mut doubtful = 0;
+        for k in 0..count {
+            let (p, ahead) = (lanes.p[k], lanes.q[k] - lanes.curve[k]);
+            let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
+            // Written always, kept if certain.
+            (lanes.place[met], lanes.met[met], lanes.ahead[met]) = (first + k, p, ahead);
+            met += usize::from(certain);
+            let near = ahead > -doubt && ahead < heading.length + doubt && p >= wide[0] && p < wide[1];
+            doubtful += usize::from(near & !certain);
+        }
+        if doubtful > 0 {
+            for k in 0..count {
+                let (p, ahead) = (self.lanes.p[k], self.lanes.q[k] - self.lanes.curve[k]);
+                let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
+                let near = ahead > -doubt && ahead < heading.length + doubt && p >= wide[0] && p < wide[1];
+                if near && !certain {
+                    self.one(graph, part, (i, first + k), [p, self.lanes.q[k]]);
+                }
+            }
+        }
+        if met == 0 || jump == 0 {
+            return;
+        }
+        let lanes = &mut self.lanes;
+        graph.many(&lanes.met[..met], &mut lanes.points[..met]);
+        let rate = heading.length.recip();
+        for k in 0..met {
+            if lattice.asks(i, lanes.place[k]) {
+                let t = lanes.ahead[k] * rate;
+                let Point { z, normal } = lanes.points[k];
+                let z = heading.tip[2] + t * heading.way[2] + z;
+                let line = lattice.line(i, lanes.place[k]);
+                let normal = heading.unit_in_space(normal);
+                self.lines.crossing(line, z, jump, normal, (self.source)(t));
+            }
+        }
+    }
+
+    /// One line, which may be near an end of the span, or of the way.
+    fn one<G: Graph>(&mut self, graph: &G, part: &Part, (i, j): (usize, usize), [p, q]: [f64; 2]) {
+        let heading = self.heading;
+        let lattice = self.lines.lines;
+        let Part {
+            sure,
+            span: [low, high],
+            blurs,
+            ..
+        } = part;
+        if p < sure[0] || p >= sure[1] {
+            let end = usize::from(p >= sure[0]);
+            let ahead = q - graph.at(p.clamp(*low, *high)).q;
+            if ahead > -blurs[end] && ahead < heading.length + blurs[end] && lattice.asks(i, j) {
+                self.lines.open(lattice.line(i, j));
+            }
+            return;
+        }
+        let spot = graph.at(p);
+        let ahead = q - spot.q;
+        let error = heading.slack * (2.0 + spot.slope.abs());
+        if ahead < -error || ahead > heading.length + error || (spot.jump == 0 && spot.certain) {
+            return;
+        }
+        if !lattice.asks(i, j) {
+            return;
+        }
+        let line = lattice.line(i, j);
+        // NaN is uncertain.
+        if !(spot.certain && ahead > error && ahead < heading.length - error) {
+            self.lines.open(line);
+            return;
+        }
+        let t = ahead / heading.length;
+        let z = heading.tip[2] + t * heading.way[2] + spot.z;
+        let normal = heading.unit_in_space(spot.normal);
+        self.lines.crossing(line, z, spot.jump, normal, (self.source)(t));
     }
 
     /// Leaves the lines of a strip that is too narrow open.

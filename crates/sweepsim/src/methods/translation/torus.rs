@@ -230,4 +230,13 @@ impl Graph for Torus {
     fn reach(&self) -> [f64; 2] {
         self.reach
     }
+
+    fn jump(&self, _: [f64; 2]) -> Option<i8> {
+        Some(self.jump)
+    }
+
+    /// On a level way there is nothing but the circles of its widest points.
+    fn steepest(&self, _: [f64; 2]) -> Option<f64> {
+        (self.slope == 0.0).then_some(0.0)
+    }
 }
