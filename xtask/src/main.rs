@@ -3,9 +3,11 @@
 mod bench;
 mod browser;
 mod generate;
+mod plot;
 mod regress;
 mod standalone;
 mod stored;
+mod study;
 mod suites;
 mod workspace;
 
@@ -44,6 +46,17 @@ enum Command {
         table: Table,
         /// For instructions and systems: only work whose name contains this.
         filter: Option<String>,
+        /// For instructions: stores the counts in xtask/instructions.csv, with which later ones are compared.
+        #[arg(long)]
+        store: bool,
+    },
+    /// Compares exact dexels with the tool sampled in time, on the paper's examples, and draws the plots of docs/accuracy.md: takes many minutes.
+    Study {
+        /// Only examples whose names contain this; tables and plots of the docs are then left as they are.
+        filter: Option<String>,
+        /// Seconds that one run of the sampler may take, unless that is less than twice the time of the exact simulation.
+        #[arg(long, default_value_t = 20.0)]
+        limit: f64,
     },
     /// Does one piece of work of `bench instructions`.
     #[command(hide = true)]
@@ -91,6 +104,16 @@ enum Table {
     Systems,
     /// Instructions of Table 1 and of small jobs, by valgrind: for comparing two versions on a busy machine.
     Instructions,
+    /// Almost degenerate input beside generic input.
+    NearDegenerate,
+    /// Programs on one thread and on two.
+    Threads,
+    /// The most memory, by the length of the program and by the grid: needs minutes, and Linux.
+    Memory,
+    /// Time and memory by moves, grid and threads, with the plots of docs/performance.md: takes many minutes.
+    Scaling,
+    /// All of these but scaling.
+    All,
 }
 
 /// Runs the same command in a release build; measurements of any other would be misleading.
@@ -103,6 +126,33 @@ fn in_release() -> Result<bool, String> {
     Ok(status.success())
 }
 
+fn measure(table: Table, filter: Option<&str>, store: bool) -> Result<(), String> {
+    match table {
+        Table::Table1 => bench::table1(),
+        Table::Programs => bench::programs(),
+        Table::ThreeAxis => bench::three_axis(),
+        Table::Systems => bench::systems(filter),
+        Table::Instructions => bench::instructions(filter, store),
+        Table::NearDegenerate => bench::near_degenerate(),
+        Table::Threads => bench::threads(),
+        Table::Memory => bench::memory(),
+        Table::Scaling => bench::scaling(),
+        Table::All => {
+            let tables = [
+                Table::Table1,
+                Table::Programs,
+                Table::ThreeAxis,
+                Table::NearDegenerate,
+                Table::Threads,
+                Table::Memory,
+                Table::Instructions,
+                Table::Systems,
+            ];
+            tables.into_iter().try_for_each(|table| measure(table, filter, store))
+        }
+    }
+}
+
 fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Generate { check } => generate::generate(check)
@@ -111,14 +161,9 @@ fn main() -> ExitCode {
         Command::Regress { jobs } => regress::run(Mode::Regress, &jobs),
         Command::Bless { jobs } => regress::run(Mode::Bless, &jobs),
         Command::Bench { .. } if cfg!(debug_assertions) => in_release(),
-        Command::Bench { table, filter } => match table {
-            Table::Table1 => bench::table1(),
-            Table::Programs => bench::programs(),
-            Table::ThreeAxis => bench::three_axis(),
-            Table::Systems => bench::systems(filter.as_deref()),
-            Table::Instructions => bench::instructions(filter.as_deref()),
-        }
-        .map(|()| true),
+        Command::Bench { table, filter, store } => measure(table, filter.as_deref(), store).map(|()| true),
+        Command::Study { .. } if cfg!(debug_assertions) => in_release(),
+        Command::Study { filter, limit } => study::run(filter.as_deref(), limit).map(|()| true),
         Command::Work { name } => bench::work(&name).map(|()| true),
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),

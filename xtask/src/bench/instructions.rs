@@ -1,7 +1,10 @@
 //! Instructions instead of seconds: they hardly differ from run to run, however busy the machine is.
 
+use super::records::ratio;
 use super::{on, programs, table1, three_axis};
 use crate::workspace;
+use std::collections::BTreeMap;
+use std::fs;
 use std::process::Command;
 use sweepsim::Method;
 use sweepsim_formats::Job;
@@ -12,21 +15,39 @@ const JOBS: [&str; 2] = ["quickstart", "motions"];
 const CELLS: usize = 200;
 const METHODS: [Method; 4] = [Method::General, Method::Planes, Method::Lines, Method::Surface];
 
-/// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process.
+/// Counts of the last stored version: they depend on the compiler, but not on the machine.
+const STORED: &str = "xtask/instructions.csv";
+
+/// Counts the instructions of every piece of work by valgrind's callgrind, each in a separate process, and compares with the stored counts.
 ///
-/// `filter`: only pieces of work whose names contain it.
-pub fn instructions(filter: Option<&str>) -> Result<(), String> {
+/// `filter`: only pieces of work whose names contain it. `store`: stores these counts, and leaves the others as they are.
+pub fn instructions(filter: Option<&str>, store: bool) -> Result<(), String> {
     let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    let file = workspace::root().join(STORED);
+    let mut stored: BTreeMap<String, f64> = BTreeMap::new();
+    for line in fs::read_to_string(&file).unwrap_or_default().lines() {
+        if let Some((name, Ok(millions))) = line.split_once(',').map(|(name, number)| (name, number.parse())) {
+            stored.insert(name.to_owned(), millions);
+        }
+    }
     // The cost of a process that does nothing.
     let nothing = count(&own, "nothing")?;
-    println!("{:<28} {:>12}", "work, one thread", "Mio. instr.");
+    println!("\nInstructions, one thread, in millions; `stored`: ratio to {STORED}");
+    println!("{:<28} {:>12} {:>7}", "work", "Mio. instr.", "stored");
     for name in names() {
         if filter.is_none_or(|filter| name.contains(filter)) {
+            let millions = (count(&own, &name)?.saturating_sub(nothing)) as f64 * 1e-6;
             println!(
-                "{name:<28} {:>12.2}",
-                (count(&own, &name)?.saturating_sub(nothing)) as f64 * 1e-6
+                "{name:<28} {millions:>12.2} {:>7}",
+                ratio(millions, stored.get(&name).copied())
             );
+            stored.insert(name, millions);
         }
+    }
+    if store {
+        let lines = stored.iter().map(|(name, millions)| format!("{name},{millions:.2}\n"));
+        let text = format!("work,millions\n{}", lines.collect::<String>());
+        fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))?;
     }
     Ok(())
 }

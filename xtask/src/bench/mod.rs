@@ -1,36 +1,51 @@
 //! `cargo xtask bench`: runs benchmarks, and prints the results beside the paper's.
 
+mod clock;
 mod instructions;
+mod memory;
+mod near_degenerate;
 mod programs;
+mod raster;
+mod records;
+mod scaling;
 mod systems;
 mod table1;
+mod threads;
 mod three_axis;
 
+pub use clock::Clock;
 pub use instructions::{instructions, work};
+pub use memory::memory;
+pub use near_degenerate::near_degenerate;
 pub use programs::programs;
+pub use scaling::scaling;
 pub use systems::systems;
 pub use table1::table1;
+pub use threads::threads;
 pub use three_axis::three_axis;
 
-use std::time::{Duration, Instant};
-
-/// Each measurement is repeated until this much time has passed; the shortest run counts.
-const AT_LEAST: Duration = Duration::from_millis(400);
+/// Each measurement is repeated until this many seconds have passed; the shortest run counts.
+const AT_LEAST: f64 = 0.4;
 
 /// Runs some work on this many threads.
-fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
+pub fn on<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> Result<T, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     Ok(pool.map_err(|error| error.to_string())?.install(work))
 }
 
-/// The shortest of several runs, at least two, since the first one has yet to allocate its memory.
-fn shortest(run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
-    let begin = Instant::now();
+/// Seconds of processor time of the shortest of several runs on the current thread, at least two, since the first one has yet to allocate its memory.
+pub fn shortest(run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
+    shortest_by(Clock::seconds, run)
+}
+
+/// The same by a clock: [`Clock::wall`] for work on several threads.
+pub fn shortest_by(clock: fn(&Clock) -> f64, run: impl Fn() -> Result<(), String>) -> Result<f64, String> {
+    let begin = Clock::start();
     let (mut best, mut runs) = (f64::INFINITY, 0);
-    while runs < 2 || begin.elapsed() < AT_LEAST {
-        let start = Instant::now();
+    while runs < 2 || begin.wall() < AT_LEAST {
+        let start = Clock::start();
         run()?;
-        best = best.min(start.elapsed().as_secs_f64());
+        best = best.min(clock(&start));
         runs += 1;
     }
     Ok(best)

@@ -1,6 +1,7 @@
 //! The fixture jobs.
 
-use super::{on, shortest};
+use super::records::{Records, heading};
+use super::{Clock, on, shortest_by};
 use crate::workspace;
 use sweepsim::{Options, Statistics, sweep};
 use sweepsim_formats::Job;
@@ -8,8 +9,10 @@ use sweepsim_formats::Job;
 /// The fixture jobs, on one thread and on all.
 pub fn programs() -> Result<(), String> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut records = Records::open();
+    heading("Programs: the fixture jobs, swept, by the clock");
     println!(
-        "{:<18} {:>7} {:>9} {:>11} {:>9} {:>9} {:>9} {:>7}",
+        "{:<18} {:>7} {:>9} {:>11} {:>9} {:>9} {:>9} {:>7} {:>7}",
         "job",
         "moves",
         "cells",
@@ -17,17 +20,19 @@ pub fn programs() -> Result<(), String> {
         "1, s",
         format!("{all}, s"),
         "moves/s",
-        "ratio"
+        "1 / all",
+        "before"
     );
     for file in workspace::jobs()? {
         let job = Job::read(&file).map_err(|error| error.to_string())?;
-        let timed = |threads| on(threads, || shortest(|| once(&job).map(drop)))?;
+        let timed = |threads| on(threads, || shortest_by(Clock::wall, || once(&job).map(drop)))?;
         let statistics = once(&job)?;
         let (one, many) = (timed(1)?, timed(all)?);
         let [nx, ny] = job.grid.cells();
+        let name = workspace::name_of(&file);
+        let before = records.note(&format!("programs/{name}"), many);
         println!(
-            "{:<18} {:>7} {:>9} {:>11} {one:>9.3} {many:>9.3} {:>9.0} {:>7.2}",
-            workspace::name_of(&file),
+            "{name:<18} {:>7} {:>9} {:>11} {one:>9.3} {many:>9.3} {:>9.0} {:>7.2} {before:>7}",
             statistics.moves,
             format!("{nx}x{ny}"),
             statistics.crossings,
@@ -35,7 +40,7 @@ pub fn programs() -> Result<(), String> {
             one / many
         );
     }
-    Ok(())
+    records.save()
 }
 
 /// Sweeps every path of a job.

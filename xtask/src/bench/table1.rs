@@ -1,5 +1,6 @@
 //! The paper's Table 1.
 
+use super::records::{Records, heading};
 use super::{on, shortest};
 use crate::workspace;
 use sweepsim::{Method, Options, sweep};
@@ -80,12 +81,14 @@ const PAPER: [(Method, usize, [f64; 2]); 8] = [
 ];
 
 fn table1_here() -> Result<(), String> {
+    let mut records = Records::open();
+    heading("Table 1, processor time");
     println!(
         "One thread. The paper (ball, 4.2 GHz): its Algorithm 3 beside charts and planes, 1 beside surface, 4 beside lines."
     );
     println!(
-        "{:<6} {:<8} {:<8} {:>6} {:>12} {:>12} {:>8}",
-        "tool", "motion", "method", "cells", "ms", "paper, ms", "ratio"
+        "{:<6} {:<8} {:<8} {:>6} {:>12} {:>12} {:>8} {:>7}",
+        "tool", "motion", "method", "cells", "ms", "paper, ms", "ratio", "before"
     );
     for name in CUTTERS {
         let cutter = cutter(name)?;
@@ -93,8 +96,9 @@ fn table1_here() -> Result<(), String> {
             for (which, paper) in seconds.into_iter().enumerate() {
                 let entry = cutter.entry(which, cells)?;
                 let best = shortest(|| entry.run(method))?;
+                let before = records.note(&format!("table1/{name}/{}/{method}/{cells}", which + 1), best);
                 println!(
-                    "{name:<6} {:<8} {:<8} {cells:>6} {:>12.2} {:>12.0} {:>8.1}",
+                    "{name:<6} {:<8} {:<8} {cells:>6} {:>12.2} {:>12.0} {:>8.1} {before:>7}",
                     format!("Sweep{}", which + 1),
                     method.to_string(),
                     best * 1e3,
@@ -104,7 +108,7 @@ fn table1_here() -> Result<(), String> {
             }
         }
     }
-    Ok(())
+    records.save()
 }
 
 /// The largest distance of a tool's control points from its axis.

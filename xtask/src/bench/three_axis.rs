@@ -1,12 +1,11 @@
 //! A three-axis program of short moves: what the closed forms of translations are for.
 
-use super::{on, shortest};
+use super::records::{Records, heading};
+use super::{on, raster, shortest};
 use sweepsim::{Cut, Method, Options, simulate, sweep};
-use sweepsim_dexel::{Grid, Stock};
-use sweepsim_motion::{Apt, Path, Pose, Tool};
+use sweepsim_dexel::Stock;
+use sweepsim_motion::{Apt, Path, Tool};
 
-/// Side of the square, in millimetres.
-const SIDE: f64 = 100.0;
 /// Passes, and moves in each.
 const PASSES: [usize; 2] = [50, 60];
 /// Tools of the table.
@@ -37,27 +36,13 @@ fn tool(name: &str) -> Result<Tool, String> {
 }
 
 /// A raster over a wavy surface: 50 passes of 60 moves, joined by short ones, 3,049 in all, none along the grid.
-fn path() -> Result<Path, String> {
-    let [passes, moves] = PASSES;
-    let (sine, cosine) = 0.1_f64.sin_cos();
-    let mut poses = Vec::with_capacity(passes * (moves + 1));
-    for pass in 0..passes {
-        for n in 0..=moves {
-            let along = if pass % 2 == 0 { n } else { moves - n } as f64 / moves as f64 - 0.5;
-            let across = pass as f64 / (passes - 1) as f64 - 0.5;
-            let [u, v] = [0.85 * SIDE * along, 0.85 * SIDE * across];
-            let height = 2.0 * (0.17 * u + 0.4).sin() * (0.13 * v).cos() - 0.02 * u;
-            let tip = [cosine * u - sine * v, sine * u + cosine * v, height];
-            poses.push(Pose::new(tip, [0.0, 0.0, 1.0]).map_err(|error| error.to_string())?);
-        }
-    }
-    Path::new(poses).map_err(|error| error.to_string())
+pub fn path() -> Result<Path, String> {
+    Path::new(raster::poses(PASSES, raster::SIDE, 0.0)?).map_err(|error| error.to_string())
 }
 
 /// Sweeps the program once with a tool of this name, on `cells` × `cells` lines. The number of crossings.
 pub fn once(name: &str, cells: usize, method: Method) -> Result<u64, String> {
-    let half = 0.5 * SIDE;
-    let grid = Grid::new([-half, -half], [half, half], [cells; 2]).map_err(|error| error.to_string())?;
+    let grid = raster::grid(cells)?;
     let options = Options::new(1e-6).method(method);
     let swept = sweep(&tool(name)?, &path()?, &grid, &options, &()).map_err(|error| error.to_string())?;
     match swept.statistics.unresolved.len() {
@@ -68,8 +53,8 @@ pub fn once(name: &str, cells: usize, method: Method) -> Result<u64, String> {
 
 /// Removes the program from a block once, which its lowest cuts leave a bottom. The number of crossings.
 pub fn cut(name: &str, cells: usize) -> Result<u64, String> {
-    let half = 0.5 * SIDE;
-    let grid = Grid::new([-half, -half], [half, half], [cells; 2]).map_err(|error| error.to_string())?;
+    let grid = raster::grid(cells)?;
+    let half = 0.5 * raster::SIDE;
     let block = Stock::Block {
         min: [-half, -half, -10.0],
         max: [half, half, 2.0],
@@ -83,9 +68,11 @@ pub fn cut(name: &str, cells: usize) -> Result<u64, String> {
 
 /// The program with several tools on 1,000 × 1,000 lines, one thread: swept by closed forms and by charts, and removed from a block.
 pub fn three_axis() -> Result<(), String> {
+    let mut records = Records::open();
+    heading("Three axes: a raster of 3,049 moves, 1,000 × 1,000 lines, one thread, processor time");
     println!(
-        "{:<8} {:>11} {:>9} {:>9} {:>11} {:>9}",
-        "tool", "crossings", "sweep, s", "charts, s", "crossings", "cut, s"
+        "{:<8} {:>11} {:>9} {:>7} {:>9} {:>7} {:>11} {:>9} {:>7}",
+        "tool", "crossings", "sweep, s", "before", "charts, s", "before", "crossings", "cut, s", "before"
     );
     for name in TOOLS {
         let timed = |method| on(1, || shortest(|| once(name, 1000, method).map(drop)))?;
@@ -93,7 +80,12 @@ pub fn three_axis() -> Result<(), String> {
         let (closed, charts) = (timed(Method::default())?, timed(Method::General)?);
         let removed = cut(name, 1000)?;
         let simulated = on(1, || shortest(|| cut(name, 1000).map(drop)))??;
-        println!("{name:<8} {crossings:>11} {closed:>9.3} {charts:>9.3} {removed:>11} {simulated:>9.3}");
+        let mut noted = |what: &str, seconds| records.note(&format!("three-axis/{name}/{what}"), seconds);
+        let before = [noted("sweep", closed), noted("charts", charts), noted("cut", simulated)];
+        println!(
+            "{name:<8} {crossings:>11} {closed:>9.3} {:>7} {charts:>9.3} {:>7} {removed:>11} {simulated:>9.3} {:>7}",
+            before[0], before[1], before[2]
+        );
     }
-    Ok(())
+    records.save()
 }

@@ -1,0 +1,266 @@
+//! How time and memory grow with moves, grid and threads: the plots of docs/performance.md.
+
+use super::clock::load;
+use super::{Clock, memory, on, programs, raster, shortest_by, table1, three_axis};
+use crate::plot::{Axis, Panel, Series, figure};
+use crate::workspace;
+use std::fmt::Write as _;
+use std::fs;
+use sweepsim::{Cut, Method, Options, simulate};
+use sweepsim_dexel::Stock;
+use sweepsim_formats::Job;
+use sweepsim_motion::Tool;
+
+const MOVES: [usize; 6] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000];
+/// Where the tool turns in every move, a tenth of them.
+const TURNING: [usize; 4] = [1_000, 3_000, 10_000, 30_000];
+const CELLS: usize = 300;
+const GRIDS: [usize; 5] = [125, 250, 500, 1000, 2000];
+const THREADS: [usize; 4] = [1, 2, 3, 4];
+
+/// A curve of the figures, and a line of the table for each point.
+struct Curve {
+    figure: &'static str,
+    name: String,
+    points: Vec<[f64; 2]>,
+}
+
+impl Curve {
+    fn print(&self) {
+        for [x, y] in &self.points {
+            println!("{:<8} {:<28} {x:>9} {y:>10.4}", self.figure, self.name);
+        }
+    }
+}
+
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}
+
+/// Removes the raster from a block once, on one thread; seconds of processor time.
+fn cut(tool: &Tool, moves: usize, lean: f64, cells: usize) -> Result<f64, String> {
+    let half = 0.5 * raster::SIDE;
+    let block = Stock::Block {
+        min: [-half, -half, -10.0],
+        max: [half, half, 2.0],
+    };
+    let (path, stock) = (
+        raster::program(moves, lean)?,
+        block.dexels(&raster::grid(cells)?).map_err(text)?,
+    );
+    on(1, || {
+        shortest_by(Clock::seconds, || {
+            simulate(stock.clone(), &[Cut::new(tool, &path)], &Options::new(1e-6), &())
+                .map(drop)
+                .map_err(text)
+        })
+    })?
+}
+
+fn by_moves() -> Result<Vec<Curve>, String> {
+    let (flat, ball) = (
+        Tool::flat(3.0, 30.0).map_err(text)?,
+        Tool::ball(3.0, 30.0).map_err(text)?,
+    );
+    let curve = |name: &str, tool: &Tool, moves: &[usize], lean: f64| -> Result<Curve, String> {
+        let point = |&n: &usize| cut(tool, n, lean, CELLS).map(|seconds| [n as f64, seconds]);
+        let points = moves.iter().map(point).collect::<Result<_, _>>()?;
+        Ok(Curve {
+            figure: "moves",
+            name: name.into(),
+            points,
+        })
+    };
+    Ok(vec![
+        curve("3 axes, flat end", &flat, &MOVES, 0.0)?,
+        curve("3 axes, ball end", &ball, &MOVES, 0.0)?,
+        curve("5 axes, flat end", &flat, &TURNING, 0.5)?,
+        curve("5 axes, ball end", &ball, &TURNING, 0.5)?,
+    ])
+}
+
+fn by_grid() -> Result<Vec<Curve>, String> {
+    let mut curves = Vec::new();
+    for tool in ["flat", "ball"] {
+        let seconds = |cells| {
+            on(1, || {
+                shortest_by(Clock::seconds, || three_axis::cut(tool, cells).map(drop))
+            })?
+        };
+        let points = GRIDS
+            .iter()
+            .map(|&cells| Ok([cells as f64, seconds(cells)?]))
+            .collect::<Result<_, String>>()?;
+        curves.push(Curve {
+            figure: "grid",
+            name: format!("3,049 moves, 3 axes, {tool} end"),
+            points,
+        });
+    }
+    for (which, name) in ["Table 1, ball end, Sweep1", "Table 1, ball end, Sweep2"]
+        .into_iter()
+        .enumerate()
+    {
+        let ball = table1::cutter("ball")?;
+        let seconds = |cells| -> Result<f64, String> {
+            let entry = ball.entry(which, cells)?;
+            on(1, || shortest_by(Clock::seconds, || entry.run(Method::default())))?
+        };
+        let points = GRIDS
+            .iter()
+            .map(|&cells| Ok([cells as f64, seconds(cells)?]))
+            .collect::<Result<_, String>>()?;
+        curves.push(Curve {
+            figure: "grid",
+            name: name.into(),
+            points,
+        });
+    }
+    Ok(curves)
+}
+
+fn by_threads() -> Result<Vec<Curve>, String> {
+    let job = Job::read(&workspace::fixtures().join("jobs/impeller.ron")).map_err(text)?;
+    let works: [(&str, &(dyn Fn() -> Result<(), String> + Sync)); 2] = [
+        ("impeller", &|| programs::once(&job).map(drop)),
+        ("3,049 moves, 3 axes, ball end", &|| {
+            three_axis::cut("ball", 1000).map(drop)
+        }),
+    ];
+    let mut curves = Vec::new();
+    for (name, work) in works {
+        let mut best = [f64::INFINITY; THREADS.len()];
+        // Several rounds: a disturbance meets all numbers of threads.
+        for _ in 0..3 {
+            for (threads, best) in THREADS.into_iter().zip(&mut best) {
+                *best = best.min(on(threads, || shortest_by(Clock::wall, work))??);
+            }
+        }
+        let points = THREADS
+            .into_iter()
+            .zip(best)
+            .map(|(threads, seconds)| [threads as f64, best[0] / seconds])
+            .collect();
+        curves.push(Curve {
+            figure: "threads",
+            name: name.into(),
+            points,
+        });
+    }
+    Ok(curves)
+}
+
+fn by_memory() -> Result<Vec<Curve>, String> {
+    let curve = |figure, name: &str, runs: Vec<memory::Run>| Curve {
+        figure,
+        name: name.into(),
+        points: runs.iter().map(|run| [run.size as f64, run.mib]).collect(),
+    };
+    Ok(vec![
+        curve("memory", "300 × 300 dexels", memory::by_moves(usize::MAX)?),
+        curve("memory-grid", "1,000 moves", memory::by_grid()?),
+    ])
+}
+
+fn panel(curves: &[Curve], name: &str, title: &str, labels: [&str; 2], logarithmic: [bool; 2]) -> Panel {
+    let axis = |k: usize| Axis {
+        label: labels[k].into(),
+        logarithmic: logarithmic[k],
+        range: None,
+    };
+    let chosen = curves.iter().filter(|curve| curve.figure == name).enumerate();
+    let series = chosen.map(|(colour, curve)| Series {
+        name: curve.name.clone(),
+        colour: colour % 5,
+        dashed: false,
+        points: curve.points.clone(),
+    });
+    Panel {
+        title: title.into(),
+        axes: [axis(0), axis(1)],
+        series: series.collect(),
+    }
+}
+
+/// Measures everything, and writes `docs/performance.csv` and `docs/pictures/performance-*.svg`.
+pub fn scaling() -> Result<(), String> {
+    println!(
+        "{:<8} {:<28} {:>9} {:>10}   (seconds on one thread, ratios, MiB)",
+        "figure", "work", "x", "y"
+    );
+    let mut curves = Vec::new();
+    for measured in [by_grid, by_moves, by_threads, by_memory] {
+        let found = measured()?;
+        found.iter().for_each(Curve::print);
+        curves.extend(found);
+    }
+    let mut table = String::from("figure,work,x,y\n");
+    for curve in &curves {
+        for [x, y] in &curve.points {
+            let _ = writeln!(table, "{},{},{x},{y:.5}", curve.figure, curve.name.replace(',', ""));
+        }
+    }
+    let _ = writeln!(table, "load,of the last minute,,{:.2}", load().unwrap_or(f64::NAN));
+    let docs = workspace::root().join("docs");
+    let write = |name: &str, text: &str| fs::write(docs.join(name), text).map_err(|error| format!("{name}: {error}"));
+    write("performance.csv", &table)?;
+    let times = [
+        panel(
+            &curves,
+            "moves",
+            "Time by moves, 300 × 300 dexels",
+            ["moves", "seconds, one thread"],
+            [true, true],
+        ),
+        panel(
+            &curves,
+            "grid",
+            "Time by grid",
+            ["dexels along a side", "seconds, one thread"],
+            [true, true],
+        ),
+    ];
+    write(
+        "pictures/performance-moves.svg",
+        &figure(&times[..1], 1, "Seconds on one thread against the number of moves"),
+    )?;
+    write(
+        "pictures/performance-grid.svg",
+        &figure(
+            &times[1..],
+            1,
+            "Seconds on one thread against the dexels along a side of the grid",
+        ),
+    )?;
+    let threads = panel(
+        &curves,
+        "threads",
+        "Speed by threads, two cores",
+        ["threads", "speed / that of one thread"],
+        [false, false],
+    );
+    write(
+        "pictures/performance-threads.svg",
+        &figure(&[threads], 1, "Speed against the number of threads"),
+    )?;
+    let memory = [
+        panel(
+            &curves,
+            "memory",
+            "Memory by moves",
+            ["moves", "MiB at most"],
+            [true, true],
+        ),
+        panel(
+            &curves,
+            "memory-grid",
+            "Memory by grid",
+            ["dexels along a side", "MiB at most"],
+            [true, true],
+        ),
+    ];
+    write(
+        "pictures/performance-memory.svg",
+        &figure(&memory, 2, "The most memory against moves, and against the grid"),
+    )
+}
