@@ -17,6 +17,19 @@ fn job() -> Job {
     Job::read(&file).expect("a fixture")
 }
 
+/// Along the edge of a board, the axis swaying about two directions: tips and axes.
+fn poses() -> Vec<Pose> {
+    [
+        ([16.0, -0.701, -1.866], [-0.075, 0.217, 1.0]),
+        ([19.5, -0.939, -1.707], [-0.106, 0.177, 1.0]),
+        ([23.0, -1.25, -1.5], [-0.13, 0.125, 1.0]),
+        ([26.5, -1.612, -1.259], [-0.145, 0.065, 1.0]),
+        ([30.0, -2.0, -1.0], [-0.15, 0.0, 1.0]),
+    ]
+    .map(|(tip, axis)| Pose::new(tip, axis).expect("a pose"))
+    .to_vec()
+}
+
 fn swept(tool: &Tool, poses: Vec<Pose>, grid: &Grid, method: Method) -> Dexels {
     let path = Path::new(poses).expect("a path");
     let swept = sweep(tool, &path, grid, &Options::new(TOLERANCE).method(method), &()).expect("a sweep");
@@ -47,7 +60,7 @@ fn placements_that_stand_still_fill_the_sweep_from_below() {
     let job = job();
     let tool = &job.tools[&1];
     assert!(tool.profile().is_none() && tool.patches().len() == 110);
-    let poses = &job.paths[0].path.poses()[9..11];
+    let poses = &poses()[1..3];
     let grid = Grid::new([10.0, -12.0], [35.0, 12.0], [25, 24]).expect("a grid");
     let ends = [0.0, 1.0].map(|t| between(&poses[0], &poses[1], t));
     let whole = swept(tool, ends.to_vec(), &grid, Method::General);
@@ -78,9 +91,9 @@ fn placements_that_stand_still_fill_the_sweep_from_below() {
 fn the_methods_agree() {
     let job = job();
     let grid = Grid::new([0.0, 0.0], [60.0, 24.0], [20, 8]).expect("a grid");
-    let poses = &job.paths[0].path.poses()[8..13];
+    let poses = poses();
     let [charts, lines] =
-        [Method::General, Method::Lines].map(|method| swept(&job.tools[&1], poses.to_vec(), &grid, method));
+        [Method::General, Method::Lines].map(|method| swept(&job.tools[&1], poses.clone(), &grid, method));
     assert!(charts.covered() > 20);
     for index in 0..grid.len() {
         let (a, b) = (charts.at(index), lines.at(index));

@@ -10,10 +10,10 @@ use libm::{cos, log, sin};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-const BLADES: usize = 7;
+pub(super) const BLADES: usize = 7;
 
 /// The cylinder, base at `z = 0`.
-const RADIUS: f64 = 30.0;
+pub(super) const RADIUS: f64 = 30.0;
 const HEIGHT: f64 = 20.0;
 
 /// Where the channels begin.
@@ -27,8 +27,8 @@ const BLADE: f64 = 2.2;
 
 /// The ball ends and the length of both.
 const SHROUD_BALL: f64 = 5.0;
-const CHANNEL_BALL: f64 = 1.5;
-const LENGTH: f64 = 40.0;
+pub(super) const CHANNEL_BALL: f64 = 1.5;
+pub(super) const LENGTH: f64 = 40.0;
 
 const ACCURACY: Accuracy = Accuracy { chord: 0.02, turn: 0.2 };
 
@@ -42,7 +42,7 @@ const LEAN_OVER: f64 = 0.1;
 const LEAN_SHROUD: f64 = 0.25;
 
 /// Height of the tip between channels.
-const SAFE: f64 = 30.0;
+pub(super) const SAFE: f64 = 30.0;
 
 /// The job and its paths.
 pub fn files() -> Vec<(&'static str, String)> {
@@ -79,17 +79,17 @@ Job(
 }
 
 /// A curve over the radius: its height and its slope.
-struct Revolved {
-    low: f64,
-    rise: f64,
+pub(super) struct Revolved {
+    pub low: f64,
+    pub rise: f64,
 }
 
 /// The hub falls from the boss to the back plate, the shroud from the eye to the outlet: parabolas with their vertex at the rim.
-const HUB: Revolved = Revolved { low: 3.0, rise: 11.0 };
+pub(super) const HUB: Revolved = Revolved { low: 3.0, rise: 11.0 };
 const SHROUD: Revolved = Revolved { low: 7.5, rise: 12.5 };
 
 impl Revolved {
-    fn height(&self, r: f64) -> f64 {
+    pub fn height(&self, r: f64) -> f64 {
         let inwards = (RADIUS - r) / (RADIUS - INNER);
         self.low + self.rise * inwards * inwards
     }
@@ -144,17 +144,22 @@ fn shroud_path() -> Vec<Placement> {
     path
 }
 
+/// The angle of the first blade's middle at a radius.
+pub(super) fn blade(r: f64) -> f64 {
+    TWIST * log(r / INNER)
+}
+
 /// The tool in the first channel: `across` from 0 (at the blade of `φ = 0` on the inside) to 1 (at the next), `along` from 0 at the
-/// inner end to 1 outside the stock.
-fn in_channel(across: f64, along: f64) -> Placement {
+/// inner end to 1 outside the stock. The ball rests on `floor`.
+pub(super) fn in_channel(floor: &Revolved, across: f64, along: f64) -> Placement {
     let (inner, outer) = (INNER, RADIUS + CHANNEL_BALL);
     let touched = inner + (outer - inner) * along;
-    let (r, z) = HUB.ball_centre(touched, CHANNEL_BALL);
+    let (r, z) = floor.ball_centre(touched, CHANNEL_BALL);
     // The blades are measured along the circle of radius r; the spiral crosses it at a constant angle, so the walls are
     // further apart there by 1/sin of it.
     let slant = (1.0 + TWIST * TWIST).sqrt();
     let margin = (0.5 * BLADE + CHANNEL_BALL) * slant / r;
-    let angle = TWIST * log(r / INNER) + margin + (TAU / BLADES as f64 - 2.0 * margin) * across;
+    let angle = blade(r) + margin + (TAU / BLADES as f64 - 2.0 * margin) * across;
     let radial = Vector3::new(cos(angle), sin(angle), 0.0);
     let sideways = Vector3::new(-radial.y, radial.x, 0.0);
     let forward = (radial + sideways * TWIST) / slant;
@@ -176,7 +181,7 @@ fn channels_path() -> Vec<Placement> {
     for pass in 0..passes {
         let across = pass as f64 / (passes - 1) as f64;
         let (from, to) = if pass % 2 == 0 { (1.0, 0.0) } else { (0.0, 1.0) };
-        channel.extend(sample(&|along| in_channel(across, along), from, to, ACCURACY));
+        channel.extend(sample(&|along| in_channel(&HUB, across, along), from, to, ACCURACY));
     }
     let ends = [channel[0], channel[channel.len() - 1]].map(|end| end.lifted(SAFE));
     channel.insert(0, ends[0]);
@@ -200,7 +205,7 @@ mod tests {
     #[test]
     fn the_ball_rests_on_the_hub() {
         for (across, along) in [(0.0, 0.1), (0.5, 0.5), (1.0, 0.9)] {
-            let tool = in_channel(across, along);
+            let tool = in_channel(&HUB, across, along);
             let centre = tool.tip + tool.axis * CHANNEL_BALL;
             let r = centre.xy().norm();
             let nearest = (0..=4000)

@@ -1,8 +1,10 @@
 //! `cargo xtask generate`: writes the jobs and paths under `fixtures/` that are computed rather than written by hand.
 
+mod blade;
 mod bracket;
 mod cavity;
 mod impeller;
+mod railing;
 mod router;
 mod teapot;
 mod toolpath;
@@ -15,7 +17,9 @@ fn files() -> Vec<(&'static str, String)> {
     let mut files = teapot::files();
     files.extend(cavity::files());
     files.extend(impeller::files());
+    files.extend(blade::files());
     files.extend(router::files());
+    files.extend(railing::files());
     files.extend(bracket::files());
     files
 }

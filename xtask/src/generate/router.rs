@@ -1,5 +1,5 @@
-//! `fixtures/tools/router-bit.ron` and a job that runs it along the edge of a board, as the paper's hand-railing (Figure 14): one
-//! bicubic B-spline surface of 13 × 14 control points, with a concave and a convex part.
+//! `fixtures/tools/router-bit.ron`, after the form tool of the paper (Figure 10): one bicubic B-spline surface of 13 × 14 control points, with a
+//! concave and a convex part.
 
 use std::fmt::Write as _;
 
@@ -66,31 +66,85 @@ fn rounded(value: f64) -> f64 {
     (value * 1e3).round() / 1e3 + 0.0
 }
 
-fn job() -> String {
-    let mut poses = String::new();
-    for k in 0..=24 {
-        let s = f64::from(k) / 24.0;
-        let (x, sway) = (-12.0 + 84.0 * s, libm::sin(std::f64::consts::TAU * s));
-        let _ = writeln!(
-            poses,
-            "            (({}, {}, {}), ({}, {}, 1.0)),",
-            rounded(x),
-            rounded(-2.0 + 1.5 * sway),
-            rounded(-1.0 - sway),
-            rounded(0.15 * libm::cos(std::f64::consts::TAU * s)),
-            rounded(0.25 * sway),
-        );
+/// The bit's outline, `(radius, height)` from the tip to the top, as a polygon within `chord` of it: the middle curve of the surface's control points.
+pub fn outline(chord: f64) -> Vec<[f64; 2]> {
+    let spans = PROFILE.len() - 3;
+    let mut points = vec![at(0, 0.0)];
+    for span in 0..spans {
+        // The curve bends by less than a half turn within a span, over at most 6 mm.
+        let parts = (3.0 / (8.0 * chord).sqrt()).ceil() as usize;
+        points.extend((1..=parts).map(|k| at(span, k as f64 / parts as f64)));
     }
-    format!(
-        "// A router bit, one B-spline surface, along the edge of a board: after the hand-railing of the paper's Figure 14.\n\
-         // Made by `cargo xtask generate` (xtask/src/generate/router.rs).\n\
-         Job(\n    tolerance: 1e-6,\n    grid: Grid(min: (0.0, 0.0), max: (60.0, 24.0), cells: (150, 60)),\n    \
-         stock: Block(min: (0.0, 0.0, 0.0), max: (60.0, 24.0, 20.0)),\n    tools: {{ 1: Surface(\"../tools/router-bit.ron\") }},\n    \
-         paths: [\n        Path(tool: 1, poses: [\n{poses}        ]),\n    ],\n)\n"
-    )
+    thinned(&points, chord)
+}
+
+/// A point of the clamped cubic spline of the profile, by de Boor's algorithm.
+fn at(span: usize, t: f64) -> [f64; 2] {
+    let last = (PROFILE.len() - 3) as f64;
+    let knot = |k: usize| (k as f64 - 3.0).clamp(0.0, last);
+    let u = span as f64 + t;
+    let mut d: Vec<[f64; 2]> = PROFILE[span..span + 4].to_vec();
+    for round in 1..=3 {
+        for j in (round..=3).rev() {
+            let k = span + j;
+            let share = (u - knot(k)) / (knot(k + 4 - round) - knot(k));
+            d[j] = [0, 1].map(|c| (1.0 - share) * d[j - 1][c] + share * d[j][c]);
+        }
+    }
+    d[3]
+}
+
+/// The polygon without corners that are within `chord` of the line between its neighbours (Douglas, Peucker 1973).
+fn thinned(points: &[[f64; 2]], chord: f64) -> Vec<[f64; 2]> {
+    fn keep(points: &[[f64; 2]], chord: f64, kept: &mut Vec<[f64; 2]>) {
+        let (a, b) = (points[0], points[points.len() - 1]);
+        let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+        let length = (dx * dx + dy * dy).sqrt();
+        let off = |p: &[f64; 2]| ((p[0] - a[0]) * dy - (p[1] - a[1]) * dx).abs() / length;
+        let far = (1..points.len() - 1).max_by(|i, j| off(&points[*i]).total_cmp(&off(&points[*j])));
+        match far.filter(|k| off(&points[*k]) > chord) {
+            Some(k) => {
+                keep(&points[..=k], chord, kept);
+                keep(&points[k..], chord, kept);
+            }
+            None => kept.push(b),
+        }
+    }
+    let mut kept = vec![points[0]];
+    keep(points, chord, &mut kept);
+    kept
 }
 
 /// The files, with their places under `fixtures/`.
 pub fn files() -> Vec<(&'static str, String)> {
-    vec![("tools/router-bit.ron", tool()), ("jobs/railing.ron", job())]
+    vec![("tools/router-bit.ron", tool())]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweepsim_formats::Job;
+
+    #[test]
+    fn the_outline_is_that_of_the_surface() {
+        let job = Job::read(&crate::workspace::fixtures().join("jobs/railing.ron")).expect("a job");
+        let outline = outline(1e-4);
+        let radius = |height: f64| {
+            let above = outline.iter().position(|p| p[1] > height).expect("within the bit");
+            let [[r, low], [s, high]] = [outline[above - 1], outline[above]];
+            r + (s - r) * (height - low) / (high - low)
+        };
+        let mut checked = 0;
+        for patch in job.tools[&1].patches() {
+            for (u, v) in [(0.1, 0.3), (0.5, 0.5), (0.9, 0.8)] {
+                let [x, y, z] = patch.point(u, v);
+                // On the bottom and on the dome at the top heights tell little.
+                if (0.5..23.0).contains(&z) {
+                    assert!((x.hypot(y) - radius(z)).abs() < 0.005, "{x} {y} {z}: {}", radius(z));
+                    checked += 1;
+                }
+            }
+        }
+        assert!(checked > 200, "{checked}");
+    }
 }
