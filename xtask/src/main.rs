@@ -3,6 +3,7 @@
 mod bench;
 mod browser;
 mod generate;
+mod pictures;
 mod plot;
 mod regress;
 mod standalone;
@@ -63,6 +64,11 @@ enum Command {
     Work {
         /// Its name.
         name: String,
+    },
+    /// Draws the pictures of the docs anew: takes some minutes.
+    Pictures {
+        /// Only pictures whose names contain this.
+        filter: Option<String>,
     },
     /// Runs the whole brute-force suite, of which the gate runs a sample: takes five minutes and more on two cores.
     BruteForce {
@@ -164,6 +170,7 @@ fn main() -> ExitCode {
         Command::Bench { table, filter, store } => measure(table, filter.as_deref(), store).map(|()| true),
         Command::Study { .. } if cfg!(debug_assertions) => in_release(),
         Command::Study { filter, limit } => study::run(filter.as_deref(), limit).map(|()| true),
+        Command::Pictures { filter } => pictures::draw(filter.as_deref()).map(|()| true),
         Command::Work { name } => bench::work(&name).map(|()| true),
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),

@@ -8,6 +8,7 @@
 
 mod arguments;
 mod commands;
+mod frames;
 mod session;
 mod warnings;
 

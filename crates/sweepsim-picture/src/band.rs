@@ -59,7 +59,8 @@ impl Band {
             return band;
         }
         for number in list {
-            band.draw(*number, scene.triangles[*number as usize].map(|v| points[v as usize]));
+            let corners = scene.triangles[*number as usize].map(|v| points[v as usize]);
+            band.draw(*number, corners, *number >= scene.tool);
         }
         band.normals = vec![[0.0; 3]; count];
         band.around = vec![Around::default(); count];
@@ -82,7 +83,8 @@ impl Band {
         [-rim, (self.top * SAMPLES) as i64 - rim].map(|n| n * STEP as i64)
     }
 
-    fn draw(&mut self, number: u32, mut points: [ImagePoint; 3]) {
+    /// Sections do not cut a tool.
+    fn draw(&mut self, number: u32, mut points: [ImagePoint; 3], is_tool: bool) {
         let (step, origin) = (STEP as i64, self.origin());
         let [a, b, c] = points.map(|p| [p.x, p.y]);
         let back = area(a, b, c) < 0;
@@ -119,7 +121,8 @@ impl Band {
                         self.near[index] = near;
                         self.triangles[index] = number;
                     }
-                    if (0..3).all(|k| weights[k] > 0 || own[k])
+                    if !is_tool
+                        && (0..3).all(|k| weights[k] > 0 || own[k])
                         && let Some(depth) = self.depth.get_mut(index)
                     {
                         *depth += if back { 1 } else { -1 };
@@ -177,6 +180,10 @@ impl Band {
         let Some((distance, normal)) = last.filter(|(distance, _)| *distance > 0.0) else {
             return false;
         };
+        let seen = self.triangles[index];
+        if seen != EMPTY && seen >= scene.tool && self.near[index] > camera.near(distance) {
+            return false;
+        }
         self.triangles[index] = CUT_OPEN;
         self.near[index] = camera.near(distance);
         self.normals[index] = normal;
@@ -241,10 +248,12 @@ impl Band {
             }
             let near = self.near[index];
             let (normal, around, value) = (self.normals[index], self.around[index], self.values[index]);
-            let matter = match (self.inside[index], scene.valued) {
-                (true, _) => Matter::Section,
-                (false, true) => Matter::Value,
-                (false, false) => Matter::Metal,
+            let is_tool = self.triangles[index] >= scene.tool;
+            let matter = match (self.inside[index], is_tool, scene.valued) {
+                (true, ..) => Matter::Section,
+                (_, true, _) => Matter::Tool,
+                (_, _, true) => Matter::Value,
+                (_, _, false) => Matter::Metal,
             };
             let line = self.line(camera, index);
             let [x, y] = self.place(index);

@@ -52,7 +52,7 @@ impl Camera {
         }
         let mut most = [[f32::NEG_INFINITY; 2]; 2];
         let mut nearest = f32::INFINITY;
-        for p in &scene.positions {
+        for p in &scene.corners {
             let z = dot(*p, forward);
             nearest = nearest.min(z);
             for (k, axis) in [right, up].iter().enumerate() {
@@ -61,7 +61,7 @@ impl Camera {
                 most[k][1] = most[k][1].max(-x - free * half[k] * z);
             }
         }
-        if scene.positions.is_empty() {
+        if scene.corners.is_empty() {
             (most, nearest) = ([[1.0; 2]; 2], -1.0);
         }
         let back = |k: usize| -(most[k][0] + most[k][1]) / (2.0 * free * half[k]);
@@ -82,13 +82,13 @@ impl Camera {
     /// An orthographic camera: the scene's bounding box along its axes fills the free part of the image.
     fn level(scene: &Scene, axes: [Vector; 3], shape: [f32; 2], free: f32) -> Self {
         let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
-        for p in &scene.positions {
+        for p in &scene.corners {
             for (range, axis) in range.iter_mut().zip(axes) {
                 let x = dot(*p, axis);
                 *range = [range[0].min(x), range[1].max(x)];
             }
         }
-        if scene.positions.is_empty() {
+        if scene.corners.is_empty() {
             range = [[-1.0, 1.0]; 3];
         }
         let [right, up, forward] = axes;

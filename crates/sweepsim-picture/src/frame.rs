@@ -81,6 +81,10 @@ fn sort_into_bands(scene: &Scene, points: &[ImagePoint], bands: usize) -> Vec<Ve
     let mut lists = vec![Vec::new(); bands];
     for (number, t) in scene.triangles.iter().enumerate() {
         let [a, b, c] = t.map(|v| points[v as usize]);
+        // Behind the camera, as a tool may be that comes towards the viewer.
+        if a.near.min(b.near).min(c.near) <= 0.0 {
+            continue;
+        }
         let seen = area([a.x, a.y], [b.x, b.y], [c.x, c.y]);
         if seen == 0 || (seen < 0 && scene.sections.is_empty()) {
             continue;

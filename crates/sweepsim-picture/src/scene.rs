@@ -14,6 +14,10 @@ pub(crate) struct Scene {
     /// Whether the drawing has values.
     pub valued: bool,
     pub triangles: Vec<[u32; 3]>,
+    /// The first triangle of the tool, after all those of the part.
+    pub tool: u32,
+    /// What the camera must see: corners of the box that was asked for, or else all positions.
+    pub corners: Vec<Vector>,
     /// The section planes: normal towards what is removed, and distance from the centre.
     pub sections: Vec<(Vector, f32)>,
     /// The mesh's size for a unit of the scene.
@@ -74,6 +78,14 @@ impl ClippedMesh {
             clipped.triangles.push(corners);
         }
         clipped
+    }
+
+    /// Adds another mesh.
+    fn append(&mut self, other: Self) {
+        let first = self.vertices.len() as u32;
+        self.vertices.extend(other.vertices);
+        self.triangles
+            .extend(other.triangles.into_iter().map(|t| t.map(|v| first + v)));
     }
 
     /// Removes the side of a section where `side · (place − at)` is positive.
@@ -145,24 +157,38 @@ impl Scene {
         for (section, side) in &sections {
             clipped = clipped.cut_off(section, *side);
         }
+        // The tool does not count for the camera, unless there is nothing else.
+        let part = clipped.triangles.len();
+        let mut counted = clipped.vertices.len();
+        if let Some(tool) = drawing.tool {
+            clipped.append(ClippedMesh::new(&Drawing::new(tool)));
+        }
+        if part == 0 {
+            counted = clipped.vertices.len();
+        }
+        let wanted = drawing.within.filter(|[low, high]| {
+            let good = |k: usize| low[k] <= high[k] && low[k].abs() < 1e150 && high[k].abs() < 1e150;
+            (0..3).all(good)
+        });
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in clipped.vertices.iter().map(|v| v.place) {
+        for p in clipped.vertices[..counted].iter().map(|v| v.place) {
             for k in 0..3 {
                 low[k] = low[k].min(p[k]);
                 high[k] = high[k].max(p[k]);
             }
         }
-        if clipped.triangles.is_empty() {
+        if clipped.triangles.is_empty() && wanted.is_none() {
             return Self::default();
+        }
+        if let Some(wanted) = wanted {
+            [low, high] = wanted;
         }
         let centre = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
         let radius = 0.5 * (0..3).map(|k| (high[k] - low[k]).powi(2)).sum::<f64>().sqrt();
         let radius = if radius > 0.0 { radius } else { 1.0 };
-        let positions: Vec<Vector> = clipped
-            .vertices
-            .iter()
-            .map(|v| [0, 1, 2].map(|k| ((v.place[k] - centre[k]) / radius) as f32))
-            .collect();
+        let scaled = |place: [f64; 3]| [0, 1, 2].map(|k| ((place[k] - centre[k]) / radius) as f32);
+        let positions: Vec<Vector> = clipped.vertices.iter().map(|v| scaled(v.place)).collect();
+        let corner = |n: usize| scaled([0, 1, 2].map(|k| if n >> k & 1 == 0 { low[k] } else { high[k] }));
         let mut flat = vec![[0.0, 0.0, 1.0]; positions.len()];
         for t in &clipped.triangles {
             let [a, b, c] = t.map(|v| positions[v as usize]);
@@ -175,6 +201,11 @@ impl Scene {
             normals: normals.map(|(v, flat)| v.normal.map_or(flat, unit)).collect(),
             values: clipped.vertices.iter().map(|v| v.value).collect(),
             valued: !drawing.values.is_empty(),
+            tool: part as u32,
+            corners: match wanted {
+                Some(_) => (0..8).map(corner).collect(),
+                None => positions[..counted].to_vec(),
+            },
             radius,
             ground: ((low[2] - centre[2]) / radius) as f32,
             sections: sections

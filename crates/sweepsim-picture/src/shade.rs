@@ -25,6 +25,8 @@ pub(crate) enum Matter {
     Value,
     /// The inside, cut open by a section.
     Section,
+    /// A face of the tool.
+    Tool,
 }
 
 /// Bronze for faces that a tool cut, steel for those of the stock.
@@ -32,6 +34,8 @@ const CUT: Vector = [0.66, 0.345, 0.155];
 const STOCK: Vector = [0.135, 0.19, 0.26];
 /// Pale clay with fine stripes for the inside of a part.
 const CLAY: Vector = [0.60, 0.50, 0.43];
+/// Pale brass for the tool.
+const TOOL: Vector = [0.62, 0.56, 0.36];
 /// Stripes per radius of the part, and their brightness.
 const STRIPES: f32 = 34.0;
 const STRIPE: f32 = 0.82;
@@ -55,6 +59,7 @@ pub(crate) fn shade(camera: &Camera, lights: &Lights, spot: &Spot) -> Vector {
         Matter::Metal => (mix(STOCK, CUT, spot.value), 0.32 + 0.30 * spot.value),
         Matter::Value if spot.value.is_nan() => (UNKNOWN, 0.1),
         Matter::Value => (legend::colour(spot.value), 0.08),
+        Matter::Tool => (TOOL, 0.45),
         Matter::Section => (scale(CLAY, stripes(spot.at, n)), 0.0),
     };
     let cosine = dot(n, lights.lamp);

@@ -45,6 +45,8 @@ pub struct Drawing<'a> {
     pub(crate) values: &'a [f32],
     pub(crate) range: f32,
     pub(crate) sections: &'a [CuttingPlane],
+    pub(crate) tool: Option<&'a Mesh>,
+    pub(crate) within: Option<[[f64; 3]; 2]>,
 }
 
 impl<'a> Drawing<'a> {
@@ -56,6 +58,8 @@ impl<'a> Drawing<'a> {
             values: &[],
             range: 1.0,
             sections: &[],
+            tool: None,
+            within: None,
         }
     }
 
@@ -71,6 +75,27 @@ impl<'a> Drawing<'a> {
     #[must_use]
     pub fn sections(self, sections: &'a [CuttingPlane]) -> Self {
         Self { sections, ..self }
+    }
+
+    /// Draws a tool as well, in a colour of its own: closed, like the part. Sections do not cut it, and the camera does not move back for it.
+    #[must_use]
+    pub fn tool(self, tool: &'a Mesh) -> Self {
+        Self {
+            tool: Some(tool),
+            ..self
+        }
+    }
+
+    /// Places the camera and the ground as for a part that fills a box, given by its lowest and highest corner. So pictures of a part
+    /// that changes have the same point of view.
+    ///
+    /// A box that is not finite, or whose corners are not in order, is ignored.
+    #[must_use]
+    pub fn within(self, corners: [[f64; 3]; 2]) -> Self {
+        Self {
+            within: Some(corners),
+            ..self
+        }
     }
 }
 

@@ -84,9 +84,16 @@ pub(crate) struct RunOptions {
     /// The number of threads [default: one per core]. It does not affect the results.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Also writes this many pictures of the workpiece while it is cut: frame-0001.png and so on, from the raw stock to the part, equally far
+    /// apart in time, with the tool in its place. `simulate` and `verify` only.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=9999))]
+    pub frames: Option<u16>,
+    /// Leaves the tool out of the frames.
+    #[arg(long, requires = "frames")]
+    pub no_tool: bool,
     /// The number of moments at which report.html shows the workpiece, 0 for none [default: 120, up to 50,000 moves].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=2000))]
-    pub frames: Option<u16>,
+    pub moments: Option<u16>,
     #[command(flatten)]
     pub view: ViewOptions,
     /// Prints neither progress nor a summary.

@@ -1,11 +1,12 @@
 //! `simulate` and `sweep`: from a job to its output files.
 
 use super::page::{self, PageSource};
-use super::summary::{NAMED, summary};
+use super::summary::{NAMED, json, summary};
 use super::task::{Task, sweeping};
 use super::tri_surface;
 use super::verify::{setups, verified};
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
+use crate::frames::Frames;
 use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
 use crate::warnings;
 use std::io::Write as _;
@@ -54,6 +55,9 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
     if let Some(asked) = asked {
         tri_surface::check(&read.job).map_err(|what| Failure::message(format!("{asked}: expected {what}")))?;
     }
+    if options.frames.is_some() && task == Task::Sweep {
+        return Err(Failure::message("--frames: expected `simulate` or `verify`"));
+    }
     let out = options.out.as_deref();
     let mut session = JobSession::new(&options.job, read, out, &options.only, options.quiet)?;
     let mut builder = rayon::ThreadPoolBuilder::new();
@@ -78,7 +82,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
             target: outcome.target.as_ref(),
             moves: &outcome.moves,
             sweeping: sweeping(&session.job, options),
-            frames: options.frames,
+            moments: options.moments,
             threads,
             total: start.elapsed().as_secs_f64(),
             picture: outcome.picture,
@@ -153,16 +157,14 @@ fn work(
             outcome.picture = write_mesh(options, &mesh, session, report)?;
         }
     }
+    if let Some(count) = options.frames {
+        let stock = tri_surface::stock(session, options)?;
+        Frames::new(count, options, sweeping(&session.job, options), stock).write(session, report)?;
+    }
     if task == Task::Sweep && options.method == Method::Surface && session.outputs.wants(Output::Mesh) {
         write_envelope(session, report)?;
     }
     Ok(outcome)
-}
-
-fn json(report: &Report) -> Result<String, Failure> {
-    report
-        .to_json()
-        .map_err(|error| Failure::message(format!("cannot make the report: {error}")))
 }
 
 /// Computes the dexels along z.

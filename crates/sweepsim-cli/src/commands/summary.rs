@@ -2,13 +2,20 @@
 
 use super::program::clock;
 use super::task::Task;
-use crate::session::{JobSession, Lines, words};
+use crate::session::{Failure, JobSession, Lines, words};
 use crate::warnings::is_covered;
 
 use sweepsim_formats::{Report, ReportedFinding, Verdict, WorkSummary};
 
 /// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
 pub(crate) const NAMED: usize = 10;
+
+/// The report as JSON.
+pub(crate) fn json(report: &Report) -> Result<String, Failure> {
+    report
+        .to_json()
+        .map_err(|error| Failure::message(format!("cannot make the report: {error}")))
+}
 
 /// The summary at the end of a run.
 pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads: usize, total: f64) -> Lines {

@@ -1,7 +1,7 @@
 //! `--directions xyz`: dexels along all three axes, and surfaces made of them.
 
 use super::task::{Task, sweeping};
-use crate::arguments::RunOptions;
+use crate::arguments::{Directions, RunOptions};
 use crate::session::{CRISP, Failure, JobSession, phase};
 use std::sync::Arc;
 use sweepsim::{Cut, Monitor, Options, SweepError, simulate, sweep_all};
@@ -119,6 +119,23 @@ pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
     let (min, max, cells) = lattice_of(job, range);
     let [along_x, along_y, _] = TriDexels::new(min, max, cells, &job.stock)?.into_sets();
     Ok(vec![along_x, along_y])
+}
+
+/// The stock of a job: along z, or along x, y and z as its surfaces are made.
+pub(crate) fn stock(session: &JobSession, options: &RunOptions) -> Result<Vec<Dexels>, Failure> {
+    let job = &session.job;
+    let failed = |error: &dyn std::fmt::Display| session.failure(format!("stock: {error}"));
+    let along_z = job.stock.dexels(&job.grid).map_err(|error| failed(&error))?;
+    let three = match options.directions {
+        Some(directions) => directions == Directions::Xyz,
+        None => check(job).is_ok() && !too_many(&along_z),
+    };
+    let mut sets = Vec::new();
+    if three {
+        sets = stock_aside(job).map_err(|error| failed(&error))?;
+    }
+    sets.push(along_z);
+    Ok(sets)
 }
 
 /// The result along three axes, of which the dexels along z are known.

@@ -17,7 +17,7 @@ pub(crate) enum Failure {
     /// The user, or the system, interrupted the run.
     Interrupted {
         /// The output files that were complete by then.
-        written: Vec<&'static str>,
+        written: Vec<String>,
     },
 }
 
@@ -36,7 +36,7 @@ impl Failure {
     /// Names the outputs that were complete when the run was interrupted.
     pub fn after(mut self, outputs: &Outputs) -> Self {
         if let Self::Interrupted { written } = &mut self {
-            *written = outputs.written.iter().map(|(name, _)| *name).collect();
+            *written = outputs.written.iter().map(|(name, _)| name.clone()).collect();
         }
         self
     }

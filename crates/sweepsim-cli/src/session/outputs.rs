@@ -14,7 +14,7 @@ pub(crate) struct Outputs {
     folder: PathBuf,
     wanted: Vec<Output>,
     /// Names and sizes of the files written.
-    pub written: Vec<(&'static str, u64)>,
+    pub written: Vec<(String, u64)>,
 }
 
 impl Outputs {
@@ -46,7 +46,7 @@ impl Outputs {
     /// Writes one file, unless the run is interrupted meanwhile.
     pub fn write(
         &mut self,
-        name: &'static str,
+        name: &str,
         write: impl FnOnce(&mut Interruptible<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let path = self.folder.join(name);
@@ -58,16 +58,32 @@ impl Outputs {
             }
         })?;
         let size = fs::metadata(&path).map_or(0, |data| data.len());
-        self.written.push((name, size));
+        self.written.push((name.to_owned(), size));
         Ok(())
+    }
+
+    /// Removes files of an earlier run: those with the names of 0, 1, 2 … up to the first that does not exist.
+    pub fn remove_from(&self, name: impl Fn(usize) -> String) {
+        for number in 0.. {
+            if fs::remove_file(self.folder.join(name(number))).is_err() {
+                break;
+            }
+        }
     }
 
     /// The files written, with their sizes, for the last line of a summary.
     pub fn listed(&self) -> String {
-        let files: Vec<String> = self
-            .written
-            .iter()
-            .map(|(name, size)| format!("{name} ({})", words::bytes(*size)))
+        // Numbered files are listed as one.
+        let series = |name: &str| name.starts_with("frame-");
+        let runs = self.written.chunk_by(|(a, _), (b, _)| series(a) && series(b));
+        let files: Vec<String> = runs
+            .map(|run| {
+                let size = words::bytes(run.iter().map(|(_, size)| size).sum());
+                match run {
+                    [(first, _), .., (last, _)] => format!("{first} … {last} ({size})"),
+                    _ => format!("{} ({size})", run[0].0),
+                }
+            })
             .collect();
         format!("{}: {}", self.folder.display(), files.join(", "))
     }

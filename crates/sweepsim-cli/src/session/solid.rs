@@ -9,7 +9,7 @@ use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriDexels, TriangleSo
 use sweepsim_formats::{
     DexelFormat, Job, MeshFormat, is_dexels_csv, read_dexels_file, read_mesh_file, read_tri_dexels_file,
 };
-use sweepsim_picture::{CuttingPlane, Drawing, legend};
+use sweepsim_picture::{CuttingPlane, Drawing, Image, View, legend};
 
 /// The default number of dexels along the longer side of a mesh.
 const CELLS: f64 = 300.0;
@@ -181,10 +181,8 @@ pub(crate) fn picture(
     values: Option<(&[f32], f64)>,
     go_on: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
 ) -> Result<(Vec<u8>, Vec<String>), Failure> {
-    let (sections, missed) = meeting(&options.section, mesh);
-    let mut view = options.camera;
-    view.size = options.size;
-    view.axes = !options.no_axes;
+    let (sections, missed) = meeting(&options.section, bounds(mesh));
+    let mut view = view(options);
     let mut drawing = Drawing::new(mesh).sections(&sections);
     if let Some((values, range)) = values {
         view.legend = legend::WIDTH;
@@ -194,14 +192,42 @@ pub(crate) fn picture(
     if let Some((_, range)) = values {
         legend::draw(&mut image, range as f32);
     }
-    let png = image.png();
-    let png = png.map_err(|error| Failure::message(format!("cannot make the picture: {error}")))?;
-    Ok((png, missed))
+    Ok((png(&image)?, missed))
 }
 
-/// The sections that meet a part, and what is to be said of the others.
-fn meeting(sections: &[CuttingPlane], mesh: &Mesh) -> (Vec<CuttingPlane>, Vec<String>) {
-    let Some([low, high]) = bounds(mesh) else {
+/// The picture of a part and perhaps a tool as PNG, from where the box `whole` fills the image.
+pub(crate) fn frame_picture(
+    options: &ViewOptions,
+    mesh: &Mesh,
+    tool: Option<&Mesh>,
+    whole: [[f64; 3]; 2],
+    go_on: &(dyn Fn(f64) -> ControlFlow<()> + Sync),
+) -> Result<Vec<u8>, Failure> {
+    let (sections, _) = meeting(&options.section, Some(whole));
+    let drawing = Drawing::new(mesh).sections(&sections).within(whole);
+    let drawing = match tool {
+        Some(tool) => drawing.tool(tool),
+        None => drawing,
+    };
+    let image = view(options).draw_while(&drawing, go_on);
+    png(&image.ok_or_else(Failure::interrupted)?)
+}
+
+fn view(options: &ViewOptions) -> View {
+    let mut view = options.camera;
+    view.size = options.size;
+    view.axes = !options.no_axes;
+    view
+}
+
+fn png(image: &Image) -> Result<Vec<u8>, Failure> {
+    let png = image.png();
+    png.map_err(|error| Failure::message(format!("cannot make the picture: {error}")))
+}
+
+/// The sections that meet a part with these corners, and what is to be said of the others.
+fn meeting(sections: &[CuttingPlane], part: Option<[[f64; 3]; 2]>) -> (Vec<CuttingPlane>, Vec<String>) {
+    let Some([low, high]) = part else {
         return (sections.to_vec(), Vec::new());
     };
     let (mut all, mut missed) = (Vec::new(), Vec::new());

@@ -3,6 +3,7 @@
 mod command;
 mod directions;
 mod exchange;
+mod frames;
 mod inspect;
 mod page;
 mod programs;

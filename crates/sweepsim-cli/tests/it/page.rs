@@ -57,7 +57,7 @@ fn every_run_has_its_page() {
     let simulated = page("simulate", 0, &[]);
     assert!(simulated.contains("What is left of the stock") && !simulated.contains("May "));
     assert!(simulated.contains("\"course\":{"), "with the course of the program");
-    let still = page("simulate", 0, &["--frames", "0"]);
+    let still = page("simulate", 0, &["--moments", "0"]);
     assert!(still.contains("\"course\":null") && still.len() < simulated.len());
     let swept = page("sweep", 0, &[]);
     assert!(swept.contains("The swept volume") && swept.contains("\"course\":null"));

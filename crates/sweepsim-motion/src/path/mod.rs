@@ -18,6 +18,7 @@ use crate::spline_motion::SplineMotion;
 use nalgebra::Vector3;
 use placed::Placed;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Axes of consecutive poses must differ from opposite by more than this, in radians: between opposite axes
 /// the plane in which the axis turns is not determined.
@@ -183,6 +184,33 @@ impl Path {
             Ways::Placed(placed) => placed.way(index),
             Ways::Each(moves) => moves.get(index).copied().unwrap_or_default(),
             Ways::Slerp | Ways::Motion(_) => Move::default(),
+        }
+    }
+
+    /// Some of the moves, as a path of its own.
+    ///
+    /// # Panics
+    /// If there are no such moves.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Path, Pose};
+    /// let up = [0.0, 0.0, 1.0];
+    /// let poses: Result<Vec<Pose>, _> = (0..5).map(|k| Pose::new([f64::from(k), 0.0, 0.0], up)).collect();
+    /// let path = Path::new(poses?)?;
+    /// let part = path.part(1..3);
+    /// assert_eq!((part.moves(), part.poses()[0].tip()), (2, [1.0, 0.0, 0.0]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn part(&self, moves: Range<usize>) -> Self {
+        Self {
+            poses: self.poses[moves.start..=moves.end].to_vec(),
+            ways: match &self.ways {
+                Ways::Slerp => Ways::Slerp,
+                Ways::Each(each) => Ways::Each(each[moves].to_vec()),
+                Ways::Motion(motion) => Ways::Motion(Box::new(motion.part(moves))),
+                Ways::Placed(placed) => Ways::Placed(Box::new(placed.part(moves))),
+            },
         }
     }
 

@@ -4,6 +4,7 @@ use super::{Course, Move, Path, PathError, Ways};
 use crate::pose::Pose;
 use crate::segment::Segment;
 use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
 
 /// How far a rotation may be from one.
 const SKEW: f64 = 1e-12;
@@ -74,6 +75,13 @@ impl Placed {
                 Course::Arc(arc) => Course::Arc(arc.moved(&self.turn, self.shift)),
             },
             ..own
+        }
+    }
+
+    pub fn part(&self, moves: Range<usize>) -> Self {
+        Self {
+            own: self.own.part(moves),
+            ..*self
         }
     }
 

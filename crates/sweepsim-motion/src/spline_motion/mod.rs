@@ -155,6 +155,14 @@ impl SplineMotion {
         self.segments.iter().zip(self.ranges.iter().copied())
     }
 
+    /// Some of its pieces.
+    pub(crate) fn part(&self, pieces: std::ops::Range<usize>) -> Self {
+        Self {
+            segments: self.segments[pieces.clone()].to_vec(),
+            ranges: self.ranges[pieces].to_vec(),
+        }
+    }
+
     pub(crate) fn segment(&self, index: usize) -> &Segment {
         &self.segments[index]
     }

@@ -2,3 +2,4 @@
 
 mod misuse;
 mod picture;
+mod tools;

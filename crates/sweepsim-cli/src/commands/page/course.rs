@@ -5,10 +5,10 @@
 use super::PageSource;
 use super::program::Programs;
 use crate::commands::task::Task;
-use crate::session::Failure;
+use crate::session::{Failure, Place, distance, placements};
 use std::ops::ControlFlow;
 use sweepsim::Monitor;
-use sweepsim::motion::{Assembly, Path, Pose, Segment, Tool};
+use sweepsim::motion::{Assembly, Path, Pose, Tool};
 use sweepsim::verify::{Scene, ToolPath, VerifyOptions, verify};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::JobPath;
@@ -21,7 +21,7 @@ const POINTS: usize = 200_000;
 /// Programs with more moves have no moments unless they are asked for: it takes about as long as the simulation.
 const MOVES: usize = 50_000;
 /// The default number of moments.
-const FRAMES: u16 = 120;
+const MOMENTS: u16 = 120;
 
 /// The course of all paths.
 pub(super) struct Courses {
@@ -46,89 +46,6 @@ impl Courses {
         let [from, to] = [*self.clocks.get(place)?, *self.clocks.get(place + 1)?];
         Some(from + (to - from) * time.clamp(0.0, 1.0))
     }
-}
-
-/// A placement of a tool.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    tip: [f64; 3],
-    axis: [f64; 3],
-    side: [f64; 3],
-}
-
-fn mixed(a: [f64; 3], b: [f64; 3], t: f64) -> [f64; 3] {
-    [0, 1, 2].map(|k| a[k] + (b[k] - a[k]) * t)
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
-}
-
-impl Place {
-    fn of(segment: &Segment, t: f64) -> Self {
-        let (turn, tip) = segment.at(t);
-        Self {
-            tip,
-            axis: turn.column(2).into_owned().into(),
-            side: turn.column(0).into_owned().into(),
-        }
-    }
-
-    fn between(&self, other: &Self, t: f64) -> Self {
-        Self {
-            tip: mixed(self.tip, other.tip, t),
-            axis: mixed(self.axis, other.axis, t),
-            side: mixed(self.side, other.side, t),
-        }
-    }
-
-    /// How far the tool is from another placement: tip and a point up its axis.
-    fn far(&self, other: &Self, reach: f64) -> f64 {
-        let up = |place: &Self| [0, 1, 2].map(|k| place.tip[k] + reach * place.axis[k]);
-        distance(self.tip, other.tip).max(distance(up(self), up(other)))
-    }
-
-    fn pose(&self, tool: &Tool) -> Option<Pose> {
-        if tool.is_revolved() {
-            Pose::new(self.tip, self.axis).ok()
-        } else {
-            Pose::with_side(self.tip, self.axis, self.side).ok()
-        }
-    }
-}
-
-/// The placements along a move, without its first: chords are within `room` of the motion.
-fn placements(path: &Path, number: usize, reach: f64, room: f64) -> Vec<Place> {
-    fn split(segment: &Segment, [a, b]: [(f64, Place); 2], reach: f64, room: f64, depth: u32, out: &mut Vec<Place>) {
-        let near = |t: f64| {
-            let at = Place::of(segment, a.0 + (b.0 - a.0) * t);
-            at.far(&a.1.between(&b.1, t), reach) <= room
-        };
-        // A full turn comes back to where it began.
-        if depth == 0 || (near(0.5) && near(0.23)) {
-            out.push(b.1);
-            return;
-        }
-        let t = 0.5 * (a.0 + b.0);
-        let middle = (t, Place::of(segment, t));
-        split(segment, [a, middle], reach, room, depth - 1, out);
-        split(segment, [middle, b], reach, room, depth - 1, out);
-    }
-    let mut out = Vec::new();
-    for segment in path.segments(number, reach, room) {
-        let ends = [0.0, 1.0].map(|t| (t, Place::of(&segment, t)));
-        split(&segment, ends, reach, room, 7, &mut out);
-    }
-    out
-}
-
-fn first(path: &Path) -> Option<Place> {
-    if path.moves() == 0 {
-        return None;
-    }
-    path.segments(0, 1.0, 1.0)
-        .first()
-        .map(|segment| Place::of(segment, 0.0))
 }
 
 /// The track, and the course if it is wanted.
@@ -162,7 +79,7 @@ pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, 
         let tool = tool_numbers.binary_search(&path.tool).unwrap_or_default() as u16;
         let reach = job.tools[&path.tool].reach();
         let mut lengths = [0.0; 2];
-        let mut before = first(&path.path);
+        let mut before = Place::first(&path.path);
         let mut point = |clock: f64, place: &Place, number: u32, rapid: bool, begins: bool| {
             made.track.points.push(TrackPoint {
                 clock,
@@ -181,7 +98,7 @@ pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, 
             let rapid = path.rapid.get(number).copied().unwrap_or_default();
             // What is left out of long programs is straight, as far as people can see.
             let room = if every > 1 { f64::INFINITY } else { room };
-            let places = placements(&path.path, number, reach, room);
+            let places = placements(&path.path, number, 1.0, reach, room);
             let steps: Vec<[f64; 2]> = std::iter::once(before)
                 .chain(places.iter().copied().map(Some))
                 .zip(&places)
@@ -215,17 +132,17 @@ pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, 
         made.moves += path.path.moves() as u32;
         made.lengths.push(lengths);
     }
-    let frames = source.frames.unwrap_or(FRAMES);
-    if source.task == Task::Sweep || frames == 0 || clock <= 0.0 {
+    let count = source.moments.unwrap_or(MOMENTS);
+    if source.task == Task::Sweep || count == 0 || clock <= 0.0 {
         return Ok(made);
     }
-    if job.moves() > MOVES && source.frames.is_none() {
+    if job.moves() > MOVES && source.moments.is_none() {
         made.notes.push(format!(
-            "the workpiece during the program is not shown: more than {MOVES} moves; --frames asks for it"
+            "the workpiece during the program is not shown: more than {MOVES} moves; --moments asks for it"
         ));
         return Ok(made);
     }
-    moments(source, frames, &mut made)?;
+    moments(source, count, &mut made)?;
     Ok(made)
 }
 
@@ -270,7 +187,7 @@ fn changes(clock: f64, before: &Dexels, after: &Dexels) -> KeyFrame {
 }
 
 /// Cuts the track at equal times, and removes what is swept in each part.
-fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), Failure> {
+fn moments(source: &PageSource, count: u16, made: &mut Courses) -> Result<(), Failure> {
     let session = source.session;
     let job = &session.job;
     session.progress.phase("course");
@@ -289,7 +206,7 @@ fn moments(source: &PageSource, frames: u16, made: &mut Courses) -> Result<(), F
     let mut shown = stock.clone();
     let mut now = stock;
     let end = made.clocks.last().copied().unwrap_or_default();
-    let step = end / f64::from(frames);
+    let step = end / f64::from(count);
     let mut since = 0.0;
     let mut poses: Vec<Pose> = Vec::new();
     let cut = |poses: &mut Vec<Pose>, tool: u16, now: &mut Dexels| -> Result<(), Failure> {

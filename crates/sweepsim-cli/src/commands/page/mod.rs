@@ -31,7 +31,7 @@ pub(crate) struct PageSource<'a> {
     /// The options of the sweep.
     pub sweeping: Options,
     /// The number of moments of the course, if one was chosen.
-    pub frames: Option<u16>,
+    pub moments: Option<u16>,
     pub threads: usize,
     /// The duration of the run in seconds.
     pub total: f64,

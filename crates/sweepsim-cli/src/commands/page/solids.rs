@@ -1,7 +1,8 @@
 //! Stock, target, fixtures and tools as they are shown.
 
 use crate::commands::task::Task;
-use sweepsim::motion::{BodyKind, ProfileSegment, Tool, Turn};
+use crate::session::shape;
+use sweepsim::motion::{BodyKind, Tool};
 use sweepsim_dexel::{Stock, TriDexels, TriangleSoup};
 use sweepsim_formats::Job;
 use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
@@ -179,61 +180,11 @@ pub(super) fn tools(job: &Job) -> Vec<ToolPart> {
 }
 
 fn shape(tool: &Tool) -> ToolShape {
-    match outline(tool) {
+    match shape::outline(tool) {
         Some(points) => ToolShape::Profile(points),
-        None => patches(tool),
-    }
-}
-
-/// The outline of a solid of revolution made of lines and arcs.
-fn outline(tool: &Tool) -> Option<Vec<[f64; 2]>> {
-    let profile = tool.profile()?;
-    let mut points = vec![profile.start()];
-    for segment in profile.segments() {
-        match segment {
-            ProfileSegment::Line { to } => points.push(*to),
-            ProfileSegment::Arc { to, centre, turn } => {
-                let from = points[points.len() - 1];
-                let radius = (from[0] - centre[0]).hypot(from[1] - centre[1]);
-                let angle = |p: [f64; 2]| (p[1] - centre[1]).atan2(p[0] - centre[0]);
-                let (a, b) = (angle(from), angle(*to));
-                let way = match turn {
-                    Turn::Ccw => (b - a).rem_euclid(std::f64::consts::TAU),
-                    Turn::Cw => -(a - b).rem_euclid(std::f64::consts::TAU),
-                };
-                let parts = (way.abs() / 0.12).ceil().max(1.0);
-                for k in 1..parts as usize {
-                    let (s, c) = (a + way * k as f64 / parts).sin_cos();
-                    points.push([(centre[0] + radius * c).max(0.0), centre[1] + radius * s]);
-                }
-                points.push(*to);
-            }
-            // Splines are shown by their patches.
-            _ => return None,
+        None => {
+            let (vertices, triangles) = shape::patches(tool);
+            ToolShape::Mesh { vertices, triangles }
         }
     }
-    Some(points)
-}
-
-/// The patches of a tool as a mesh.
-fn patches(tool: &Tool) -> ToolShape {
-    const PARTS: usize = 16;
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
-    for patch in tool.patches() {
-        let first = vertices.len() as u32;
-        for u in 0..=PARTS {
-            for v in 0..=PARTS {
-                vertices.push(patch.point(u as f64 / PARTS as f64, v as f64 / PARTS as f64));
-            }
-        }
-        let row = PARTS as u32 + 1;
-        for u in 0..PARTS as u32 {
-            for v in 0..PARTS as u32 {
-                let at = first + u * row + v;
-                triangles.push([at, at + row, at + row + 1]);
-                triangles.push([at, at + row + 1, at + 1]);
-            }
-        }
-    }
-    ToolShape::Mesh { vertices, triangles }
 }

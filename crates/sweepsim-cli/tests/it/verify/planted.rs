@@ -286,7 +286,7 @@ impl Program {
             mesh += "endloop\nendfacet\n";
         }
         fs::write(workdir.path("part.stl"), mesh + "endsolid part\n").expect("a file");
-        let output = workdir.run_job("verify", &["--only", "report", "--frames", "0"]);
+        let output = workdir.run_job("verify", &["--only", "report", "--moments", "0"]);
         let told = || format!("{name}: {}{}\n{program}", text(&output.stdout), text(&output.stderr));
         assert!(matches!(output.status.code(), Some(0 | 1)), "{}", told());
         let report = fs::read(workdir.path("out/report.json")).expect("a report");
