@@ -31,7 +31,7 @@ def tri_dexels(lines):
 
 
 def brep_cam(lines):
-    folder = Path(__file__).resolve().parent / "brep_cam"
+    folder = Path(__file__).resolve().parent / "brep_cam_balls"
     command = ["cargo", "run", "--quiet", "--release", "--", str(lines)]
     done = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
     found = json.loads(done.stdout)

@@ -3,12 +3,12 @@
 mod bench;
 mod browser;
 mod generate;
+mod others;
 mod pictures;
 mod plot;
 mod regress;
 mod standalone;
 mod stored;
-mod study;
 mod suites;
 mod workspace;
 
@@ -58,6 +58,12 @@ enum Command {
         /// Seconds that one run of the sampler may take, unless that is less than twice the time of the exact simulation.
         #[arg(long, default_value_t = 20.0)]
         limit: f64,
+    },
+    /// Sets up other programs from their registries, and runs them beside sweepsim on the same work: takes minutes.
+    Peers {
+        /// Also with steps and tolerances that take many minutes.
+        #[arg(long)]
+        fine: bool,
     },
     /// Does one piece of work of `bench instructions`.
     #[command(hide = true)]
@@ -169,8 +175,10 @@ fn main() -> ExitCode {
         Command::Bench { .. } if cfg!(debug_assertions) => in_release(),
         Command::Bench { table, filter, store } => measure(table, filter.as_deref(), store).map(|()| true),
         Command::Study { .. } if cfg!(debug_assertions) => in_release(),
-        Command::Study { filter, limit } => study::run(filter.as_deref(), limit).map(|()| true),
+        Command::Study { filter, limit } => others::study::run(filter.as_deref(), limit).map(|()| true),
         Command::Pictures { filter } => pictures::draw(filter.as_deref()).map(|()| true),
+        Command::Peers { .. } if cfg!(debug_assertions) => in_release(),
+        Command::Peers { fine } => others::peers::run(fine).map(|()| true),
         Command::Work { name } => bench::work(&name).map(|()| true),
         Command::BruteForce { filter, times } => suites::brute_force(filter.as_deref(), times),
         Command::Slow { filter } => suites::slow(filter.as_deref()),

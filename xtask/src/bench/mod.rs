@@ -5,7 +5,7 @@ mod instructions;
 mod memory;
 mod near_degenerate;
 mod programs;
-mod raster;
+pub mod raster;
 mod records;
 mod scaling;
 mod systems;

@@ -33,6 +33,9 @@ impl Curve {
     }
 }
 
+/// A piece of work that any thread may do.
+type Work<'a> = &'a (dyn Fn() -> Result<(), String> + Sync);
+
 fn text(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
@@ -121,7 +124,7 @@ fn by_grid() -> Result<Vec<Curve>, String> {
 
 fn by_threads() -> Result<Vec<Curve>, String> {
     let job = Job::read(&workspace::fixtures().join("jobs/impeller.ron")).map_err(text)?;
-    let works: [(&str, &(dyn Fn() -> Result<(), String> + Sync)); 2] = [
+    let works: [(&str, Work); 2] = [
         ("impeller", &|| programs::once(&job).map(drop)),
         ("3,049 moves, 3 axes, ball end", &|| {
             three_axis::cut("ball", 1000).map(drop)

@@ -1,67 +1,71 @@
-//! What `crates/sweepsim-dexel/examples/csg_of_many_balls.rs` does, with the columns of `BREP_cam`: prints a line of JSON.
+//! A program milled with the dexels of `BREP_cam`: `brep-cam-mill WORK STEP ANSWER [z]`. With `z`, by Z-dexels (three axes only), else by tri-dexels.
+//! Answers the height of the highest material of each column along z, row by row.
 
-use brep_cam::Point3;
-use brep_cam::stock_sim::mesh::stock_mesh;
+#[path = "../../work.rs"]
+mod work;
+
+use brep_cam::cutter::{Cutter, ToolProfile};
+use brep_cam::multiaxis::sim::tridexel::{TriDexel, TriDexelOptions};
+use brep_cam::stock_sim::removal::{RemovalOptions, simulate};
 use brep_cam::stock_sim::{Column, DexelGrid};
-use std::f64::consts::PI;
-use std::time::Instant;
+use brep_cam::{Feed, Motion, MotionKind, NullSink, Point3, Runner, Tolerance};
+use work::{Work, answer, seconds};
 
-const SIZE: [f64; 3] = [90.0, 90.0, 30.0];
-const RADIUS: f64 = 4.0;
-
-/// The block along an axis, with the sides of the grid first.
-fn block(axis: usize, cell: f64) -> (DexelGrid, [f64; 3]) {
-    let side = [1, 2, 3].map(|k| SIZE[(axis + k) % 3]);
-    let [nx, ny] = [0, 1].map(|k| (side[k] / cell).ceil() as u32);
-    let grid = DexelGrid {
-        origin: Point3::new(0.0, 0.0, 0.0),
-        cell_x: side[0] / f64::from(nx),
-        cell_y: side[1] / f64::from(ny),
-        nx,
-        ny,
-        columns: vec![Column::full(0.0, side[2]); (nx * ny) as usize],
-        z_range: [0.0, side[2]],
-    };
-    (grid, side)
-}
+/// The chord error of the profiles of ball ends, in mm: less than what the steps leave.
+const CHORD: f64 = 1e-4;
 
 fn main() {
-    let along: usize = std::env::args().nth(1).map_or(180, |word| word.parse().expect("a number of lines"));
-    let start = Instant::now();
-    let mut updates = 0;
-    let grids = [0, 1, 2].map(|axis| {
-        let (mut grid, side) = block(axis, SIZE[0] / along as f64);
-        let count = side.map(|s| (s / 10.0) as usize);
-        for n in 0..count.iter().product() {
-            let at = [n % count[0], n / count[0] % count[1], n / count[0] / count[1]];
-            let [x, y, z] = at.map(|k| 10.0 * k as f64 + 5.0);
-            let range = |at: f64, step: f64, cells: u32| {
-                let from = ((at - RADIUS) / step - 0.5).ceil().max(0.0) as u32;
-                from..((((at + RADIUS) / step - 0.5).floor() + 1.0) as u32).min(cells)
-            };
-            for iy in range(y, grid.cell_y, grid.ny) {
-                for ix in range(x, grid.cell_x, grid.nx) {
-                    let (cx, cy) = grid.center(ix, iy);
-                    let half = (RADIUS * RADIUS - (cx - x).powi(2) - (cy - y).powi(2)).max(0.0).sqrt();
-                    grid.column_mut(ix, iy).cut(z - half, z + half);
-                    updates += 1;
-                }
-            }
+    let (work, step) = (Work::read(), Work::setting());
+    let point = |[x, y, z]: [f64; 3]| Point3::new(x, y, z);
+    let diameter = 2.0 * work.radius;
+    let cutter = if work.ball { Cutter::ball(diameter, work.length, 0.0) } else { Cutter::flat(diameter, work.length, 0.0) };
+    let motions: Vec<Motion> = (work.poses.iter().enumerate())
+        .map(|(n, (tip, axis))| {
+            let to = point(*tip);
+            let kind = if n == 0 { MotionKind::Rapid { to } } else { MotionKind::Cut { to } };
+            Motion { tool_axis: Some(point(*axis)), ..Motion::new(kind, Feed::RAPID) }
+        })
+        .collect();
+    let cells = work.cells as u32;
+    let cell = (work.max[0] - work.min[0]) / work.cells as f64;
+    let mut grid = DexelGrid {
+        origin: point(work.min),
+        cell_x: cell,
+        cell_y: cell,
+        nx: cells,
+        ny: cells,
+        columns: vec![Column::full(work.min[2], work.max[2]); work.cells * work.cells],
+        z_range: [work.min[2], work.max[2]],
+    };
+    let mut sink = NullSink;
+    let mut runner = Runner::detached(&mut sink);
+    let tolerance = Tolerance::default();
+    let start;
+    if std::env::args().nth(4).as_deref() == Some("z") {
+        start = seconds();
+        simulate(&mut grid, &cutter, &motions, &tolerance, &RemovalOptions::default(), &mut runner).expect("not cancelled");
+    } else {
+        let options = TriDexelOptions {
+            cell,
+            step,
+            // Two degrees at half a millimetre, as by default, and less with smaller steps.
+            max_axis_step_deg: 4.0 * step,
+            max_work: u64::MAX,
+            ..TriDexelOptions::default()
+        };
+        // A hair larger than the block: rounding up makes no more columns than asked for.
+        let options = TriDexelOptions { cell: options.cell * (1.0 + 1e-12), ..options };
+        let profile = ToolProfile::new(&cutter, None, CHORD);
+        let bounds = brep_cam::Bounds3::new(point(work.min), point(work.max));
+        let mut dexels = TriDexel::empty(&bounds, &options).expect("a block");
+        for grid in &mut dexels.grids {
+            let range = grid.range;
+            grid.columns.fill(Column::full(range[0], range[1]));
         }
-        grid
-    });
-    let csg = start.elapsed().as_secs_f64();
-    let start = Instant::now();
-    let mesh = stock_mesh(&grids[2]);
-    let meshing = start.elapsed().as_secs_f64();
-    let balls = SIZE.iter().map(|s| s / 10.0).product::<f64>();
-    let exact = SIZE.iter().product::<f64>() - balls * 4.0 / 3.0 * PI * RADIUS.powi(3);
-    let bytes = |g: &DexelGrid| g.columns.iter().map(|c| size_of::<Column>() + 16 * c.intervals.capacity()).sum::<usize>();
-    println!(
-        "{{\"updates\": {updates}, \"csg_s\": {csg:.4}, \"mesh_s\": {meshing:.4}, \"triangles\": {}, \"mbytes\": {:.1}, \
-         \"volume_error\": {:.2e}}}",
-        mesh.triangle_count(),
-        grids.iter().map(bytes).sum::<usize>() as f64 / 1e6,
-        (mesh.signed_volume() - exact).abs() / exact,
-    );
+        start = seconds();
+        dexels.simulate(&profile, &motions, &options, &tolerance, &mut runner).expect("a program");
+        grid = dexels.to_dexel_grid();
+    }
+    let took = seconds() - start;
+    answer(took, grid.columns.iter().map(|column| column.top().unwrap_or(f64::NAN)));
 }

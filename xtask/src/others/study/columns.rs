@@ -69,7 +69,7 @@ pub struct Columns {
 
 impl Columns {
     pub fn of(stock: &Dexels) -> Self {
-        let grid = stock.grid().clone();
+        let grid = *stock.grid();
         let columns = (0..grid.len()).map(|line| stock.at(line).heights().collect()).collect();
         Self { grid, columns }
     }
