@@ -16,6 +16,10 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
+pub(crate) fn length(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
 /// Normal of a triangle, as long as twice its area.
 pub(crate) fn normal_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     cross(sub(b, a), sub(c, a))

@@ -78,6 +78,9 @@ pub(crate) struct RunOptions {
     /// three times the cost of `z` [default: xyz, if the job allows it]. If `xyz` is given, `verify` looks for harm along x and y, too.
     #[arg(long, value_name = "AXES")]
     pub directions: Option<Directions>,
+    /// Writes meshes of fewer triangles, nowhere further than this from the others, in millimetres.
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub decimate: Option<f64>,
     /// The tolerance in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
@@ -162,6 +165,9 @@ pub(crate) struct ConvertOptions {
     pub grid: GridOptions,
     #[command(flatten)]
     pub view: ViewOptions,
+    /// Writes meshes of fewer triangles, nowhere further than this from the others, in millimetres.
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub decimate: Option<f64>,
     /// Prints no summary.
     #[arg(long)]
     pub quiet: bool,

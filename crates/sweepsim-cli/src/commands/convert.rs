@@ -2,7 +2,8 @@
 
 use super::tri_surface::lattice;
 use crate::arguments::ConvertOptions;
-use crate::session::{Failure, Kind, Lines, Solid, bounds, picture, soup, words};
+use crate::session::{Failure, Kind, Lines, Solid, bounds, decimated, picture, soup, words};
+use std::borrow::Cow;
 use std::io::Write as _;
 use std::ops::ControlFlow;
 use sweepsim_dexel::{Dexels, Grid, Stock, TriDexels};
@@ -61,14 +62,15 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
         return Ok(write_atomically(output, |file| file.write_all(&png))?);
     }
     if let Some(format) = MeshFormat::of(output) {
-        let mesh = match solid {
+        let surface = match solid {
             Solid::Mesh(mesh) => mesh.clone(),
-            // 3D printers need triangles that share vertices.
-            Solid::Dexels(_) | Solid::TriDexels(_) if format == MeshFormat::ThreeMf => {
-                soup(&solid.surface()?).indexed()?
-            }
             Solid::Dexels(_) | Solid::TriDexels(_) => solid.surface()?,
         };
+        let mut mesh = decimated(&surface, options.decimate)?;
+        // 3D printers need triangles that share vertices.
+        if format == MeshFormat::ThreeMf && !matches!(solid, Solid::Mesh(_)) {
+            mesh = Cow::Owned(soup(&mesh).indexed()?);
+        }
         line("triangles", &words::count(mesh.triangles.len() as u64));
         if format == MeshFormat::Stl || format == MeshFormat::Glb {
             line(
@@ -115,7 +117,7 @@ fn write_tri(
     let file = options.input.display();
     let failed = |error: &dyn std::error::Error| Failure::message(format!("{file}: {error}"));
     let made = match solid {
-        Solid::TriDexels(solid) => solid.clone(),
+        Solid::TriDexels(solid) => TriDexels::clone(solid),
         Solid::Mesh(mesh) => {
             let heights = bounds(mesh).map_or([0.0; 2], |[low, high]| [low[2], high[2]]);
             let (min, max, cells) = lattice(grid, heights);

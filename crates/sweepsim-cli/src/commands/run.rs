@@ -7,7 +7,7 @@ use super::tri_surface;
 use super::verify::{setups, verified};
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::frames::Frames;
-use crate::session::{Failure, JobRead, JobSession, phase, picture, print, read_job, words};
+use crate::session::{Failure, JobRead, JobSession, decimated, phase, picture, print, read_job, words};
 use crate::warnings;
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -355,7 +355,8 @@ fn write_mesh(
     let JobSession { outputs, progress, .. } = session;
     if outputs.wants(Output::Mesh) {
         phase(report, "mesh", || {
-            outputs.write("part.ply", |file| write_ply(mesh, file))
+            let written = decimated(mesh, options.decimate)?;
+            outputs.write("part.ply", |file| write_ply(&written, file))
         })?;
     }
     progress.check()?;

@@ -17,5 +17,5 @@ pub(crate) use lines::{Lines, print};
 pub(crate) use outputs::{Outputs, output_folder};
 pub(crate) use placement::{Place, distance, placements};
 pub(crate) use progress::Progress;
-pub(crate) use solid::{CRISP, Kind, Solid, bounds, frame_picture, picture, soup};
+pub(crate) use solid::{CRISP, Kind, Solid, bounds, decimated, frame_picture, picture, soup};
 pub(crate) use tool::{described_tool, tool_in_words};

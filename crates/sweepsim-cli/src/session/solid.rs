@@ -3,6 +3,7 @@
 use super::Failure;
 use super::words::length;
 use crate::arguments::{GridOptions, ViewOptions};
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::path::Path;
 use sweepsim_dexel::{Dexels, Grid, Mesh, MeshError, Stock, TriDexels, TriangleSoup};
@@ -20,7 +21,7 @@ pub(crate) const CRISP: f64 = 0.766;
 pub(crate) enum Solid {
     Mesh(Mesh),
     Dexels(Dexels),
-    TriDexels(TriDexels),
+    TriDexels(Box<TriDexels>),
 }
 
 /// The kind of a file by its extension, and by its first line for tables.
@@ -71,7 +72,7 @@ impl Solid {
                 )))
             }
             Kind::Dexels if DexelFormat::of(file) == Some(DexelFormat::Tri) => {
-                Ok(Self::TriDexels(read_tri_dexels_file(file)?))
+                Ok(Self::TriDexels(read_tri_dexels_file(file)?.into()))
             }
             Kind::Dexels => Ok(Self::Dexels(read_dexels_file(file, grid)?)),
             // Says what to do about STEP files.
@@ -110,6 +111,14 @@ impl Solid {
                 .dexels(grid)
                 .map_err(|error| Failure::message(format!("{}: {error}", file.display()))),
         }
+    }
+}
+
+/// A mesh of fewer triangles, nowhere further than `deviation` from this one; the same mesh without one.
+pub(crate) fn decimated(mesh: &Mesh, deviation: Option<f64>) -> Result<Cow<'_, Mesh>, MeshError> {
+    match deviation {
+        Some(deviation) => Ok(Cow::Owned(mesh.decimated(deviation)?.crisp(CRISP)?)),
+        None => Ok(Cow::Borrowed(mesh)),
     }
 }
 

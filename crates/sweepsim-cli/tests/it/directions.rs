@@ -261,6 +261,17 @@ fn dexels_along_three_axes_are_inspected_compared_and_converted() {
     assert!((back.volume() - (1200.0 - REMOVED)).abs() < 10.0, "{}", back.volume());
     let (code, said) = run(&["convert", "a.dexels", "c.tridexels"]);
     assert!(code == Some(2) && said.contains("along z only"), "{said}");
+    // Fewer triangles, from a run and from a file: a box with a groove has 16 corners.
+    simulate(&workdir, "few", &["--only", "mesh", "--decimate", "0.01"]).unwrap();
+    let (code, said) = run(&["convert", "moved/part.tridexels", "few.stl", "--decimate", "0.01"]);
+    assert_eq!(code, Some(0), "{said}");
+    for few in ["few/part.ply", "few.stl"] {
+        let triangles = read_mesh_file(&workdir.path(few)).unwrap().triangles.len();
+        assert!((28..100).contains(&triangles), "{few}: {triangles}");
+        assert!((volume(&workdir, few) - (1200.0 - REMOVED)).abs() < 2.0);
+    }
+    let (code, said) = run(&["convert", "moved/part.tridexels", "few.stl", "--decimate", "0"]);
+    assert!(code == Some(2) && said.contains("--decimate"), "{said}");
     // Damaged anywhere, it is refused.
     let whole = fs::read(workdir.path("out/part.tridexels")).unwrap();
     for at in (0..whole.len()).step_by(97).chain([8, 12, whole.len() - 1]) {

@@ -43,6 +43,22 @@ pub struct Nearest {
     pub normal: [f64; 3],
 }
 
+/// A triangle near a point.
+pub(super) struct NearestTriangle {
+    pub distance: f64,
+    pub corners: [[f64; 3]; 3],
+    /// Normals of planes through its edges.
+    pub inwards: [[f64; 3]; 3],
+}
+
+impl NearestTriangle {
+    /// The distance of a point.
+    pub fn distance_of(&self, p: [f64; 3]) -> f64 {
+        let off = sub(p, nearest_on(p, self.corners).0);
+        dot(off, off).sqrt()
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Face {
     corners: [u32; 3],
@@ -243,6 +259,24 @@ impl DistanceTo {
     }
 
     fn search(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<Nearest> {
+        let (number, place, part) = self.closest(p, reach, wanted)?;
+        let face = &self.faces[number];
+        let side = match part {
+            NearestOn::Inside => face.normal,
+            NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
+            NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
+        };
+        let off = sub(p, place);
+        let (away, outside) = (dot(off, off).sqrt(), dot(off, side) >= 0.0);
+        Some(Nearest {
+            distance: if outside { away } else { -away },
+            place,
+            normal: face.normal,
+        })
+    }
+
+    /// The number of the face nearest to `p`, and the point of it.
+    fn closest(&self, p: [f64; 3], reach: f64, wanted: impl Fn(&Face) -> bool) -> Option<(usize, [f64; 3], NearestOn)> {
         let mut best = reach * reach;
         let mut found: Option<(usize, [f64; 3], NearestOn)> = None;
         // Median splits: the tree of 2³² faces has 31 levels, and each leaves one node behind.
@@ -276,18 +310,21 @@ impl DistanceTo {
                 }
             }
         }
-        let (number, place, part) = found?;
+        found
+    }
+
+    /// The triangle nearest to `p`: its distance, its corners, and for each edge from a corner to the next the normal of a plane through it that the
+    /// triangle beyond shares, pointing inwards.
+    #[must_use]
+    pub(super) fn nearest_triangle(&self, p: [f64; 3]) -> Option<NearestTriangle> {
+        let (number, place, _) = self.closest(p, f64::INFINITY, |_| true)?;
         let face = &self.faces[number];
-        let side = match part {
-            NearestOn::Inside => face.normal,
-            NearestOn::Edge(k) => face.at_edges[k].map(f64::from),
-            NearestOn::Corner(k) => face.at_corners[k].map(f64::from),
-        };
-        let outside = dot(sub(p, place), side) >= 0.0;
-        Some(Nearest {
-            distance: if outside { best.sqrt() } else { -best.sqrt() },
-            place,
-            normal: face.normal,
+        let corners = face.corners.map(|v| self.vertices[v as usize]);
+        let off = sub(p, place);
+        Some(NearestTriangle {
+            distance: dot(off, off).sqrt(),
+            corners,
+            inwards: [0, 1, 2].map(|k| cross(face.at_edges[k].map(f64::from), sub(corners[(k + 1) % 3], corners[k]))),
         })
     }
 

@@ -1,8 +1,10 @@
 //! Triangles, going in and coming out.
 
 mod clip;
+mod decimate;
 mod distance;
 mod furthest;
+mod near;
 mod thicken;
 
 use crate::grid::Frame;
