@@ -1,11 +1,13 @@
 //! `simulate` and `sweep`: from a job to its output files.
 
-use super::page::{self, PageSource};
-use super::summary::{NAMED, json, summary};
-use super::task::{Task, sweeping};
-use super::tri_surface;
-use super::verify::{setups, verified};
+mod envelope;
+
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
+use crate::commands::page::{self, PageSource};
+use crate::commands::summary::{json, summary};
+use crate::commands::task::{Task, sweeping};
+use crate::commands::tri_surface;
+use crate::commands::verify::{setups, verified};
 use crate::frames::Frames;
 use crate::session::{Failure, JobRead, JobSession, decimated, phase, picture, print, read_job, words};
 use crate::warnings;
@@ -13,15 +15,12 @@ use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::verify::Target;
-use sweepsim::{BoundaryOperator, Method, Monitor, Options, Statistics, envelope_surfaces, simulate, sweep_all};
+use sweepsim::{BoundaryOperator, Method, Monitor, Statistics, simulate, sweep_all};
 use sweepsim_dexel::{Dexels, Grid, Mesh, TriDexels};
 use sweepsim_formats::{
     MoveSummary, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_moves_csv, write_ply,
     write_tri_dexels,
 };
-
-/// The largest deviation of the triangles of envelope.ply, in millimetres.
-const CHORD: f64 = 0.02;
 
 /// The result of a run.
 struct Outcome {
@@ -162,7 +161,7 @@ fn work(
         Frames::new(count, options, sweeping(&session.job, options), stock).write(session, report)?;
     }
     if task == Task::Sweep && options.method == Method::Surface && session.outputs.wants(Output::Mesh) {
-        write_envelope(session, report)?;
+        envelope::write(session, report)?;
     }
     Ok(outcome)
 }
@@ -371,31 +370,4 @@ fn write_mesh(
     })?;
     report.warnings.extend(missed);
     Ok(Some(png))
-}
-
-/// Writes the whole envelope, and the part of it that bounds the swept volume.
-fn write_envelope(session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
-    session.progress.phase("envelope");
-    let options = Options::new(session.job.tolerance);
-    let monitor = &session.progress as &dyn Monitor;
-    let made = phase(report, "envelope", || {
-        envelope_surfaces(&session.cuts(), CHORD, &options, monitor)
-    });
-    let surfaces = made.map_err(|error| session.failed(error))?;
-    for (name, trimmed) in [("envelope.ply", false), ("envelope-outer.ply", true)] {
-        let (points, triangles) = surfaces.triangles(trimmed);
-        let mesh = Mesh {
-            vertices: points.iter().map(|point| point.position).collect(),
-            normals: points.iter().map(|point| point.normal.map(|x| x as f32)).collect(),
-            cut: vec![true; points.len()],
-            triangles,
-        };
-        session.outputs.write(name, |file| write_ply(&mesh, file))?;
-    }
-    for (path, piece, number) in surfaces.open.iter().take(NAMED) {
-        report.notes.push(format!(
-            "envelope.ply lacks parts of {piece:?} of move {number} of path {path}"
-        ));
-    }
-    Ok(())
 }
