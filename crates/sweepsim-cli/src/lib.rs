@@ -10,6 +10,7 @@ mod arguments;
 mod commands;
 mod frames;
 mod session;
+mod shards;
 mod warnings;
 
 use arguments::{Arguments, Command};
@@ -28,6 +29,7 @@ pub fn main() -> ExitCode {
         Command::Inspect(options) => commands::inspect(&options).map(|()| ExitCode::SUCCESS),
         Command::Convert(options) => commands::convert(&options).map(|()| ExitCode::SUCCESS),
         Command::Compare(options) => commands::compare(&options).map(|()| ExitCode::SUCCESS),
+        Command::Merge(options) => commands::merge(&options),
     };
     done.unwrap_or_else(|failure| {
         anstream::eprintln!("{failure}");

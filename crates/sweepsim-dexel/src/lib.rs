@@ -33,7 +33,7 @@ mod vector;
 
 pub use compare::{Comparison, Deviation, compare, compare_tri_with_mesh, compare_with_mesh};
 pub use dexels::{
-    Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, pack_normal, unpack_normal,
+    Dexels, DexelsBuilder, GridMismatch, Line, LineIter, NearestEnd, Operation, TilesError, pack_normal, unpack_normal,
 };
 pub use grid::{Frame, FrameError, Grid, GridError};
 pub use intervals::{AuditFailure, Crossing, End, Endpoint, Interval, IntervalError, IntervalSet, Source, cover};

@@ -12,6 +12,9 @@ pub enum SweepError {
     /// Target or fixtures are on other lines than the stock.
     #[error("the target must be on the grid of the stock, and fixtures on a grid in the same frame")]
     Grid,
+    /// Tiles belong to different grids.
+    #[error("the tiles must be of one grid")]
+    Tiles,
     /// The tolerance, or the chord error, is not a positive number.
     #[error("the tolerance is {0}, but must be positive")]
     Tolerance(f64),

@@ -65,7 +65,7 @@ pub use sections::{
 pub use sweep::{
     BoundaryOperator, Cut, Method, Options, Probe, Ray, RayError, Simulation, Statistics, SurfaceSource, Sweep,
     TriSimulation, UnknownBoundaryOperator, UnknownMethod, UnresolvedDexel, UnresolvedReason, probe, simulate,
-    simulate_tri, sweep, sweep_all,
+    simulate_tiles, simulate_tri, sweep, sweep_all,
 };
 
 pub use nalgebra;

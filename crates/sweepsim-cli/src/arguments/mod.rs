@@ -1,16 +1,18 @@
 //! The command line.
 
 mod programs;
+mod shard;
 mod values;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
+pub(crate) use shard::ShardNumber;
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
 use sweepsim_picture::{CuttingPlane, View};
 pub(crate) use values::GivenLimits;
-use values::{area, camera, cells, length, limits, parsed, plane, section, size, tolerance};
+use values::{area, camera, cells, length, limits, parsed, plane, section, size, tile, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
 ///
@@ -50,6 +52,11 @@ pub(crate) enum Command {
     Convert(ConvertOptions),
     /// Compares two parts, each a mesh or dexels: volumes, and distances along the normal, with a picture coloured by distance.
     Compare(CompareOptions),
+    /// Joins the pieces that the shards of a run left: writes what the whole run would have written, to the byte but for times.
+    ///
+    /// Reads the job again, from the folder where the shards were run, if that exists. Exit status 2 if a piece is missing, comes twice, is damaged or
+    /// of another run.
+    Merge(MergeOptions),
 }
 
 #[derive(Debug, Args)]
@@ -84,6 +91,17 @@ pub(crate) struct RunOptions {
     /// The tolerance in millimetres, instead of the job's.
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
+    /// The largest number of dexels along the side of a tile. Tiles are computed one by one, and are what shards consist of: another size changes
+    /// results, by less than the tolerance.
+    #[arg(long, value_name = "N", default_value_t = sweepsim::Options::TILE, value_parser = tile)]
+    pub tile: usize,
+    /// Computes one shard of the run, from 0 of N, and leaves a piece for `merge`. `auto/N` takes the index from SLURM_ARRAY_TASK_ID,
+    /// JOB_COMPLETION_INDEX or AWS_BATCH_JOB_ARRAY_INDEX, `auto` also the number of shards.
+    #[arg(long, value_name = "I/N", value_parser = ShardNumber::parse)]
+    pub shard: Option<ShardNumber>,
+    /// With --shard: does nothing if its piece is there, whole and of this run.
+    #[arg(long, requires = "shard")]
+    pub resume: bool,
     /// The number of threads [default: one per core]. It does not affect the results.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -147,6 +165,25 @@ pub(crate) struct SectionOptions {
     /// Prints neither progress nor a summary.
     #[arg(long)]
     pub quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeOptions {
+    /// The folders with the pieces, or pieces.
+    #[arg(required = true, value_name = "DIR", value_hint = ValueHint::AnyPath)]
+    pub pieces: Vec<PathBuf>,
+    /// The output folder [default: out/NAME].
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// The number of threads [default: one per core]. It does not affect the results.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Prints neither progress nor a summary.
+    #[arg(long)]
+    pub quiet: bool,
+    /// Prints the report as JSON instead of the summary.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

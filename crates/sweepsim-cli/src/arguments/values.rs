@@ -122,6 +122,14 @@ pub(super) fn section(text: &str) -> Result<CuttingPlane, String> {
     }
 }
 
+/// The side of a tile.
+pub(super) fn tile(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(lines @ 8..=4096) => Ok(lines),
+        _ => Err("expected a whole number from 8 to 4096".to_owned()),
+    }
+}
+
 /// A length in millimetres that may be 0.
 pub(super) fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -17,6 +17,6 @@ pub(crate) use compare::compare;
 pub(crate) use convert::convert;
 pub(crate) use inspect::inspect;
 pub(crate) use new::new;
-pub(crate) use run::run;
+pub(crate) use run::{merge, run};
 pub(crate) use section::section;
 pub(crate) use task::Task;

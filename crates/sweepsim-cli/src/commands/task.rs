@@ -38,4 +38,5 @@ pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
     Options::new(job.tolerance)
         .method(options.method)
         .boundary(options.boundary)
+        .tile(options.tile)
 }

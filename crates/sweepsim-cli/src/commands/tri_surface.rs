@@ -69,16 +69,29 @@ fn earlier(stock: &Stock) -> Vec<&Arc<[Dexels; 3]>> {
     }
 }
 
-/// Whether the dexels along x and y are so many more than those along z that they must be asked for.
-pub(crate) fn too_many(along_z: &Dexels) -> bool {
-    let grid = along_z.grid();
+/// Whether the dexels along x and y of a solid between these heights are so many more than those along z that they must be asked for.
+pub(crate) fn too_many(grid: &Grid, range: Option<[f64; 2]>) -> bool {
     let [dx, dy] = grid.spacing();
     let [nx, ny] = grid.cells().map(|n| n as f64);
-    heights(along_z).is_some_and(|[low, high]| (high - low) / (dx * dy).sqrt() > MOST * nx.min(ny))
+    range.is_some_and(|[low, high]| (high - low) / (dx * dy).sqrt() > MOST * nx.min(ny))
+}
+
+/// The heights of what is made: for the remaining stock those of the whole stock, which do not depend on what is cut; for a swept volume its own.
+pub(crate) fn heights(task: Task, job: &Job, along_z: &Dexels) -> Option<[f64; 2]> {
+    match task {
+        Task::Simulate | Task::Verify => stock_heights(job),
+        Task::Sweep => ends(along_z),
+    }
+}
+
+/// The lowest and the highest point of the stock.
+pub(crate) fn stock_heights(job: &Job) -> Option<[f64; 2]> {
+    let [low, high] = job.stock.bounds()?;
+    Some([low[2], high[2]])
 }
 
 /// The lowest and the highest interval end.
-fn heights(dexels: &Dexels) -> Option<[f64; 2]> {
+fn ends(dexels: &Dexels) -> Option<[f64; 2]> {
     dexels
         .iter()
         .flat_map(|(_, line)| line.heights())
@@ -109,13 +122,21 @@ fn lattice_of(job: &Job, heights: [f64; 2]) -> ([f64; 3], [f64; 3], [usize; 3]) 
     ([x0, y0, low], [x1, y1, high], [nx, ny, levels])
 }
 
+/// The grids of the dexels along x and y of a job's stock, and the box in which they are; nothing if it is empty.
+pub(crate) fn grids_aside(job: &Job) -> Result<Option<([Grid; 2], Stock)>, TriDexelsError> {
+    let Some(range) = stock_heights(job) else {
+        return Ok(None);
+    };
+    let (min, max, cells) = lattice_of(job, range);
+    let [along_x, along_y, _] = TriDexels::empty(min, max, cells)?.into_sets();
+    Ok(Some(([*along_x.grid(), *along_y.grid()], Stock::Block { min, max })))
+}
+
 /// The stock of a job along x and along y; nothing if it is empty.
 pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
-    // All of it: what stands between the dexels along z may be higher than they are.
-    let Some([low, high]) = job.stock.bounds() else {
+    let Some(range) = stock_heights(job) else {
         return Ok(Vec::new());
     };
-    let range = [low[2], high[2]];
     let (min, max, cells) = lattice_of(job, range);
     let [along_x, along_y, _] = TriDexels::new(min, max, cells, &job.stock)?.into_sets();
     Ok(vec![along_x, along_y])
@@ -128,7 +149,7 @@ pub(crate) fn stock(session: &JobSession, options: &RunOptions) -> Result<Vec<De
     let along_z = job.stock.dexels(&job.grid).map_err(|error| failed(&error))?;
     let three = match options.directions {
         Some(directions) => directions == Directions::Xyz,
-        None => check(job).is_ok() && !too_many(&along_z),
+        None => check(job).is_ok() && !too_many(&job.grid, stock_heights(job)),
     };
     let mut sets = Vec::new();
     if three {
@@ -136,6 +157,15 @@ pub(crate) fn stock(session: &JobSession, options: &RunOptions) -> Result<Vec<De
     }
     sets.push(along_z);
     Ok(sets)
+}
+
+fn wrong(error: &dyn std::error::Error) -> Failure {
+    Failure::message(format!("--directions xyz: {error}"))
+}
+
+/// Three sets of dexels together.
+pub(crate) fn joined(sets: [Dexels; 3]) -> Result<TriDexels, Failure> {
+    TriDexels::from_sets(sets).map_err(|error| wrong(&error))
 }
 
 /// The result along three axes, of which the dexels along z are known.
@@ -147,8 +177,7 @@ pub(crate) fn solid(
     report: &mut Report,
 ) -> Result<TriSolid, Failure> {
     let (job, progress) = (&session.job, &session.progress);
-    let (min, max, cells) = lattice_of(job, heights(along_z).unwrap_or_default());
-    let wrong = |error: &dyn std::error::Error| Failure::message(format!("--directions xyz: {error}"));
+    let (min, max, cells) = lattice_of(job, heights(task, job, along_z).unwrap_or_default());
     let stock = phase(report, "stock", || match task {
         Task::Simulate | Task::Verify => TriDexels::new(min, max, cells, &job.stock),
         Task::Sweep => TriDexels::empty(min, max, cells),
@@ -164,7 +193,7 @@ pub(crate) fn solid(
         Ok(set)
     };
     let sets = [pass(along_x, "along x")?, pass(along_y, "along y")?, along_z.clone()];
-    let solid = TriDexels::from_sets(sets).map_err(|error| wrong(&error))?;
+    let solid = joined(sets)?;
     Ok(TriSolid { solid, uncertified })
 }
 

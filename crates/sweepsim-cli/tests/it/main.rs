@@ -8,6 +8,7 @@ mod inspect;
 mod page;
 mod programs;
 mod setups;
+mod shards;
 mod support;
 mod verify;
 mod warnings;

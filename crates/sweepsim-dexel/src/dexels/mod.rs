@@ -6,6 +6,7 @@ mod line;
 mod nearest;
 mod packed;
 mod segments;
+mod tiles;
 mod update;
 
 use crate::grid::Grid;
@@ -20,6 +21,7 @@ use packed::Packed;
 pub use packed::{pack_normal, unpack_normal};
 use rayon::prelude::*;
 use thiserror::Error;
+pub use tiles::TilesError;
 
 /// Two sets of dexels have different grids.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]

@@ -3,18 +3,23 @@
 mod frame;
 
 pub use frame::{Frame, FrameError};
+use std::ops::Range;
 use thiserror::Error;
 
 /// Dexel lines parallel to `z` through the centres of `cells[0] × cells[1]` rectangles: in the world, or [in a frame](Grid::in_frame).
 ///
 /// Positions, heights and normals of dexels are in the frame of their grid. [Stock](crate::Stock), [surfaces](crate::Dexels::surface) and
 /// meshes to compare with are in the world.
+///
+/// A grid may be a [tile](Grid::tile) of a larger one: its lines are then exactly those of the larger grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     min: [f64; 2],
     max: [f64; 2],
     cells: [usize; 2],
     frame: Frame,
+    /// Of a tile: the first column and row in the grid that the other fields describe, and the number of columns and rows.
+    tile: Option<[[usize; 2]; 2]>,
 }
 
 /// Why a grid is invalid.
@@ -54,6 +59,7 @@ impl Grid {
                 max,
                 cells,
                 frame: Frame::WORLD,
+                tile: None,
             }),
             _ => Err(GridError::Cells(cells)),
         }
@@ -84,29 +90,83 @@ impl Grid {
         &self.frame
     }
 
+    /// The part of the grid with these columns and rows, at the very same positions. `None` if it is empty or leaves the grid.
+    ///
+    /// ```
+    /// use sweepsim_dexel::Grid;
+    /// let grid = Grid::new([0.0, 0.0], [0.7, 0.3], [7, 3])?;
+    /// let tile = grid.tile(4..7, 0..2).expect("a part of the grid");
+    /// assert_eq!((tile.cells(), tile.first()), ([3, 2], [4, 0]));
+    /// assert_eq!((tile.x(1), tile.y(1)), (grid.x(5), grid.y(1)));
+    /// assert_eq!(tile.whole(), grid);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn tile(&self, columns: Range<usize>, rows: Range<usize>) -> Option<Self> {
+        let cells = self.cells();
+        let inside = |range: &Range<usize>, cells: usize| range.start < range.end && range.end <= cells;
+        if !(inside(&columns, cells[0]) && inside(&rows, cells[1])) {
+            return None;
+        }
+        let first = self.first();
+        let tile = [
+            [first[0] + columns.start, first[1] + rows.start],
+            [columns.len(), rows.len()],
+        ];
+        Some(Self {
+            tile: (tile != [[0; 2], self.cells]).then_some(tile),
+            ..*self
+        })
+    }
+
+    /// The grid of which this is a tile; itself if it is none.
+    #[must_use]
+    pub fn whole(&self) -> Self {
+        Self { tile: None, ..*self }
+    }
+
+    /// The column and row of the first line in the [whole](Grid::whole) grid.
+    #[must_use]
+    #[inline]
+    pub fn first(&self) -> [usize; 2] {
+        self.tile.map_or([0; 2], |[first, _]| first)
+    }
+
+    fn corner(&self, k: usize, n: usize) -> f64 {
+        match n {
+            0 => self.min[k],
+            n if n == self.cells[k] => self.max[k],
+            n => self.min[k] + n as f64 * self.spacing()[k],
+        }
+    }
+
     /// Lower corner of the area.
     #[must_use]
     pub fn min(&self) -> [f64; 2] {
-        self.min
+        let first = self.first();
+        [0, 1].map(|k| self.corner(k, first[k]))
     }
 
     /// Upper corner of the area.
     #[must_use]
     pub fn max(&self) -> [f64; 2] {
-        self.max
+        let (first, cells) = (self.first(), self.cells());
+        [0, 1].map(|k| self.corner(k, first[k] + cells[k]))
     }
 
     /// Cells along `x` and along `y`.
     #[must_use]
+    #[inline]
     pub fn cells(&self) -> [usize; 2] {
-        self.cells
+        self.tile.map_or(self.cells, |[_, cells]| cells)
     }
 
     /// The number of dexels: never zero.
     #[must_use]
     #[allow(clippy::len_without_is_empty)]
     pub fn len(&self) -> usize {
-        self.cells[0] * self.cells[1]
+        let [columns, rows] = self.cells();
+        columns * rows
     }
 
     /// Distance between neighbouring dexels along `x` and along `y`.
@@ -117,6 +177,7 @@ impl Grid {
 
     #[inline]
     fn centre(&self, k: usize, n: usize) -> f64 {
+        let n = self.first()[k] + n;
         self.min[k] + (n as f64 + 0.5) * (self.max[k] - self.min[k]) / self.cells[k] as f64
     }
 
@@ -138,18 +199,20 @@ impl Grid {
     #[must_use]
     #[inline]
     pub fn index(&self, i: usize, j: usize) -> Option<usize> {
-        (i < self.cells[0] && j < self.cells[1]).then(|| self.number(i, j))
+        let [columns, rows] = self.cells();
+        (i < columns && j < rows).then(|| self.number(i, j))
     }
 
     /// The number of a dexel that is known to be on the grid.
     #[inline]
     pub(crate) fn number(&self, i: usize, j: usize) -> usize {
-        i * self.cells[1] + j
+        i * self.cells()[1] + j
     }
 
     /// The column and row of a dexel. A number beyond the grid gives a position beyond it.
     #[must_use]
     pub fn place(&self, index: usize) -> (usize, usize) {
-        (index / self.cells[1], index % self.cells[1])
+        let rows = self.cells()[1];
+        (index / rows, index % rows)
     }
 }

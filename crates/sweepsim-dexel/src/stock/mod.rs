@@ -216,12 +216,11 @@ impl Stock {
             } => cylinder(grid, *base, *axis, *radius, *height),
             Self::Ball { centre, radius } => ball(grid, *centre, *radius),
             Self::Mesh(soup) => mesh_dexels(grid, soup),
-            Self::Dexels(dexels) if dexels.grid() == grid => Ok(Dexels::clone(dexels)),
-            Self::Dexels(_) => Err(GridMismatch.into()),
-            Self::TriDexels(sets) => match sets.iter().find(|set| set.grid() == grid) {
-                Some(set) => Ok(set.clone()),
-                None => Err(GridMismatch.into()),
-            },
+            Self::Dexels(dexels) => Ok(dexels.tile(grid).ok_or(GridMismatch)?),
+            Self::TriDexels(sets) => {
+                let found = sets.iter().find(|set| set.grid().whole() == grid.whole());
+                Ok(found.and_then(|set| set.tile(grid)).ok_or(GridMismatch)?)
+            }
             Self::Union(parts) => all(grid, Dexels::empty(*grid), Operation::Union, parts),
             Self::Difference(whole, parts) => all(grid, whole.dexels(grid)?, Operation::Difference, parts),
             Self::Intersection(parts) => match parts.split_first() {

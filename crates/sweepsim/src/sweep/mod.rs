@@ -22,4 +22,6 @@ pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
 pub(crate) use schedule::CHUNK;
 pub(crate) use simulation::heights;
-pub use simulation::{Cut, Simulation, SurfaceSource, TriSimulation, simulate, simulate_tri, sweep_all};
+pub use simulation::{
+    Cut, Simulation, SurfaceSource, TriSimulation, simulate, simulate_tiles, simulate_tri, sweep_all,
+};

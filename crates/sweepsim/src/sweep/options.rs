@@ -67,6 +67,9 @@ pub struct Options {
     pub boundary: BoundaryOperator,
     /// Number of the path in the [sources](sweepsim_dexel::Source::Cut) of ends.
     pub path_number: u32,
+    /// The largest number of columns and rows of a tile. [`simulate`](fn@crate::simulate) computes each tile of a larger grid by itself, so that the
+    /// result on a line depends on no line of another tile.
+    pub tile: usize,
 }
 
 impl Default for Options {
@@ -76,11 +79,15 @@ impl Default for Options {
             method: Method::Charts,
             boundary: BoundaryOperator::Coverage,
             path_number: 0,
+            tile: Self::TILE,
         }
     }
 }
 
 impl Options {
+    /// The default size of tiles: small enough to share out common grids, and so large that dividing them costs next to nothing.
+    pub const TILE: usize = 128;
+
     /// The default options with this tolerance.
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
@@ -108,6 +115,13 @@ impl Options {
     #[must_use]
     pub fn path_number(mut self, number: u32) -> Self {
         self.path_number = number;
+        self
+    }
+
+    /// Chooses the largest number of columns and rows of a tile.
+    #[must_use]
+    pub fn tile(mut self, lines: usize) -> Self {
+        self.tile = lines.max(1);
         self
     }
 }

@@ -99,7 +99,7 @@ pub(crate) fn probe_lines(
     let one = |[x, y]: &[f64; 2]| -> Probe {
         let cell = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]);
         let grid = cell.map_err(|_| UnresolvedReason::SmallestBox)?;
-        let job = plan.job(tool, &grid, options, monitor);
+        let job = plan.job((tool, plan.parts.len()), &grid, options, monitor);
         let kept = spaces
             .lock()
             .ok()

@@ -7,9 +7,9 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct UnresolvedDexel {
-    /// Column.
+    /// Column; of the whole grid, if tiles of it are computed.
     pub i: usize,
-    /// Row.
+    /// Row, likewise.
     pub j: usize,
     /// What went wrong at the last attempt.
     pub reason: UnresolvedReason,
@@ -63,6 +63,12 @@ impl Statistics {
         self.covered = self.covered.max(other.covered);
         self.repaired += other.repaired;
         self.unresolved.extend(&other.unresolved);
+    }
+
+    /// Sorts unresolved dexels. One may stay unresolved in several cuts; only the first reason is kept.
+    pub(crate) fn sort(&mut self) {
+        self.unresolved.sort_by_key(|open| (open.i, open.j));
+        self.unresolved.dedup_by_key(|open| (open.i, open.j));
     }
 }
 

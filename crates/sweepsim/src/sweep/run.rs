@@ -6,7 +6,7 @@ use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
 use crate::sweep::report::{Statistics, Sweep, UnresolvedDexel};
 use crate::sweep::schedule::{CHUNK, SweepJob};
-use crate::sweep::simulation::heights::HeightMap;
+use crate::sweep::simulation::heights::{Box3, HeightMap};
 use crate::sweep::simulation::runs::Runs;
 use crate::time::path_parts::PathPart;
 use sweepsim_dexel::{Dexels, Grid};
@@ -26,59 +26,88 @@ pub fn sweep(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Sweep, SweepError> {
-    sweep_near(tool, path, grid, options, monitor, None)
-}
-
-/// As [`sweep`], but only where the tool comes near this material: elsewhere, nothing is certain.
-pub(crate) fn sweep_near(
-    tool: &Tool,
-    path: &Path,
-    grid: &Grid,
-    options: &Options,
-    monitor: &dyn Monitor,
-    material: Option<&HeightMap>,
-) -> Result<Sweep, SweepError> {
     let extent = grid.min().into_iter().chain(grid.max());
     let plan = Plan::new(tool, path, grid.frame(), extent, options)?;
-    let mut job = plan.job(tool, grid, options, monitor);
-    let mut volume = Dexels::empty(*grid);
-    let mut statistics = Statistics {
-        moves: path.moves(),
-        ..Statistics::default()
-    };
-    let mut failed: Vec<UnresolvedDexel> = Vec::new();
-    // The paper sweeps each move separately.
-    let length = match options.boundary {
+    let job = plan.job((tool, plan.parts.len()), grid, options, monitor);
+    let mut found = Found::new(*grid);
+    let length = chunk_length(options);
+    for (number, chunk) in plan.parts.chunks(length).enumerate() {
+        found.add(&job, chunk)?;
+        monitor.advance(number * length + chunk.len(), plan.parts.len());
+    }
+    Ok(found.finish(path.moves()))
+}
+
+/// The number of segments that are counted together.
+fn chunk_length(options: &Options) -> usize {
+    match options.boundary {
         BoundaryOperator::Coverage => CHUNK,
+        // The paper sweeps each move separately.
         BoundaryOperator::Paper => 1,
-    };
-    let mut one = |job: &SweepJob, chunk: &[PathPart], done: usize| {
-        let harvest = job.harvest(chunk)?;
-        statistics.crossings += harvest.len() as u64;
-        statistics.boxes += harvest.statistics.boxes;
-        statistics.charts += harvest.statistics.charts;
-        job.count(chunk, harvest, &mut volume, &mut statistics, &mut failed)?;
-        monitor.advance(done, plan.parts.len());
-        Ok::<(), SweepError>(())
-    };
-    match material {
-        None => {
-            for (number, chunk) in plan.parts.chunks(length).enumerate() {
-                one(&job, chunk, number * length + chunk.len())?;
-            }
-        }
-        Some(material) => {
-            let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
-            for run in Runs::new(tool, &plan, (grid, material), length, closed) {
-                (job.mask, job.ceiling) = (run.mask, run.ceiling);
-                one(&job, &run.parts, run.done)?;
-            }
-            monitor.advance(plan.parts.len(), plan.parts.len());
+    }
+}
+
+/// What the parts of a plan sweep near material: elsewhere, nothing is certain. `boxes` are those of all parts, `members` the numbers of those over the tile.
+pub(crate) fn sweep_near(
+    (tool, plan): (&Tool, &Plan),
+    (boxes, members): (&[Box3], &[u32]),
+    (tile, material): (&Grid, &HeightMap),
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<Sweep, SweepError> {
+    let mut job = plan.job((tool, members.len()), tile, options, monitor);
+    let mut found = Found::new(*tile);
+    let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
+    let length = chunk_length(options);
+    for run in Runs::new((tool, plan), (boxes, members), (tile, material), (length, closed)) {
+        (job.mask, job.ceiling, job.beside) = (run.mask, run.ceiling, run.beside);
+        found.add(&job, &run.parts)?;
+        monitor.advance(run.done, members.len());
+    }
+    monitor.advance(members.len(), members.len());
+    Ok(found.finish(0))
+}
+
+/// What was swept so far.
+struct Found {
+    volume: Dexels,
+    statistics: Statistics,
+    failed: Vec<UnresolvedDexel>,
+}
+
+impl Found {
+    fn new(grid: Grid) -> Self {
+        Self {
+            volume: Dexels::empty(grid),
+            statistics: Statistics::default(),
+            failed: Vec::new(),
         }
     }
-    statistics.covered = volume.covered();
-    failed.sort_by_key(|u| (u.i, u.j));
-    failed.dedup_by_key(|u| (u.i, u.j));
-    statistics.unresolved = failed;
-    Ok(Sweep { volume, statistics })
+
+    fn add(&mut self, job: &SweepJob, chunk: &[PathPart]) -> Result<(), SweepError> {
+        let harvest = job.harvest(chunk)?;
+        self.statistics.crossings += harvest.len() as u64;
+        self.statistics.boxes += harvest.statistics.boxes;
+        self.statistics.charts += harvest.statistics.charts;
+        let Self {
+            volume,
+            statistics,
+            failed,
+        } = self;
+        job.count(chunk, harvest, volume, statistics, failed)
+    }
+
+    fn finish(self, moves: usize) -> Sweep {
+        let Self {
+            volume,
+            mut statistics,
+            mut failed,
+        } = self;
+        statistics.moves = moves;
+        statistics.covered = volume.covered();
+        failed.sort_by_key(|u| (u.i, u.j));
+        failed.dedup_by_key(|u| (u.i, u.j));
+        statistics.unresolved = failed;
+        Sweep { volume, statistics }
+    }
 }

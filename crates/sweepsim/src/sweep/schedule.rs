@@ -31,9 +31,10 @@ use sweepsim_solve::{Cause, Monitor};
 pub(crate) const CHUNK: usize = 256;
 
 impl Plan {
+    /// `parts`: the number of parts of which repairs may become necessary.
     pub(crate) fn job<'a>(
         &'a self,
-        tool: &'a Tool,
+        (tool, parts): (&'a Tool, usize),
         grid: &'a Grid,
         options: &Options,
         monitor: &'a dyn Monitor,
@@ -48,13 +49,14 @@ impl Plan {
             path: options.path_number,
             mask: None,
             ceiling: None,
+            beside: Vec::new(),
             size: Size {
                 spacing: grid.spacing(),
                 slack: self.tolerances.rounding(),
             },
             spaces: Arc::default(),
             lists: Arc::default(),
-            repairs: RepairBudget::new(self.parts.len()),
+            repairs: RepairBudget::new(parts),
             monitor,
         }
     }
@@ -73,6 +75,8 @@ pub(crate) struct SweepJob<'a> {
     pub mask: Option<Cow<'a, LineMask>>,
     /// A height above which crossings are not wanted.
     pub ceiling: Option<Ceiling>,
+    /// The parts of a chunk that meet no line; none if it is empty.
+    pub beside: Vec<bool>,
     pub size: Size,
     /// What repairs may cost.
     pub repairs: RepairBudget,
@@ -157,6 +161,9 @@ impl SweepJob<'_> {
                     for at in share.parts {
                         if self.monitor.cancelled() {
                             break;
+                        }
+                        if self.beside.get(at) == Some(&true) {
+                            continue;
                         }
                         search.part(at, space, &mut harvest);
                     }

@@ -173,7 +173,9 @@ impl<'a> MovingSolid<'a> {
             _ => Method::Charts,
         };
         let options = options.clone().method(method);
-        let mut job = self.plan.job(self.tool, grid, &options, monitor);
+        let mut job = self
+            .plan
+            .job((self.tool, self.plan.parts.len()), grid, &options, monitor);
         job.mask = Some(Cow::Borrowed(mask));
         job.spaces = Arc::clone(&self.spaces);
         let mut swept = SweptLines::default();

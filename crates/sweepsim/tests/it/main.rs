@@ -15,5 +15,6 @@ mod rays;
 mod sections;
 mod spline_profiles;
 mod surfaces;
+mod tiles;
 mod translations;
 mod verify;

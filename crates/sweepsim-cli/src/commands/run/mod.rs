@@ -1,6 +1,11 @@
-//! `simulate` and `sweep`: from a job to its output files.
+//! `simulate`, `sweep` and `verify`: from a job to its output files.
 
 mod envelope;
+mod files;
+mod merge;
+mod shard;
+
+pub(crate) use merge::merge;
 
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::commands::page::{self, PageSource};
@@ -9,26 +14,29 @@ use crate::commands::task::{Task, sweeping};
 use crate::commands::tri_surface;
 use crate::commands::verify::{setups, verified};
 use crate::frames::Frames;
-use crate::session::{Failure, JobRead, JobSession, decimated, phase, picture, print, read_job, words};
+use crate::session::{Failure, JobRead, JobSession, phase, print, read_job};
+use crate::shards::{Gathered, PieceFile};
 use crate::warnings;
 use std::io::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 use sweepsim::verify::Target;
 use sweepsim::{BoundaryOperator, Method, Monitor, Statistics, simulate, sweep_all};
-use sweepsim_dexel::{Dexels, Grid, Mesh, TriDexels};
-use sweepsim_formats::{
-    MoveSummary, Report, ReportedDexel, Verdict, write_dexels_binary, write_dexels_csv, write_moves_csv, write_ply,
-    write_tri_dexels,
-};
+use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_formats::{Job, MoveSummary, Report, ReportedDexel, Verdict, write_moves_csv};
 
 /// The result of a run.
 struct Outcome {
     dexels: Dexels,
-    statistics: Statistics,
+    crossings: u64,
+    repaired: usize,
+    unresolved: Vec<ReportedDexel>,
     volume_removed: Option<f64>,
     /// The number of uncertified dexels along x and y, of which the mesh is made.
     uncertified: usize,
+    /// What shards found along x and y.
+    aside: Vec<Gathered>,
     /// The target that the result was compared with.
     target: Option<Target>,
     /// What each move does, if asked for.
@@ -37,37 +45,67 @@ struct Outcome {
     picture: Option<Vec<u8>>,
 }
 
-/// Runs a job and writes its outputs.
+impl Outcome {
+    fn new(dexels: Dexels, statistics: &Statistics) -> Self {
+        let unresolved = statistics.unresolved.iter();
+        Self {
+            dexels,
+            crossings: statistics.crossings,
+            repaired: statistics.repaired,
+            unresolved: unresolved
+                .map(|dexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string()))
+                .collect(),
+            volume_removed: None,
+            uncertified: 0,
+            aside: Vec::new(),
+            target: None,
+            moves: Vec::new(),
+            picture: None,
+        }
+    }
+}
+
+/// Runs a job, or one shard of it, and writes its outputs.
 pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> Result<ExitCode, Failure> {
+    match options.shard {
+        Some(number) => shard::run(task, options, number),
+        None => whole(task, options, judging, None),
+    }
+}
+
+/// The pieces of all shards of a run, and its arguments.
+type Pieces = (Vec<(PathBuf, PieceFile)>, Vec<String>);
+
+/// The threads of a run.
+fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool, Failure> {
+    let mut builder = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = threads {
+        builder = builder.num_threads(usize::from(threads));
+    }
+    builder
+        .build()
+        .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))
+}
+
+/// Runs a job, or takes what its shards have computed, and writes its outputs.
+fn whole(
+    task: Task,
+    options: &RunOptions,
+    judging: &JudgeOptions,
+    pieces: Option<Pieces>,
+) -> Result<ExitCode, Failure> {
     let start = Instant::now();
     let mut report = Report::default();
     let read = phase(&mut report, "read", || read(options))?;
-    let asked = match (options.directions, options.only.contains(&Output::Tridexels)) {
-        (Some(Directions::Z), true) => {
-            let message = "--directions z: part.tridexels has dexels along x, y and z: expected --directions xyz";
-            return Err(Failure::message(message));
-        }
-        (_, true) => Some("--only tridexels"),
-        (Some(Directions::Xyz), _) => Some("--directions xyz"),
-        _ => None,
-    };
-    if let Some(asked) = asked {
-        tri_surface::check(&read.job).map_err(|what| Failure::message(format!("{asked}: expected {what}")))?;
-    }
+    check_directions(&read, options)?;
     if options.frames.is_some() && task == Task::Sweep {
         return Err(Failure::message("--frames: expected `simulate` or `verify`"));
     }
     let out = options.out.as_deref();
     let mut session = JobSession::new(&options.job, read, out, &options.only, options.quiet)?;
-    let mut builder = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = options.threads {
-        builder = builder.num_threads(usize::from(threads));
-    }
-    let pool = builder
-        .build()
-        .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))?;
+    let pool = pool(options.threads)?;
     let threads = pool.current_num_threads();
-    let outcome = pool.install(|| work(task, &mut session, options, judging, &mut report));
+    let outcome = pool.install(|| work(task, &mut session, (options, judging), pieces, &mut report));
     let outcome = outcome.map_err(|failure| {
         session.progress.finish();
         failure.after(&session.outputs)
@@ -105,7 +143,7 @@ pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> R
         let total = start.elapsed().as_secs_f64();
         summary(task, &session, &report, threads, total).print()?;
     }
-    let certified = outcome.statistics.unresolved.is_empty() && outcome.uncertified == 0;
+    let certified = outcome.unresolved.is_empty() && outcome.uncertified == 0;
     Ok(if report.verdict == Some(Verdict::Fail) {
         ExitCode::FAILURE
     } else if certified {
@@ -128,18 +166,35 @@ fn read(options: &RunOptions) -> Result<JobRead, Failure> {
     Ok(read)
 }
 
+/// The directions that were asked for must be possible.
+fn check_directions(read: &JobRead, options: &RunOptions) -> Result<(), Failure> {
+    let asked = match (options.directions, options.only.contains(&Output::Tridexels)) {
+        (Some(Directions::Z), true) => {
+            let message = "--directions z: part.tridexels has dexels along x, y and z: expected --directions xyz";
+            return Err(Failure::message(message));
+        }
+        (_, true) => "--only tridexels",
+        (Some(Directions::Xyz), _) => "--directions xyz",
+        _ => return Ok(()),
+    };
+    tri_surface::check(&read.job).map_err(|what| Failure::message(format!("{asked}: expected {what}")))
+}
+
 /// Computes the result, and writes everything but the report.
 fn work(
     task: Task,
     session: &mut JobSession,
-    options: &RunOptions,
-    judging: &JudgeOptions,
+    (options, judging): (&RunOptions, &JudgeOptions),
+    pieces: Option<Pieces>,
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
-    let mut outcome = compute(task, session, options, judging, report)?;
+    let mut outcome = match pieces {
+        Some(pieces) => merge::gathered(task, session, options, pieces, report)?,
+        None => compute(task, session, options, judging, report)?,
+    };
     session.progress.check()?;
     describe(task, report, session, options, &outcome);
-    write_dexels(&outcome, session, report)?;
+    files::write_dexels(&outcome, session, report)?;
     if judging.moves {
         session
             .outputs
@@ -147,13 +202,13 @@ fn work(
     }
     let wants = |output| session.outputs.wants(output);
     if wants(Output::Mesh) || wants(Output::Picture) || wants(Output::Tridexels) {
-        let solid = along_three_axes(task, session, options, &mut outcome, report)?;
+        let solid = files::solid(task, session, options, &mut outcome, report)?;
         if let (Some(solid), true) = (&solid, session.outputs.wants(Output::Tridexels)) {
-            write_tri(solid, session, report)?;
+            files::write_tri(solid, session, report)?;
         }
         if session.outputs.wants(Output::Mesh) || session.outputs.wants(Output::Picture) {
-            let mesh = mesh(solid.as_ref(), session, &outcome, report)?;
-            outcome.picture = write_mesh(options, &mesh, session, report)?;
+            let mesh = files::mesh(solid.as_ref(), session, &outcome, report)?;
+            outcome.picture = files::write_mesh(options, &mesh, session, report)?;
         }
     }
     if let Some(count) = options.frames {
@@ -191,24 +246,17 @@ fn compute(
             let done = done.map_err(failed)?;
             Ok(Outcome {
                 volume_removed: Some(before - done.remaining.volume()),
-                dexels: done.remaining,
-                statistics: done.statistics,
-                uncertified: 0,
-                target: None,
-                moves: Vec::new(),
-                picture: None,
+                ..Outcome::new(done.remaining, &done.statistics)
             })
         }
         Task::Verify => {
             let done = verified(session, options, judging, report)?;
             Ok(Outcome {
-                dexels: done.remaining,
-                statistics: done.statistics,
                 volume_removed: Some(done.volume_removed),
                 uncertified: done.uncertified,
                 target: done.target,
                 moves: done.moves,
-                picture: None,
+                ..Outcome::new(done.remaining, &done.statistics)
             })
         }
         Task::Sweep => {
@@ -217,15 +265,7 @@ fn compute(
                 sweep_all(&cuts, &job.grid, &sweeping, progress as &dyn Monitor)
             });
             let done = done.map_err(failed)?;
-            Ok(Outcome {
-                dexels: done.volume,
-                statistics: done.statistics,
-                volume_removed: None,
-                uncertified: 0,
-                target: None,
-                moves: Vec::new(),
-                picture: None,
-            })
+            Ok(Outcome::new(done.volume, &done.statistics))
         }
     }
 }
@@ -238,13 +278,10 @@ fn describe(task: Task, report: &mut Report, session: &JobSession, options: &Run
     report.cells = job.grid.cells();
     report.moves = job.moves();
     report.rapid_moves = job.paths.iter().map(sweepsim_formats::JobPath::rapid_moves).sum();
-    report.crossings = outcome.statistics.crossings;
-    let unresolved = outcome.statistics.unresolved.iter();
+    report.crossings = outcome.crossings;
     report.dexels.covered = outcome.dexels.covered();
-    report.dexels.repaired = outcome.statistics.repaired;
-    report.dexels.unresolved = unresolved
-        .map(|dexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string()))
-        .collect();
+    report.dexels.repaired = outcome.repaired;
+    report.dexels.unresolved.clone_from(&outcome.unresolved);
     report.volume_removed = outcome.volume_removed;
     report.volume = Some(outcome.dexels.volume());
     report.setups = report.setups.take().or_else(|| setups(job));
@@ -262,112 +299,20 @@ fn describe(task: Task, report: &mut Report, session: &JobSession, options: &Run
     }
 }
 
-fn write_dexels(outcome: &Outcome, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
-    let JobSession { outputs, progress, .. } = session;
-    if outputs.wants(Output::Dexels) {
-        progress.phase("dexels");
-        phase(report, "dexels", || {
-            outputs.write("dexels.csv", |file| write_dexels_csv(&outcome.dexels, file))
-        })?;
-    }
-    if outputs.wants(Output::Binary) {
-        progress.phase("dexels");
-        phase(report, "dexels", || {
-            outputs.write("part.dexels", |file| write_dexels_binary(&outcome.dexels, file))
-        })?;
-    }
-    Ok(())
-}
-
-/// Whether the result is made along x and y, too. A job that has no such dexels, or far too many, says so.
-fn wants_three_axes(session: &JobSession, options: &RunOptions, outcome: &Outcome, report: &mut Report) -> bool {
-    if session.outputs.wants(Output::Tridexels) {
-        return true;
+/// Whether the result is made along x and y, too; why not, if that was not asked for: a job has no such dexels, or far too many. `heights`: of what is made.
+fn along_three_axes(job: &Job, options: &RunOptions, heights: Option<[f64; 2]>) -> Result<bool, String> {
+    if options.only.contains(&Output::Tridexels) {
+        return Ok(true);
     }
     if let Some(directions) = options.directions {
-        return directions == Directions::Xyz;
+        return Ok(directions == Directions::Xyz);
     }
-    let no = match tri_surface::check(&session.job) {
+    let no = match tri_surface::check(job) {
         Err(what) => format!("x and y would need {what}"),
-        Ok(()) if tri_surface::too_many(&outcome.dexels) => {
+        Ok(()) if tri_surface::too_many(&job.grid, heights) => {
             "the part is so much taller than the distance of its dexels that those along x and y must be asked for: --directions xyz".to_owned()
         }
-        Ok(()) => return true,
+        Ok(()) => return Ok(true),
     };
-    report
-        .notes
-        .push(format!("mesh and picture are made of dexels along z only: {no}"));
-    false
-}
-
-/// The result along three axes, if it is wanted.
-fn along_three_axes(
-    task: Task,
-    session: &JobSession,
-    options: &RunOptions,
-    outcome: &mut Outcome,
-    report: &mut Report,
-) -> Result<Option<TriDexels>, Failure> {
-    if !wants_three_axes(session, options, outcome, report) {
-        return Ok(None);
-    }
-    let made = tri_surface::solid(task, session, options, &outcome.dexels, report)?;
-    outcome.uncertified += made.uncertified;
-    if made.uncertified > 0 {
-        let lines = words::counted(made.uncertified as u64, "dexel");
-        report.notes.push(format!(
-            "{lines} along x or y could not be certified: the mesh may be wrong there"
-        ));
-    }
-    Ok(Some(made.solid))
-}
-
-fn write_tri(solid: &TriDexels, session: &mut JobSession, report: &mut Report) -> Result<(), Failure> {
-    let JobSession { outputs, progress, .. } = session;
-    progress.phase("dexels");
-    phase(report, "dexels", || {
-        outputs.write("part.tridexels", |file| write_tri_dexels(solid, file))
-    })
-}
-
-/// The surface of the result.
-fn mesh(
-    solid: Option<&TriDexels>,
-    session: &JobSession,
-    outcome: &Outcome,
-    report: &mut Report,
-) -> Result<Mesh, Failure> {
-    if let Some(solid) = solid {
-        return tri_surface::surface(solid, session, report);
-    }
-    session.progress.phase("mesh");
-    Ok(phase(report, "mesh", || outcome.dexels.surface())?)
-}
-
-/// Writes the mesh and the picture, and returns the latter.
-fn write_mesh(
-    options: &RunOptions,
-    mesh: &Mesh,
-    session: &mut JobSession,
-    report: &mut Report,
-) -> Result<Option<Vec<u8>>, Failure> {
-    let JobSession { outputs, progress, .. } = session;
-    if outputs.wants(Output::Mesh) {
-        phase(report, "mesh", || {
-            let written = decimated(mesh, options.decimate)?;
-            outputs.write("part.ply", |file| write_ply(&written, file))
-        })?;
-    }
-    progress.check()?;
-    if !outputs.wants(Output::Picture) {
-        return Ok(None);
-    }
-    progress.phase_of_shares("picture");
-    let (png, missed) = phase(report, "picture", || {
-        let (png, missed) = picture(&options.view, mesh, None, &|share| progress.share(share))?;
-        outputs.write("part.png", |file| file.write_all(&png))?;
-        Ok::<_, Failure>((png, missed))
-    })?;
-    report.warnings.extend(missed);
-    Ok(Some(png))
+    Err(format!("mesh and picture are made of dexels along z only: {no}"))
 }

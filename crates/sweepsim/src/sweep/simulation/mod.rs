@@ -4,8 +4,10 @@ pub(crate) mod heights;
 pub(crate) mod runs;
 mod simulate;
 mod source_at;
+mod tiles;
 mod tri;
 
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use source_at::SurfaceSource;
+pub use tiles::simulate_tiles;
 pub use tri::{TriSimulation, simulate_tri};

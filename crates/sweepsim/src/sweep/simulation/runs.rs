@@ -8,6 +8,7 @@ use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
+use rayon::prelude::*;
 use std::borrow::Cow;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
@@ -15,7 +16,9 @@ use sweepsim_motion::Tool;
 /// Consecutive parts of a path, and where they meet material.
 pub(crate) struct Run {
     pub parts: Vec<PathPart>,
-    /// How many parts of the path lie before its end.
+    /// Which of them are beside the tile; none if it is empty.
+    pub beside: Vec<bool>,
+    /// How many parts over the tile lie before its end.
     pub done: usize,
     /// `None` if all lines near have some.
     pub mask: Option<Cow<'static, LineMask>>,
@@ -23,15 +26,34 @@ pub(crate) struct Run {
     pub ceiling: Option<Ceiling>,
 }
 
+/// The most parts beside a tile that are taken along, so that a run does not end where the path leaves the tile for a moment: there, it would need two caps.
+const BRIDGE: usize = 64;
+
+/// Boxes around all that a tool sweeps in each part of a path.
+pub(crate) fn boxes(tool: &Tool, plan: &Plan) -> Vec<Box3> {
+    let cylinder = tool.bounding_cylinder();
+    let margin = margin(plan);
+    let parts = plan.parts.par_iter();
+    parts.map(|part| swept_box(&part.segment, cylinder, margin)).collect()
+}
+
+/// Lines and tips are displaced by less than this.
+fn margin(plan: &Plan) -> f64 {
+    plan.tolerances.outside() + plan.tolerances.rounding()
+}
+
 /// Divides the path into runs of at most `length` parts near material.
 pub(crate) struct Runs<'a> {
     plan: &'a Plan,
     grid: &'a Grid,
     material: &'a HeightMap,
-    boxes: Vec<Box3>,
+    boxes: &'a [Box3],
+    /// The numbers of the parts over the grid.
+    members: &'a [u32],
     length: usize,
     /// Whether ceilings are wanted.
     closed: bool,
+    top: f64,
     /// A little above the highest material, less the height of the lowest point of the tool above its tip.
     over: f64,
     at: usize,
@@ -39,32 +61,39 @@ pub(crate) struct Runs<'a> {
 
 impl<'a> Runs<'a> {
     pub fn new(
-        tool: &Tool,
-        plan: &'a Plan,
+        (tool, plan): (&Tool, &'a Plan),
+        (boxes, members): (&'a [Box3], &'a [u32]),
         (grid, material): (&'a Grid, &'a HeightMap),
-        length: usize,
-        closed: bool,
+        (length, closed): (usize, bool),
     ) -> Self {
-        let cylinder = tool.bounding_cylinder();
-        // Lines and tips are displaced by less than this.
-        let margin = plan.tolerances.outside() + plan.tolerances.rounding();
-        let boxes = plan.parts.iter().map(|part| swept_box(&part.segment, cylinder, margin));
+        let (cylinder, top) = (tool.bounding_cylinder(), material.top());
         Self {
-            boxes: boxes.collect(),
+            boxes,
+            members,
             plan,
             grid,
             material,
             length,
             closed,
-            over: material.top() - cylinder.z[0] + margin.max(GAP * plan.cutter.reach),
+            top,
+            over: top - cylinder.z[0] + margin(plan).max(GAP * plan.cutter.reach),
             at: 0,
         }
     }
 
     /// Whether any material is near a part.
-    fn is_near(&self, at: usize) -> bool {
-        let own = &self.boxes[at];
+    fn is_near(&self, number: usize) -> bool {
+        let own = &self.boxes[number];
         window(self.grid, own).is_some_and(|window| !self.material.visit(window, own[2], &mut |_| false))
+    }
+
+    /// Whether the parts between two others may be taken along: few that are beside the tile, and no higher than material.
+    fn bridges(&self, from: usize, to: usize) -> bool {
+        let between = from + 1..to;
+        between.is_empty()
+            || (between.len() <= BRIDGE
+                && self.grid.whole() != *self.grid
+                && self.boxes[between].iter().all(|own| own[2][0] <= self.top))
     }
 
     /// A part without the beginning or the end during which the tool is above all material; `None` if that is all of it.
@@ -95,10 +124,10 @@ impl<'a> Runs<'a> {
     }
 
     /// The lines with material near parts with these boxes.
-    fn run(&self, parts: Vec<PathPart>, boxes: &[Box3]) -> Option<Run> {
-        let hull = |a: Box3, b: &Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
-        let (first, rest) = boxes.split_first()?;
-        let whole: Box3 = rest.iter().fold(*first, hull);
+    fn run(&self, parts: Vec<PathPart>, beside: Vec<bool>, members: &[u32]) -> Option<Run> {
+        let hull = |a: Box3, b: Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
+        let boxes = members.iter().map(|number| self.boxes[*number as usize]);
+        let whole: Box3 = boxes.reduce(hull)?;
         let [is, js] = window(self.grid, &whole)?;
         let mut lines = Vec::new();
         self.material.visit([is, js], whole[2], &mut |line| {
@@ -106,8 +135,7 @@ impl<'a> Runs<'a> {
             true
         });
         let outline = self.plan.cutter.outline.as_ref().filter(|_| self.closed);
-        let ceiling =
-            outline.and_then(|outline| Ceiling::new(outline, self.plan.cutter.reach, &parts, self.material.top()));
+        let ceiling = outline.and_then(|outline| Ceiling::new(outline, self.plan.cutter.reach, &parts, self.top));
         let all = (is.1 + 1 - is.0) * (js.1 + 1 - js.0);
         let mask = if lines.len() == all {
             None
@@ -116,6 +144,7 @@ impl<'a> Runs<'a> {
         };
         Some(Run {
             parts,
+            beside,
             done: self.at,
             mask,
             ceiling,
@@ -128,11 +157,13 @@ impl Iterator for Runs<'_> {
 
     fn next(&mut self) -> Option<Run> {
         loop {
-            let mut parts = Vec::new();
+            let (mut parts, mut beside) = (Vec::new(), Vec::new());
             let mut first = self.at;
-            while self.at < self.boxes.len() && parts.len() < self.length {
-                let near = if self.is_near(self.at) {
-                    self.trimmed(self.at)
+            while let Some(number) = self.members.get(self.at).map(|number| *number as usize)
+                && parts.len() < self.length
+            {
+                let near = if self.is_near(number) {
+                    self.trimmed(number)
                 } else {
                     None
                 };
@@ -145,8 +176,17 @@ impl Iterator for Runs<'_> {
                     }
                     break;
                 };
-                if late && !parts.is_empty() {
-                    break;
+                if !parts.is_empty() {
+                    let last = self.members[self.at - 1] as usize;
+                    let room = parts.len() + (number - last) <= self.length;
+                    if late || !room || !self.bridges(last, number) {
+                        break;
+                    }
+                    if number > last + 1 {
+                        beside.resize(parts.len(), false);
+                        parts.extend_from_slice(&self.plan.parts[last + 1..number]);
+                        beside.resize(parts.len(), true);
+                    }
                 }
                 parts.push(part);
                 self.at += 1;
@@ -157,7 +197,7 @@ impl Iterator for Runs<'_> {
             if parts.is_empty() {
                 return None;
             }
-            if let Some(run) = self.run(parts, &self.boxes[first..self.at]) {
+            if let Some(run) = self.run(parts, beside, &self.members[first..self.at]) {
                 return Some(run);
             }
         }

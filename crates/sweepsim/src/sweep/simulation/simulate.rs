@@ -1,10 +1,11 @@
 //! Several cuts: removed from a stock, or swept together.
 
-use super::heights::HeightMap;
+use super::heights::Box3;
+use super::tiles::simulate_tiles;
 use crate::error::SweepError;
 use crate::sweep::options::Options;
 use crate::sweep::report::{Statistics, Sweep};
-use crate::sweep::run::sweep_near;
+use crate::sweep::run::sweep;
 use crate::time::swept_box::swept_box;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
@@ -46,13 +47,26 @@ impl<'a> Cut<'a> {
     /// ```
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        hull((0..self.path.moves()).flat_map(|number| self.boxes(number)))
+    }
+
+    /// As [`bounds`](Self::bounds), of what is swept in one move. `None` beyond the last.
+    #[must_use]
+    pub fn bounds_of(&self, number: usize) -> Option<[[f64; 3]; 2]> {
+        (number < self.path.moves()).then(|| hull(self.boxes(number)))?
+    }
+
+    fn boxes(&self, number: usize) -> impl Iterator<Item = Box3> {
         let cylinder = self.tool.bounding_cylinder();
         let deviation = BOX_MARGIN * self.tool.reach();
-        let moves = (0..self.path.moves()).flat_map(|number| self.path.segments(number, self.tool.reach(), deviation));
-        let boxes = moves.map(|segment| swept_box(&segment, cylinder, deviation));
-        let whole = boxes.reduce(|a, b| [0, 1, 2].map(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]))?;
-        Some([0, 1].map(|end| whole.map(|range| range[end])))
+        let segments = self.path.segments(number, self.tool.reach(), deviation).into_iter();
+        segments.map(move |segment| swept_box(&segment, cylinder, deviation))
     }
+}
+
+fn hull(boxes: impl Iterator<Item = Box3>) -> Option<[[f64; 3]; 2]> {
+    let whole = boxes.reduce(|a, b| [0, 1, 2].map(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]))?;
+    Some([0, 1].map(|end| whole.map(|range| range[end])))
 }
 
 /// What remains of a stock.
@@ -66,7 +80,7 @@ pub struct Simulation {
 }
 
 /// Monitors one of several cuts: adds the moves of the previous cuts to its progress.
-struct Share<'a> {
+pub(super) struct Share<'a> {
     monitor: &'a dyn Monitor,
     before: usize,
     moves: usize,
@@ -84,31 +98,14 @@ impl Monitor for Share<'_> {
     }
 }
 
-/// One of several cuts.
-struct SweepCut<'a> {
-    cut: &'a Cut<'a>,
-    grid: &'a Grid,
-    options: Options,
-    share: Share<'a>,
-}
-
-impl SweepCut<'_> {
-    fn near(&self, material: Option<&HeightMap>) -> Result<Sweep, SweepError> {
-        let Cut { tool, path } = self.cut;
-        sweep_near(tool, path, self.grid, &self.options, &self.share, material)
-    }
-}
-
-/// Sweeps the cuts one after the other; the number of a cut becomes the path number of its sources.
-fn each(
-    cuts: &[Cut],
-    grid: &Grid,
+/// Calls `take` with the cuts one after the other, their options and a monitor for each; the number of a cut becomes the path number of its sources.
+pub(super) fn each<'a>(
+    cuts: &'a [Cut<'a>],
     options: &Options,
     monitor: &dyn Monitor,
-    mut take: impl FnMut(&SweepCut) -> Result<Statistics, SweepError>,
-) -> Result<Statistics, SweepError> {
+    mut take: impl FnMut(&'a Cut<'a>, &Options, &Share) -> Result<(), SweepError>,
+) -> Result<(), SweepError> {
     let total = cuts.iter().map(|cut| cut.path.moves()).sum();
-    let mut statistics = Statistics::default();
     let mut before = 0;
     for (number, cut) in cuts.iter().enumerate() {
         let moves = cut.path.moves();
@@ -119,24 +116,16 @@ fn each(
             total,
         };
         let options = options.clone().path_number(u32::try_from(number).unwrap_or(u32::MAX));
-        let one = SweepCut {
-            cut,
-            grid,
-            options,
-            share,
-        };
-        statistics.merge(&take(&one)?);
+        take(cut, &options, &share)?;
         before += moves;
     }
-    // A dexel may stay unresolved in several cuts; only the first reason is kept.
-    statistics.unresolved.sort_by_key(|open| (open.i, open.j));
-    statistics.unresolved.dedup_by_key(|open| (open.i, open.j));
-    Ok(statistics)
+    Ok(())
 }
 
 /// Removes the volumes that the cuts sweep, one after the other, from `stock`.
 ///
-/// Only what comes near material is computed, and counted in the statistics. [`Options::path_number`] is set to the number of each cut.
+/// Only what comes near material is computed, and counted in the statistics. [`Options::path_number`] is set to the number of each cut. Grids larger than
+/// a [tile](Options::tile) are computed tile by tile, as by [`simulate_tiles`].
 ///
 /// # Errors
 /// Those of [`sweep`](crate::sweep).
@@ -163,16 +152,22 @@ pub fn simulate(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Simulation, SweepError> {
-    let mut remaining = stock;
-    let grid = *remaining.grid();
-    let mut statistics = each(cuts, &grid, options, monitor, |cut| {
-        let swept = cut.near(Some(&HeightMap::new(&remaining)))?;
-        remaining
-            .remove_all(&swept.volume, options.tolerance)
-            .expect("all on one grid");
-        Ok(swept.statistics)
-    })?;
+    let grid = *stock.grid();
+    let tiles = grid.tiles(options.tile);
+    let stock = match &tiles[..] {
+        [_] => vec![stock],
+        several => several.iter().filter_map(|tile| stock.tile(tile)).collect(),
+    };
+    let mut remaining = Vec::with_capacity(tiles.len());
+    let mut statistics = Statistics::default();
+    for tile in simulate_tiles(stock, cuts, options, monitor)? {
+        statistics.merge(&tile.statistics);
+        remaining.push(tile.remaining);
+    }
+    let remaining = Dexels::from_tiles(grid, remaining).expect("the tiles of the grid");
+    statistics.moves = cuts.iter().map(|cut| cut.path.moves()).sum();
     statistics.covered = remaining.covered();
+    statistics.sort();
     Ok(Simulation { remaining, statistics })
 }
 
@@ -182,12 +177,15 @@ pub fn simulate(
 /// Those of [`sweep`](crate::sweep).
 pub fn sweep_all(cuts: &[Cut], grid: &Grid, options: &Options, monitor: &dyn Monitor) -> Result<Sweep, SweepError> {
     let mut union = Dexels::empty(*grid);
-    let mut statistics = each(cuts, grid, options, monitor, |cut| {
-        let swept = cut.near(None)?;
+    let mut statistics = Statistics::default();
+    each(cuts, options, monitor, |cut, options, share| {
+        let swept = sweep(cut.tool, cut.path, grid, options, share)?;
         union.unite_all(&swept.volume).expect("all on one grid");
-        Ok(swept.statistics)
+        statistics.merge(&swept.statistics);
+        Ok(())
     })?;
     statistics.covered = union.covered();
+    statistics.sort();
     Ok(Sweep {
         volume: union,
         statistics,

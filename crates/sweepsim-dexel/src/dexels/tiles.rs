@@ -1,0 +1,161 @@
+//! Dexels in tiles: a grid divided into rectangles of lines, each with dexels of its own.
+
+use super::{Dexels, GridMismatch};
+use crate::grid::Grid;
+use thiserror::Error;
+
+/// Why tiles do not make up a grid.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+#[non_exhaustive]
+pub enum TilesError {
+    /// The grid of a set of dexels is no tile of the whole grid.
+    #[error("the dexels from column {}, row {} on belong to another grid", .first[0], .first[1])]
+    Foreign {
+        /// Their first column and row.
+        first: [usize; 2],
+    },
+    /// Two tiles have this line in common.
+    #[error("two tiles hold the dexel of column {i}, row {j}")]
+    Doubled {
+        /// Column in the whole grid.
+        i: usize,
+        /// Row in the whole grid.
+        j: usize,
+    },
+    /// No tile has this line.
+    #[error("no tile holds the dexel of column {i}, row {j}")]
+    Missing {
+        /// Column in the whole grid.
+        i: usize,
+        /// Row in the whole grid.
+        j: usize,
+    },
+}
+
+impl Grid {
+    /// Divides the grid into tiles of about equal size with at most `most` columns and rows: sorted by column, then row.
+    ///
+    /// ```
+    /// use sweepsim_dexel::Grid;
+    /// let grid = Grid::new([0.0, 0.0], [5.0, 3.0], [5, 3])?;
+    /// let tiles = grid.tiles(2);
+    /// assert_eq!(tiles.iter().map(Grid::cells).collect::<Vec<_>>(), [[1, 1], [1, 2], [2, 1], [2, 2], [2, 1], [2, 2]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn tiles(&self, most: usize) -> Vec<Self> {
+        let ranges = self.cells().map(|cells| {
+            let parts = cells.div_ceil(most.max(1));
+            let cut = move |n: usize| (n as u128 * cells as u128 / parts as u128) as usize;
+            (0..parts).map(move |n| cut(n)..cut(n + 1))
+        });
+        let [columns, rows] = ranges;
+        columns
+            .flat_map(|is| rows.clone().filter_map(move |js| self.tile(is.clone(), js)))
+            .collect()
+    }
+}
+
+impl Dexels {
+    /// The lines of a tile of this grid (or of the grid of which this is a tile). `None` if it has others.
+    #[must_use]
+    pub fn tile(&self, tile: &Grid) -> Option<Self> {
+        if *tile == self.grid {
+            return Some(self.clone());
+        }
+        let ([i0, j0], [i1, j1]) = (self.grid.first(), tile.first());
+        let (i0, j0) = (i1.checked_sub(i0)?, j1.checked_sub(j0)?);
+        let [columns, rows] = tile.cells();
+        if self.grid.tile(i0..i0 + columns, j0..j0 + rows)? != *tile {
+            return None;
+        }
+        Some(Self::filled(*tile, |index, line| {
+            let (i, j) = tile.place(index);
+            line.extend(self.intervals(i0 + i, j0 + j));
+        }))
+    }
+
+    /// The same lines on another grid with as many columns and rows: nothing is computed anew.
+    ///
+    /// # Errors
+    /// [`GridMismatch`]: the numbers of columns or rows differ.
+    pub fn on(self, grid: Grid) -> Result<Self, GridMismatch> {
+        if grid.cells() == self.grid.cells() {
+            Ok(Self { grid, ..self })
+        } else {
+            Err(GridMismatch)
+        }
+    }
+
+    /// Joins tiles that make up `grid`, in any order.
+    ///
+    /// The result depends only on the lines, not on the division, but for the last bits of the times of sources
+    /// (see [`Dexels`]), which may be rounded twice.
+    ///
+    /// # Errors
+    /// [`TilesError`]: a line is missing or comes twice, or a tile belongs to another grid.
+    ///
+    /// ```
+    /// use sweepsim_dexel::{Dexels, Grid, Stock};
+    /// let grid = Grid::new([0.0, 0.0], [5.0, 5.0], [50, 40])?;
+    /// let ball = Stock::Ball { centre: [2.0, 3.0, 1.0], radius: 1.9 };
+    /// let tiles = grid.tiles(16).iter().map(|tile| ball.dexels(tile)).collect::<Result<Vec<_>, _>>()?;
+    /// assert_eq!(Dexels::from_tiles(grid, tiles)?, ball.dexels(&grid)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_tiles(grid: Grid, mut tiles: Vec<Self>) -> Result<Self, TilesError> {
+        if let [only] = &tiles[..]
+            && only.grid == grid
+        {
+            return Ok(tiles.remove(0));
+        }
+        let [columns, rows] = grid.cells();
+        let [i0, j0] = grid.first();
+        // The tiles that hold each column, sorted by their rows.
+        let mut of_column: Vec<Vec<u32>> = vec![Vec::new(); columns];
+        tiles.sort_by_key(|tile| tile.grid.first());
+        for (number, tile) in (0_u32..).zip(&tiles) {
+            let first = tile.grid.first();
+            let foreign = TilesError::Foreign { first };
+            let [i, j] = [first[0].checked_sub(i0), first[1].checked_sub(j0)];
+            let (Some(i), Some(j)) = (i, j) else {
+                return Err(foreign);
+            };
+            let [m, n] = tile.grid.cells();
+            if grid.tile(i..i + m, j..j + n) != Some(tile.grid) {
+                return Err(foreign);
+            }
+            of_column[i..i + m].iter_mut().for_each(|list| list.push(number));
+        }
+        let from = |number: &u32| tiles[*number as usize].grid.first()[1] - j0;
+        for (i, list) in of_column.iter_mut().enumerate() {
+            list.sort_by_key(from);
+            let mut next = 0;
+            for number in &*list {
+                let first = from(number);
+                let (i, j) = (i + i0, first.min(next) + j0);
+                if first < next {
+                    return Err(TilesError::Doubled { i, j: first + j0 });
+                }
+                if first > next {
+                    return Err(TilesError::Missing { i, j });
+                }
+                next = first + tiles[*number as usize].grid.cells()[1];
+            }
+            if next < rows {
+                return Err(TilesError::Missing {
+                    i: i + i0,
+                    j: next + j0,
+                });
+            }
+        }
+        Ok(Self::filled(grid, |index, line| {
+            let (i, j) = grid.place(index);
+            let list = &of_column[i];
+            let number = list[list.partition_point(|number| from(number) <= j) - 1];
+            let tile = &tiles[number as usize];
+            let [first_i, first_j] = tile.grid.first();
+            line.extend(tile.intervals(i + i0 - first_i, j + j0 - first_j));
+        }))
+    }
+}
