@@ -2,6 +2,7 @@
 
 mod bench;
 mod browser;
+mod cluster;
 mod generate;
 mod others;
 mod pictures;
@@ -100,6 +101,12 @@ enum Command {
         #[arg(long)]
         screenshots: bool,
     },
+    /// Runs a job in shards on a Slurm of one node, as docs/cluster.md describes it: one task is killed on the way, and the result compared with one run. Needs
+    /// Debian's packages slurmctld, slurmd, slurm-client and munge, and root.
+    Cluster,
+    /// Measures single shards of large runs, up to 10,000 x 10,000 dexels and 10,000,000 moves, one after the other: takes half an hour, 8 GiB of memory and 2 GB in the target
+    /// folder. Plots them in docs/pictures/shards.svg.
+    Shards,
     /// Runs .ci/run, which must pass before a change is integrated.
     Ci,
 }
@@ -184,6 +191,9 @@ fn main() -> ExitCode {
         Command::Slow { filter } => suites::slow(filter.as_deref()),
         Command::Standalone { crates } => standalone::run(&crates),
         Command::Browser { screenshots } => browser::run(screenshots),
+        Command::Cluster => cluster::run(),
+        Command::Shards if cfg!(debug_assertions) => in_release(),
+        Command::Shards => cluster::measure(),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())

@@ -51,7 +51,7 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// Only the marked lines, of which there is at least one in these columns and rows.
+    /// Only the marked lines; the lattice is [empty](Self::is_empty) if their window is beside it.
     pub fn masked(self, mask: Option<&'a LineMask>) -> Self {
         let Some(marked) = mask else { return self };
         let within = |own: [usize; 2], window: [usize; 2]| [own[0].max(window[0]), own[1].min(window[1])];
@@ -61,6 +61,11 @@ impl<'a> Lattice<'a> {
             mask,
             ..self
         }
+    }
+
+    /// Whether there is no line.
+    pub fn is_empty(&self) -> bool {
+        self.i[0] > self.i[1] || self.j[0] > self.j[1]
     }
 
     /// The number of lines, or a little more if some of them are not asked for.

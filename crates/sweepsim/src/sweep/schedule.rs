@@ -147,6 +147,9 @@ impl SweepJob<'_> {
             .into_par_iter()
             .map(|share| {
                 let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask.as_deref());
+                if lines.is_empty() {
+                    return Harvest::default();
+                }
                 let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Charts);
                 let search = Search {
                     outline,

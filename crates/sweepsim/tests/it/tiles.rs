@@ -86,6 +86,31 @@ proptest! {
     }
 }
 
+/// Between two posts there is no material: some methods work column by column.
+#[test]
+fn columns_without_material_are_left_out_by_every_method() {
+    let post = |x: f64| Stock::Block {
+        min: [x, -3.0, 0.0],
+        max: [x + 2.0, 3.0, 5.0],
+    };
+    let grid = Grid::new([-8.0, -4.0], [8.0, 4.0], [32, 16]).unwrap();
+    let stock = Stock::Union(vec![post(-6.0), post(2.0)]).dexels(&grid).unwrap();
+    let at = |x: f64, y: f64| Pose::new([x, y, 3.0], [0.2, 0.1, 1.0]).unwrap();
+    let path = Path::new(vec![at(-7.0, -1.0), at(7.0, 1.0)]).unwrap();
+    let tool = Tool::ball(1.5, 12.0).unwrap();
+    let run = |method| {
+        let options = Options::new(TOLERANCE).method(method);
+        simulate(stock.clone(), &[Cut::new(&tool, &path)], &options, &())
+            .unwrap()
+            .remaining
+    };
+    let charts = run(Method::Charts);
+    assert!(stock.volume() - charts.volume() > 10.0);
+    for method in [Method::Planes, Method::Lines, Method::Surface, Method::General] {
+        assert!((run(method).volume() - charts.volume()).abs() < 1e-3, "{method}");
+    }
+}
+
 #[test]
 fn tiles_of_a_grid_are_joined_only_if_they_are_all_there() {
     let grid = Grid::new([0.0; 2], [5.0, 4.0], [50, 40]).unwrap();

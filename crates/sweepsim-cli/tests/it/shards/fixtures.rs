@@ -42,7 +42,7 @@ fn every_fixture_job_is_the_same_in_shards() {
     assert!(names.len() >= 7);
     for name in names {
         // Tiles so small that each of 64 shards has some.
-        let more = ["--tile", "24", "--size", "400x300", "--frames", "0"];
+        let more = ["--tile", "24", "--size", "400x300", "--moments", "0"];
         compare(&name, &more, &[1, 2, 7, 64]);
     }
 }

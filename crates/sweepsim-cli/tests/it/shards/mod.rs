@@ -20,7 +20,7 @@ const JOB: &str = r#"Job(
 )"#;
 
 /// Small enough to be drawn soon.
-const SMALL: [&str; 6] = ["--tile", "8", "--size", "64x48", "--frames", "0"];
+const SMALL: [&str; 6] = ["--tile", "8", "--size", "64x48", "--moments", "0"];
 const OUTPUTS: &str = "dexels,mesh,picture,report,binary";
 
 /// What one run leaves in `whole`, and what shards leave in `merged`: the same, but for times.
