@@ -46,7 +46,7 @@ enum Command {
     Bench {
         /// What to measure.
         table: Table,
-        /// For instructions and systems: only work whose name contains this.
+        /// For instructions, systems and scaling: only work whose name contains this.
         filter: Option<String>,
         /// For instructions: stores the counts in xtask/instructions.csv, with which later ones are compared.
         #[arg(long)]
@@ -155,7 +155,7 @@ fn measure(table: Table, filter: Option<&str>, store: bool) -> Result<(), String
         Table::NearDegenerate => bench::near_degenerate(),
         Table::Threads => bench::threads(),
         Table::Memory => bench::memory(),
-        Table::Scaling => bench::scaling(),
+        Table::Scaling => bench::scaling(filter),
         Table::All => {
             let tables = [
                 Table::Table1,

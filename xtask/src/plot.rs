@@ -8,8 +8,9 @@ const LEFT: f64 = 62.0;
 const RIGHT: f64 = 16.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 44.0;
-/// Of a row of the legend.
+/// Of a row of the legend, and of an entry of it.
 const ROW: f64 = 20.0;
+const ENTRY: f64 = 205.0;
 
 const STYLE: &str = "\
 text{font:12px system-ui,sans-serif;fill:#2b2b2b}.title{font-weight:600;font-size:13px}.small{font-size:11px;fill:#5a5a5a}
@@ -60,7 +61,7 @@ pub fn figure(panels: &[Panel], columns: usize, alternative: &str) -> String {
     let rows = panels.len().div_ceil(columns);
     let names = legend(panels);
     let width = cell[0] * columns as f64;
-    let per_row = (width / 230.0).floor().max(1.0) as usize;
+    let per_row = ((width - LEFT) / ENTRY).floor().max(1.0) as usize;
     let below = ROW * names.len().div_ceil(per_row) as f64 + 10.0;
     let height = cell[1] * rows as f64 + below;
     let mut svg = format!(
@@ -76,7 +77,7 @@ pub fn figure(panels: &[Panel], columns: usize, alternative: &str) -> String {
         draw(&mut svg, panel, corner);
     }
     for (n, (name, series)) in names.iter().enumerate() {
-        let x = LEFT + 230.0 * (n % per_row) as f64;
+        let x = LEFT + ENTRY * (n % per_row) as f64;
         let y = cell[1] * rows as f64 + ROW * (n / per_row) as f64 + 8.0;
         let dashed = if series.dashed { " dashed" } else { "" };
         let colour = series.colour;
@@ -274,4 +275,45 @@ fn tick_text(value: f64) -> String {
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_ticks_are_where_they_belong() {
+        let axis = |label: &str, logarithmic| Axis {
+            label: label.into(),
+            logarithmic,
+            range: None,
+        };
+        // The origin cannot be shown on a logarithmic axis.
+        let points = vec![[0.0, 0.0], [1.0, 1.0], [100.0, 10.0]];
+        let series = Series {
+            name: "a < b".into(),
+            colour: 1,
+            dashed: false,
+            points,
+        };
+        let panel = Panel {
+            title: "t".into(),
+            axes: [axis("x", true), axis("y", false)],
+            series: vec![series],
+        };
+        let svg = figure(&[panel], 2, "\"quoted\"");
+        let [left, right] = [LEFT, LEFT + AREA[0]];
+        let [bottom, tenth] = [TOP + AREA[1], TOP + AREA[1] * 0.9];
+        assert!(
+            svg.contains(&format!("M{left:.1} {tenth:.1}L{right:.1} {TOP:.1}")),
+            "{svg}"
+        );
+        assert!(svg.contains("&quot;quoted&quot;") && svg.contains("a &lt; b"));
+        for tick in ["1", "10", "100", "5", "0"] {
+            assert!(svg.contains(&format!(">{tick}</text>")), "{tick}");
+        }
+        assert!(svg.contains(&format!("y=\"{:.1}\" text-anchor=\"end\">0<", bottom + 4.0)));
+        assert_eq!(tick_text(1e-6), "10⁻⁶");
+        assert_eq!(tick_text(3e5), "3·10⁵");
+    }
 }

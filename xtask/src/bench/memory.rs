@@ -9,11 +9,11 @@ use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use std::{fs, thread};
 
-/// Moves of the programs, on `CELLS` × `CELLS` dexels.
+/// Moves of the programs, on `CELLS` × `CELLS` dexels: few, since this is about moves.
 const MOVES: [usize; 6] = [1_000, 4_000, 16_000, 64_000, 200_000, 400_000];
-const CELLS: usize = 300;
+const CELLS: usize = 100;
 /// Sides of the grids, of a program of `FEW` moves.
-const GRIDS: [usize; 4] = [500, 1000, 2000, 4000];
+const GRIDS: [usize; 4] = [250, 500, 1000, 2000];
 const FEW: usize = 1_000;
 
 /// A run's size, the most memory in MiB, and its time in seconds by the clock.

@@ -11,9 +11,9 @@ use sweepsim_dexel::Stock;
 use sweepsim_formats::Job;
 use sweepsim_motion::Tool;
 
-const MOVES: [usize; 6] = [1_000, 3_000, 10_000, 30_000, 100_000, 300_000];
+const MOVES: [usize; 5] = [1_000, 3_000, 10_000, 30_000, 100_000];
 /// Where the tool turns in every move, a tenth of them.
-const TURNING: [usize; 4] = [1_000, 3_000, 10_000, 30_000];
+const TURNING: [usize; 3] = [1_000, 3_000, 10_000];
 const CELLS: usize = 300;
 const GRIDS: [usize; 5] = [125, 250, 500, 1000, 2000];
 const THREADS: [usize; 4] = [1, 2, 3, 4];
@@ -28,7 +28,7 @@ struct Curve {
 impl Curve {
     fn print(&self) {
         for [x, y] in &self.points {
-            println!("{:<8} {:<28} {x:>9} {y:>10.4}", self.figure, self.name);
+            println!("{:<12} {:<32} {x:>9} {y:>10.4}", self.figure, self.name);
         }
     }
 }
@@ -153,22 +153,19 @@ fn by_threads() -> Result<Vec<Curve>, String> {
     Ok(curves)
 }
 
-fn by_memory() -> Result<Vec<Curve>, String> {
-    let curve = |figure, name: &str, runs: Vec<memory::Run>| Curve {
+fn in_mib(figure: &'static str, name: &str, runs: &[memory::Run]) -> Vec<Curve> {
+    let points = runs.iter().map(|run| [run.size as f64, run.mib]).collect();
+    vec![Curve {
         figure,
         name: name.into(),
-        points: runs.iter().map(|run| [run.size as f64, run.mib]).collect(),
-    };
-    Ok(vec![
-        curve("memory", "300 × 300 dexels", memory::by_moves(usize::MAX)?),
-        curve("memory-grid", "1,000 moves", memory::by_grid()?),
-    ])
+        points,
+    }]
 }
 
-fn panel(curves: &[Curve], name: &str, title: &str, labels: [&str; 2], logarithmic: [bool; 2]) -> Panel {
+fn panel(curves: &[Curve], name: &str, title: &str, labels: [&str; 2], logarithmic: bool) -> Panel {
     let axis = |k: usize| Axis {
         label: labels[k].into(),
-        logarithmic: logarithmic[k],
+        logarithmic,
         range: None,
     };
     let chosen = curves.iter().filter(|curve| curve.figure == name).enumerate();
@@ -185,26 +182,69 @@ fn panel(curves: &[Curve], name: &str, title: &str, labels: [&str; 2], logarithm
     }
 }
 
-/// Measures everything, and writes `docs/performance.csv` and `docs/pictures/performance-*.svg`.
-pub fn scaling() -> Result<(), String> {
-    println!(
-        "{:<8} {:<28} {:>9} {:>10}   (seconds on one thread, ratios, MiB)",
-        "figure", "work", "x", "y"
-    );
-    let mut curves = Vec::new();
-    for measured in [by_grid, by_moves, by_threads, by_memory] {
-        let found = measured()?;
-        found.iter().for_each(Curve::print);
-        curves.extend(found);
-    }
-    let mut table = String::from("figure,work,x,y\n");
-    for curve in &curves {
-        for [x, y] in &curve.points {
-            let _ = writeln!(table, "{},{},{x},{y:.5}", curve.figure, curve.name.replace(',', ""));
+/// The curves of the table that is stored.
+fn stored(table: &str) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for line in table.lines().skip(1) {
+        let words: Vec<&str> = line.split(';').collect();
+        let [figure, name, x, y] = words[..] else { continue };
+        let (Ok(x), Ok(y)) = (x.parse(), y.parse()) else {
+            continue;
+        };
+        let known = FIGURES.iter().find(|(known, _)| *known == figure);
+        let Some((figure, _)) = known else { continue };
+        match curves
+            .iter_mut()
+            .find(|curve| curve.figure == *figure && curve.name == name)
+        {
+            Some(curve) => curve.points.push([x, y]),
+            None => curves.push(Curve {
+                figure,
+                name: name.into(),
+                points: vec![[x, y]],
+            }),
         }
     }
-    let _ = writeln!(table, "load,of the last minute,,{:.2}", load().unwrap_or(f64::NAN));
+    curves
+}
+
+/// The figures, and what measures them.
+const FIGURES: [(&str, fn() -> Result<Vec<Curve>, String>); 5] = [
+    ("grid", by_grid),
+    ("moves", by_moves),
+    ("threads", by_threads),
+    ("memory", || {
+        memory::by_moves(usize::MAX).map(|runs| in_mib("memory", "100 × 100 dexels", &runs))
+    }),
+    ("memory-grid", || {
+        memory::by_grid().map(|runs| in_mib("memory-grid", "1,000 moves", &runs))
+    }),
+];
+
+/// Measures the figures whose names contain `filter`, and writes `docs/performance.csv` and `docs/pictures/performance-*.svg`; others stay as they are stored.
+pub fn scaling(filter: Option<&str>) -> Result<(), String> {
+    println!(
+        "{:<12} {:<32} {:>9} {:>10}   (seconds on one thread, ratios, MiB)",
+        "figure", "work", "x", "y"
+    );
     let docs = workspace::root().join("docs");
+    let mut curves = stored(&fs::read_to_string(docs.join("performance.csv")).unwrap_or_default());
+    for (figure, measured) in FIGURES {
+        if filter.is_none_or(|filter| figure.contains(filter)) {
+            println!("load of the last minute: {:.1}", load().unwrap_or(f64::NAN));
+            let found = measured()?;
+            found.iter().for_each(Curve::print);
+            curves.retain(|curve| curve.figure != figure);
+            curves.extend(found);
+        }
+    }
+    curves.sort_by_key(|curve| FIGURES.iter().position(|(figure, _)| *figure == curve.figure));
+    let mut table = String::from("figure;work;x;y\n");
+    for curve in &curves {
+        for [x, y] in &curve.points {
+            let _ = writeln!(table, "{};{};{x};{y:.5}", curve.figure, curve.name);
+        }
+    }
     let write = |name: &str, text: &str| fs::write(docs.join(name), text).map_err(|error| format!("{name}: {error}"));
     write("performance.csv", &table)?;
     let times = [
@@ -213,14 +253,14 @@ pub fn scaling() -> Result<(), String> {
             "moves",
             "Time by moves, 300 × 300 dexels",
             ["moves", "seconds, one thread"],
-            [true, true],
+            true,
         ),
         panel(
             &curves,
             "grid",
             "Time by grid",
             ["dexels along a side", "seconds, one thread"],
-            [true, true],
+            true,
         ),
     ];
     write(
@@ -229,37 +269,27 @@ pub fn scaling() -> Result<(), String> {
     )?;
     write(
         "pictures/performance-grid.svg",
-        &figure(
-            &times[1..],
-            1,
-            "Seconds on one thread against the dexels along a side of the grid",
-        ),
+        &figure(&times[1..], 1, "Seconds on one thread against the dexels along a side"),
     )?;
     let threads = panel(
         &curves,
         "threads",
         "Speed by threads, two cores",
         ["threads", "speed / that of one thread"],
-        [false, false],
+        false,
     );
     write(
         "pictures/performance-threads.svg",
         &figure(&[threads], 1, "Speed against the number of threads"),
     )?;
     let memory = [
-        panel(
-            &curves,
-            "memory",
-            "Memory by moves",
-            ["moves", "MiB at most"],
-            [true, true],
-        ),
+        panel(&curves, "memory", "Memory by moves", ["moves", "MiB at most"], true),
         panel(
             &curves,
             "memory-grid",
             "Memory by grid",
             ["dexels along a side", "MiB at most"],
-            [true, true],
+            true,
         ),
     ];
     write(

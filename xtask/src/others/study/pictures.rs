@@ -60,10 +60,9 @@ fn panels(studies: &[Study], label: &str, x: fn(&Study, &Row) -> f64, exact: boo
                 points: vec![[1.0, 1e-6]],
             });
         }
-        let range = Some([1e-6, 1.0]);
         Panel {
             title: study.title.into(),
-            axes: [axis(label, None), axis("error, mm", range)],
+            axes: [axis(label, None), axis("error, mm", Some([1e-7, 1.0]))],
             series,
         }
     };
