@@ -23,6 +23,8 @@ use sweepsim_solve::SolveOptions;
 const TIP: f64 = 1e-2;
 /// The maximum deviation of motions from their law.
 const LAW: f64 = 5e-2;
+/// The maximum deviation of arcs from circles, part of the one above.
+const CIRCLE: f64 = 1e-2;
 /// The initial displacement of lines.
 const LINE: f64 = 1e-3;
 /// The factors for the attempts, each larger than the one before.
@@ -43,6 +45,7 @@ const FINE_PERIOD: usize = 4;
 /// In parts of the largest coordinate.
 const FINE: f64 = 1e-9;
 /// The limit that the table above promises.
+const _: () = assert!(CIRCLE <= LAW);
 const _: () = assert!(TIP + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
 
 /// Coordinates are accurate to within this fraction of the largest: a few dozen roundings.
@@ -108,6 +111,11 @@ impl Tolerances {
     /// The maximum deviation of motions from their law.
     pub fn law_deviation(&self) -> f64 {
         LAW * self.tolerance
+    }
+
+    /// The maximum distance between the end of an arc and the circle about its centre through its start, for the arc to be taken as a circle through both.
+    pub fn circle_deviation(&self) -> f64 {
+        CIRCLE * self.tolerance
     }
 
     /// Heights that differ by no more than this count as the same.

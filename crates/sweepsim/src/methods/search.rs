@@ -66,11 +66,14 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles what it can of the envelope and the edges along a move without rotation.
+    /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
-        let Some(heading) = Heading::new(&self.parts[at].segment, self.size.slack) else {
-            return;
+        let PathPart { segment, round, .. } = &self.parts[at];
+        let heading = match round {
+            Some(round) => Heading::around(round, segment, self.size.slack),
+            None => Heading::new(segment, self.size.slack),
         };
+        let Some(heading) = heading else { return };
         let mut collector = Collector {
             lines: self.lines,
             harvest,
@@ -78,7 +81,14 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = &mut space.done;
         let source = |t: f64| self.source(at, t);
         let settled = [&mut done.patches[..], &mut done.edges[..]];
-        translation::envelope(outline, &heading, (&mut collector, self.ceiling), source, settled);
+        let collector = (&mut collector, self.ceiling);
+        match round {
+            Some(round) => {
+                let source = |share: f64| self.source_after(at, share);
+                translation::around(outline, (&heading, round), collector, source, settled);
+            }
+            None => translation::envelope(outline, &heading, collector, source, settled),
+        }
     }
 
     /// Settles what it can of the placement of a tool that stands along the lines between two moves without rotation.
@@ -91,17 +101,17 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         harvest: &mut Harvest,
     ) {
         space.done.placed.fill(false);
-        let Some(after) = Neighbour::of(&self.parts[at].segment) else {
+        let Some(own) = Neighbour::of(&self.parts[at], end) else {
             return;
         };
         let [tip, last] = self.parts[at].segment.tips();
         let before = match at.checked_sub(1) {
             None => Some(Neighbour::Beyond(false)),
-            Some(k) => Neighbour::of(&self.parts[k].segment),
+            Some(k) => Neighbour::of(&self.parts[k], SegmentEnd::Finish),
         };
         let (tip, sides) = match (end, before) {
-            (SegmentEnd::Finish, _) => (last, [after, Neighbour::Beyond(true)]),
-            (SegmentEnd::Start, Some(before)) => (tip, [before, after]),
+            (SegmentEnd::Finish, _) => (last, [own, Neighbour::Beyond(true)]),
+            (SegmentEnd::Start, Some(before)) => (tip, [before, own]),
             (SegmentEnd::Start, None) => return,
         };
         let mut collector = Collector {
@@ -142,11 +152,16 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// The source of a crossing at time `t` of a part.
     fn source(&self, at: usize, t: f64) -> Source {
+        self.source_after(at, self.parts[at].segment.time(t))
+    }
+
+    /// The source of a crossing after a share of the time of a part.
+    fn source_after(&self, at: usize, share: f64) -> Source {
         let part = &self.parts[at];
         Source::Cut {
             path: self.path,
             segment: part.number,
-            t: part.start + part.share * part.segment.time(t) as f32,
+            t: part.start + part.share * share as f32,
         }
     }
 

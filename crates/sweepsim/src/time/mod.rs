@@ -8,4 +8,5 @@ pub(crate) mod moment;
 pub(crate) mod path_parts;
 pub(crate) mod pieces;
 pub(crate) mod placement;
+pub(crate) mod round;
 pub(crate) mod swept_box;

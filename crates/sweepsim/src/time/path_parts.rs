@@ -1,5 +1,6 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
+use crate::time::round::Round;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Frame;
@@ -9,6 +10,8 @@ use sweepsim_motion::{Path, Segment};
 #[derive(Clone, Debug)]
 pub(crate) struct PathPart {
     pub segment: Segment,
+    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
+    pub round: Option<Round>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -35,7 +38,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(poses.len());
-    let mut put = |number: usize, segments: Vec<Segment>, tips: [Vector3<f64>; 2], by: [Vector3<f64>; 2]| {
+    let put = |parts: &mut Vec<PathPart>, number: usize, segments: Vec<Segment>, tips: [Vector3<f64>; 2], by: [Vector3<f64>; 2]| {
         let share = 1.0 / segments.len() as f64;
         let ends = [tips[0] + by[0], tips[1] + by[1]];
         let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 * share);
@@ -54,6 +57,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
             };
             parts.push(PathPart {
                 segment,
+                round: None,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
@@ -68,9 +72,20 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
             } else {
                 path.segments(to - 1, reach, tolerances.law_deviation())
             };
-            let segments = segments.into_iter().map(seen).collect();
-            let tips = [tip(from), tip(to)];
-            put(to - 1, segments, tips, [displaced(from), displaced(to)]);
+            let by = [displaced(from), displaced(to)];
+            let limit = tolerances.circle_deviation();
+            let round = if symmetric {
+                Round::parts(path, to - 1, frame, (segments.len(), reach), (by, limit))
+            } else {
+                None
+            };
+            match round {
+                Some(round) => parts.extend(with_shares(to - 1, round)),
+                None => {
+                    let segments = segments.into_iter().map(seen).collect();
+                    put(&mut parts, to - 1, segments, [tip(from), tip(to)], by);
+                }
+            }
             from = to;
         }
     }
@@ -81,7 +96,19 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
         let by = displaced(0);
         let still = [by, by + tolerances.standstill()];
         let segments = Segment::between(pose, pose).into_iter().map(seen);
-        put(0, segments.collect(), [tip(0); 2], still);
+        put(&mut parts, 0, segments.collect(), [tip(0); 2], still);
     }
     parts
+}
+
+/// The parts of one move, of equal duration.
+fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Item = PathPart> {
+    let share = 1.0 / parts.len() as f64;
+    parts.into_iter().enumerate().map(move |(n, (round, segment))| PathPart {
+        segment,
+        round: Some(round),
+        number: number as u32,
+        start: (n as f64 * share) as f32,
+        share: share as f32,
+    })
 }

@@ -84,6 +84,7 @@ impl<'a> MovingSolid<'a> {
                 let by = [drift * out.len() as f64, drift * (out.len() + 1) as f64];
                 out.push(PathPart {
                     segment: part.segment.part(from, to).displaced(by),
+                    round: None,
                     number: part.number,
                     start: ((n as f64 + from) * share) as f32,
                     share: ((to - from) * share) as f32,

@@ -120,7 +120,7 @@ pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
 }
 
 /// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside it.
-fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
+pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
     let on =
         |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
     let [closed, charts] = [Method::Charts, Method::General].map(|method| on(grid, method));

@@ -8,6 +8,7 @@
 //! The jumps below the ceiling must add up to this number, which is as independent of them as the crossings above would be.
 
 use super::Collector;
+use super::discs::Around;
 use super::heading::{slack, stands};
 use super::rows::numbers;
 use crate::cutter::outline::{Outline, Shape};
@@ -30,7 +31,7 @@ pub(crate) struct Ceiling {
 impl Ceiling {
     /// The lowest one for these moves, if there is any. `top`: the highest material.
     pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
-        if !outline.complete || !parts.iter().all(|part| stands(&part.segment)) {
+        if !outline.complete || !parts.iter().all(stands) {
             return None;
         }
         let tips = || parts.iter().flat_map(|part| part.segment.tips()).map(|tip| tip[2]);
@@ -56,8 +57,11 @@ impl Ceiling {
                 })
                 .count()
                 == 1;
-            if alone && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
-                let rate = (piece.to[0] - piece.from[0]) / (to - from);
+            let rate = (piece.to[0] - piece.from[0]) / (to - from);
+            // Along an arc the disc has to be always the same.
+            let round = parts.iter().filter(|part| part.round.is_some());
+            let steady = round.clone().all(|part| (rate * part.segment.travel()[2]).abs() < STEADY * reach);
+            if alone && steady && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
                 best = Some(Self {
                     z,
                     base: piece.from[0] - rate * from,
@@ -66,6 +70,17 @@ impl Ceiling {
             }
         }
         best
+    }
+
+    /// The disc along an arc.
+    fn around(&self, part: &PathPart, slack: f64) -> Option<Around> {
+        let round = part.round?;
+        let [a, b] = part.segment.tips().map(|tip| self.disc(tip).radius);
+        Some(Around {
+            round,
+            radius: a,
+            doubt: 4.0 * slack + (b - a).abs(),
+        })
     }
 
     /// The largest height above the tip that matters, for a tip no lower than this.
@@ -80,6 +95,9 @@ impl Ceiling {
         }
     }
 }
+
+/// By how much of the tool's reach a disc may grow along an arc: lines so near to its boundary are open.
+const STEADY: f64 = 1e-8;
 
 #[derive(Clone, Copy, Debug)]
 struct Disc {
@@ -189,8 +207,10 @@ struct Counts {
 pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines: &mut Collector) {
     let slack = slack(rounding);
     let tips = |part: &PathPart| part.segment.tips().map(|tip| ceiling.disc(tip));
+    let around: Vec<Around> = parts.iter().filter_map(|part| ceiling.around(part, slack)).collect();
     let moves: Vec<Capsule> = parts
         .iter()
+        .filter(|part| part.round.is_none())
         .map(|part| {
             let [a, b] = tips(part);
             Capsule::new(a, b)
@@ -202,7 +222,8 @@ pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines:
     });
     let lattice = lines.lines;
     let hull = |k: usize| {
-        let ranges = moves.iter().map(|capsule| capsule.extent(k));
+        let straight = moves.iter().map(|capsule| capsule.extent(k));
+        let ranges = straight.chain(around.iter().map(|disc| disc.extent(k)));
         let whole = ranges.fold([f64::INFINITY, f64::NEG_INFINITY], |a, b| {
             [a[0].min(b[0]), a[1].max(b[1])]
         });
@@ -219,6 +240,9 @@ pub(crate) fn close(ceiling: &Ceiling, parts: &[PathPart], rounding: f64, lines:
     };
     for capsule in &moves {
         counts.add(lattice, capsule, 1, slack, lines);
+    }
+    for disc in &around {
+        disc.each(lines, |i, j, count| counts.put(i, [j, j], count));
     }
     for capsule in joints {
         counts.add(lattice, &capsule, -1, slack, lines);
@@ -274,11 +298,16 @@ impl Counts {
                 b -= 1;
             }
             if a <= b {
-                let at = (i - self.first[0]) * self.width;
-                let clamp = |j: usize| j.max(self.first[1]) - self.first[1];
-                self.steps[at + clamp(a)] += by;
-                self.steps[at + (clamp(b) + 1).min(self.width - 1)] -= by;
+                self.put(i, [a, b], by);
             }
         }
+    }
+
+    /// Adds to the counts of some lines of a column.
+    fn put(&mut self, i: usize, [a, b]: [usize; 2], by: i32) {
+        let at = (i - self.first[0]) * self.width;
+        let clamp = |j: usize| j.max(self.first[1]) - self.first[1];
+        self.steps[at + clamp(a)] += by;
+        self.steps[at + (clamp(b) + 1).min(self.width - 1)] -= by;
     }
 }

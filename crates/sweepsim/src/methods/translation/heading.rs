@@ -1,6 +1,8 @@
 //! The frame of a move: along it, across it, and along the dexels.
 
 use super::Local;
+use crate::time::path_parts::PathPart;
+use crate::time::round::Round;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -38,8 +40,13 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
     (0..3).all(|k| turn[(k, 2)] == up[k] && turn[(2, k)] == up[k])
 }
 
+/// Whether the tool stands exactly along the dexels all the time, and does not turn but with an arc.
+pub(crate) fn stands(part: &PathPart) -> bool {
+    part.round.is_some() || stands_still(&part.segment)
+}
+
 /// Whether a segment does not turn, and its tool stands exactly along the dexels.
-pub(crate) fn stands(segment: &Segment) -> bool {
+fn stands_still(segment: &Segment) -> bool {
     segment.is_arc() && segment.turns().len() == 1 && is_upright(&segment.turns()[0])
 }
 
@@ -85,6 +92,24 @@ impl Heading {
             across,
             along: own.z,
             upright,
+            slack,
+        })
+    }
+
+    /// The tangent of an arc, as long as the arc. `None` if it is too short.
+    pub fn around(round: &Round, segment: &Segment, rounding: f64) -> Option<Self> {
+        let (slack, length) = (slack(rounding), round.length());
+        let rise = segment.travel()[2];
+        (length > SHORTEST * slack && rise.is_finite()).then(|| Self {
+            tip: segment.tips()[0],
+            way: [length, 0.0, rise],
+            ahead: [1.0, 0.0],
+            length,
+            speed: length.hypot(rise),
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            across: length,
+            along: rise,
+            upright: true,
             slack,
         })
     }

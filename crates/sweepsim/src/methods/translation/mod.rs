@@ -8,10 +8,11 @@
 //! Every decision (which curve, which time, which sign) is taken only beyond its rounding error; a line for which one is closer is left open, and
 //! solved by the general method.
 
+mod bend;
 mod ceiling;
+mod discs;
 mod graph;
 mod heading;
-
 mod placed;
 mod ring;
 mod rows;
@@ -19,9 +20,9 @@ mod slant;
 mod strip;
 mod torus;
 
+pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use heading::{Heading, slack, stands};
-
 pub(crate) use placed::{Neighbour, placements};
 pub(crate) use strip::envelope;
 

@@ -6,9 +6,10 @@ use super::rows::numbers;
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
+use crate::time::path_parts::PathPart;
 use std::f64::consts::PI;
 use sweepsim_dexel::Source;
-use sweepsim_motion::Segment;
+use sweepsim_motion::SegmentEnd;
 
 /// The motion on one side of a placement.
 #[derive(Clone, Copy, Debug)]
@@ -20,9 +21,19 @@ pub(crate) enum Neighbour {
 }
 
 impl Neighbour {
-    /// A move of a tool that stands along the dexels.
-    pub fn of(segment: &Segment) -> Option<Self> {
-        stands(segment).then(|| Self::Along(segment.travel()))
+    /// An end of a move of a tool that stands along the dexels. A turn about its own axis moves no point out of its surface.
+    pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
+        if !stands(part) {
+            return None;
+        }
+        let travel = part.segment.travel();
+        Some(Self::Along(match (&part.round, end) {
+            (None, _) => travel,
+            (Some(round), end) => {
+                let [x, y] = round.ahead(if end == SegmentEnd::Start { 0.0 } else { 1.0 });
+                [x * round.length(), y * round.length(), travel[2]]
+            }
+        }))
     }
 }
 

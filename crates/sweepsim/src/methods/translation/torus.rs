@@ -188,6 +188,73 @@ impl Torus {
         }
         None
     }
+
+    /// Whether the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone along the stretch.
+    ///
+    /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`: the two terms of `ds/dρ` have one sign, or the first is larger.
+    pub(super) fn is_monotone_about(&self, radius: f64, side: f64) -> bool {
+        let square = self.slope * self.slope;
+        let rates = self.ends.map(|e| {
+            // On a level way the second term is 0, also where the normal is vertical.
+            if square == 0.0 {
+                return 1.0;
+            }
+            1.0 + square + self.centre[0] * square / (self.radius * self.signs[0] * e * e * e)
+        });
+        let least = rates[0].min(rates[1]);
+        let rising = rates.iter().all(|rate| *rate >= 0.0);
+        let falling = rates.iter().all(|rate| *rate <= 0.0);
+        let outside = side * self.side < 0.0;
+        let widest = self.ends.map(|e| self.meridian(e)[0]);
+        let widest = widest[0].max(widest[1]);
+        (rising && outside)
+            || (falling && !outside)
+            || (rising && radius * least > widest * (1.0 + square).sqrt() * (1.0 + 1e-9))
+    }
+
+    /// `p` where the squared distance from that point has the value `s`, over a stretch where it is monotone.
+    pub(super) fn invert_about(&self, radius: f64, side: f64, s: f64) -> Option<f64> {
+        let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
+        let (mut a, mut b) = (low, high);
+        let sign = side * self.side;
+        let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
+        let square = self.slope * self.slope;
+        let value = |e: f64| {
+            let rho = offset + bulge * e;
+            let w = self.sine(e);
+            rho * rho - 2.0 * sign * radius * rho * w + radius * radius - s
+        };
+        let rising = value(high) > value(low);
+        let noise = 4.0 * f64::EPSILON * (radius * radius + s);
+        // On a level way, the distance is R − σρ.
+        let mut e = (sign * (radius - s.sqrt()) - offset) / bulge;
+        for _ in 0..STEPS {
+            if !(e > a && e < b) {
+                e = if b > 4.0 * a && a > 0.0 {
+                    (a * b).sqrt()
+                } else {
+                    0.5 * (a + b)
+                };
+            }
+            let value = value(e);
+            if (value < 0.0) == rising {
+                a = e;
+            } else {
+                b = e;
+            }
+            let rho = offset + bulge * e;
+            let w = self.sine(e);
+            let cube = e * e * e;
+            let by = (bulge * cube * (1.0 + square) + offset * square) / (cube * w);
+            let next = e - value / (2.0 * (rho * bulge - sign * radius * by));
+            if value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
+                let e = next.clamp(low, high);
+                return Some(self.side * (offset + bulge * e) * self.sine(e));
+            }
+            e = next;
+        }
+        None
+    }
 }
 
 impl Graph for Torus {

@@ -101,11 +101,14 @@ impl<'a> Runs<'a> {
         let part = &self.plan.parts[at];
         let [from, to] = part.segment.tips().map(|tip| tip[2]);
         let whole = Some((part.clone(), [false; 2]));
-        if !stands(&part.segment) || (from <= self.over && to <= self.over) {
+        if !stands(part) || (from <= self.over && to <= self.over) {
             return whole;
         }
         if from > self.over && to > self.over {
             return None;
+        }
+        if part.round.is_some() {
+            return whole;
         }
         let t = (self.over - from) / (to - from);
         let range = if from > self.over { [t, 1.0] } else { [0.0, t] };
@@ -116,6 +119,7 @@ impl<'a> Runs<'a> {
         let span = [range[0] as f32, (range[1] - range[0]) as f32];
         let short = PathPart {
             segment: part.segment.part(range[0], range[1]),
+            round: None,
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],

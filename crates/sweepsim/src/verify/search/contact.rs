@@ -71,6 +71,7 @@ impl Arena<'_> {
     ) -> Result<Lines, SweepError> {
         let moved = |part: &PathPart| PathPart {
             segment: part.segment.moved(&Matrix3::identity(), shift),
+            round: part.round.map(|round| round.moved([shift[0], shift[1]])),
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

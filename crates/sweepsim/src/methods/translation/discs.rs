@@ -1,0 +1,94 @@
+//! The lines that a disc covers while its centre moves along an arc, counted one by one.
+
+use super::Collector;
+use super::rows::numbers;
+use crate::time::round::Round;
+use std::f64::consts::PI;
+
+/// A disc along an arc.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Around {
+    pub round: Round,
+    pub radius: f64,
+    /// How far its boundary may be off.
+    pub doubt: f64,
+}
+
+impl Around {
+    /// The extent of all discs along an axis.
+    pub fn extent(&self, axis: usize) -> [f64; 2] {
+        let round = &self.round;
+        let offset = axis as f64 * 0.5 * PI;
+        let start = round.from[1].atan2(round.from[0]) - offset;
+        let ends = [start.min(start + round.angle), start.max(start + round.angle)];
+        let mut range = [ends[0].cos().min(ends[1].cos()), ends[0].cos().max(ends[1].cos())];
+        for (k, whole) in [(1, 0.0), (0, PI)] {
+            let turns = |angle: f64| ((angle - whole) / (2.0 * PI)).floor();
+            if turns(ends[0]) != turns(ends[1]) {
+                range[k] = if k == 1 { 1.0 } else { -1.0 };
+            }
+        }
+        let centre = round.centre[axis];
+        [
+            centre + round.radius * range[0] - self.radius,
+            centre + round.radius * range[1] + self.radius,
+        ]
+    }
+
+    /// For how many intervals of times a point is covered; `None` if it is too close to a boundary.
+    ///
+    /// The centre of the disc is near enough while it is within an angle `δ` of the point's direction.
+    fn count(&self, [x, y]: [f64; 2]) -> Option<i32> {
+        let (round, radius) = (&self.round, self.radius);
+        let [dx, dy] = [x - round.centre[0], y - round.centre[1]];
+        let distance = dx.hypot(dy);
+        let near = |a: f64, b: f64| !((a - b).abs() > self.doubt);
+        let end = |share: f64| {
+            let [ox, oy] = round.out(share);
+            (dx - round.radius * ox).hypot(dy - round.radius * oy)
+        };
+        if near(distance, round.radius + radius)
+            || near(distance, (round.radius - radius).abs())
+            || near(end(0.0), radius)
+            || near(end(1.0), radius)
+        {
+            return None;
+        }
+        let cosine = (round.radius * round.radius + distance * distance - radius * radius) / (2.0 * round.radius * distance);
+        if cosine >= 1.0 {
+            return Some(0);
+        }
+        // NaN in the centre: covered always.
+        if !(cosine > -1.0) {
+            return Some(1);
+        }
+        let width = cosine.acos();
+        let [fx, fy] = round.from;
+        let own = (round.side() * (dy * fx - dx * fy)).atan2(dx * fx + dy * fy);
+        let meets = |turn: f64| own + turn - width <= round.angle.abs() && own + turn + width >= 0.0;
+        Some([-2.0 * PI, 0.0, 2.0 * PI].map(|turn| i32::from(meets(turn))).iter().sum())
+    }
+
+    /// Calls `add` with each line that is covered, and how often; those at a boundary are open.
+    pub fn each(&self, lines: &mut Collector, mut add: impl FnMut(usize, usize, i32)) {
+        let lattice = lines.lines;
+        let wide = |k: usize| {
+            let [low, high] = self.extent(k);
+            numbers(lattice, k, [low - self.doubt, high + self.doubt])
+        };
+        let (Some(is), Some(js)) = (wide(0), wide(1)) else {
+            return;
+        };
+        for i in is[0]..=is[1] {
+            let x = lattice.coordinate(0, i);
+            for j in js[0]..=js[1] {
+                match self.count([x, lattice.coordinate(1, j)]) {
+                    Some(0) => {}
+                    Some(count) => add(i, j, count),
+                    None if lattice.asks(i, j) => lines.open(lattice.line(i, j)),
+                    None => {}
+                }
+            }
+        }
+    }
+}
