@@ -122,10 +122,7 @@ impl Drafter<'_> {
 
     /// The fields of the path.
     fn path(&self) -> Result<Vec<String>, FormatError> {
-        let mut fields = vec![
-            format!("file: {}", quoted(&self.named(&self.file)?)),
-            "arcs: Exact".to_owned(),
-        ];
+        let mut fields = vec![format!("file: {}", quoted(&self.named(&self.file)?))];
         if self.program.poses.iter().all(|pose| pose.tool.is_none()) {
             fields.insert(0, "tool: 1".to_owned());
         }

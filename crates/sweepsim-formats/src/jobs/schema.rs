@@ -339,6 +339,7 @@ pub(crate) enum Law {
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub(crate) enum Arcs {
     Chords,
+    Level,
     Exact,
 }
 

@@ -1,6 +1,7 @@
 //! Circular arcs and helices of the tip.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use std::f64::consts::{FRAC_PI_2, TAU};
 use thiserror::Error;
 
 /// An arc of the tip about an axis through `centre`. Any difference between its end and the end of the move is added at constant speed
@@ -101,7 +102,7 @@ impl TipArc {
         if (ra - rb).abs() > RADII * ra.max(rb) {
             return Err(ArcError::TwoRadii { from: ra, to: rb });
         }
-        let full = std::f64::consts::TAU;
+        let full = TAU;
         let sign = f64::from(turns.signum());
         let mut angle = sign * arc.normal.dot(&a.cross(&b)).atan2(a.dot(&b));
         // The same place within rounding is a full turn.
@@ -109,6 +110,42 @@ impl TipArc {
             angle += full;
         }
         Self::new(centre, normal, sign * (angle + full * (f64::from(turns.abs()) - 1.0)))
+    }
+
+    /// The same arc about a centre at the same distance from both of its ends, which programs give with few decimals: moved along the chord, with the angle
+    /// between them from there. No point moves farther than twice the difference of the distances; where that would not be enough (ends of a long arc that lie
+    /// close together), the arc stays as it is.
+    ///
+    /// ```
+    /// use sweepsim_motion::TipArc;
+    /// let quarter = TipArc::new([0.001, 0.0, 0.0], [0.0, 0.0, 1.0], 1.57)?;
+    /// let [x, y, _] = quarter.through([2.0, 0.0, 0.0], [0.0, 2.0, 0.0]).centre();
+    /// assert!((x - y).abs() < 1e-15);
+    /// # Ok::<(), sweepsim_motion::ArcError>(())
+    /// ```
+    #[must_use]
+    pub fn through(&self, from: [f64; 3], to: [f64; 3]) -> Self {
+        let [a, b] = [from, to].map(|end| self.radius_vector(end.into()));
+        let (chord, radius) = (b - a, a.norm().max(b.norm()));
+        let square = chord.norm_squared();
+        let close = chord.norm() < 0.5 * radius && self.angle.abs() > FRAC_PI_2;
+        if close || !(square > 0.0) {
+            return *self;
+        }
+        // |a − s c| = |b − s c|
+        let shift = chord * (0.5 * (b.norm_squared() - a.norm_squared()) / square);
+        let (a, b) = (a - shift, b - shift);
+        let own = self.normal.dot(&a.cross(&b)).atan2(a.dot(&b));
+        let turns = ((self.angle - own) / TAU).round();
+        let angle = own + TAU * turns;
+        if !(angle * self.angle > 0.0) {
+            return *self;
+        }
+        Self {
+            centre: self.centre + shift,
+            angle,
+            ..*self
+        }
     }
 
     /// A point on its axis.

@@ -7,6 +7,7 @@ use super::frames::{Vector, add, norm};
 use super::motion::Target;
 use super::reader::{Located, Reader, numbers};
 use super::statement::Statement;
+use crate::model::level_arcs::is_level;
 use crate::text::error::NcProblem;
 
 impl Reader<'_> {
@@ -136,10 +137,13 @@ impl Reader<'_> {
             };
             self.push(start, Move::default())?;
         }
-        if self.options.exact_arcs {
-            let course = Course::Arc(arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?);
-            let turning = Turning::Even;
-            return self.push(target, Move { course, turning });
+        if self.options.exact_arcs || self.options.level_arcs {
+            let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
+            let upright = [self.axis, target.axis].iter().all(|axis| *axis == [0.0, 0.0, 1.0]);
+            if self.options.exact_arcs || (upright && is_level(&exact, arc.start, arc.end)) {
+                let (course, turning) = (Course::Arc(exact), Turning::Even);
+                return self.push(target, Move { course, turning });
+            }
         }
         let chords = arc.chords(self.options.arc_tolerance).map_err(NcProblem::syntax)?;
         if chords > 1 {

@@ -109,7 +109,7 @@ impl PendingArc {
 impl Arc {
     /// The arc as a single move of the tip.
     pub fn exact(&self) -> Result<TipArc, ArcError> {
-        TipArc::new(self.centre, self.normal, self.angle)
+        Ok(TipArc::new(self.centre, self.normal, self.angle)?.through(self.start, self.end))
     }
 
     fn radial(&self) -> Vector {

@@ -6,6 +6,7 @@ use sweepsim_motion::{Course, Move, TipArc, Turning};
 use super::driver::Coordinates;
 use super::track::Track;
 use crate::machines::Position;
+use crate::model::level_arcs::is_level;
 use crate::text::error::NcProblem;
 
 /// The most chords per arc.
@@ -37,8 +38,24 @@ impl Track {
             ));
         };
         self.begin(false)?;
-        if self.exact_arcs && abc == self.abc {
-            return self.exact_arc(arc, scale);
+        if (self.exact_arcs || self.level_arcs) && abc == self.abc {
+            let [from, to, centre, above] = self.tips([
+                start,
+                arc.end,
+                arc.centre,
+                std::array::from_fn(|k| arc.centre[k] + arc.normal[k]),
+            ])?;
+            let normal = if self.coordinates == Coordinates::Tip {
+                self.frame.direction(arc.normal)
+            } else {
+                std::array::from_fn(|k| above[k] - centre[k])
+            };
+            let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
+                .map_err(|error| NcProblem::syntax(error.to_string()))?
+                .through(from, to);
+            if self.exact_arcs || (self.direction()? == [0.0, 0.0, 1.0] && is_level(&exact, from, to)) {
+                return self.exact_arc(arc, exact);
+            }
         }
         let normal = Vector3::from(arc.normal);
         let centre = Vector3::from(arc.centre);
@@ -73,30 +90,28 @@ impl Track {
         self.straight(arc.end, abc, false)
     }
 
-    fn exact_arc(&mut self, arc: &Arc, scale: f64) -> Result<(), NcProblem> {
-        let abc = self.abc;
-        let frame = self.frame;
-        let part = |xyz: [f64; 3]| match self.coordinates {
-            Coordinates::Tip => Ok(frame.point(xyz)),
-            Coordinates::Axes => self.driver.tip(&Position::new(frame.point(xyz), abc)),
-        };
-        let centre = part(arc.centre)?;
-        let above = part(std::array::from_fn(|k| arc.centre[k] + arc.normal[k]))?;
-        let normal: [f64; 3] = std::array::from_fn(|k| above[k] - centre[k]);
-        let normal = if self.coordinates == Coordinates::Tip {
-            frame.direction(arc.normal)
-        } else {
-            normal
-        };
+    /// Where the tip is when the program says that the tool is at these points.
+    fn tips<const N: usize>(&mut self, points: [[f64; 3]; N]) -> Result<[[f64; 3]; N], NcProblem> {
+        let (abc, frame) = (self.abc, self.frame);
         let shift = self.direction().map(|axis| self.driver.to_tip(axis))?;
-        let centre = std::array::from_fn(|k| centre[k] + shift[k]);
-        let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
-            .map_err(|error| NcProblem::syntax(error.to_string()))?;
+        let mut tips = points;
+        for tip in &mut tips {
+            let place = match self.coordinates {
+                Coordinates::Tip => frame.point(*tip),
+                Coordinates::Axes => self.driver.tip(&Position::new(frame.point(*tip), abc))?,
+            };
+            *tip = std::array::from_fn(|k| place[k] + shift[k]);
+        }
+        Ok(tips)
+    }
+
+    fn exact_arc(&mut self, arc: &Arc, exact: TipArc) -> Result<(), NcProblem> {
+        let abc = self.abc;
         let way = Move {
             course: Course::Arc(exact),
             turning: Turning::Even,
         };
-        self.push(Position::new(frame.point(arc.end), abc), way, false)?;
+        self.push(Position::new(self.frame.point(arc.end), abc), way, false)?;
         self.arrive(arc.end, abc);
         Ok(())
     }

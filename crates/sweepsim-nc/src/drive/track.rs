@@ -38,6 +38,7 @@ pub(crate) struct Track {
     pub(super) most_poses: usize,
     pub(super) arc_tolerance: f64,
     pub(super) exact_arcs: bool,
+    pub(super) level_arcs: bool,
     pub(super) contour: Contour,
 }
 
@@ -70,6 +71,7 @@ impl Track {
             most_poses: options.most_poses,
             arc_tolerance: options.arc_tolerance,
             exact_arcs: options.exact_arcs,
+            level_arcs: options.level_arcs,
             contour: Contour::default(),
         }
     }

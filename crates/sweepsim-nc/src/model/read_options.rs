@@ -29,6 +29,9 @@ pub struct ReadOptions {
     pub law: AxisLaw,
     /// Keeps arcs and helices instead of dividing them into chords. The axis then turns at constant speed along them.
     pub exact_arcs: bool,
+    /// Keeps those arcs and helices that turn about z while the tool stands along it, and whose ends are equally far from the centre: they are cheaper
+    /// than their chords. Others, and those of a radius of more than 10 m, are divided unless [`exact_arcs`](Self::exact_arcs) keeps them.
+    pub level_arcs: bool,
     /// The format of the file. `None`: as its content says.
     pub format: Option<Format>,
     /// The control that the program is written for. `None`: as the text says.
@@ -64,6 +67,7 @@ impl Default for ReadOptions {
             machine: Machine::default(),
             law: AxisLaw::Slerp,
             exact_arcs: false,
+            level_arcs: false,
             format: None,
             controller: None,
             lenient: false,

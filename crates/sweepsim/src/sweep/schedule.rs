@@ -1,6 +1,7 @@
 //! Distributes the work of a sweep among threads: which lines meet which parts of the path.
 
 use crate::cutter::Cutter;
+use crate::cutter::outline::Outline;
 use crate::envelope::Size;
 use crate::error::SweepError;
 use crate::methods::charts::Charts;
@@ -29,6 +30,9 @@ use sweepsim_solve::{Cause, Monitor};
 
 /// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
 pub(crate) const CHUNK: usize = 256;
+
+/// Lines are displaced for closed forms, too, up to this attempt: mostly, one was too close to an end of a curve. After that, charts alone have to do.
+const IN_CLOSED_FORM: usize = 3;
 
 impl Plan {
     /// `parts`: the number of parts of which repairs may become necessary.
@@ -88,6 +92,11 @@ pub(crate) struct SweepJob<'a> {
 }
 
 impl SweepJob<'_> {
+    /// The meridian of the tool, if closed forms are wanted.
+    fn outline(&self) -> Option<&Outline> {
+        self.cutter.outline.as_ref().filter(|_| self.method == Method::Charts)
+    }
+
     /// Runs `work` with a workspace.
     pub fn with_space<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
         let kept = self.spaces.lock().map(|mut spaces| spaces.pop()).unwrap_or_default();
@@ -150,9 +159,8 @@ impl SweepJob<'_> {
                 if lines.is_empty() {
                     return Harvest::default();
                 }
-                let outline = self.cutter.outline.as_ref().filter(|_| self.method == Method::Charts);
                 let search = Search {
-                    outline,
+                    outline: self.outline(),
                     ceiling: self.ceiling.as_ref(),
                     ..self.search(&method, chunk, &lines)
                 };
@@ -205,7 +213,10 @@ impl SweepJob<'_> {
         harvest: &mut Harvest,
     ) {
         let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
-        let search = self.search(&Charts, chunk, &lines);
+        let search = Search {
+            outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
+            ..self.search(&Charts, chunk, &lines)
+        };
         for at in 0..chunk.len() {
             if self.monitor.cancelled() {
                 break;

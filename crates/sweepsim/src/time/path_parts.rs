@@ -38,7 +38,11 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(poses.len());
-    let put = |parts: &mut Vec<PathPart>, number: usize, segments: Vec<Segment>, tips: [Vector3<f64>; 2], by: [Vector3<f64>; 2]| {
+    let put = |parts: &mut Vec<PathPart>,
+               number: usize,
+               segments: Vec<Segment>,
+               tips: [Vector3<f64>; 2],
+               by: [Vector3<f64>; 2]| {
         let share = 1.0 / segments.len() as f64;
         let ends = [tips[0] + by[0], tips[1] + by[1]];
         let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 * share);
@@ -104,11 +108,14 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
 /// The parts of one move, of equal duration.
 fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
-    parts.into_iter().enumerate().map(move |(n, (round, segment))| PathPart {
-        segment,
-        round: Some(round),
-        number: number as u32,
-        start: (n as f64 * share) as f32,
-        share: share as f32,
-    })
+    parts
+        .into_iter()
+        .enumerate()
+        .map(move |(n, (round, segment))| PathPart {
+            segment,
+            round: Some(round),
+            number: number as u32,
+            start: (n as f64 * share) as f32,
+            share: share as f32,
+        })
 }

@@ -206,7 +206,7 @@ impl CircularArc {
         centre[v] = self.centre[1];
         centre[w] = self.start[w];
         normal[w] = 1.0;
-        TipArc::new(centre, normal, self.sweep)
+        Ok(TipArc::new(centre, normal, self.sweep)?.through(self.start, self.end))
     }
 
     /// The number of chords that stay within `tolerance` (mm) of the arc.

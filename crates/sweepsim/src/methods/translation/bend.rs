@@ -339,7 +339,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 } else {
                     let far = round.radius + p.abs() + spot.q.abs();
                     // Of p, and of the angle.
-                    let off = 4.0 * slack * (far + s.sqrt()) / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
+                    let off =
+                        4.0 * slack * (far + s.sqrt()) / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
                     4.0 * slack / s.sqrt() + off * (out * spot.slope + side * spot.q).abs() / s
                 };
                 let place = self.place([x, y], [out, spot.q], s, error);

@@ -60,7 +60,9 @@ impl Ceiling {
             let rate = (piece.to[0] - piece.from[0]) / (to - from);
             // Along an arc the disc has to be always the same.
             let round = parts.iter().filter(|part| part.round.is_some());
-            let steady = round.clone().all(|part| (rate * part.segment.travel()[2]).abs() < STEADY * reach);
+            let steady = round
+                .clone()
+                .all(|part| (rate * part.segment.travel()[2]).abs() < STEADY * reach);
             if alone && steady && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
                 best = Some(Self {
                     z,

@@ -54,7 +54,8 @@ impl Around {
         {
             return None;
         }
-        let cosine = (round.radius * round.radius + distance * distance - radius * radius) / (2.0 * round.radius * distance);
+        let cosine =
+            (round.radius * round.radius + distance * distance - radius * radius) / (2.0 * round.radius * distance);
         if cosine >= 1.0 {
             return Some(0);
         }
@@ -66,7 +67,12 @@ impl Around {
         let [fx, fy] = round.from;
         let own = (round.side() * (dy * fx - dx * fy)).atan2(dx * fx + dy * fy);
         let meets = |turn: f64| own + turn - width <= round.angle.abs() && own + turn + width >= 0.0;
-        Some([-2.0 * PI, 0.0, 2.0 * PI].map(|turn| i32::from(meets(turn))).iter().sum())
+        Some(
+            [-2.0 * PI, 0.0, 2.0 * PI]
+                .map(|turn| i32::from(meets(turn)))
+                .iter()
+                .sum(),
+        )
     }
 
     /// Calls `add` with each line that is covered, and how often; those at a boundary are open.

@@ -10,6 +10,7 @@ use crate::gcode::run::tools::ToolRow;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::trace::Canonical;
+use crate::model::level_arcs::is_level;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -98,9 +99,12 @@ impl Reader {
                 "expected the same scale for all axes",
             ));
         };
-        if self.exact_arcs && !self.state.turns_by_axes(target.abc) {
+        if (self.exact_arcs || self.level_arcs) && !self.state.turns_by_axes(target.abc) {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
-            return self.state.arc_to(target, exact);
+            let upright = self.state.abc == [0.0; 3] && target.abc == [0.0; 3];
+            if self.exact_arcs || (upright && is_level(&exact, arc.start, arc.end)) {
+                return self.state.arc_to(target, exact);
+            }
         }
         let chords = arc.chords(self.arc_tolerance).map_err(NcProblem::syntax)?;
         self.state.notes.add_str(self.state.place.line, &self.chord_note);
