@@ -201,3 +201,36 @@ impl TipArc {
         self.centre + turn * (from - self.centre)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ends_that_are_rounded_lie_on_a_circle() {
+        let (from, to) = ([3.0, 0.0, 0.0], [0.0004, 2.9991, 1.0]);
+        for (centre, angle) in [
+            ([0.0002, -0.0003, 0.0], 1.57),
+            ([0.0; 3], -4.71),
+            ([0.0; 3], 1.57 + TAU),
+        ] {
+            let arc = TipArc::new(centre, [0.0, 0.0, 1.0], angle).unwrap();
+            let fitted = arc.through(from, to);
+            let radii = [from, to].map(|end| fitted.radius_vector(end.into()).norm());
+            assert!((radii[0] - radii[1]).abs() < 1e-14, "{radii:?}");
+            assert!((fitted.angle() - angle).abs() < 1e-2);
+            let end = fitted.turned(from.into(), 1.0);
+            assert!((end - Vector3::from(to)).xy().norm() < 1e-14);
+            // No point is far from where it was.
+            for k in 0..=10 {
+                let part = 0.1 * f64::from(k);
+                let apart = (fitted.turned(from.into(), part) - arc.turned(from.into(), part)).norm();
+                assert!(apart < 0.004, "{apart}");
+            }
+        }
+        // Almost a full turn: the centre would be anywhere.
+        let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], TAU - 1e-3).unwrap();
+        assert_eq!(arc.through([3.0, 0.0, 0.0], [2.9991, -0.003, 0.0]), arc);
+        assert_eq!(arc.through([3.0, 0.0, 0.0], [3.0, 0.0, 0.0]), arc);
+    }
+}

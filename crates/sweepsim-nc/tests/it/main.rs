@@ -10,6 +10,7 @@ mod harmless;
 mod heidenhain;
 mod kinematics;
 mod klartext_cycles;
+mod level_arcs;
 mod limits;
 mod machines;
 mod pieces;

@@ -122,9 +122,15 @@ proptest! {
 /// Most lines of arcs are solved without charts.
 #[test]
 fn hardly_a_box() {
+    // The last two are narrower than the tools.
     let path = path(
         [1.1, 0.3, 0.2],
-        &[[4.0, 0.3, 5.0, 0.0], [3.5, 1.0, -4.0, 0.8]],
+        &[
+            [4.0, 0.3, 5.0, 0.0],
+            [3.5, 1.0, -4.0, 0.8],
+            [2.4, 2.0, 3.0, 0.0],
+            [1.1, 0.0, -3.0, 0.3],
+        ],
         [0.5, 0.2, 0.1],
     );
     for tool in [Tool::flat(3.0, 10.0), Tool::ball(3.0, 10.0), Tool::bull(3.0, 0.8, 10.0)] {

@@ -137,21 +137,20 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 out,
             } => {
                 let graphs = torus::stretches(heading, centre, radius, angles, out)?;
-                let all = graphs
-                    .iter()
-                    .all(|torus| torus.is_monotone_about(self.round.radius, self.side));
-                if !all {
-                    return None;
-                }
-                for graph in &graphs {
+                let (radius, side) = (self.round.radius, self.side);
+                let halves: Option<Vec<_>> = graphs.iter().map(|torus| torus.halves_about(radius, side)).collect();
+                let halves = halves?;
+                for (graph, halves) in graphs.iter().zip(halves) {
                     let ([low, high], margins) = (graph.span(), graph.margins());
                     if !(high - low > NARROW * (margins[0] + margins[1])) {
                         self.sliver(graph);
                         continue;
                     }
-                    let bend = self.bend(graph, graph.span());
-                    let (round, side) = (self.round.radius, self.side);
-                    self.sweep(graph, &bend, |s| graph.invert_about(round, side, s));
+                    for range in halves.into_iter().flatten() {
+                        let ends = range.map(|e| graph.across(e));
+                        let bend = self.bend(graph, [ends[0].min(ends[1]), ends[0].max(ends[1])]);
+                        self.sweep(graph, &bend, |s| graph.invert_about(range, radius, side, s));
+                    }
                 }
             }
         }

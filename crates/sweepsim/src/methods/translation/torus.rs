@@ -189,32 +189,63 @@ impl Torus {
         None
     }
 
-    /// Whether the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone along the stretch.
+    /// The parts of the stretch over which the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone, as ranges of
+    /// `|e|`; `None` if that is not certain.
     ///
-    /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`: the two terms of `ds/dρ` have one sign, or the first is larger.
-    pub(super) fn is_monotone_about(&self, radius: f64, side: f64) -> bool {
+    /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`. So the two terms of `ds/dρ` have one sign, or they cancel where
+    /// `h = ρ w/k` is `R`. The three terms of `d ln h/de` are `±r/ρ`, `m²/(e³ w²)` and `3 ρ_c m²/(r e⁴ k)`: `h` is monotone if the first is the
+    /// largest, or if all have one sign.
+    pub(super) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
         let square = self.slope * self.slope;
-        let rates = self.ends.map(|e| {
-            // On a level way the second term is 0, also where the normal is vertical.
-            if square == 0.0 {
-                return 1.0;
-            }
-            1.0 + square + self.centre[0] * square / (self.radius * self.signs[0] * e * e * e)
-        });
-        let least = rates[0].min(rates[1]);
-        let rising = rates.iter().all(|rate| *rate >= 0.0);
-        let falling = rates.iter().all(|rate| *rate <= 0.0);
+        let (offset, bulge) = (self.centre[0], self.signs[0] * self.radius);
+        let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
+        // On a level way all but the first term are 0, also where the normal is vertical.
+        let part = |size: f64, e: f64| if square == 0.0 { 0.0 } else { size * square / e };
+        let rate = |e: f64| 1.0 + square + part(offset / bulge, e * e * e);
+        let whole = Some([Some([low, high]), None]);
+        let (rising, falling) = (rate(low).min(rate(high)) >= 0.0, rate(low).max(rate(high)) <= 0.0);
         let outside = side * self.side < 0.0;
-        let widest = self.ends.map(|e| self.meridian(e)[0]);
-        let widest = widest[0].max(widest[1]);
-        (rising && outside)
-            || (falling && !outside)
-            || (rising && radius * least > widest * (1.0 + square).sqrt() * (1.0 + 1e-9))
+        if (rising && outside) || (falling && !outside) {
+            return whole;
+        }
+        if !rising {
+            return None;
+        }
+        let widest = self.meridian(low)[0].max(self.meridian(high)[0]);
+        let (w, k) = (self.sine(low), rate(low).min(rate(high)));
+        let others = part(1.0, low * low * low * w * w) + part(3.0 * (offset / bulge).abs(), low * low * low * low * k);
+        if !((offset >= 0.0 && bulge > 0.0) || self.radius / widest > others) {
+            return None;
+        }
+        // Negative where h is less than R.
+        let over = |e: f64| self.meridian(e)[0] * self.sine(e) - radius * rate(e);
+        let [before, after] = [over(low) > 0.0, over(high) > 0.0];
+        if before == after {
+            return whole;
+        }
+        let (mut a, mut b) = (low, high);
+        for _ in 0..STEPS {
+            let middle = if b > 4.0 * a && a > 0.0 {
+                (a * b).sqrt()
+            } else {
+                0.5 * (a + b)
+            };
+            if (over(middle) > 0.0) == before {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        Some([Some([low, b]), Some([b, high])])
     }
 
-    /// `p` where the squared distance from that point has the value `s`, over a stretch where it is monotone.
-    pub(super) fn invert_about(&self, radius: f64, side: f64, s: f64) -> Option<f64> {
-        let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
+    /// `p` at a value of `|e|`.
+    pub(super) fn across(&self, e: f64) -> f64 {
+        self.side * self.place(e)[0]
+    }
+
+    /// `p` where the squared distance from that point has the value `s`, over a range of `|e|` where it is monotone.
+    pub(super) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
         let (mut a, mut b) = (low, high);
         let sign = side * self.side;
         let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
@@ -226,8 +257,12 @@ impl Torus {
         };
         let rising = value(high) > value(low);
         let noise = 4.0 * f64::EPSILON * (radius * radius + s);
-        // On a level way, the distance is R − σρ.
-        let mut e = (sign * (radius - s.sqrt()) - offset) / bulge;
+        // On a level way, the distance is R − σρ, or that less than 0.
+        let guess = |distance: f64| (sign * (radius - distance) - offset) / bulge;
+        let mut e = guess(s.sqrt());
+        if !(e > a && e < b) {
+            e = guess(-s.sqrt());
+        }
         for _ in 0..STEPS {
             if !(e > a && e < b) {
                 e = if b > 4.0 * a && a > 0.0 {

@@ -1,0 +1,65 @@
+//! Arcs that are kept because closed forms sweep them: about z, with the tool along z.
+
+use sweepsim_motion::Course;
+use sweepsim_nc::{Program, ReadOptions, apt, gcode, heidenhain, siemens};
+
+fn options() -> ReadOptions {
+    let mut options = ReadOptions::default();
+    options.level_arcs = true;
+    options
+}
+
+/// The number of arcs, and that of straight moves.
+fn courses(program: &Program) -> [usize; 2] {
+    let moves = program.poses.iter().skip(1);
+    let arcs = moves.filter(|pose| matches!(pose.way.course, Course::Arc(_))).count();
+    [arcs, program.poses.len() - 1 - arcs]
+}
+
+#[track_caller]
+fn gcode_courses(text: &str) -> [usize; 2] {
+    let text = format!("G21 G90 G94 F100\nG0 X0 Y0 Z0\n{text}\nM2\n");
+    courses(&gcode::read(&text, &options()).unwrap_or_else(|error| panic!("{text}\n{error}")))
+}
+
+#[test]
+fn arcs_about_z_are_kept() {
+    assert_eq!(gcode_courses("G17 G3 X0 Y10 I0 J5"), [1, 0]);
+    // Helices, full turns, several turns.
+    assert_eq!(gcode_courses("G17 G2 X0 Y10 Z-2 I0 J5"), [1, 0]);
+    assert_eq!(gcode_courses("G17 G2 X0 Y0 Z-2 I4 J3 P3"), [1, 0]);
+    let text = "L X+0 Y+0 Z+0 FMAX\nCC X+5 Y+0\nC X+10 Y+0 DR-\n";
+    assert_eq!(courses(&heidenhain::read(text, &options()).unwrap()), [1, 0]);
+    let text = "G90 G0 X0 Y0 Z0\nG3 X0 Y10 I0 J5 F100\nM30\n";
+    assert_eq!(courses(&siemens::read(text, &options()).unwrap()), [1, 0]);
+    let text = "UNITS/MM\nGOTO/0,0,0,0,0,1\nMOVARC/0,5,0,0,0,1,5,ANGLE,180\nGOTO/0,10,0\nFINI\n";
+    assert_eq!(courses(&apt::read(text, &options()).unwrap()), [1, 0]);
+}
+
+#[test]
+fn others_are_divided() {
+    for text in [
+        // Another plane, a spiral that no circle replaces, and a radius of 138 m.
+        "G18 G3 X10 Z0 I5 K0",
+        "G17 G3 X-0.002 Y0.0005 I5 J0",
+        "G17 G2 X10 Y0 R138000",
+    ] {
+        let [arcs, chords] = gcode_courses(text);
+        assert!(arcs == 0 && chords > 0, "{text}: {arcs} arcs, {chords} chords");
+    }
+}
+
+/// With three decimals, the ends of an arc are never equally far from its centre.
+#[test]
+fn rounded_arcs_are_kept_as_circles() {
+    let text = "G21 G90 G17 F100\nG0 X3 Y0 Z0\nG3 X1.852 Y2.360 I-3 J0\nM2\n";
+    let program = gcode::read(text, &options()).unwrap();
+    let [from, to] = [&program.poses[0], &program.poses[1]];
+    let Course::Arc(arc) = to.way.course else {
+        panic!("chords")
+    };
+    let [x, y, _] = arc.centre();
+    let radii = [from, to].map(|end| (end.pose.tip()[0] - x).hypot(end.pose.tip()[1] - y));
+    assert!((radii[0] - radii[1]).abs() < 1e-12, "{radii:?}");
+    assert!(x.hypot(y) < 1e-3 && x.hypot(y) > 1e-6);
+}
