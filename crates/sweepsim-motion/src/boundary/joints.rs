@@ -92,22 +92,34 @@ pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, Tool
     Ok(edges)
 }
 
-/// A multiple of the enclosed volume, by sums over each patch; only its sign matters.
+/// A multiple of the enclosed volume, by sums over each patch; only its sign matters, so that few points do where they leave no doubt.
 fn volume(patches: &[Patch]) -> f64 {
-    const STEPS: usize = 24;
-    let middle = |n: usize| (n as f64 + 0.5) / STEPS as f64;
-    let mut sum = 0.0;
+    const FEW: usize = 6;
+    const MANY: usize = 24;
+    let (sum, sizes) = volume_by(patches, FEW);
+    if sum.abs() > 0.25 * sizes {
+        return sum;
+    }
+    volume_by(patches, MANY).0
+}
+
+/// The sum over `steps`² points of each patch, and that of the terms' absolute values.
+fn volume_by(patches: &[Patch], steps: usize) -> (f64, f64) {
+    let middle = |n: usize| (n as f64 + 0.5) / steps as f64;
+    let h = 0.5 / steps as f64;
+    let (mut sum, mut sizes) = (0.0, 0.0_f64);
     for patch in patches {
-        for i in 0..STEPS {
-            for j in 0..STEPS {
-                let h = 0.5 / STEPS as f64;
+        for i in 0..steps {
+            for j in 0..steps {
                 let (u, v) = (middle(i), middle(j));
                 let at = |u: f64, v: f64| Vector3::from(patch.point(u, v));
                 let along_u = at(u + h, v) - at(u - h, v);
                 let along_v = at(u, v + h) - at(u, v - h);
-                sum += at(u, v).dot(&along_u.cross(&along_v));
+                let term = at(u, v).dot(&along_u.cross(&along_v));
+                sum += term;
+                sizes += term.abs();
             }
         }
     }
-    sum
+    (sum, sizes)
 }

@@ -159,6 +159,7 @@ impl Meridian {
                 meridian,
                 frame: None,
             }),
+            product: None,
         }
     }
 

@@ -131,8 +131,8 @@ pub(super) fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
     [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
 }
 
-/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments.
-pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> NormalField {
+/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments. `false` if a factor was left out: see [`without_sides`].
+pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalField, bool) {
     let first = weight.coefficients()[0];
     let polynomial = weight.coefficients().iter().all(|w| *w == first);
     let (pu, pv) = (
@@ -154,7 +154,68 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> NormalFi
         let moment = cross(position, &hat);
         (hat.map(|form| weight.mul(&form)), moment)
     };
-    NormalField { normal, moment }
+    let degree = normal[0].degrees().to_vec();
+    let (normal, moment) = without_sides(normal, moment);
+    let is_product = normal[0].degrees() == degree;
+    (NormalField { normal, moment }, is_product)
+}
+
+/// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.
+const POLE: f64 = 16.0;
+
+/// The same without the factors `u`, `1 − u`, `v` and `1 − v` that all normals have where a side has shrunk to a point, a pole. What remains points in
+/// a definite direction there, and bounds of it need not hold 0.
+fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> ([Bernstein; 3], [Bernstein; 3]) {
+    let largest = |forms: &[Bernstein; 3]| forms.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
+    for axis in 0..2 {
+        for upper in [false, true] {
+            let vanishes = |forms: &[Bernstein; 3]| {
+                let allowed = POLE * f64::EPSILON * largest(forms);
+                forms
+                    .iter()
+                    .all(|form| side(form, axis, upper).all(|c| c.abs() <= allowed))
+            };
+            if vanishes(&normal) && vanishes(&moment) {
+                let shorter = [&normal, &moment].map(|forms| forms.each_ref().map(|form| over_side(form, axis, upper)));
+                let [[Some(a), Some(b), Some(c)], [Some(d), Some(e), Some(f)]] = shorter else {
+                    continue;
+                };
+                (normal, moment) = ([a, b, c], [d, e, f]);
+            }
+        }
+    }
+    (normal, moment)
+}
+
+/// The coefficients of a form in two variables on one of its sides.
+fn side(form: &Bernstein, axis: usize, upper: bool) -> impl Iterator<Item = f64> {
+    let [p, q] = [form.degree(0), form.degree(1)];
+    let fixed = if upper { form.degree(axis) } else { 0 };
+    let count = if axis == 0 { q } else { p };
+    (0..=count).map(move |k| {
+        let [i, j] = if axis == 0 { [fixed, k] } else { [k, fixed] };
+        form.coefficients()[i + (p + 1) * j]
+    })
+}
+
+/// A form whose coefficients on one side are 0, divided by the distance from that side: with `B(n, k) = n/k · x B(n − 1, k − 1)`.
+fn over_side(form: &Bernstein, axis: usize, upper: bool) -> Option<Bernstein> {
+    let degrees = [form.degree(0), form.degree(1)];
+    let n = degrees[axis];
+    let mut lower = degrees;
+    lower[axis] = n.checked_sub(1)?;
+    Bernstein::from_fn(&lower, |index| {
+        let mut of = [index[0], index[1]];
+        let k = of[axis];
+        let factor = if upper {
+            n as f64 / (n - k) as f64
+        } else {
+            of[axis] += 1;
+            n as f64 / (k + 1) as f64
+        };
+        factor * form.coefficients()[of[0] + (degrees[0] + 1) * of[1]]
+    })
+    .ok()
 }
 
 fn dot(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> Bernstein {

@@ -14,13 +14,15 @@ pub struct Patch {
     pub(super) weight: Bernstein,
     pub(super) field: NormalField,
     pub(super) revolved: Option<Revolved>,
+    pub(super) product: Option<f64>,
 }
 
 impl Patch {
     /// The patch `position / weight`, whose normal `F_u × F_v` points out of the tool.
     ///
     /// Its normals and moments are computed as Bernstein forms: with `P` the position and `w` the weight,
-    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule). Those of a piece of a surface
+    /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule), and without the factor by which they vanish on a
+    /// side that has shrunk to a point. Those of a piece of a surface
     /// of revolution about the third axis, which is recognised up to rounding, have a lower degree.
     ///
     /// # Errors
@@ -29,7 +31,10 @@ impl Patch {
     pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
         check_place(&position, &weight, 2)?;
         let found = recognised::field(&position, &weight);
-        let NormalField { normal, moment } = found.unwrap_or_else(|| normals(&position, &weight));
+        let (NormalField { normal, moment }, is_product) = match found {
+            Some(field) => (field, false),
+            None => normals(&position, &weight),
+        };
         let largest = normal.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
         if largest == 0.0 || !largest.is_finite() {
             return Err(PatchError::NoNormal { u: 0.5, v: 0.5 });
@@ -41,6 +46,12 @@ impl Patch {
         check_normals(&field.normal)?;
         Ok(Self {
             position: scaled(&position, 1.0),
+            // Of polynomial patches, whose weight is constant, `normals` leaves out two of its powers.
+            product: is_product.then(|| {
+                let first = weight.coefficients()[0];
+                let is_constant = weight.coefficients().iter().all(|w| *w == first);
+                1.0 / if is_constant { largest * first * first } else { largest }
+            }),
             weight: weight.assumed_exact(),
             field,
             revolved: None,
@@ -75,7 +86,11 @@ impl Patch {
         if !(clearest > 0.0) {
             return Err(PatchError::Inward);
         }
-        Ok(Self { field, ..own })
+        Ok(Self {
+            field,
+            product: None,
+            ..own
+        })
     }
 
     pub(super) fn with_revolved(self, revolved: Revolved) -> Self {
@@ -101,6 +116,12 @@ impl Patch {
     #[must_use]
     pub fn field(&self) -> &NormalField {
         &self.field
+    }
+
+    /// The factor `s` of normals `N = s w⁴ (F_u × F_v)`, where `w` is the weight; `None` if they have another form.
+    #[must_use]
+    pub fn product(&self) -> Option<f64> {
+        self.product
     }
 
     /// The patch as products of functions of `u` and of `v`, if it is a piece of a surface of revolution.

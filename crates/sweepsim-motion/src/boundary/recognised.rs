@@ -220,7 +220,7 @@ mod tests {
             let weight = |w: f64| if rational { w } else { 1.0 };
             let meridian: Vec<[f64; 3]> = points.iter().map(|(rho, zeta, w)| [rho * weight(*w), zeta * weight(*w), weight(*w)]).collect();
             let (position, weight) = patch(start, sweep, &meridian, swapped);
-            let (closed, general) = (field(&position, &weight).unwrap(), normals(&position, &weight));
+            let (closed, general) = (field(&position, &weight).unwrap(), normals(&position, &weight).0);
             let (n, m) = (at(&closed.normal, &place), at(&closed.moment, &place));
             let long = at(&general.normal, &place);
             // Coefficients of the general normals are below 1e7, and suffer from cancellation.

@@ -53,6 +53,7 @@ fn disk(radius: f64, zeta: f64, up: bool) -> Patch {
             moment: [take(&|i| facing * py(i)), take(&|i| -facing * px(i)), zero()],
         },
         revolved: None,
+        product: None,
     }
 }
 
@@ -115,6 +116,7 @@ pub(super) fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) ->
             frame: Some((*turn, *shift)),
             ..revolved
         }),
+        product: patch.product,
     }
 }
 

@@ -48,26 +48,34 @@ fn restrict_large<const M: usize>(
     out: &mut [f64],
 ) {
     let (rows, columns) = (
-        blossoms::<M>(p, lower[0], upper[0]),
+        transposed(&blossoms::<M>(p, lower[0], upper[0])),
         blossoms::<M>(q, lower[1], upper[1]),
     );
-    let mut line = [0.0; M];
+    let mut half = [[0.0; M]; M];
     let count = (p + 1) * (q + 1);
     for (source, out) in source.chunks_exact(count).zip(out.chunks_exact_mut(count)) {
-        for j in 0..=q {
-            for i in 0..=p {
-                out[i + (p + 1) * j] = (0..=p).map(|k| rows[i][k] * source[k + (p + 1) * j]).sum();
+        for (half, line) in half.iter_mut().zip(source.chunks_exact(p + 1)) {
+            *half = [0.0; M];
+            for (row, c) in rows.iter().zip(line) {
+                for i in 0..M {
+                    half[i] += row[i] * c;
+                }
             }
         }
-        for i in 0..=p {
-            for (j, x) in line[..=q].iter_mut().enumerate() {
-                *x = (0..=q).map(|k| columns[j][k] * out[i + (p + 1) * k]).sum();
+        for (column, out) in columns.iter().zip(out.chunks_exact_mut(p + 1)) {
+            let mut sum = [0.0; M];
+            for (weight, half) in column[..=q].iter().zip(&half) {
+                for i in 0..M {
+                    sum[i] += weight * half[i];
+                }
             }
-            for (j, x) in line[..=q].iter().enumerate() {
-                out[i + (p + 1) * j] = *x;
-            }
+            out.copy_from_slice(&sum[..=p]);
         }
     }
+}
+
+fn transposed<const N: usize>(rows: &[[f64; N]; N]) -> [[f64; N]; N] {
+    std::array::from_fn(|i| std::array::from_fn(|k| rows[k][i]))
 }
 
 /// As [`restrict_rectangle`], for degrees `P − 1` and `Q − 1` known to the compiler.

@@ -1,6 +1,7 @@
 //! The engine's arithmetic: bivariate Bernstein forms, four-component vectors, and ranges of forms over boxes.
 
 pub(crate) mod bivariate;
+pub(crate) mod jets;
 pub(crate) mod quad;
 pub(crate) mod ranges;
 pub(crate) mod table;

@@ -23,6 +23,15 @@ impl Table {
         Self { degrees, c }
     }
 
+    pub fn degrees(&self) -> [usize; 2] {
+        self.degrees
+    }
+
+    /// One of each form for each pair of basis polynomials, those in the first variable fastest.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.c
+    }
+
     /// Values and both derivatives of the `K` forms.
     pub fn at<const K: usize>(&self, [u, v]: [f64; 2]) -> [[f64; K]; 3] {
         match self.degrees {

@@ -2,6 +2,7 @@
 
 use crate::algebra::ranges::{Triples, all_or_none};
 use crate::cutter::patch_forms::PatchForms;
+use crate::cutter::reduced::Missing;
 use sweepsim_solve::CUT;
 use sweepsim_spline::kernel;
 
@@ -17,6 +18,8 @@ struct CellNode {
     c: Vec<f64>,
     /// Control points of position and slopes, in the places of their numerators in `c`; derivatives of the fields.
     points: Vec<f64>,
+    /// What reduced fields lack.
+    missing: Missing,
 }
 
 /// The lists of a cell.
@@ -35,6 +38,8 @@ pub(crate) struct Cells {
     /// Per field and axis, the position and length of the derivatives of N and M in `points`.
     derivatives: Vec<[(usize, usize); 2]>,
     points: usize,
+    /// Memory for reductions.
+    space: Vec<f64>,
 }
 
 /// Cells beyond this number are not kept for the next segment.
@@ -65,12 +70,13 @@ impl Cells {
             spare: Vec::new(),
             derivatives,
             points,
+            space: Vec::new(),
         };
         let whole = Buffers {
             c: element.whole.clone(),
             points: Vec::new(),
         };
-        let root = cells.node(element, [0.0; 2], [1.0; 2], whole);
+        let root = cells.node(element, [0.0; 2], [1.0; 2], whole, None);
         cells.nodes.push(root);
         cells
     }
@@ -91,7 +97,13 @@ impl Cells {
         let rational = std::iter::once(&layout.position)
             .chain(&layout.slopes)
             .map(|slot| (slot, 4));
-        for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
+        // Reduced fields are not parts of the whole patch's.
+        let fields = if element.reduced.is_some() {
+            &[]
+        } else {
+            &layout.fields[..]
+        };
+        for (slot, count) in rational.chain(fields.iter().map(|slot| (slot, 6))) {
             let range = slot.start..slot.start + count * slot.len();
             kernel::restrict_rectangle(
                 &element.whole[range.clone()],
@@ -101,7 +113,7 @@ impl Cells {
                 &mut spare.c[range],
             );
         }
-        let node = self.node(element, lower, upper, spare);
+        let node = self.node(element, lower, upper, spare, None);
         self.nodes.push(node);
         self.nodes.len() as u32 - 1
     }
@@ -120,10 +132,26 @@ impl Cells {
         }));
     }
 
-    /// The cell with these homogeneous tensors, its control points put into the other buffer.
-    fn node(&self, element: &PatchForms, lower: [f64; 2], upper: [f64; 2], buffers: Buffers) -> CellNode {
+    /// The cell with these homogeneous tensors, its control points put into the other buffer. `missing`: of reduced fields that are parts of a larger cell's;
+    /// they are reduced again if that is too much.
+    fn node(
+        &mut self,
+        element: &PatchForms,
+        lower: [f64; 2],
+        upper: [f64; 2],
+        buffers: Buffers,
+        missing: Option<Missing>,
+    ) -> CellNode {
         let layout = &element.layout;
         let Buffers { mut c, mut points } = buffers;
+        let mut own = missing.unwrap_or_default();
+        if let (Some(reduced), [slot]) = (&element.reduced, &layout.fields[..]) {
+            let forms = &mut c[slot.start..][..6 * slot.len()];
+            let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
+            if missing.is_none_or(|missing| missing.is_coarse(forms, slot.degrees, widths)) {
+                own = reduced.on(lower, upper, forms, &mut self.space);
+            }
+        }
         points.resize(self.points, 0.0);
         for slot in &layout.fields {
             all_or_none(&mut c[slot.start..][..6 * slot.len()]);
@@ -172,6 +200,7 @@ impl Cells {
             parts: [NONE; 2],
             c,
             points,
+            missing: own,
         }
     }
 
@@ -204,9 +233,9 @@ impl Cells {
         let (mut low_end, mut high_start) = (node.upper, node.lower);
         low_end[axis] = at;
         high_start[axis] = at;
-        let (start, end) = (node.lower, node.upper);
-        let low = self.node(element, start, low_end, buffers(lower));
-        let high = self.node(element, high_start, end, buffers(upper));
+        let (start, end, missing) = (node.lower, node.upper, node.missing);
+        let low = self.node(element, start, low_end, buffers(lower), Some(missing));
+        let high = self.node(element, high_start, end, buffers(upper), Some(missing));
         let first = self.nodes.len() as u32;
         self.nodes.push(low);
         self.nodes.push(high);
@@ -234,6 +263,11 @@ impl Cells {
             Triples::new(c, slot.start, slot.len()),
             Triples::new(c, slot.start + 3 * slot.len(), slot.len()),
         ]
+    }
+
+    /// What the forms of reduced fields lack: their ranges hold those of the fields when widened by it.
+    pub fn missing(&self, cell: u32) -> &Missing {
+        &self.nodes[cell as usize].missing
     }
 
     /// Coefficients of the derivatives of `N` and `M` of a field.

@@ -1,8 +1,10 @@
 //! The tool, prepared once for all moves: its patches and edges as forms, cut into cells on demand.
 
 pub(crate) mod cells;
+pub(crate) mod direct;
 pub(crate) mod outline;
 pub(crate) mod patch_forms;
+pub(crate) mod reduced;
 pub(crate) mod revolution;
 
 use nalgebra::Vector3;

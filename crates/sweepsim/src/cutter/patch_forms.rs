@@ -5,9 +5,12 @@
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
 use crate::algebra::bivariate::factors;
-use crate::algebra::quad::add;
+use crate::algebra::quad::{Quad, add, quad, vector};
 use crate::algebra::table::{Table, position};
+use crate::cutter::direct::Direct;
+use crate::cutter::reduced::Reduced;
 use crate::cutter::revolution::{Revolution, Spot};
+use crate::envelope::ROUNDING;
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing};
 use nalgebra::Vector3;
@@ -33,10 +36,16 @@ pub(crate) struct PatchForms {
     /// Homogeneous tensors of the whole element: see [`Layout`].
     pub(super) whole: Vec<f64>,
     pub(super) layout: Layout,
+    /// The forms of which the cells hold reductions, if their degrees are high.
+    pub(super) reduced: Option<Reduced>,
     /// The largest coefficients of each component of `M` and of `N`.
     pub largest: Sizes,
+    /// The same, or more: their rounding errors are below [`ROUNDING`](crate::envelope::ROUNDING) times this.
+    pub rounding: Sizes,
     /// A faster evaluation of its points, if there is one, arranged for the inner loop.
     pub revolution: Option<Revolution>,
+    /// Another one, of any patch.
+    direct: Option<Direct>,
     frame: Option<LocalFrame>,
     /// Homogeneous position, arranged for the inner loop.
     pub places: Table,
@@ -63,7 +72,17 @@ impl PatchForms {
 
     fn patch(patch: &Patch) -> Self {
         let element = Self::new(patch.position(), patch.weight(), &[patch.field()], 2);
+        let direct = Direct::new(patch);
+        let mut rounding = element.largest;
+        if let Some(direct) = &direct {
+            let errors = direct.rounding.as_flattened();
+            for (size, error) in rounding.as_flattened_mut().iter_mut().zip(errors) {
+                *size = size.max(error / ROUNDING);
+            }
+        }
         Self {
+            direct,
+            rounding,
             revolution: patch.revolved().map(Revolution::new),
             frame: patch
                 .revolved()
@@ -105,8 +124,9 @@ impl PatchForms {
             })
             .collect();
         let mut largest = [[0.0_f64; 3]; 2];
+        let mut reduced = None;
         let mut all: Vec<&Bernstein> = Vec::new();
-        let fields = fields
+        let mut fields: Vec<Slot> = fields
             .iter()
             .map(|field| {
                 let forms: Vec<&Bernstein> = field.normal().iter().chain(field.moment()).collect();
@@ -118,6 +138,13 @@ impl PatchForms {
                 put(&forms)
             })
             .collect();
+        if let [field] = &mut fields[..]
+            && let Some(own) = Reduced::new(&whole[field.start..], field.degrees)
+        {
+            field.degrees = own.low();
+            whole.truncate(field.start + 6 * field.len());
+            reduced = Some(own);
+        }
         let layout = Layout {
             position,
             slopes,
@@ -127,8 +154,11 @@ impl PatchForms {
         Self {
             whole,
             layout,
+            reduced,
+            rounding: largest,
             largest,
             revolution: None,
+            direct: None,
             frame: None,
             places: table(&[x, y, z, weight]),
             normals: table(&all),
@@ -154,13 +184,19 @@ impl PatchForms {
     /// A point of a placed patch, and its fields: `N` and `M`, their derivatives in `u` and in `v`.
     #[inline]
     pub fn spot(&self, placing: &Placing, at: [f64; 2]) -> (Spot, [[f64; 6]; 3]) {
-        let [place, in_u, in_v] = position(&self.places.at::<4>(at));
-        let fields = self.normals.at::<6>(at);
+        let (place, slopes, fields) = if let Some(direct) = &self.direct {
+            let site = direct.at(at);
+            (site.place, site.slopes, site.lists())
+        } else {
+            let [place, in_u, in_v] = position(&self.places.at::<4>(at)).map(|v| quad(&v));
+            (place, [in_u, in_v], self.normals.at::<6>(at))
+        };
+        let turned = |direction: &Quad| placing.turned(&vector(direction));
         let [x, y, z, ..] = fields[0];
         let spot = Spot {
-            place: add(&placing.turned(&place), &placing.origin),
-            slopes: [placing.turned(&in_u), placing.turned(&in_v)],
-            normal: placing.turned(&Vector3::new(x, y, z)),
+            place: add(&turned(&place), &placing.origin),
+            slopes: slopes.each_ref().map(turned),
+            normal: turned(&[x, y, z, 0.0]),
         };
         (spot, fields)
     }

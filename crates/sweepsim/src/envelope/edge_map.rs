@@ -5,9 +5,7 @@ use crate::algebra::ranges::{envelope, products};
 use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::enclosures::{
-    Brick, Near, ROUNDING, Size, envelope_size, interval, negative, plane_values, turning,
-};
+use crate::envelope::enclosures::{Brick, Near, Size, envelope_error, interval, negative, plane_values, turning};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
@@ -42,7 +40,7 @@ impl ChartMap<2> for EdgeMap<'_> {
     }
 
     fn values(&mut self, cell: &Brick) -> Option<[Enclosure; 2]> {
-        let error = ROUNDING * envelope_size(self.element, self.times);
+        let error = envelope_error(self.element, self.times);
         let [a, b] = [0, 1].map(|side| {
             let field = self.cells.field(self.element, cell.0, side);
             let (spins, travels) = self.times.twist(cell.1);

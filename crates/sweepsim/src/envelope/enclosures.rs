@@ -50,16 +50,38 @@ pub(crate) type Brick = (u32, u32);
 
 pub(crate) const ROOT: Brick = (0, 0);
 
-/// A bound of `|g|`, and so of its rounding: component by component, since a bottom that slides along itself has the sign of a displacement that is a
-/// tiny part of the velocity.
+/// A bound of `|g|`: component by component, since a bottom that slides along itself has the sign of a displacement that is a tiny part of the velocity.
 pub(super) fn envelope_size(element: &PatchForms, times: &Times) -> f64 {
     product_size(&times.sizes(), &element.largest)
+}
+
+/// A bound of the rounding error of `g`.
+pub(super) fn envelope_error(element: &PatchForms, times: &Times) -> f64 {
+    ROUNDING * product_size(&times.sizes(), &element.rounding)
+}
+
+/// The range of a function that a form bounds up to an error.
+#[inline]
+pub(super) fn widened((lo, hi): (f64, f64), error: f64) -> (f64, f64) {
+    (lo - error, hi + error)
 }
 
 /// A bound of `⟨s, M⟩ + ⟨b, N⟩`.
 pub(super) fn product_size(twist: &Sizes, fields: &Sizes) -> f64 {
     let pairs = twist.as_flattened().iter().zip(fields.as_flattened());
     pairs.map(|(a, b)| a * b).sum()
+}
+
+/// The largest of each component of some vectors.
+#[inline]
+pub(super) fn largest(rows: &[[f64; 3]]) -> [f64; 3] {
+    let mut largest = [0.0_f64; 3];
+    for row in rows {
+        for (size, x) in largest.iter_mut().zip(row) {
+            *size = size.max(x.abs());
+        }
+    }
+    largest
 }
 
 /// Ranges of X and Y.

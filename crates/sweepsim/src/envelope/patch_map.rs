@@ -4,7 +4,9 @@ use crate::algebra::quad::vector;
 use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::enclosures::{Brick, Near, ROUNDING, Size, envelope_size, interval, plane_values, turning};
+use crate::envelope::enclosures::{
+    Brick, Near, Size, envelope_error, envelope_size, interval, largest, plane_values, product_size, turning, widened,
+};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
@@ -38,8 +40,9 @@ impl ChartMap<3> for PatchMap<'_> {
     fn values(&mut self, cell: &Brick) -> Option<[Enclosure; 3]> {
         let field = self.cells.field(self.element, cell.0, 0);
         let (spins, travels) = self.times.twist(cell.1);
-        let g = envelope(spins, travels, &field);
-        let error = ROUNDING * envelope_size(self.element, self.times);
+        let missing = product_size(&self.times.sizes(), &self.cells.missing(cell.0).value);
+        let g = widened(envelope(spins, travels, &field), missing);
+        let error = envelope_error(self.element, self.times);
         if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
             return None;
         }
@@ -50,6 +53,8 @@ impl ChartMap<3> for PatchMap<'_> {
     fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 3]; 3] {
         let zero = Enclosure::hull(0.0, 0.0);
         let mut jacobian = [[zero; 3]; 3];
+        let missing = self.cells.missing(cell.0);
+        let sizes = self.times.sizes();
         for axis in 0..2 {
             let slope = self.cells.slope(self.element, cell.0, axis);
             for r in 0..2 {
@@ -57,7 +62,8 @@ impl ChartMap<3> for PatchMap<'_> {
             }
             let slopes = self.cells.field_slope(cell.0, 0, axis);
             let (spins, travels) = self.times.twist(cell.1);
-            jacobian[2][axis] = interval(envelope(spins, travels, &slopes));
+            let error = product_size(&sizes, &missing.slopes[axis]);
+            jacobian[2][axis] = interval(widened(envelope(spins, travels, &slopes), error));
         }
         let turning = turning(self.element, self.cells, self.times, *cell);
         for r in 0..2 {
@@ -66,11 +72,13 @@ impl ChartMap<3> for PatchMap<'_> {
         let (spins, travels) = self.times.twist_slope(cell.1);
         if !travels.is_empty() {
             let field = self.cells.field(self.element, cell.0, 0);
-            jacobian[2][2] = interval(if spins.is_empty() {
+            let range = if spins.is_empty() {
                 products(travels, &field[0])
             } else {
                 envelope(spins, travels, &field)
-            });
+            };
+            let error = product_size(&[largest(spins), largest(travels)], &missing.value);
+            jacobian[2][2] = interval(widened(range, error));
         }
         jacobian
     }
@@ -127,6 +135,6 @@ impl ChartMap<3> for PatchMap<'_> {
 
     fn rounding(&self) -> [f64; 3] {
         let slack = self.size.slack;
-        [slack, slack, ROUNDING * envelope_size(self.element, self.times)]
+        [slack, slack, envelope_error(self.element, self.times)]
     }
 }

@@ -5,7 +5,8 @@ use crate::algebra::ranges::Triples;
 use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
-use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size};
+use crate::cutter::reduced::Missing;
+use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, widened};
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
@@ -38,12 +39,13 @@ pub(crate) enum Side {
 }
 
 impl Side {
-    fn negative(&self, field: &[Triples; 2], element: &PatchForms) -> Option<bool> {
+    fn negative(&self, field: &[Triples; 2], missing: &Missing, element: &PatchForms) -> Option<bool> {
         match self {
             Self::Beyond(negative) => Some(*negative),
             Self::Moving(twist) => {
-                let size = product_size(&twist.sizes, &element.largest);
-                negative(envelope(&[twist.spin], &[twist.travel], field), ROUNDING * size)
+                let g = envelope(&[twist.spin], &[twist.travel], field);
+                let error = ROUNDING * product_size(&twist.sizes, &element.rounding);
+                negative(widened(g, product_size(&twist.sizes, &missing.value)), error)
             }
         }
     }
@@ -113,8 +115,9 @@ impl ChartMap<2> for PlacedMap<'_> {
 
     fn values(&mut self, cell: &u32) -> Option<[Enclosure; 2]> {
         let field = self.cells.field(self.element, *cell, 0);
-        let before = self.before.negative(&field, self.element);
-        if before.is_some() && before == self.after.negative(&field, self.element) {
+        let missing = self.cells.missing(*cell);
+        let before = self.before.negative(&field, missing, self.element);
+        if before.is_some() && before == self.after.negative(&field, missing, self.element) {
             return None;
         }
         let position = self.cells.position(self.element, *cell);

@@ -1,0 +1,215 @@
+//! Normals from the position's own derivatives, where their forms have many times its degree.
+//!
+//! `N = s w⁴ (F_u × F_v)` and `M = F × N` with their derivatives take the second-order jet of `F`, of 16 control points for a bicubic patch, where the forms
+//! of `N` and `M` have 81 coefficients each. Both are the same function, which the forms bound over boxes.
+
+use crate::algebra::quad::{Quad, add, cross, mix, quad};
+use crate::algebra::table::Table;
+use crate::time::pieces::Sizes;
+use nalgebra::Vector3;
+use sweepsim_motion::Patch;
+use sweepsim_spline::Bernstein;
+
+/// A patch whose normals are products of its derivatives.
+#[derive(Clone, Debug)]
+pub(crate) struct Direct {
+    /// The homogeneous position relative to `centre`, so that its derivatives are differences of small numbers.
+    places: Table,
+    centre: Vector3<f64>,
+    /// `s`.
+    factor: f64,
+    /// The weight, if it is constant.
+    constant: Option<f64>,
+    /// Bounds of the rounding errors of `M` and `N`.
+    pub rounding: Sizes,
+}
+
+/// A point relative to the tool, its derivatives, `N` and `M`, and their derivatives.
+pub(crate) struct Site {
+    pub place: Quad,
+    pub slopes: [Quad; 2],
+    /// `N` and `M`: values, and derivatives in `u` and in `v`.
+    pub fields: [[Quad; 2]; 3],
+}
+
+fn scaled(a: &Quad, factor: f64) -> Quad {
+    a.map(|x| factor * x)
+}
+
+impl Direct {
+    /// `None` if the normals have another form.
+    pub fn new(patch: &Patch) -> Option<Self> {
+        let factor = patch.product()?;
+        let weight = patch.weight();
+        let first = weight.coefficients()[0];
+        let constant = weight.coefficients().iter().all(|w| *w == first).then_some(first);
+        let degrees = [0, 1].map(|axis| {
+            let own = patch.position().iter().map(|form| form.degree(axis)).max();
+            own.unwrap_or(0).max(weight.degree(axis))
+        });
+        let centre = Vector3::from(patch.point(0.5, 0.5));
+        let raised = |form: &Bernstein| form.elevated_to(&degrees);
+        let shifted = [0, 1, 2].map(|k| raised(&patch.position()[k]).sub(&raised(&weight.scale(centre[k]))));
+        let [x, y, z] = shifted.clone();
+        let rounding = rounding(&shifted, weight, &centre, factor);
+        Some(Self {
+            places: Table::new(&[x, y, z, raised(weight)], degrees),
+            centre,
+            factor,
+            constant,
+            rounding,
+        })
+    }
+
+    /// The point at `(u, v)`.
+    pub fn at(&self, at: [f64; 2]) -> Site {
+        let jet = self.places.jet::<4>(at);
+        let weights = jet.map(|form| form[3]);
+        let [p, pu, pv, puu, puv, pvv] = jet.map(|[x, y, z, _]| [x, y, z, 0.0]);
+        let centre = quad(&self.centre);
+        let (f, fu, fv, second, size, grown);
+        if let Some(weight) = self.constant {
+            let inverse = 1.0 / weight;
+            (f, fu, fv) = (scaled(&p, inverse), scaled(&pu, inverse), scaled(&pv, inverse));
+            second = [puu, puv, pvv].map(|p| scaled(&p, inverse));
+            size = self.factor * (weight * weight) * (weight * weight);
+            grown = [0.0; 2];
+        } else {
+            let [w, wu, wv, wuu, wuv, wvv] = weights;
+            let inverse = 1.0 / w;
+            f = scaled(&p, inverse);
+            // The quotient rule, solved for the highest derivative.
+            let slope = |p: &Quad, w: f64| scaled(&mix(1.0, p, -w, &f), inverse);
+            (fu, fv) = (slope(&pu, wu), slope(&pv, wv));
+            let curvature = |p: &Quad, w: f64, [a, b]: [f64; 2]| {
+                let rest = mix(1.0, &mix(1.0, p, -w, &f), -1.0, &mix(a, &fv, b, &fu));
+                scaled(&rest, inverse)
+            };
+            second = [
+                curvature(&puu, wuu, [0.0, 2.0 * wu]),
+                curvature(&puv, wuv, [wu, wv]),
+                curvature(&pvv, wvv, [2.0 * wv, 0.0]),
+            ];
+            size = self.factor * (w * w) * (w * w);
+            grown = [4.0 * wu * inverse, 4.0 * wv * inverse];
+        }
+        let place = add(&f, &centre);
+        let [fuu, fuv, fvv] = second;
+        let own = cross(&fu, &fv);
+        let normal = scaled(&own, size);
+        let turned = [
+            add(&cross(&fuu, &fv), &cross(&fu, &fuv)),
+            add(&cross(&fuv, &fv), &cross(&fu, &fvv)),
+        ];
+        let slopes = [fu, fv];
+        let of = |axis: usize| {
+            let n = mix(size, &turned[axis], grown[axis], &normal);
+            [n, add(&cross(&slopes[axis], &normal), &cross(&place, &n))]
+        };
+        Site {
+            fields: [[normal, cross(&place, &normal)], of(0), of(1)],
+            place,
+            slopes,
+        }
+    }
+}
+
+/// Bounds of the rounding errors of `M` and `N`, from the homogeneous position about `centre`.
+///
+/// A derivative of a form of degree `p` with coefficients up to `c` is a sum of products with polynomials whose absolute values add up to at most `2p`, each
+/// of which is a sum of a few rounded terms: two sums of `p + 1` products, and four more roundings of a polynomial, make `2p (2p + 8) ε c`.
+fn rounding(position: &[Bernstein; 3], weight: &Bernstein, centre: &Vector3<f64>, factor: f64) -> Sizes {
+    let epsilon = f64::EPSILON;
+    let heaviest = weight.magnitude();
+    let lightest = weight.coefficients().iter().copied().fold(f64::INFINITY, f64::min);
+    let sizes = position.each_ref().map(Bernstein::magnitude);
+    let radius = sizes.map(|size| size / lightest);
+    // Of each derivative, component by component: a bound, and one of its error.
+    let [u, v] = [0, 1].map(|axis| {
+        let degree = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0) as f64;
+        let roundings = 2.0 * degree * (2.0 * degree + 8.0) * epsilon;
+        let growth = weight.derivative(axis).magnitude();
+        std::array::from_fn::<_, 3, _>(|k| {
+            let bound = (position[k].derivative(axis).magnitude() + radius[k] * growth) / lightest;
+            let error = roundings * (sizes[k] + radius[k] * heaviest) / lightest + 4.0 * epsilon * bound;
+            [bound, error]
+        })
+    });
+    let size = factor * heaviest.powi(4);
+    let (mut normal, mut moment) = ([[0.0; 2]; 3], [0.0; 3]);
+    let pairs = [[1, 2], [2, 0], [0, 1]];
+    for (k, [a, b]) in pairs.into_iter().enumerate() {
+        let product = |p: [f64; 2], q: [f64; 2]| [p[0] * q[0], p[0] * q[1] + p[1] * q[0]];
+        let (one, other) = (product(u[a], v[b]), product(u[b], v[a]));
+        let bound = size * (one[0] + other[0]);
+        normal[k] = [bound, size * (one[1] + other[1]) + 16.0 * epsilon * bound];
+    }
+    for (k, [a, b]) in pairs.into_iter().enumerate() {
+        let term = |p: usize, n: usize| {
+            let reach = centre[p].abs() + radius[p];
+            reach * (normal[n][1] + 24.0 * epsilon * normal[n][0])
+        };
+        moment[k] = term(a, b) + term(b, a);
+    }
+    [moment, normal.map(|[_, error]| error)]
+}
+
+impl Site {
+    /// `N` and `M` one after the other, and their derivatives.
+    pub fn lists(&self) -> [[f64; 6]; 3] {
+        self.fields.map(|[[a, b, c, _], [d, e, f, _]]| [a, b, c, d, e, f])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::ranges::range_of;
+    use proptest::prelude::*;
+
+    fn form(degrees: [usize; 2], value: &dyn Fn(usize) -> f64) -> Bernstein {
+        let count = (degrees[0] + 1) * (degrees[1] + 1);
+        Bernstein::new(&degrees, (0..count).map(value).collect()).unwrap()
+    }
+
+    proptest! {
+        /// Normals and moments from derivatives are those of the patch's own forms, within the bound of their rounding.
+        #[test]
+        fn products_of_derivatives_are_the_normals(
+            degrees in prop_oneof![Just([3, 3]), [1_usize..5, 1_usize..5]], rational in any::<bool>(), at in [0.0..=1.0, 0.0..=1.0],
+            bumps in proptest::collection::vec(-0.08..0.08, 25), weights in proptest::collection::vec(0.6..1.6, 25),
+            centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
+        ) {
+            let [p, q] = degrees;
+            let (x, y) = (|i: usize| (i % (p + 1)) as f64 / p as f64, |i: usize| (i / (p + 1)) as f64 / q as f64);
+            let weight = |i: usize| if rational { weights[i] } else { 2.0 };
+            let position = [
+                form(degrees, &|i| weight(i) * (centre[0] + 3.0 * x(i))),
+                form(degrees, &|i| weight(i) * (centre[1] + y(i))),
+                form(degrees, &|i| weight(i) * (centre[2] + bumps[i])),
+            ];
+            // Bumps may make a fold, which is no patch.
+            let Ok(patch) = Patch::new(position, form(degrees, &weight)) else { return Ok(()) };
+            let direct = Direct::new(&patch).unwrap();
+            let site = direct.at(at);
+            let place = patch.point(at[0], at[1]);
+            for k in 0..3 {
+                prop_assert!((site.place[k] - place[k]).abs() <= 1e-12);
+            }
+            let forms: Vec<&Bernstein> = patch.field().normal().iter().chain(patch.field().moment()).collect();
+            for (k, form) in forms.iter().enumerate() {
+                let error = direct.rounding[1 - k / 3][k % 3] + 64.0 * f64::EPSILON * form.magnitude();
+                let lists = site.lists();
+                let value = form.evaluate(&at);
+                prop_assert!((lists[0][k] - value).abs() <= error, "{k}: {} {value} {error}", lists[0][k]);
+                for axis in 0..2 {
+                    let slope = form.derivative(axis).evaluate(&at);
+                    prop_assert!((lists[1 + axis][k] - slope).abs() <= 1e3 * error + 1e-9);
+                }
+            }
+            // The bound is no more than what many roundings of the whole patch make.
+            let (_, most) = range_of(direct.rounding[1]);
+            prop_assert!(most < 1e-10, "{most}");
+        }
+    }
+}
