@@ -12,6 +12,12 @@ const TOLERANCE: f64 = 1e-6;
 /// A solid of revolution as patches that know nothing of it, with poles on the axis. The meridian's pieces are lists of
 /// homogeneous `(ρ, ζ, w)`, from the tip up.
 fn revolved(pieces: &[Vec<[f64; 3]>]) -> Tool {
+    weighted(pieces, 0.0)
+}
+
+/// The same surfaces with all homogeneous coordinates multiplied by `1 + bend u v`: where it is not 0, nothing in their forms tells that they are round.
+fn weighted(pieces: &[Vec<[f64; 3]>], bend: f64) -> Tool {
+    let factor = Bernstein::new(&[1, 1], vec![1.0, 1.0, 1.0, 1.0 + bend]).unwrap();
     let h = std::f64::consts::FRAC_1_SQRT_2;
     let mut patches = Vec::new();
     for piece in pieces {
@@ -26,7 +32,12 @@ fn revolved(pieces: &[Vec<[f64; 3]>]) -> Tool {
             let circle = [at(start), [middle[0], middle[1], h], at(start + 2.0)];
             let form = |value: &dyn Fn([f64; 3], [f64; 3]) -> f64| {
                 let coefficients = piece.iter().flat_map(|m| circle.iter().map(|c| value(*c, *m)));
-                Bernstein::new(&[2, piece.len() - 1], coefficients.collect()).unwrap()
+                let form = Bernstein::new(&[2, piece.len() - 1], coefficients.collect()).unwrap();
+                if bend == 0.0 {
+                    form
+                } else {
+                    form.mul(&factor).assumed_exact()
+                }
             };
             let position = [
                 form(&|c, m| c[0] * m[0]),
@@ -175,6 +186,32 @@ proptest! {
         let (tool, general, edges) = with_and_without(which);
         prop_assert_eq!(general.edges().len(), edges);
         prop_assert!(general.profile().is_none());
+        let path = Path::new(poses).unwrap();
+        let grid = Grid::new([-9.0, -8.0], [9.0, 10.0], [12, 12]).unwrap();
+        let options = Options::new(TOLERANCE);
+        let a = sweep(&tool, &path, &grid, &options, &()).unwrap();
+        let b = sweep(&general, &path, &grid, &options, &()).unwrap();
+        prop_assert!(a.statistics.unresolved.is_empty() && b.statistics.unresolved.is_empty());
+        assert_same(&a.volume, &b.volume)?;
+    }
+
+    /// Patches of high degree, with poles, are swept like the round tools that they are: their normals are reduced on cells, and evaluated from derivatives.
+    #[test]
+    fn patches_of_no_special_form(poses in proptest::collection::vec(pose(), 2..3), ball in any::<bool>(), bend in 0.2..0.6) {
+        let (wall, top) = (|from: f64| line([2.0, from], [2.0, 9.0]), line([2.0, 9.0], [0.0, 9.0]));
+        let (tool, pieces) = if ball {
+            let round = quarter([0.0, 0.0], [2.0, 0.0], [2.0, 2.0]);
+            (Tool::ball(2.0, 9.0).unwrap(), vec![round, wall(2.0), top])
+        } else {
+            let (floor, corner) = (line([0.0, 0.0], [1.3, 0.0]), quarter([1.3, 0.0], [2.0, 0.0], [2.0, 0.7]));
+            (Tool::bull(2.0, 0.7, 9.0).unwrap(), vec![floor, corner, wall(0.7), top])
+        };
+        let general = weighted(&pieces, bend);
+        let degree = |patch: &Patch| patch.field().moment()[0].degrees().to_vec();
+        prop_assert!(general.patches().iter().all(|patch| degree(patch).into_iter().max() > Some(4)));
+        // Patches with a pole are evaluated from their forms, the others from derivatives.
+        let products = general.patches().iter().filter(|patch| patch.product().is_some()).count();
+        prop_assert!(0 < products && products < general.patches().len());
         let path = Path::new(poses).unwrap();
         let grid = Grid::new([-9.0, -8.0], [9.0, 10.0], [12, 12]).unwrap();
         let options = Options::new(TOLERANCE);
