@@ -59,6 +59,9 @@ enum Command {
         /// Seconds that one run of the sampler may take, unless that is less than twice the time of the exact simulation.
         #[arg(long, default_value_t = 20.0)]
         limit: f64,
+        /// Only draws the plots anew, from docs/accuracy.csv.
+        #[arg(long)]
+        draw: bool,
     },
     /// Sets up other programs from their registries, and runs them beside sweepsim on the same work: takes minutes.
     Peers {
@@ -181,8 +184,9 @@ fn main() -> ExitCode {
         Command::Bless { jobs } => regress::run(Mode::Bless, &jobs),
         Command::Bench { .. } if cfg!(debug_assertions) => in_release(),
         Command::Bench { table, filter, store } => measure(table, filter.as_deref(), store).map(|()| true),
+        Command::Study { draw: true, .. } => others::study::draw().map(|()| true),
         Command::Study { .. } if cfg!(debug_assertions) => in_release(),
-        Command::Study { filter, limit } => others::study::run(filter.as_deref(), limit).map(|()| true),
+        Command::Study { filter, limit, .. } => others::study::run(filter.as_deref(), limit).map(|()| true),
         Command::Pictures { filter } => pictures::draw(filter.as_deref()).map(|()| true),
         Command::Peers { .. } if cfg!(debug_assertions) => in_release(),
         Command::Peers { fine } => others::peers::run(fine).map(|()| true),

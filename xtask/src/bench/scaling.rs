@@ -208,8 +208,11 @@ fn stored(table: &str) -> Vec<Curve> {
     curves
 }
 
+/// Measures the curves of a figure.
+type Measure = fn() -> Result<Vec<Curve>, String>;
+
 /// The figures, and what measures them.
-const FIGURES: [(&str, fn() -> Result<Vec<Curve>, String>); 5] = [
+const FIGURES: [(&str, Measure); 5] = [
     ("grid", by_grid),
     ("moves", by_moves),
     ("threads", by_threads),

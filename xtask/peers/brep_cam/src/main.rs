@@ -11,8 +11,8 @@ use brep_cam::stock_sim::{Column, DexelGrid};
 use brep_cam::{Feed, Motion, MotionKind, NullSink, Point3, Runner, Tolerance};
 use work::{Work, answer, seconds};
 
-/// The chord error of the profiles of ball ends, in mm: less than what the steps leave.
-const CHORD: f64 = 1e-4;
+/// The chord error of the profiles of ball ends over the square of the step: its default, 0.01, at half a millimetre, and as much smaller as what steps leave.
+const CHORD: f64 = 0.04;
 
 fn main() {
     let (work, step) = (Work::read(), Work::setting());
@@ -55,7 +55,7 @@ fn main() {
         };
         // A hair larger than the block: rounding up makes no more columns than asked for.
         let options = TriDexelOptions { cell: options.cell * (1.0 + 1e-12), ..options };
-        let profile = ToolProfile::new(&cutter, None, CHORD);
+        let profile = ToolProfile::new(&cutter, None, CHORD * step * step);
         let bounds = brep_cam::Bounds3::new(point(work.min), point(work.max));
         let mut dexels = TriDexel::empty(&bounds, &options).expect("a block");
         for grid in &mut dexels.grids {

@@ -53,7 +53,7 @@ impl Work {
 
     /// 315 moves, the first of them a plunge, in each of which the axis turns by a few degrees.
     pub fn five_axis(ball: bool) -> Result<Self, String> {
-        let mut poses = raster::poses([15, 20], raster::SIDE, LEAN)?;
+        let mut poses = raster::poses([21, 14], raster::SIDE, LEAN)?;
         let ([x, y, _], axis) = (poses[0].tip(), poses[0].axis());
         poses.insert(
             0,

@@ -81,6 +81,11 @@ pub fn run(filter: Option<&str>, limit: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// Draws the pictures of the docs from the stored table.
+pub fn draw() -> Result<(), String> {
+    pictures::store(&report::stored()?)
+}
+
 fn example(name: &'static str, title: &'static str, limit: f64) -> Result<Study, String> {
     let file = workspace::fixtures().join("jobs").join(name).with_extension("ron");
     let job = Job::read(&file).map_err(|error| error.to_string())?;

@@ -87,6 +87,57 @@ pub fn print(study: &Study) {
     }
 }
 
+/// The studies of `docs/accuracy.csv`: all that pictures need.
+pub fn stored() -> Result<Vec<Study>, String> {
+    let file = workspace::root().join("docs/accuracy.csv");
+    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    let mut studies: Vec<Study> = Vec::new();
+    for (number, line) in text.lines().enumerate().skip(1) {
+        let (study, row) =
+            parsed(line).ok_or_else(|| format!("{}: line {} is not a row", file.display(), number + 1))?;
+        match studies.iter_mut().find(|known| known.name == study.name) {
+            Some(known) => known.rows.push(row),
+            None => studies.push(Study {
+                rows: vec![row],
+                ..study
+            }),
+        }
+    }
+    Ok(studies)
+}
+
+fn parsed(line: &str) -> Option<(Study, Row)> {
+    let words: Vec<&str> = line.split(',').collect();
+    let (name, title) = *super::EXAMPLES.iter().find(|(name, _)| Some(name) == words.first())?;
+    let bridge = [Bridge::Union, Bridge::Hulls]
+        .into_iter()
+        .find(|bridge| Some(&bridge.name()) == words.get(1))?;
+    let numbers: Vec<f64> = words[2..].iter().map(|word| word.parse().ok()).collect::<Option<_>>()?;
+    let [spacing, places, seconds, exact, max, p99, rms, left, removed] = numbers[..] else {
+        return None;
+    };
+    let errors = Errors { max, p99, rms };
+    let row = Row {
+        bridge,
+        spacing,
+        places: places as usize,
+        seconds,
+        errors,
+        left,
+    };
+    let study = Study {
+        name,
+        title,
+        moves: 0,
+        cells: [0; 2],
+        seconds: exact,
+        removed,
+        points: 0,
+        rows: Vec::new(),
+    };
+    Some((study, row))
+}
+
 /// Writes `docs/accuracy.csv`.
 pub fn store(studies: &[Study]) -> Result<(), String> {
     let mut text = String::from(
