@@ -2,7 +2,6 @@
 
 mod figures;
 mod runs;
-mod tubes;
 
 use crate::workspace;
 use std::path::PathBuf;
