@@ -177,8 +177,8 @@ impl Run {
             Takes::Compared(others) => {
                 simulate(&out, &[self.options, &["--only", "mesh"]].concat())?;
                 let other = out.join("other");
-                simulate(&other, &[*others, &["--only", "mesh"]].concat())?;
-                compare(&other.join("part.ply"))
+                simulate(&other, &[*others, &["--only", "binary"]].concat())?;
+                compare(&other.join("part.dexels"))
             }
             Takes::AgainstFixture(target) => {
                 simulate(&out, &[self.options, &["--only", "mesh"]].concat())?;
