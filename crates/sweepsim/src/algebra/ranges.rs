@@ -4,6 +4,9 @@
 
 const LANES: usize = 4;
 
+/// Sums of products of a few numbers are accurate to within this fraction of the sum of their absolute values.
+pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
 /// A vector-valued list of coefficients, with x, y and z stored separately.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Triples<'a> {

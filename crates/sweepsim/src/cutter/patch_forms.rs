@@ -6,11 +6,11 @@
 
 use crate::algebra::bivariate::factors;
 use crate::algebra::quad::{Quad, add, quad, vector};
+use crate::algebra::ranges::ROUNDING;
 use crate::algebra::table::{Table, position};
 use crate::cutter::direct::Direct;
 use crate::cutter::reduced::Reduced;
 use crate::cutter::revolution::{Revolution, Spot};
-use crate::envelope::ROUNDING;
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing};
 use nalgebra::Vector3;
@@ -40,7 +40,7 @@ pub(crate) struct PatchForms {
     pub(super) reduced: Option<Reduced>,
     /// The largest coefficients of each component of `M` and of `N`.
     pub largest: Sizes,
-    /// The same, or more: their rounding errors are below [`ROUNDING`](crate::envelope::ROUNDING) times this.
+    /// The same, or more: their rounding errors are below [`ROUNDING`] times this.
     pub rounding: Sizes,
     /// A faster evaluation of its points, if there is one, arranged for the inner loop.
     pub revolution: Option<Revolution>,

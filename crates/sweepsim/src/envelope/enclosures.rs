@@ -1,13 +1,11 @@
 //! Enclosures of `X`, `Y` and `g`, and of their derivatives, over a cell of a patch or an edge and a piece of time.
 
+pub(crate) use crate::algebra::ranges::ROUNDING;
 use crate::algebra::ranges::{products, shifted_products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::pieces::{Sizes, Times};
 use sweepsim_solve::Enclosure;
-
-/// Sums of products of a few numbers are accurate to within this fraction of the sum of their absolute values.
-pub(crate) const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// `[lo, hi] · [a, b]` for `0 < a ≤ b`.
 fn scaled((lo, hi): (f64, f64), (a, b): (f64, f64)) -> (f64, f64) {
