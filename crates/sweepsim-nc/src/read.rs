@@ -1,5 +1,7 @@
 //! Program files, by content.
 
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::content::Content;
@@ -9,6 +11,7 @@ use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::table::rows;
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::lines;
 use crate::{apt, gcode, table};
 
 /// Millimetres per inch.
@@ -28,9 +31,20 @@ const EXPECTED: &str =
 /// [`NcError`]: the file cannot be read, or its content is invalid, not supported or not recognised.
 pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError> {
     let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    let read = std::fs::read(file)
-        .map_err(|error| NcError::new(NcProblem::Read(error), None))
-        .and_then(|bytes| read_bytes(&bytes, file, extension.as_deref(), options));
+    let open = || {
+        let file = File::open(file).map_err(|error| NcError::new(NcProblem::Read(error), None));
+        file.map(BufReader::new)
+    };
+    let table = match options.format {
+        None => extension.as_deref() == Some("csv"),
+        Some(format) => format == Format::Table,
+    };
+    let read = if table {
+        open().and_then(|reader| table::read_from(reader, unit(options)))
+    } else {
+        let bytes = open().and_then(lines::all);
+        bytes.and_then(|bytes| read_bytes(&bytes, file, extension.as_deref(), options))
+    };
     let mut program = read.map_err(|error| error.in_file(file))?;
     // Subprograms come after the main program.
     match program.files.first_mut() {
@@ -41,8 +55,8 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
 }
 
 fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
-    let read_table = || table::read(utf8(bytes)?, if options.inch { INCH } else { 1.0 });
-    let unit = if options.inch { INCH } else { 1.0 };
+    let unit = unit(options);
+    let read_table = || table::read_from(bytes, unit);
     match options.format {
         Some(Format::Gcode) => return gcode::read_at(&String::from_utf8_lossy(bytes), Some(file), options),
         Some(Format::Apt) => return apt::read(&String::from_utf8_lossy(bytes), options),
@@ -51,7 +65,6 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
             let problem = NcProblem::value("the first row", "of other content", "six numbers");
             return rows::read(utf8(bytes)?, unit).unwrap_or_else(|| Err(NcError::new(problem, None)));
         }
-        None if extension == Some("csv") => return read_table(),
         None => {}
     }
     // Comments come in all encodings; anything else that is not ASCII is an error of the reader.
@@ -102,6 +115,10 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
     }
 }
 
+fn unit(options: &ReadOptions) -> f64 {
+    if options.inch { INCH } else { 1.0 }
+}
+
 /// A program of this name beside another, in capitals or not.
 fn beside(file: &Path, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
     // Names that could lead elsewhere are none.
@@ -111,9 +128,10 @@ fn beside(file: &Path, name: &str, extensions: &[&str]) -> Option<(PathBuf, Stri
     for name in [name.to_owned(), name.to_ascii_lowercase()] {
         for extension in extensions {
             let beside = file.with_file_name(format!("{name}.{extension}"));
-            if let Ok(bytes) = std::fs::read(&beside) {
-                return Some((beside, String::from_utf8_lossy(&bytes).into_owned()));
-            }
+            let Ok(open) = File::open(&beside) else { continue };
+            // One that cannot be read is none: the call says so.
+            let bytes = lines::all(BufReader::new(open)).ok()?;
+            return Some((beside, String::from_utf8_lossy(&bytes).into_owned()));
         }
     }
     None

@@ -2,7 +2,7 @@
 
 pub(crate) mod rows;
 
-use std::io::Write;
+use std::io::{BufRead, Write};
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 use sweepsim_motion::{Move, Pose};
@@ -10,6 +10,7 @@ use sweepsim_motion::{Move, Pose};
 use crate::model::names::Format;
 use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::lines::Lines;
 use crate::text::numbers::shortest;
 
 /// All columns; the first six are required.
@@ -33,14 +34,14 @@ const COLUMNS: [&str; 10] = ["x", "y", "z", "i", "j", "k", "rapid", "feed", "too
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, unit: f64) -> Result<Program, NcError> {
-    let mut reader = ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .trim(Trim::None)
-        .from_reader(text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes());
-    let table = SourceText {
-        lines: text.lines().collect(),
-    };
+    read_from(text.as_bytes(), unit)
+}
+
+/// Reads a table as [`read`], line by line: memory is that of the poses, however long the table is.
+///
+/// # Errors
+/// [`NcError`] with line and column; or the reader's error. A line of more than 65,536 bytes is one, too.
+pub fn read_from(reader: impl BufRead, unit: f64) -> Result<Program, NcError> {
     if !(unit > 0.0 && unit.is_finite()) {
         let problem = NcProblem::value("the unit of the table", unit, "a positive number of millimetres");
         return Err(NcError::new(problem, None));
@@ -50,57 +51,93 @@ pub fn read(text: &str, unit: f64) -> Result<Program, NcError> {
         format: Some(Format::Table),
         ..Program::default()
     };
-    let mut record = StringRecord::new();
-    loop {
-        match reader.read_record(&mut record) {
-            Ok(true) => {}
-            Ok(false) => break,
-            Err(error) => {
-                let line = error.position().map_or(1, csv::Position::line) as usize;
-                return Err(table.error(NcProblem::syntax(error.to_string()), line, None));
-            }
+    let mut lines = Lines::new(reader);
+    let mut quoted = StringRecord::new();
+    let mut last = String::new();
+    while lines.next_line()? {
+        let line = TableLine::new(&lines)?;
+        if line.whole.is_empty() {
+            continue;
         }
-        let line = record.position().map_or(1, csv::Position::line) as usize;
+        let fields = line.fields(&mut quoted)?;
         match &columns {
-            None => columns = Some(table.header(&record, line)?),
+            None => columns = Some(line.header(&fields)?),
             Some(columns) => {
                 let row = Row {
-                    table: &table,
+                    line: &line,
                     columns,
-                    record: &record,
-                    line,
+                    fields: &fields,
                 };
                 let pose = row.pose(unit, program.poses.last())?;
-                if !program
-                    .poses
-                    .last()
-                    .is_some_and(|last| pose.joined && last.pose == pose.pose)
-                {
+                let rests = |last: &ProgramPose| pose.joined && last.pose == pose.pose;
+                if !program.poses.last().is_some_and(rests) {
                     program.poses.push(pose);
                 }
             }
         }
+        if program.poses.is_empty() {
+            last = line.whole.to_owned();
+        }
     }
     if program.poses.is_empty() {
         let problem = NcProblem::syntax("this table has no pose: expected a header x,y,z,i,j,k and one row per pose");
-        return Err(table.error(problem, table.lines.len().max(1), None));
+        let place = TextPosition::in_line(lines.number.max(1), &last, 1, last.chars().count());
+        return Err(NcError::new(problem, Some(place)));
     }
+    program.poses.shrink_to_fit();
     Ok(program)
 }
 
-struct SourceText<'a> {
-    lines: Vec<&'a str>,
+/// A line of a table, without its end.
+struct TableLine<'a> {
+    whole: &'a str,
+    number: usize,
 }
 
-impl SourceText<'_> {
-    /// An error on a line, or in a field of it.
-    fn error(&self, problem: NcProblem, line: usize, field: Option<(&StringRecord, usize)>) -> NcError {
-        let whole = self.lines.get(line.saturating_sub(1)).copied().unwrap_or("");
+impl<'a> TableLine<'a> {
+    fn new<R: BufRead>(lines: &'a Lines<R>) -> Result<Self, NcError> {
+        let (bytes, number) = (lines.line(), lines.number);
+        let whole = std::str::from_utf8(bytes).map_err(|error| {
+            let text = String::from_utf8_lossy(bytes);
+            let column = 1 + text[..error.valid_up_to()].chars().count();
+            let problem = NcProblem::syntax("this is not a text file: expected UTF-8");
+            NcError::new(problem, Some(TextPosition::in_line(number, text.trim_end(), column, 1)))
+        })?;
+        let whole = if number == 1 {
+            whole.strip_prefix('\u{feff}').unwrap_or(whole)
+        } else {
+            whole
+        };
+        Ok(Self {
+            whole: whole.trim_end_matches(['\n', '\r']),
+            number,
+        })
+    }
+
+    /// The fields, in quotes or not.
+    fn fields<'b>(&'b self, quoted: &'b mut StringRecord) -> Result<Vec<&'b str>, NcError> {
+        if !self.whole.contains('"') {
+            return Ok(self.whole.split(',').collect());
+        }
+        let mut reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::None)
+            .from_reader(self.whole.as_bytes());
+        reader
+            .read_record(quoted)
+            .map_err(|error| self.error(NcProblem::syntax(error.to_string()), None))?;
+        Ok(quoted.iter().collect())
+    }
+
+    /// An error on the line, or in a field of it.
+    fn error(&self, problem: NcProblem, field: Option<(&[&str], usize)>) -> NcError {
+        let (whole, line) = (self.whole, self.number);
         let (column, width) = match field {
-            // The record does not keep its commas and quotes: with quotes the columns are unknown, and the end of the line must do.
-            Some((record, index)) if !whole.contains('"') && index < record.len() => {
-                let before: usize = record.iter().take(index).map(|field| field.chars().count() + 1).sum();
-                let field = &record[index];
+            // The fields do not keep their commas and quotes: with quotes the columns are unknown, and the end of the line must do.
+            Some((fields, index)) if !whole.contains('"') && index < fields.len() => {
+                let before: usize = fields[..index].iter().map(|field| field.chars().count() + 1).sum();
+                let field = fields[index];
                 let space = field.chars().take_while(|c| c.is_whitespace()).count();
                 (1 + before + space, field.trim().chars().count())
             }
@@ -111,9 +148,9 @@ impl SourceText<'_> {
     }
 
     /// The field that holds each of [`COLUMNS`], `usize::MAX` for none.
-    fn header(&self, record: &StringRecord, line: usize) -> Result<Vec<usize>, NcError> {
+    fn header(&self, fields: &[&str]) -> Result<Vec<usize>, NcError> {
         let mut columns = vec![usize::MAX; COLUMNS.len()];
-        for (index, name) in record.iter().enumerate() {
+        for (index, name) in fields.iter().enumerate() {
             let name = name.trim().to_ascii_lowercase();
             let known = COLUMNS
                 .iter()
@@ -125,7 +162,7 @@ impl SourceText<'_> {
                     format!("{name:?}"),
                     format!("one of {}, each once", COLUMNS.join(", ")),
                 );
-                return Err(self.error(problem, line, Some((record, index))));
+                return Err(self.error(problem, Some((fields, index))));
             };
             columns[k] = index;
         }
@@ -135,7 +172,7 @@ impl SourceText<'_> {
                     "the header has no column {}: expected x,y,z,i,j,k",
                     COLUMNS[missing]
                 ));
-                Err(self.error(problem, line, None))
+                Err(self.error(problem, None))
             }
             None => Ok(columns),
         }
@@ -143,16 +180,15 @@ impl SourceText<'_> {
 }
 
 struct Row<'a> {
-    table: &'a SourceText<'a>,
+    line: &'a TableLine<'a>,
     columns: &'a [usize],
-    record: &'a StringRecord,
-    line: usize,
+    fields: &'a [&'a str],
 }
 
 impl Row<'_> {
     /// The field of column `k`, unless it is missing or empty.
     fn field(&self, k: usize) -> Option<&str> {
-        let field = self.record.get(self.columns[k])?.trim();
+        let field = self.fields.get(self.columns[k])?.trim();
         (!field.is_empty()).then_some(field)
     }
 
@@ -161,8 +197,7 @@ impl Row<'_> {
             Some(found) => NcProblem::value(COLUMNS[k], format!("{found:?}"), expected),
             None => NcProblem::syntax(format!("{} is missing: expected {expected}", COLUMNS[k])),
         };
-        self.table
-            .error(problem, self.line, Some((self.record, self.columns[k])))
+        self.line.error(problem, Some((self.fields, self.columns[k])))
     }
 
     fn number(&self, k: usize) -> Result<f64, NcError> {
@@ -187,10 +222,10 @@ impl Row<'_> {
     }
 
     fn pose(&self, unit: f64, last: Option<&ProgramPose>) -> Result<ProgramPose, NcError> {
-        let fields = COLUMNS.len().min(self.record.len());
-        if self.columns.iter().filter(|&&column| column != usize::MAX).count() < self.record.len() {
+        let fields = COLUMNS.len().min(self.fields.len());
+        if self.columns.iter().filter(|&&column| column != usize::MAX).count() < self.fields.len() {
             let problem = NcProblem::value("the number of fields", fields, "that of the header");
-            return Err(self.table.error(problem, self.line, None));
+            return Err(self.line.error(problem, None));
         }
         let mut numbers = [0.0; 6];
         for (k, number) in numbers.iter_mut().enumerate() {
@@ -198,7 +233,7 @@ impl Row<'_> {
         }
         let [x, y, z, i, j, k] = numbers;
         let pose = Pose::new([x * unit, y * unit, z * unit], [i, j, k])
-            .map_err(|error| self.table.error(NcProblem::Pose(error), self.line, None))?;
+            .map_err(|error| self.line.error(NcProblem::Pose(error), None))?;
         let rapid = self.flag(6)?;
         let feed = self.field(7).map(|_| self.number(7)).transpose()?;
         let tool = match self.field(8) {
@@ -209,7 +244,7 @@ impl Row<'_> {
             pose,
             rapid,
             file: 0,
-            line: self.line,
+            line: self.line.number,
             joined: !self.flag(9)? && last.is_some_and(|last| last.tool == tool),
             tool,
             feed,

@@ -1,4 +1,5 @@
 //! Problems with their place in a text, and numbers as text.
 
 pub(crate) mod error;
+pub(crate) mod lines;
 pub(crate) mod numbers;

@@ -127,3 +127,42 @@ fn a_row_can_break_the_path() {
         "2:13: break is \"perhaps\", but must be 0, 1, true or false"
     );
 }
+
+#[test]
+fn a_line_without_end_is_an_error_with_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = "1".repeat(100_000);
+    for (name, text) in [
+        ("a.csv", format!("x,y,z,i,j,k\n0,0,0,0,0,1\n{long},0,0,0,0,1\n")),
+        ("a.nc", format!("G21 G90\nG0 X0 Y0 Z5\nG1 X{long}\nM30\n")),
+        ("a.cls", format!("UNITS/MM\nGOTO/0,0,0\nGOTO/{long},0,0\n")),
+        (
+            "a.h",
+            format!("0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+5 R0 FMAX\n2 L X+{long}\n"),
+        ),
+    ] {
+        let file = folder.path().join(name);
+        std::fs::write(&file, text).unwrap();
+        let message = read_file(&file, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(
+            message.contains(&format!("{name}:3:1: this line is longer than")),
+            "{message}"
+        );
+        assert!(message.len() < 300, "{message}");
+    }
+}
+
+#[test]
+fn tables_in_text_and_from_readers_are_alike() {
+    let text = "\u{feff}x,y,z,i,j,k,\"rapid\"\r\n\r\n0,0,5,0,0,1,1\r0, 1 ,5,0,0,1,\"0\"\n2,\"1\",5,0,0,1,";
+    let program = table::read(text, 1.0).unwrap();
+    let lines: Vec<usize> = program.poses.iter().map(|pose| pose.line).collect();
+    assert_eq!(lines, [3, 4, 5]);
+    for size in 1..40 {
+        let reader = std::io::BufReader::with_capacity(size, text.as_bytes());
+        assert_eq!(table::read_from(reader, 1.0).unwrap().poses, program.poses);
+    }
+    let bytes = [&b"x,y,z,i,j,k\n0,0,0,0,0,1\n0,\xc3\xa4,\xff,0,0,1\n"[..]].concat();
+    let error = table::read_from(&bytes[..], 1.0).unwrap_err();
+    assert_eq!(error.to_string(), "3:5: this is not a text file: expected UTF-8");
+}

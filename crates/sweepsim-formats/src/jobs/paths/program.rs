@@ -72,12 +72,12 @@ pub(crate) fn of_program(
         let steps = course(&program, begin, section);
         begin += section.len();
         let poses = steps.iter().map(|step| step.pose).collect();
-        let moves: Vec<Move> = steps[1..].iter().map(|step| step.way).collect();
+        let ways = || steps[1..].iter().map(|step| step.way);
         // Tables do not specify how the tool turns.
-        let path = if moves.iter().all(|way| *way == Move::default()) {
+        let path = if ways().all(|way| way == Move::default()) {
             Path::with_law(poses, law)
         } else {
-            Path::with_moves(poses, moves)
+            Path::with_moves(poses, ways().collect())
         };
         let path = path.map_err(|error| {
             let line = match error {

@@ -1,5 +1,6 @@
 //! Where subprograms are: in the texts that have been read, or in files.
 
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -8,6 +9,7 @@ use super::calls::Spot;
 use crate::gcode::flow::keywords::{Keyword, Label};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::text::error::NcProblem;
+use crate::text::lines;
 
 /// Files of subprograms, at most.
 const MOST_FILES: usize = 500;
@@ -94,7 +96,8 @@ fn read(path: &Path, file: usize) -> Result<Source, NcProblem> {
             "less than 2 GB",
         ));
     }
-    let bytes = std::fs::read(path).map_err(NcProblem::Read)?;
+    let open = std::fs::File::open(path).map_err(NcProblem::Read)?;
+    let bytes = lines::all(BufReader::new(open)).map_err(|error| error.into_parts().2)?;
     Ok(Source::new(file, String::from_utf8_lossy(&bytes).into_owned()))
 }
 
