@@ -109,7 +109,14 @@ enum Command {
     Cluster,
     /// Measures single shards of large runs, up to 10,000 x 10,000 dexels and 10,000,000 moves, one after the other: takes half an hour, 8 GiB of memory and 2 GB in the target
     /// folder. Plots them in docs/pictures/shards.svg.
-    Shards,
+    Shards {
+        /// Only draws the plots of docs/shards.csv anew.
+        #[arg(long)]
+        plot: bool,
+        /// Measures this build, which need not be a release build.
+        #[arg(long)]
+        as_built: bool,
+    },
     /// Runs .ci/run, which must pass before a change is integrated.
     Ci,
 }
@@ -196,8 +203,8 @@ fn main() -> ExitCode {
         Command::Standalone { crates } => standalone::run(&crates),
         Command::Browser { screenshots } => browser::run(screenshots),
         Command::Cluster => cluster::run(),
-        Command::Shards if cfg!(debug_assertions) => in_release(),
-        Command::Shards => cluster::measure(),
+        Command::Shards { plot, as_built } if cfg!(debug_assertions) && !plot && !as_built => in_release(),
+        Command::Shards { plot, .. } => cluster::measure(plot),
         Command::Ci => std::process::Command::new(workspace::root().join(".ci/run"))
             .status()
             .map(|status| status.success())

@@ -4,7 +4,6 @@
 use super::sweepsim;
 use crate::plot::{Axis, Panel, Series, figure};
 use crate::workspace;
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
@@ -18,9 +17,11 @@ const MEASURED: [usize; 3] = [0, 31, 63];
 const SIDE: f64 = 100.0;
 /// Sides of grids, cut by so many moves; and numbers of moves, on a grid of such a side.
 const GRIDS: [usize; 3] = [2_500, 5_000, 10_000];
-const MOVES: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
+const MOVES: [usize; 3] = [100_000, 1_000_000, 10_000_000];
 const FEW: usize = 10_000;
 const COARSE: usize = 2_500;
+
+const HEADER: &str = "side,moves,shard,begin s,cut s,MiB";
 
 /// What a shard cost.
 #[derive(Clone, Copy)]
@@ -32,40 +33,62 @@ struct Cost {
     mib: f64,
 }
 
-/// Measures the shards of a run of any size.
-pub fn run() -> Result<bool, String> {
-    let sweepsim = sweepsim()?;
-    let folder = sweepsim.with_file_name("shards");
-    println!(
-        "{:>6} {:>9} {:>6} {:>9} {:>9} {:>9}",
-        "side", "moves", "shard", "begin, s", "cut, s", "MiB"
-    );
-    let mut all: Vec<([usize; 2], Vec<Cost>)> = Vec::new();
-    let sizes = GRIDS
-        .map(|side| [side, FEW])
-        .into_iter()
-        .chain(MOVES[1..].iter().map(|moves| [COARSE, *moves]));
-    for [side, moves] in sizes {
-        let job = job(&folder, side, moves)?;
-        let out = folder.join("out");
-        // Of so many shards, the last has no tile: it only begins.
-        let [begin, _] = measure(&sweepsim, &job, &out, "99999/100000")?;
-        let mut costs = Vec::new();
-        for shard in MEASURED {
-            let [seconds, mib] = measure(&sweepsim, &job, &out, &format!("{shard}/{SHARDS}"))?;
-            let cut = (seconds - begin).max(0.01);
-            let cost = Cost { begin, cut, mib };
-            println!(
-                "{side:>6} {moves:>9} {shard:>6} {:>9.2} {:>9.2} {:>9.0}",
-                cost.begin, cost.cut, cost.mib
-            );
-            costs.push(cost);
+/// A run of a grid of `side`² dexels and so many moves, and what shards of it cost.
+struct Run {
+    side: usize,
+    moves: usize,
+    costs: Vec<Cost>,
+}
+
+/// Measures single shards into `docs/shards.csv`, unless only the plots of it are to be drawn anew.
+pub fn run(plot: bool) -> Result<bool, String> {
+    let table = workspace::root().join("docs/shards.csv");
+    let failed = |error: std::io::Error| format!("{}: {error}", table.display());
+    if !plot {
+        let sweepsim = sweepsim()?;
+        let folder = sweepsim.with_file_name("shards");
+        let mut text = format!("{HEADER}\n");
+        println!("{HEADER}");
+        let few = GRIDS.map(|side| [side, FEW]).into_iter();
+        for [side, moves] in few.chain(MOVES.map(|moves| [COARSE, moves])) {
+            let (job, out) = (job(&folder, side, moves)?, folder.join("out"));
+            // Of so many shards, the last has no tile: it only begins.
+            let [begin, _] = measure(&sweepsim, &job, &out, "99999/100000")?;
+            for shard in MEASURED {
+                let [seconds, mib] = measure(&sweepsim, &job, &out, &format!("{shard}/{SHARDS}"))?;
+                let cut = (seconds - begin).max(0.01);
+                let line = format!("{side},{moves},{shard},{begin:.2},{cut:.2},{mib:.0}");
+                println!("{line}");
+                text.push_str(&line);
+                text.push('\n');
+            }
         }
-        all.push(([side, moves], costs));
+        fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        fs::write(&table, text).map_err(failed)?;
     }
-    fs::remove_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    store(&all)?;
+    store(&read(&fs::read_to_string(&table).map_err(failed)?)?)?;
     Ok(true)
+}
+
+/// The table, by run.
+fn read(text: &str) -> Result<Vec<Run>, String> {
+    let mut runs: Vec<Run> = Vec::new();
+    for line in text.lines().skip(1) {
+        let numbers: Vec<f64> = line.split(',').filter_map(|field| field.parse().ok()).collect();
+        let [side, moves, _, begin, cut, mib] = numbers[..] else {
+            return Err(format!("docs/shards.csv: expected {HEADER}, not {line}"));
+        };
+        let (side, moves, cost) = (side as usize, moves as usize, Cost { begin, cut, mib });
+        match runs.last_mut() {
+            Some(last) if (last.side, last.moves) == (side, moves) => last.costs.push(cost),
+            _ => runs.push(Run {
+                side,
+                moves,
+                costs: vec![cost],
+            }),
+        }
+    }
+    Ok(runs)
 }
 
 /// A job with a zigzag of short moves over all of the block: its rows are as far apart as needed.
@@ -136,84 +159,86 @@ fn measure(sweepsim: &Path, job: &Path, out: &Path, shard: &str) -> Result<[f64;
     }
 }
 
-/// How long a run takes on so many cores: each shard begins anew; the merge reads everything.
-fn predicted(begin: f64, cut: f64, merge: f64, cores: f64) -> f64 {
-    let rounds = (SHARDS as f64).max(8.0 * cores) / cores;
-    rounds * begin + cut / cores + merge
+/// How long a run takes on so many cores, of which each computes eight shards: each of these begins anew. What merge takes is not in it.
+fn predicted(begin: f64, cut: f64, cores: f64) -> f64 {
+    8.0 * begin + cut / cores
 }
 
-/// Writes `docs/pictures/shards.svg`.
-fn store(all: &[([usize; 2], Vec<Cost>)]) -> Result<(), String> {
-    let mean = |costs: &[Cost], of: fn(&Cost) -> f64| costs.iter().map(of).sum::<f64>() / costs.len() as f64;
-    let axis = |label: &str| Axis {
-        label: label.into(),
-        logarithmic: true,
-        range: None,
-    };
-    let series = |name: &str, colour: usize, points: Vec<[f64; 2]>| Series {
+impl Run {
+    fn mean(&self, of: fn(&Cost) -> f64) -> f64 {
+        self.costs.iter().map(of).sum::<f64>() / self.costs.len() as f64
+    }
+
+    fn model(&self, colour: usize) -> Series {
+        let (begin, cut) = (self.mean(|cost| cost.begin), SHARDS as f64 * self.mean(|cost| cost.cut));
+        let points = [1.0, 4.0, 16.0, 64.0, 250.0, 1000.0].map(|cores| [cores, predicted(begin, cut, cores)]);
+        series(
+            &format!("{}² dexels, {} moves", self.side, self.moves),
+            colour,
+            points.to_vec(),
+        )
+    }
+}
+
+fn series(name: &str, colour: usize, points: Vec<[f64; 2]>) -> Series {
+    Series {
         name: name.into(),
         colour,
         dashed: false,
         points,
+    }
+}
+
+/// Writes `docs/pictures/shards.svg`.
+fn store(all: &[Run]) -> Result<(), String> {
+    let grids: Vec<&Run> = all.iter().filter(|run| run.moves == FEW).collect();
+    let moves: Vec<&Run> = all.iter().filter(|run| run.side == COARSE).collect();
+    let curve = |name: &str, colour: usize, list: &[&Run], x: fn(&Run) -> usize, of: fn(&Cost) -> f64| {
+        series(
+            name,
+            colour,
+            list.iter().map(|run| [x(run) as f64, run.mean(of)]).collect(),
+        )
     };
-    let grids: Vec<_> = all.iter().filter(|([_, moves], _)| *moves == FEW).collect();
-    let moves: Vec<_> = all.iter().filter(|([side, _], _)| *side == COARSE).collect();
-    let curve = |of: fn(&Cost) -> f64, list: &[&([usize; 2], Vec<Cost>)], k: usize| {
-        list.iter()
-            .map(|(size, costs)| [size[k] as f64, mean(costs, of)])
-            .collect::<Vec<_>>()
-    };
-    let panel = |title: &str, label: &str, y: &str, series: Vec<Series>| Panel {
+    let panel = |title: &str, labels: [&str; 2], series: Vec<Series>| Panel {
         title: title.into(),
-        axes: [axis(label), axis(y)],
+        axes: labels.map(|label| Axis {
+            label: label.into(),
+            logarithmic: true,
+            range: None,
+        }),
         series,
     };
-    let both = |list: &[&([usize; 2], Vec<Cost>)], k: usize| {
+    let times = |list: &[&Run], x: fn(&Run) -> usize| {
         vec![
-            series("begin: read, share out", 0, curve(|cost| cost.begin, list, k)),
-            series("cut", 1, curve(|cost| cost.cut, list, k)),
+            curve("begin: read, share out", 0, list, x, |cost| cost.begin),
+            curve("cut", 1, list, x, |cost| cost.cut),
         ]
     };
-    let memory =
-        |list: &[&([usize; 2], Vec<Cost>)], k: usize| vec![series("memory", 2, curve(|cost| cost.mib, list, k))];
-    let cores = [1.0, 4.0, 16.0, 64.0, 250.0, 1000.0];
-    let scaled = |([side, moves], costs): &([usize; 2], Vec<Cost>), colour: usize| {
-        let (begin, cut) = (
-            mean(costs, |cost| cost.begin),
-            SHARDS as f64 * mean(costs, |cost| cost.cut),
-        );
-        let points = cores.map(|cores| [cores, predicted(begin, cut, 0.0, cores)]);
-        series(&format!("{side}², {moves} moves"), colour, points.to_vec())
-    };
-    let mut models: Vec<Series> = grids.iter().last().map(|run| scaled(run, 3)).into_iter().collect();
-    models.extend(moves.iter().last().map(|run| scaled(run, 4)));
+    let memory = |list: &[&Run], x: fn(&Run) -> usize| vec![curve("memory", 2, list, x, |cost| cost.mib)];
+    let (side, number): (fn(&Run) -> usize, fn(&Run) -> usize) = (|run| run.side, |run| run.moves);
+    let last = [grids.last(), moves.last()].into_iter().flatten();
+    let models = last.zip(3..).map(|(run, colour)| run.model(colour)).collect();
     let panels = [
         panel(
-            "a shard of 64: grid of n², 10,000 moves",
-            "n",
-            "seconds",
-            both(&grids, 0),
+            "one shard of 64, 10,000 moves",
+            ["dexels along a side", "s"],
+            times(&grids, side),
+        ),
+        panel("one shard of 64, 2,500² dexels", ["moves", "s"], times(&moves, number)),
+        panel(
+            "one shard of 64, 10,000 moves",
+            ["dexels along a side", "MiB"],
+            memory(&grids, side),
         ),
         panel(
-            "a shard of 64: moves, 2,500² dexels",
-            "moves",
-            "seconds",
-            both(&moves, 1),
+            "one shard of 64, 2,500² dexels",
+            ["moves", "MiB"],
+            memory(&moves, number),
         ),
-        panel("memory of a shard", "n", "MiB", memory(&grids, 0)),
-        panel("memory of a shard", "moves", "MiB", memory(&moves, 1)),
-        panel("the whole run, by the model", "cores", "seconds", models),
+        panel("all shards, by the model", ["cores", "s"], models),
     ];
-    let mut text = String::new();
-    let _ = write!(
-        text,
-        "{}",
-        figure(
-            &panels,
-            2,
-            "Time and memory of a shard of 64 against grid and moves, and time of the whole run against cores"
-        )
-    );
+    let words = "Time and memory of one shard of 64 against the size of the grid and the number of moves, and the time of all shards against cores";
     let file = workspace::root().join("docs/pictures/shards.svg");
-    fs::write(&file, text).map_err(|error| format!("{}: {error}", file.display()))
+    fs::write(&file, figure(&panels, 2, words)).map_err(|error| format!("{}: {error}", file.display()))
 }

@@ -19,8 +19,10 @@ pub(crate) struct Tiling {
     pub sets: Vec<TilingSet>,
 }
 
-/// What work on a tile costs, in solved lines: a part of a path over it, besides its lines; and each line of the tile, besides the parts.
-const PART: f64 = 30.0;
+/// What work on a tile costs, in solved lines: a move over it, besides its lines, with a tool of revolution and with any other; and each line of the tile,
+/// besides the moves.
+const MOVE: f64 = 300.0;
+const FREE_FORM_MOVE: f64 = 3_000.0;
 const LINE: f64 = 0.5;
 /// At most so many moves of a path are looked at to estimate the work: every other one, every third…
 const MOVES: usize = 200_000;
@@ -53,6 +55,7 @@ impl TilingSet {
         };
         let [ends_i, ends_j] = self.grid.cells();
         for cut in cuts {
+            let each = if cut.tool.is_revolved() { MOVE } else { FREE_FORM_MOVE };
             let step = cut.path.moves().div_ceil(MOVES).max(1);
             let moves = (0..cut.path.moves()).into_par_iter().step_by(step);
             let boxes: Vec<_> = moves
@@ -77,7 +80,7 @@ impl TilingSet {
                     let wide = common(columns[i], columns.get(i + 1).copied().unwrap_or(ends_i), is);
                     for j in over(&rows, js) {
                         let deep = common(rows[j], rows.get(j + 1).copied().unwrap_or(ends_j), js);
-                        work[i * rows.len() + j] += step as f64 * (PART + wide * deep);
+                        work[i * rows.len() + j] += step as f64 * (each + wide * deep);
                     }
                 }
             }
@@ -191,6 +194,6 @@ mod tests {
         }
         // The box is a little larger than the tool: it reaches into the cells around.
         let covered: f64 = work.iter().map(|work| work - LINE * 100.0).sum();
-        assert_eq!(covered, 4.0 * PART + 40.0 * 6.0);
+        assert_eq!(covered, 4.0 * MOVE + 40.0 * 6.0);
     }
 }
