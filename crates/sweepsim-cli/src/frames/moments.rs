@@ -80,16 +80,23 @@ mod tests {
     #[test]
     fn moments_are_equally_far_apart() {
         let durations = [(0, 0, 2.0), (0, 1, 0.0), (1, 0, 6.0)];
-        assert_eq!(
-            spread(&durations, 5),
-            [
-                at(0, 0, 0.0),
-                at(0, 0, 1.0),
-                at(1, 0, 1.0 / 3.0),
-                at(1, 0, 2.0 / 3.0),
-                at(1, 0, 1.0)
-            ]
-        );
+        let expected = [
+            at(0, 0, 0.0),
+            at(0, 0, 1.0),
+            at(1, 0, 1.0 / 3.0),
+            at(1, 0, 2.0 / 3.0),
+            at(1, 0, 1.0),
+        ];
+        let found = spread(&durations, 5);
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            assert_eq!((found.path, found.number), (expected.path, expected.number));
+            // Two differences of numbers up to 8, divided by 6.
+            assert!(
+                (found.time - expected.time).abs() < 4.0 * f64::EPSILON,
+                "{found:?} {expected:?}"
+            );
+        }
         assert_eq!(spread(&durations, 1), [at(1, 0, 1.0)]);
         assert_eq!(spread(&durations, 2), [at(0, 0, 0.0), at(1, 0, 1.0)]);
         assert_eq!(spread(&[], 3), []);

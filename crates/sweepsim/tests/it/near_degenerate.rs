@@ -18,7 +18,7 @@ const EXCEPTIONS: [(&str, f64); 4] = [
     ("tilt on an arc about a line", 3.4),
     ("line from the wall", 6.5),
     ("turn about the tip over a line", 6.5),
-    ("tool's radius from that of the arc", 4.6),
+    ("tool's radius from that of the arc", 4.8),
 ];
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
