@@ -223,11 +223,15 @@ mod tests {
             assert!((end - Vector3::from(to)).xy().norm() < 1e-14);
             // No point is far from where it was; what an arc lacks at its end, its path makes up for in proportion.
             let missing = (Vector3::from(to) - arc.turned(from.into(), 1.0)).xy();
+            let shift = (fitted.centre - arc.centre).norm();
+            assert!(shift <= 2.0 * (3.0 - arc.radius_vector(to.into()).norm()).abs().max(missing.norm()));
+            // c + R(φ) a becomes c + s + R(φ + δ) (a − s).
+            let most = 2.0 * shift + 3.0 * (fitted.angle() - angle).abs() + missing.norm() + 1e-14;
             for k in 0..=10 {
                 let part = 0.1 * f64::from(k);
                 let before = arc.turned(from.into(), part).xy() + missing * part;
                 let apart = (fitted.turned(from.into(), part).xy() - before).norm();
-                assert!(apart <= missing.norm(), "{apart} {missing}");
+                assert!(apart <= most, "{apart} {most}");
             }
         }
         // Almost a full turn: the centre would be anywhere.
