@@ -216,7 +216,7 @@ fn store(all: &[Run]) -> Result<(), String> {
         ]
     };
     let memory = |list: &[&Run], x: fn(&Run) -> usize| vec![curve("memory", 2, list, x, |cost| cost.mib)];
-    let (side, number): (fn(&Run) -> usize, fn(&Run) -> usize) = (|run| run.side, |run| run.moves);
+    let (side, number) = (|run: &Run| run.side, |run: &Run| run.moves);
     let last = [grids.last(), moves.last()].into_iter().flatten();
     let models = last.zip(3..).map(|(run, colour)| run.model(colour)).collect();
     let panels = [
