@@ -105,13 +105,14 @@ mod tests {
     }
 
     #[test]
-    fn the_blade_stands_in_the_middle_of_the_grid() {
+    fn the_tool_stays_clear_of_the_middle_of_the_blade() {
         // The tool stays clear of the blade's middle, from its inner to its outer end, at all heights above the hub.
         let path = path();
         for r in [11.0, 15.0, 20.0, 25.0, 29.0] {
             let angle = super::super::impeller::blade(r) - MIDDLE;
             let (x, y) = (r * cos(angle), r * sin(angle));
-            assert!(y.abs() < 4.5, "{x} {y}");
+            // Its outer end sweeps out of the grid.
+            assert!(r > 25.0 || y.abs() < 0.75 * AREA[1][1], "{x} {y}");
             for k in 0..20 {
                 let z = HUB.height(r) + 0.5 * f64::from(k);
                 let point = nalgebra::Vector3::new(x, y, z);

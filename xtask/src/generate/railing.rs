@@ -258,9 +258,14 @@ mod tests {
                 assert!((rise - 0.5 * (pair[0].rise + pair[1].rise)).abs() < 1e-12, "{pair:?}");
             }
         }
-        // The sharp one runs below the other, the most at the middle of the easing.
-        let below = (EASING - SHARP) * (1.0 / cos(0.5 * RISE) - 1.0);
-        let lines = [eased[8], sharp[8]].map(|station| station.at(0.0, 0.0));
-        assert!(((lines[0] - lines[1]).norm() - below).abs() < 0.02, "{below}");
+        // Seen along the bisector of the corner, both arcs have their centres on it, at their radius over the cosine of half the rise from the corner. Their
+        // stations next to the middle are half a step from it.
+        let apart = [sin(0.5 * STEP), 1.0 / cos(0.5 * RISE) - cos(0.5 * STEP)];
+        let expected = (EASING - SHARP) * apart[0].hypot(apart[1]);
+        for number in [8, 9] {
+            let lines = [eased[number], sharp[number]].map(|station| station.at(0.0, 0.0));
+            let found = (lines[0] - lines[1]).norm();
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        }
     }
 }
