@@ -28,7 +28,7 @@ impl Mesh {
     /// use sweepsim_dexel::{DistanceTo, Stock, TriDexels};
     /// let ball = Stock::Ball { centre: [0.0; 3], radius: 4.0 };
     /// let mesh = TriDexels::new([-5.0; 3], [5.0; 3], [50; 3], &ball)?.surface()?;
-    /// let small = mesh.decimated(0.02)?;
+    /// let small = mesh.decimated(0.05)?;
     /// assert!(4 * small.triangles.len() < mesh.triangles.len());
     /// small.soup().ok_or("no mesh")?.check_closed()?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
