@@ -145,3 +145,32 @@ fn hardly_a_box() {
         assert!(50 * closed < charts, "{closed} of {charts}");
     }
 }
+
+/// The line at the centre of an arc is as near to it as it is displaced, and is certified at once.
+#[test]
+fn about_a_line() {
+    let lines = Grid::new([-4.5; 2], [4.5; 2], [7, 7]).expect("a grid");
+    for (number, radius) in [(0, 1.3), (0, 2.9), (2, 2.9), (2, 2.5), (3, 1.3), (3, 1.9)] {
+        for (rise, off) in [
+            (0.0, 0.0),
+            (1e-12, 0.0),
+            (1e-9, 0.0),
+            (1e-6, 0.0),
+            (0.0, 1e-9),
+            (0.0, 1e-6),
+        ] {
+            let (name, tool, _) = &tools()[number];
+            let path = path(
+                [radius + off, -off, 0.0],
+                &[[radius, 0.0, 1.745, rise]],
+                [0.0, 0.0, -1.0],
+            );
+            let [closed, _] = agree(name, tool, &path, &lines, TOLERANCE).expect("the same dexels");
+            let statistics = &closed.statistics;
+            assert_eq!(
+                statistics.repaired, 0,
+                "{name}, {radius}, {rise}, {off}: {statistics:?}"
+            );
+        }
+    }
+}

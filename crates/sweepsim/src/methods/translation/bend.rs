@@ -89,11 +89,12 @@ enum Place {
     Inside([f64; 2]),
 }
 
-/// `s = base − 2 σ R p + bow p²`, and which of its two halves.
+/// `s = base − 2 σ R p + bow p²`, and its least value where it has one, which would be lost in the difference of the other two.
 #[derive(Clone, Copy)]
 struct Parabola {
     base: f64,
     bow: f64,
+    least: f64,
 }
 
 impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
@@ -111,6 +112,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let parabola = Parabola {
                     base: square,
                     bow: ((1.0 - cosine) * (1.0 + cosine)).recip(),
+                    least: square * cosine * cosine,
                 };
                 self.all(&graphs, parabola);
             }
@@ -124,9 +126,11 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let poles = if out > 0.0 { poles } else { [poles[1], poles[0]] };
                 let graphs = ring::ball(heading, [centre[1], radius], angles, poles, out)?;
                 let [sine, cosine] = [heading.along, heading.across].map(|v| v / heading.speed);
+                let bow = cosine * cosine;
                 let parabola = Parabola {
                     base: square + sine * sine * radius * radius,
-                    bow: cosine * cosine,
+                    bow,
+                    least: sine * sine * (radius * radius - square / bow),
                 };
                 self.all(&graphs, parabola);
             }
@@ -175,6 +179,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let parabola = Parabola {
             base: self.round.radius * self.round.radius + rim.radius * rim.radius,
             bow: 0.0,
+            least: f64::NEG_INFINITY,
         };
         self.all(&graphs, parabola);
         Some(())
@@ -182,7 +187,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
 
     fn all<G: Graph>(&mut self, graphs: &[G], parabola: Parabola) {
         let (radius, side) = (self.round.radius, self.side);
-        let Parabola { base, bow } = parabola;
+        let Parabola { base, bow, least } = parabola;
         for graph in graphs {
             let [low, high] = graph.span();
             let margins = graph.margins();
@@ -201,7 +206,9 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let bend = self.bend(graph, span);
                 let beyond = bow > 0.0 && 0.5 * side * (span[0] + span[1]) > radius / bow;
                 self.sweep(graph, &bend, |s| {
-                    let root = (radius * radius - bow * (base - s)).max(0.0).sqrt();
+                    // R² − bow (base − s), without its cancellation next to the turn.
+                    let root = if bow > 0.0 { bow * (s - least) } else { radius * radius };
+                    let root = root.max(0.0).sqrt();
                     let p = if beyond {
                         (radius + root) / bow
                     } else {
@@ -284,8 +291,14 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
             } else {
                 0.0
             };
-            let far = self.round.radius + p.abs() + q.abs();
-            (p, s, shift + 8.0 * slack * far)
+            // Where s turns, the distance from the centre is as accurate as coordinates are, also if it is almost 0.
+            let off = if p == whole[k] {
+                8.0 * slack * (self.round.radius + p.abs() + q.abs())
+            } else {
+                let near = 8.0 * slack * (1.0 + graph.at(p).slope.abs());
+                near * (2.0 * s.sqrt() + near)
+            };
+            (p, s, shift + off)
         };
         let ends = [end(0), end(1)];
         let falls = ends[1].1 < ends[0].1;
@@ -336,11 +349,11 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let error = if doubtful {
                     BLUR
                 } else {
-                    let far = round.radius + p.abs() + spot.q.abs();
-                    // Of p, and of the angle.
-                    let off =
-                        4.0 * slack * (far + s.sqrt()) / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
-                    4.0 * slack / s.sqrt() + off * (out * spot.slope + side * spot.q).abs() / s
+                    // Of the point; of s, p, and the angle.
+                    let (distance, near) = (s.sqrt(), slack * (8.0 + 4.0 * spot.slope.abs()));
+                    let square = near * (distance + near);
+                    let off = square / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
+                    near / distance + off * (out * spot.slope + side * spot.q).abs() / s
                 };
                 let place = self.place([x, y], [out, spot.q], s, error);
                 let line = lattice.line(i, j);

@@ -131,7 +131,7 @@ pub(super) fn stretches(
 impl Torus {
     /// `w`, at `|e|`.
     fn sine(&self, e: f64) -> f64 {
-        let ratio = self.slope / e;
+        let ratio = self.slope / e.max(f64::MIN_POSITIVE);
         (1.0 + self.slope * self.slope - ratio * ratio).max(0.0).sqrt()
     }
 
@@ -194,7 +194,7 @@ impl Torus {
     ///
     /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`. So the two terms of `ds/dρ` have one sign, or they cancel where
     /// `h = ρ w/k` is `R`. The three terms of `d ln h/de` are `±r/ρ`, `m²/(e³ w²)` and `3 ρ_c m²/(r e⁴ k)`: `h` is monotone if the first is the
-    /// largest, or if all have one sign.
+    /// largest by far, or if all have one sign: by at least `r/2ρ`, so that rounding shifts the place where it is `R` by no more than that of a coordinate.
     pub(super) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
         let square = self.slope * self.slope;
         let (offset, bulge) = (self.centre[0], self.signs[0] * self.radius);
@@ -214,7 +214,7 @@ impl Torus {
         let widest = self.meridian(low)[0].max(self.meridian(high)[0]);
         let (w, k) = (self.sine(low), rate(low).min(rate(high)));
         let others = part(1.0, low * low * low * w * w) + part(3.0 * (offset / bulge).abs(), low * low * low * low * k);
-        if !((offset >= 0.0 && bulge > 0.0) || self.radius / widest > others) {
+        if !((offset >= 0.0 && bulge > 0.0) || self.radius / widest > 2.0 * others) {
             return None;
         }
         // Negative where h is less than R.
@@ -250,13 +250,21 @@ impl Torus {
         let sign = side * self.side;
         let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
         let square = self.slope * self.slope;
-        let value = |e: f64| {
+        // Outwards, and q²: small numbers next to the centre.
+        let seen = |e: f64| {
             let rho = offset + bulge * e;
-            let w = self.sine(e);
-            rho * rho - 2.0 * sign * radius * rho * w + radius * radius - s
+            let ahead = rho * self.slope / e.max(f64::MIN_POSITIVE);
+            [
+                radius - sign * rho * self.sine(e),
+                ahead * ahead * (1.0 - e) * (1.0 + e),
+            ]
+        };
+        let value = |e: f64| {
+            let [out, ahead] = seen(e);
+            out * out + ahead - s
         };
         let rising = value(high) > value(low);
-        let noise = 4.0 * f64::EPSILON * (radius * radius + s);
+        let noise = 4.0 * f64::EPSILON * (radius + s.sqrt()) * s.sqrt();
         // On a level way, the distance is R − σρ, or that less than 0.
         let guess = |distance: f64| (sign * (radius - distance) - offset) / bulge;
         let mut e = guess(s.sqrt());
@@ -281,7 +289,8 @@ impl Torus {
             let w = self.sine(e);
             let cube = e * e * e;
             let by = (bulge * cube * (1.0 + square) + offset * square) / (cube * w);
-            let next = e - value / (2.0 * (rho * bulge - sign * radius * by));
+            let rate = sign * seen(e)[0] * by + rho * square * (bulge + offset / cube);
+            let next = e + value / (2.0 * rate);
             if value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
                 let e = next.clamp(low, high);
                 return Some(self.side * (offset + bulge * e) * self.sine(e));
