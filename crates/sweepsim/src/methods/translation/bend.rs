@@ -11,9 +11,9 @@
 //! outwards and ahead, with `σ = 1` for arcs that turn left and `−1` for the others. The squared distance `s` takes the place of `p`, and the angle that of
 //! `q`. On lines of the meridian, balls about the axis and edges, `ρ²` is a quadratic function of `p`, and the inverse of `s` a square root.
 
-use super::graph::Graph;
+use super::curves::{Graph, Heading, Parabola, ring, slant, torus};
 use super::rows::{Row, Sector};
-use super::{Ceiling, Collector, Heading, ring, slant, torus};
+use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
 use crate::time::round::Round;
@@ -89,14 +89,6 @@ enum Place {
     Inside([f64; 2]),
 }
 
-/// `s = base − 2 σ R p + bow p²`, and its least value where it has one, which would be lost in the difference of the other two.
-#[derive(Clone, Copy)]
-struct Parabola {
-    base: f64,
-    bow: f64,
-    least: f64,
-}
-
 impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
     /// `None` if there is no closed form.
     fn piece(&mut self, piece: &Piece) -> Option<()> {
@@ -113,6 +105,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     base: square,
                     bow: ((1.0 - cosine) * (1.0 + cosine)).recip(),
                     least: square * cosine * cosine,
+                    radius: self.round.radius,
                 };
                 self.all(&graphs, parabola);
             }
@@ -131,6 +124,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     base: square + sine * sine * radius * radius,
                     bow,
                     least: sine * sine * (radius * radius - square / bow),
+                    radius: self.round.radius,
                 };
                 self.all(&graphs, parabola);
             }
@@ -153,7 +147,10 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     for range in halves.into_iter().flatten() {
                         let ends = range.map(|e| graph.across(e));
                         let bend = self.bend(graph, [ends[0].min(ends[1]), ends[0].max(ends[1])]);
-                        self.sweep(graph, &bend, |s| graph.invert_about(range, radius, side, s));
+                        self.sweep(graph, &bend, |s| {
+                            let p = graph.invert_about(range, radius, side, s)?;
+                            Some((p, 2.0 * s.sqrt() < radius))
+                        });
                     }
                 }
             }
@@ -179,15 +176,16 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let parabola = Parabola {
             base: self.round.radius * self.round.radius + rim.radius * rim.radius,
             bow: 0.0,
-            least: f64::NEG_INFINITY,
+            least: 0.0,
+            radius: self.round.radius,
         };
         self.all(&graphs, parabola);
         Some(())
     }
 
     fn all<G: Graph>(&mut self, graphs: &[G], parabola: Parabola) {
-        let (radius, side) = (self.round.radius, self.side);
-        let Parabola { base, bow, least } = parabola;
+        let side = self.side;
+        let turn = parabola.turn().map(|p| side * p);
         for graph in graphs {
             let [low, high] = graph.span();
             let margins = graph.margins();
@@ -195,26 +193,16 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 self.sliver(graph);
                 continue;
             }
-            // Where s is least.
-            let turn = side * radius / bow;
-            let spans = if bow > 0.0 && turn > low && turn < high {
-                [Some([low, turn]), Some([turn, high])]
-            } else {
-                [Some([low, high]), None]
+            let spans = match turn {
+                Some(turn) if turn > low && turn < high => [Some([low, turn]), Some([turn, high])],
+                _ => [Some([low, high]), None],
             };
             for span in spans.into_iter().flatten() {
                 let bend = self.bend(graph, span);
-                let beyond = bow > 0.0 && 0.5 * side * (span[0] + span[1]) > radius / bow;
+                let beyond = turn.is_some_and(|turn| side * (0.5 * (span[0] + span[1]) - turn) > 0.0);
                 self.sweep(graph, &bend, |s| {
-                    // R² − bow (base − s), without its cancellation next to the turn.
-                    let root = if bow > 0.0 { bow * (s - least) } else { radius * radius };
-                    let root = root.max(0.0).sqrt();
-                    let p = if beyond {
-                        (radius + root) / bow
-                    } else {
-                        (base - s) / (radius + root)
-                    };
-                    Some(side * p)
+                    let (p, near) = parabola.invert(s, beyond);
+                    Some((side * p, near))
                 });
             }
         }
@@ -313,8 +301,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         }
     }
 
-    /// The lines over what a bend sweeps. `invert` gives `p` for a value of `s`.
-    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, invert: impl Fn(f64) -> Option<f64>) {
+    /// The lines over what a bend sweeps. `invert` gives `p` for a value of `s`, and whether it is as accurate as `√s`.
+    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, invert: impl Fn(f64) -> Option<(f64, bool)>) {
         let [low, high] = bend.s;
         let margins = bend.margins;
         if !(high - low > NARROW * (margins[0] + margins[1])) {
@@ -336,11 +324,11 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     continue;
                 }
                 let doubtful = s < sure[0] || s > sure[1];
-                let p = invert(s.clamp(low, high)).map(|p| p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1])));
-                let Some(p) = p else {
+                let Some((p, near)) = invert(s.clamp(low, high)) else {
                     self.lines.open(lattice.line(i, j));
                     continue;
                 };
+                let p = p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1]));
                 let spot = graph.at(p);
                 if spot.jump == 0 && spot.certain && !doubtful {
                     continue;
@@ -349,11 +337,17 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 let error = if doubtful {
                     BLUR
                 } else {
-                    // Of the point; of s, p, and the angle.
-                    let (distance, near) = (s.sqrt(), slack * (8.0 + 4.0 * spot.slope.abs()));
-                    let square = near * (distance + near);
+                    let far = round.radius + p.abs() + spot.q.abs();
+                    let distance = s.sqrt();
+                    // Of the point, and of s; then of p, and of the angle.
+                    let (own, square) = if near {
+                        let own = slack * (8.0 + 4.0 * spot.slope.abs());
+                        (own, own * (distance + own))
+                    } else {
+                        (4.0 * slack, 4.0 * slack * (far + distance))
+                    };
                     let off = square / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
-                    near / distance + off * (out * spot.slope + side * spot.q).abs() / s
+                    own / distance + off * (out * spot.slope + side * spot.q).abs() / s
                 };
                 let place = self.place([x, y], [out, spot.q], s, error);
                 let line = lattice.line(i, j);

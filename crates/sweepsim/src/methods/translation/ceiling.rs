@@ -8,8 +8,8 @@
 //! The jumps below the ceiling must add up to this number, which is as independent of them as the crossings above would be.
 
 use super::Collector;
+use super::curves::{slack, stands};
 use super::discs::Around;
-use super::heading::{slack, stands};
 use super::rows::numbers;
 use crate::cutter::outline::{Outline, Shape};
 use crate::methods::lattice::Lattice;

@@ -10,19 +10,15 @@
 
 mod bend;
 mod ceiling;
+mod curves;
 mod discs;
-mod graph;
-mod heading;
 mod placed;
-mod ring;
 mod rows;
-mod slant;
 mod strip;
-mod torus;
 
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
-pub(crate) use heading::{Heading, slack, stands};
+pub(crate) use curves::{Heading, slack, stands};
 pub(crate) use placed::{Neighbour, placements};
 pub(crate) use strip::envelope;
 
@@ -30,18 +26,6 @@ use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_solve::Cause;
-
-/// A vector in the coordinates `(q, p, z)` of a move.
-pub(crate) type Local = [f64; 3];
-
-/// The sum `a + s b`.
-fn along(a: &Local, s: f64, b: &Local) -> Local {
-    [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
-}
-
-fn dot(a: &Local, b: &Local) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
 
 /// Collects crossings of the lines of a lattice.
 pub(crate) struct Collector<'a> {

@@ -1,7 +1,7 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
-use super::heading::stands;
+use super::curves::stands;
 use super::rows::numbers;
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};

@@ -1,6 +1,6 @@
 //! The lines of a lattice in a rectangle along a move, or in a sector about the centre of an arc, row by row.
 
-use super::Heading;
+use super::curves::Heading;
 use crate::methods::lattice::Lattice;
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,8 +1,8 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::graph::{Graph, Point};
+use super::curves::{Graph, Heading, Point, ring, slant, torus};
 use super::rows::{Row, rows};
-use super::{Ceiling, Collector, Heading, ring, slant, torus};
+use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use sweepsim_dexel::Source;
 

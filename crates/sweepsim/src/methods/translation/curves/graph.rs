@@ -4,7 +4,7 @@ use super::Local;
 
 /// A point of a graph.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spot {
+pub(crate) struct Spot {
     pub q: f64,
     pub z: f64,
     /// `dq/dp`.
@@ -18,7 +18,7 @@ pub(super) struct Spot {
 }
 
 /// A stretch of a curve fixed to the tool over which `p` is strictly monotone, and so is `q`.
-pub(super) trait Graph {
+pub(crate) trait Graph {
     /// The point at `p`, within the [span](Self::span).
     fn at(&self, p: f64) -> Spot;
 
@@ -64,7 +64,7 @@ pub(super) trait Graph {
 
 /// What a crossing has of a graph.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Point {
+pub(crate) struct Point {
     pub z: f64,
     /// As that of a [`Spot`].
     pub normal: Local,

@@ -8,7 +8,7 @@ const BLURRED: f64 = 1e-9;
 
 /// A straight grazing line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Slant {
+pub(crate) struct Slant {
     ends: [Local; 2],
     span: [f64; 2],
     margin: f64,
@@ -19,7 +19,7 @@ pub(super) struct Slant {
 }
 
 /// The grazing lines of a meridian line between two points with this normal: those of which `p` changes, and ends of the others. `None` if rounding blurs them.
-pub(super) fn slants(heading: &Heading, [from, to]: [[f64; 2]; 2], normal: [f64; 2]) -> Option<Vec<Slant>> {
+pub(crate) fn slants(heading: &Heading, [from, to]: [[f64; 2]; 2], normal: [f64; 2]) -> Option<Vec<Slant>> {
     let [n_rho, n_zeta] = normal;
     if n_rho == 0.0 {
         return Some(Vec::new());

@@ -32,7 +32,7 @@ enum Role {
 
 /// A part of the circle `centre + cos θ first + sin θ second`, where `p` is that of the centre plus `width cos θ`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ring {
+pub(crate) struct Ring {
     centre: Local,
     first: Local,
     second: Local,
@@ -126,7 +126,7 @@ impl Circle {
 }
 
 /// The circle of an edge. `None` if it is seen from the side.
-pub(super) fn rim(heading: &Heading, rim: &Rim) -> Option<Vec<Ring>> {
+pub(crate) fn rim(heading: &Heading, rim: &Rim) -> Option<Vec<Ring>> {
     let [e, f, a] = &heading.axes;
     let scaled = |v: &Local| v.map(|c| c * rim.radius);
     let circle = Circle::new(a.map(|c| c * rim.height), scaled(e), scaled(f));
@@ -151,7 +151,7 @@ pub(super) fn rim(heading: &Heading, rim: &Rim) -> Option<Vec<Ring>> {
 }
 
 /// The grazing circle of a ball about the axis, on the side of the two ends of its arc. `None` if rounding blurs it.
-pub(super) fn ball(
+pub(crate) fn ball(
     heading: &Heading,
     [height, radius]: [f64; 2],
     angles: [f64; 2],

@@ -20,7 +20,7 @@ const FLATTEST: f64 = 1e-14;
 
 /// A monotone stretch on one side of the way.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Torus {
+pub(crate) struct Torus {
     centre: [f64; 2],
     radius: f64,
     slope: f64,
@@ -39,7 +39,7 @@ pub(super) struct Torus {
 
 /// The stretches of an arc about `centre` between two ascending angles, which is traversed in the direction of `out`.
 /// `None` if rounding would blur them.
-pub(super) fn stretches(
+pub(crate) fn stretches(
     heading: &Heading,
     centre: [f64; 2],
     radius: f64,
@@ -195,7 +195,7 @@ impl Torus {
     /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`. So the two terms of `ds/dρ` have one sign, or they cancel where
     /// `h = ρ w/k` is `R`. The three terms of `d ln h/de` are `±r/ρ`, `m²/(e³ w²)` and `3 ρ_c m²/(r e⁴ k)`: `h` is monotone if the first is the
     /// largest by far, or if all have one sign: by at least `r/2ρ`, so that rounding shifts the place where it is `R` by no more than that of a coordinate.
-    pub(super) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
+    pub(crate) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
         let square = self.slope * self.slope;
         let (offset, bulge) = (self.centre[0], self.signs[0] * self.radius);
         let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
@@ -240,12 +240,12 @@ impl Torus {
     }
 
     /// `p` at a value of `|e|`.
-    pub(super) fn across(&self, e: f64) -> f64 {
+    pub(crate) fn across(&self, e: f64) -> f64 {
         self.side * self.place(e)[0]
     }
 
     /// `p` where the squared distance from that point has the value `s`, over a range of `|e|` where it is monotone.
-    pub(super) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
+    pub(crate) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
         let (mut a, mut b) = (low, high);
         let sign = side * self.side;
         let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
