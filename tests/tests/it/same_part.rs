@@ -64,7 +64,7 @@ fn dexels(program: &Program) -> Dexels {
         if run.len() < 2 {
             continue;
         }
-        let moves = run[1..].iter().map(|pose| pose.way).collect();
+        let moves = run[1..].iter().map(|pose| pose.way()).collect();
         let path = Path::with_moves(run.iter().map(|pose| pose.pose).collect(), moves).expect("a path");
         let swept = sweep(&tool, &path, &grid, &Options::default(), &()).expect("a sweep");
         assert!(swept.statistics.unresolved.is_empty());

@@ -2,7 +2,7 @@
 //! exactly.
 
 use std::cmp::Ordering;
-use std::io::{BufRead, Write};
+use std::io::{self, BufRead, Read as _, Write};
 
 use sweepsim_dexel::{Dexels, Grid, Interval};
 
@@ -28,7 +28,7 @@ pub struct DexelRow {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> io::Result<()> {
     writeln!(writer, "{HEADER}")?;
     for index in 0..dexels.grid().len() {
         let (i, j) = dexels.grid().place(index);
@@ -39,6 +39,11 @@ pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
     }
     Ok(())
 }
+
+/// The longest line, in bytes. Rows have a hundred at most.
+const LONGEST: u64 = 1 << 12;
+/// How much of a line that is too long is shown.
+const SHOWN: usize = 80;
 
 /// Reads the rows, and checks that intervals are in order, disjoint, and not empty.
 ///
@@ -52,12 +57,29 @@ pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> std::io::Re
 /// assert!(error.to_string().starts_with("2:7: z1 is 0.5"));
 /// # Ok::<(), sweepsim_formats::FormatError>(())
 /// ```
-pub fn read_dexels_csv(reader: impl BufRead) -> Result<Vec<DexelRow>, FormatError> {
+pub fn read_dexels_csv(mut reader: impl BufRead) -> Result<Vec<DexelRow>, FormatError> {
+    let failed = |error: io::Error| FormatError::new(Problem::Read(error), None);
     let mut rows: Vec<DexelRow> = Vec::new();
     let mut header = false;
-    for (index, line) in reader.lines().enumerate() {
-        let line = line.map_err(|error| FormatError::new(Problem::Read(error), None))?;
-        let line = line.trim_end_matches('\r');
+    let mut bytes = Vec::new();
+    for index in 0.. {
+        bytes.clear();
+        let mut begin = reader.by_ref().take(LONGEST + 1);
+        if begin.read_until(b'\n', &mut bytes).map_err(failed)? == 0 {
+            break;
+        }
+        if bytes.len() as u64 > LONGEST {
+            let problem = Problem::value(
+                "a line",
+                format!("longer than {LONGEST} bytes"),
+                "a row of four numbers",
+            );
+            let shown = String::from_utf8_lossy(&bytes[..SHOWN]);
+            return Err(error(problem, index, &shown, None));
+        }
+        let line = std::str::from_utf8(&bytes);
+        let line = line.map_err(|error| failed(io::Error::new(io::ErrorKind::InvalidData, error)))?;
+        let line = line.trim_end_matches('\n').trim_end_matches('\r');
         if !header {
             if line != HEADER {
                 let problem = Problem::syntax(format!(

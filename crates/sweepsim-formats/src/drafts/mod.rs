@@ -159,7 +159,7 @@ impl<'a> Drafter<'a> {
         let has_arcs = program
             .poses
             .iter()
-            .any(|pose| matches!(pose.way.course, Course::Arc(_)));
+            .any(|pose| matches!(pose.way().course, Course::Arc(_)));
         let chords = if has_arcs {
             (read.exact_arcs, read.arc_tolerance) = (false, 0.01);
             Some(read_file(&file, &read)?)

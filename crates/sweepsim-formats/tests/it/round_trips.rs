@@ -284,3 +284,12 @@ fn too_many_vertices_are_an_error() {
     let error = read_ply(ply.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("the number of vertices is 4294967297"), "{error}");
 }
+
+/// A line that never ends is an error with its number, not memory without end.
+#[test]
+fn endless_rows() {
+    use std::io::{BufReader, Read as _};
+    let reader = BufReader::new((&b"i,j,z0,z1\n0,2,-1,0.5\n"[..]).chain(std::io::repeat(b'7')));
+    let error = read_dexels_csv(reader).unwrap_err().to_string();
+    assert!(error.starts_with("3:1: a line is longer than 4096 bytes"), "{error}");
+}

@@ -248,7 +248,7 @@ impl Reader<'_> {
             made.joined = joined;
             made.tool = tool;
             made.call = target.call;
-            made.way = way;
+            made.set_way(way);
             made.feed_mode = if target.rapid {
                 FeedMode::default()
             } else {

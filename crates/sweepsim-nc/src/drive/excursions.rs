@@ -39,7 +39,7 @@ pub(super) fn excursions(
     let mut found = Vec::new();
     for axis in axes {
         let ends = [axis.value(from), axis.value(to)];
-        let course = match (pose.way.course, axis.linear) {
+        let course = match (pose.way().course, axis.linear) {
             (Course::Arc(arc), Some(k)) if still => {
                 AxisCourse::of_arc(machine, &arc, before.pose.tip(), pose.pose.tip(), from.abc, k, ends)
             }

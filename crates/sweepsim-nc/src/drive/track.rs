@@ -372,7 +372,9 @@ impl Track {
             made.feed_mode = self.feed_mode;
             made.exact_stop = self.exact_stop;
             made.tip_control = self.coordinates == Coordinates::Tip || self.driver.kinematics().is_none();
-            made.way = if self.joined { way } else { Move::default() };
+            if self.joined {
+                made.set_way(way);
+            }
             self.program.poses.push(made);
             if self.driver.kinematics().is_some() {
                 let position = match self.coordinates {

@@ -168,7 +168,7 @@ impl<'a> Dynamics<'a> {
     /// The way of a move; `None` if no axis moves.
     fn way(&self, from: &ProgramPose, to: &ProgramPose, ends: [&Position; 2]) -> Option<Way> {
         let turn = Vector3::from(ends[1].abc) - Vector3::from(ends[0].abc);
-        let way = match to.way.course {
+        let way = match to.way().course {
             Course::Straight => {
                 let shift = Vector3::from(ends[1].xyz) - Vector3::from(ends[0].xyz);
                 self.straight(&joined(&(self.directions[0] * shift), &turn))

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use sweepsim_motion::{Move, Pose};
 
@@ -13,8 +14,8 @@ use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
 
-/// A pose of a program, and the move that ends there.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A pose of a program, and the move that ends there. It is kept small: programs have millions of them.
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ProgramPose {
     /// The tool's pose, with lengths in millimetres.
@@ -36,13 +37,13 @@ pub struct ProgramPose {
     pub feed_mode: FeedMode,
     /// The call, cycle or loop that made this move: an index of [`Program::calls`]. `None` for moves of the main program.
     pub call: Option<u32>,
-    /// How the tool moves here from the previous pose.
-    pub way: Move,
     /// Whether the tip follows the move: under tip control, in tilted planes, in programs of poses, and without a machine. Otherwise each axis of the
     /// machine moves at constant speed.
     pub tip_control: bool,
     /// Whether the axes rest at the end of the block that this move is part of (`G9`, `G61`, Siemens's `G60`).
     pub exact_stop: bool,
+    /// How the tool moves here, unless straight and by SLERP.
+    way: Option<Arc<Move>>,
 }
 
 impl ProgramPose {
@@ -59,10 +60,21 @@ impl ProgramPose {
             feed: None,
             feed_mode: FeedMode::default(),
             call: None,
-            way: Move::default(),
             tip_control: true,
             exact_stop: false,
+            way: None,
         }
+    }
+
+    /// How the tool moves here from the previous pose.
+    #[must_use]
+    pub fn way(&self) -> Move {
+        self.way.as_deref().copied().unwrap_or_default()
+    }
+
+    /// Sets how the tool moves here from the previous pose.
+    pub fn set_way(&mut self, way: Move) {
+        self.way = (way != Move::default()).then(|| Arc::new(way));
     }
 }
 

@@ -100,7 +100,7 @@ impl ToolUsage {
         }
         self.feed_moves += 1;
         self.feed_length += length;
-        self.arcs += usize::from(matches!(to.way.course, Course::Arc(_)));
+        self.arcs += usize::from(matches!(to.way().course, Course::Arc(_)));
         for tip in [from.pose.tip(), to.pose.tip()] {
             let [low, high] = self.extent.get_or_insert([tip; 2]);
             for k in 0..3 {
@@ -135,7 +135,7 @@ impl ToolUsage {
 pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
     let (a, b) = (from.pose.tip(), to.pose.tip());
     let chord = [0, 1, 2].map(|k| b[k] - a[k]);
-    match to.way.course {
+    match to.way().course {
         Course::Straight => chord[0].hypot(chord[1]).hypot(chord[2]),
         Course::Arc(arc) => {
             let (centre, normal) = (arc.centre(), arc.normal());

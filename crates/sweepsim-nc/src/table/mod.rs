@@ -5,10 +5,10 @@ pub(crate) mod rows;
 use std::io::{BufRead, Write};
 
 use csv::{ReaderBuilder, StringRecord, Trim};
-use sweepsim_motion::{Move, Pose};
+use sweepsim_motion::Pose;
 
 use crate::model::names::Format;
-use crate::model::program::{FeedMode, Program, ProgramPose};
+use crate::model::program::{Program, ProgramPose};
 use crate::text::error::{NcError, NcProblem, TextPosition};
 use crate::text::lines::Lines;
 use crate::text::numbers::shortest;
@@ -240,20 +240,12 @@ impl Row<'_> {
             None => None,
             Some(number) => Some(number.parse().map_err(|_| self.error(8, "a whole number"))?),
         };
-        Ok(ProgramPose {
-            pose,
-            rapid,
-            file: 0,
-            line: self.line.number,
-            joined: !self.flag(9)? && last.is_some_and(|last| last.tool == tool),
-            tool,
-            feed,
-            feed_mode: FeedMode::default(),
-            call: None,
-            way: Move::default(),
-            tip_control: true,
-            exact_stop: false,
-        })
+        let mut made = ProgramPose::new(pose, self.line.number);
+        made.rapid = rapid;
+        made.joined = !self.flag(9)? && last.is_some_and(|last| last.tool == tool);
+        made.tool = tool;
+        made.feed = feed;
+        Ok(made)
     }
 }
 

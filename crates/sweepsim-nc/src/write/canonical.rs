@@ -81,7 +81,7 @@ fn of_pose(pose: &ProgramPose) -> String {
             format!("feed {}{unit}", shortest(feed))
         }
     };
-    let arc = match pose.way.course {
+    let arc = match pose.way().course {
         Course::Arc(arc) if pose.joined => format!(
             " about ({}) normal ({}) by {} deg",
             words(arc.centre()),

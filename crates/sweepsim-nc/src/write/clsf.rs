@@ -98,9 +98,10 @@ impl<W: Write> Output<'_, W> {
         if !pose.rapid && pose.feed.is_none() && self.feed.is_some() {
             self.lose("moves without a feed after others with one".to_owned());
         }
-        if let (true, Some(last), Course::Arc(arc)) = (pose.joined, last, pose.way.course) {
+        if let (true, Some(last), Course::Arc(arc)) = (pose.joined, last, pose.way().course) {
             self.arc(&arc, last, pose)?;
-        } else if pose.joined && !matches!(pose.way.turning, Turning::Slerp) && pose.way.course == Course::Straight {
+        } else if pose.joined && !matches!(pose.way().turning, Turning::Slerp) && pose.way().course == Course::Straight
+        {
             self.lose("how the tool axis turns between two points".to_owned());
         }
         let (tip, axis) = (pose.pose.tip(), pose.pose.axis());

@@ -95,7 +95,7 @@ fn bore_milling_is_a_helix() {
         }
         let turns: Vec<f64> = program.poses[3..5]
             .iter()
-            .map(|pose| match pose.way.course {
+            .map(|pose| match pose.way().course {
                 Course::Arc(arc) => arc.angle() * arc.normal()[2] / std::f64::consts::TAU,
                 _ => panic!("an arc"),
             })

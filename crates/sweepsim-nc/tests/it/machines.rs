@@ -14,7 +14,7 @@ fn programs_as_machines_run_them() {
     options.law = AxisLaw::Rotary;
     options.exact_arcs = true;
     let program = gcode::read(PROGRAM, &options).unwrap();
-    let ways: Vec<_> = program.poses.iter().map(|pose| pose.way).collect();
+    let ways: Vec<_> = program.poses.iter().map(|pose| pose.way()).collect();
     assert_eq!(ways.len(), 4, "nothing is divided");
     let turned = |k: usize| match ways[k].turning {
         Turning::Rotary { from, to, .. } => (from, to),
@@ -36,7 +36,7 @@ fn programs_as_machines_run_them() {
             && plain
                 .poses
                 .iter()
-                .all(|pose| pose.way == sweepsim_motion::Move::default())
+                .all(|pose| pose.way() == sweepsim_motion::Move::default())
     );
     // The other planes go round their own axes, the right-handed way.
     for (plane, normal) in [
@@ -45,7 +45,7 @@ fn programs_as_machines_run_them() {
     ] {
         let text = format!("G21 G90\nG0 X0 Y0 Z0\nG1 Z0.5\nG1 Z0\n{plane}\n");
         let program = gcode::read(&text, &options).unwrap();
-        let way = program.poses[program.poses.len() - 1].way;
+        let way = program.poses[program.poses.len() - 1].way();
         assert!(matches!(way.course, Course::Arc(arc) if arc.normal() == normal && arc.angle() > 0.0));
     }
 }

@@ -68,7 +68,7 @@ pub fn samples(program: &Program, poses: std::ops::Range<usize>) -> Vec<[f64; 2]
         let (a, b): ([f64; 3], [f64; 3]) = (pair[0].pose.tip(), pair[1].pose.tip());
         for k in 0..=20 {
             let s = f64::from(k) / 20.0;
-            points.push(match pair[1].way.course {
+            points.push(match pair[1].way().course {
                 Course::Arc(arc) => {
                     let (c, turn) = (arc.centre(), s * arc.angle() * arc.normal()[2].signum());
                     let (x, y) = (a[0] - c[0], a[1] - c[1]);

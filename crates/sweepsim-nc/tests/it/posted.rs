@@ -156,7 +156,7 @@ proptest! {
                 let truth = kinematics.pose(&ends[0].towards(&ends[1], (part as f64 + s) / parts as f64), length).unwrap();
                 let mix = |a: [f64; 3], b: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| a[k] + s * (b[k] - a[k])) };
                 prop_assert!(apart(mix(from.pose.tip(), to.pose.tip()), truth.tip()) <= options.arc_tolerance * (1.0 + 1e-9) + 1e-9);
-                let axis = match to.way.turning {
+                let axis = match to.way().turning {
                     Turning::Rotary { table, from, to } => table.axis([0, 1].map(|k| from[k] + s * (to[k] - from[k]))),
                     _ => {
                         let (a, b) = (Vector3::from(from.pose.axis()), Vector3::from(to.pose.axis()));

@@ -30,7 +30,7 @@ fn same(a: &Program, b: &Program) {
         assert_eq!(x.pose.tip(), y.pose.tip());
         let axes = (x.pose.axis(), y.pose.axis());
         assert!(axes.0.iter().zip(axes.1).all(|(a, b)| (a - b).abs() < 1e-15));
-        match (x.way.course, y.way.course) {
+        match (x.way().course, y.way().course) {
             (Course::Straight, Course::Straight) => {}
             (Course::Arc(a), Course::Arc(b)) => {
                 let sense = a.angle().signum() * b.angle().signum();

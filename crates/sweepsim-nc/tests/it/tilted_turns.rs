@@ -137,7 +137,7 @@ fn posted_arcs_come_back() {
             for (a, b) in back.poses.iter().zip(&read.poses) {
                 let off = |a: [f64; 3], b: [f64; 3]| (Vector3::from(a) - Vector3::from(b)).norm();
                 assert!(off(a.pose.tip(), b.pose.tip()) < 1e-9, "{name}: {posted}");
-                match (a.way.course, b.way.course) {
+                match (a.way().course, b.way().course) {
                     (Course::Arc(a), Course::Arc(b)) => {
                         assert!(
                             off(a.centre(), b.centre()) < 1e-9 && off(a.normal(), b.normal()) < 1e-9,

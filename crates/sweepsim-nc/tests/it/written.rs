@@ -61,7 +61,7 @@ fn same(a: &Program, b: &Program, text: &str) {
             (Some(f), Some(g)) => assert!((f - g).abs() < 1e-9 && x.feed_mode == y.feed_mode, "{place}"),
             (f, g) => assert_eq!(f, g, "{place}"),
         }
-        match (x.way.course, y.way.course) {
+        match (x.way().course, y.way().course) {
             (Course::Straight, Course::Straight) => {}
             (Course::Arc(p), Course::Arc(q)) => {
                 let sense = p
@@ -329,7 +329,7 @@ fn what_a_control_cannot_say() {
         let mut pose = ProgramPose::new(Pose::new(tip, [0.0, 0.0, 1.0]).unwrap(), 1);
         pose.joined = joined;
         if joined {
-            pose.way = Move::arc(arc);
+            pose.set_way(Move::arc(arc));
             (pose.feed, pose.feed_mode) = (Some(2.0), FeedMode::InverseTime);
         }
         tilted.poses.push(pose);
@@ -366,7 +366,7 @@ fn rounded_numbers() {
         let arcs: Vec<f64> = again
             .poses
             .iter()
-            .filter_map(|pose| match pose.way.course {
+            .filter_map(|pose| match pose.way().course {
                 Course::Arc(arc) => Some(arc.angle()),
                 Course::Straight => None,
             })

@@ -5,6 +5,7 @@ use crate::error::SweepError;
 use crate::sweep::options::Options;
 use crate::time::path_parts::{self, PathPart};
 use crate::tolerances::Tolerances;
+use std::ops::Range;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Tool};
 
@@ -27,6 +28,16 @@ impl Plan {
         extent: impl Iterator<Item = f64>,
         options: &Options,
     ) -> Result<Self, SweepError> {
+        Self::of_moves((tool, path, 0..path.moves()), frame, extent, options)
+    }
+
+    /// The same, of some moves only: all, if the tool is not of revolution.
+    pub fn of_moves(
+        (tool, path, moves): (&Tool, &Path, Range<usize>),
+        frame: &Frame,
+        extent: impl Iterator<Item = f64>,
+        options: &Options,
+    ) -> Result<Self, SweepError> {
         let cutter = Cutter::new(tool);
         // Turned by any angle, and moved.
         let far = if frame.is_world() {
@@ -36,7 +47,7 @@ impl Plan {
         };
         let size = extent.map(f64::abs).fold(cutter.reach.max(far), f64::max);
         let tolerances = Tolerances::new(options.tolerance, size)?;
-        let mut parts = path_parts::parts(path, frame, tool.is_revolved(), cutter.reach, &tolerances);
+        let mut parts = path_parts::parts((path, moves), frame, tool.is_revolved(), cutter.reach, &tolerances);
         // About an arc as wide as a wall or an edge of the tool, lines near the centre touch it all along: squared distances have no digits for them.
         let pieces = cutter.outline.iter().flat_map(|outline| &outline.pieces);
         let radii: Vec<f64> = pieces.flat_map(|piece| [piece.from[0], piece.to[0]]).collect();

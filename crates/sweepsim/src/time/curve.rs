@@ -317,7 +317,7 @@ mod tests {
         let arc = TipArc::new([0.0; 3], [0.0, 0.0, 1.0], std::f64::consts::FRAC_PI_2).unwrap();
         let path = Path::with_moves(poses, vec![Move::arc(arc)]).unwrap();
         let parts = parts(
-            &path,
+            (&path, 0..path.moves()),
             &sweepsim_dexel::Frame::WORLD,
             true,
             40.0,

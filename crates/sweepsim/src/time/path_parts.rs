@@ -3,6 +3,7 @@
 use crate::time::round::Round;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
+use std::ops::Range;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Segment};
 
@@ -19,11 +20,18 @@ pub(crate) struct PathPart {
     pub share: f32,
 }
 
-/// The motions along a path in a frame, with displaced tips. Moves of length zero are left out.
+/// The motions of some moves of a path in a frame, with displaced tips. Moves of length zero are left out.
 ///
 /// A tool that is not `symmetric` about its axis moves without turning about it, unless the poses specify how it turns.
+/// How it has turned by then follows from all moves before, so that its `moves` must be all of the path's.
 /// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
-pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tolerances: &Tolerances) -> Vec<PathPart> {
+pub(crate) fn parts(
+    (path, moves): (&Path, Range<usize>),
+    frame: &Frame,
+    symmetric: bool,
+    reach: f64,
+    tolerances: &Tolerances,
+) -> Vec<PathPart> {
     let poses = path.poses();
     let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
     let shift = -turn * Vector3::from(frame.origin());
@@ -37,7 +45,7 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
     let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip()));
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| tolerances.tip_displacement(k);
-    let mut parts: Vec<PathPart> = Vec::with_capacity(poses.len());
+    let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
     let put = |parts: &mut Vec<PathPart>,
                number: usize,
                segments: Vec<Segment>,
@@ -68,8 +76,8 @@ pub(crate) fn parts(path: &Path, frame: &Frame, symmetric: bool, reach: f64, tol
             });
         }
     };
-    let mut from = 0;
-    for to in 1..poses.len() {
+    let mut from = moves.start;
+    for to in moves.start + 1..=moves.end {
         if !path.rests(from, to) {
             let segments = if symmetric {
                 path.segments_of_symmetric(to - 1, reach, tolerances.law_deviation())

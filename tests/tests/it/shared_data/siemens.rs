@@ -109,7 +109,7 @@ fn poses_by_hand() {
     // N370 G2 X0.0 Y20. I0.0 J-7.495 from X0 Y34.99: half a circle in the plane of G54.
     let half = at(&program, 38);
     near(half.pose.tip(), [0.0, 20.0, -2.0 + 1.0]);
-    let Course::Arc(arc) = half.way.course else {
+    let Course::Arc(arc) = half.way().course else {
         panic!("{half:?}")
     };
     near(arc.centre(), [0.0, 27.495, -1.0]);

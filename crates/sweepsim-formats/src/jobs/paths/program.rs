@@ -4,10 +4,10 @@ use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Law, Move, Path, PathError};
+use sweepsim_motion::{Law, Path, PathError};
 use sweepsim_nc::{Call, Event, EventKind, Note, Program, ProgramPose, Spindle, check};
 
-use super::course::{Step, at_steps, course, other_courses};
+use super::course::{Course, Step, at_steps, course, other_courses};
 use super::{JobPath, Origin};
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::jobs::tools::ToolBox;
@@ -56,7 +56,7 @@ pub(crate) fn of_program(
     let mut paths = Vec::new();
     let mut begin = 0;
     for section in program.sections() {
-        let first = section[0];
+        let first = &section[0];
         let number = match (tool, first.tool) {
             (Some(tool), _) | (None, Some(tool)) => tool,
             (None, None) => {
@@ -69,15 +69,13 @@ pub(crate) fn of_program(
         tools
             .need(number, Some((&described, shown)))
             .map_err(|problem| at(problem, first.line))?;
-        let steps = course(&program, begin, section);
+        let Course { poses, steps, ways } = course(&program, begin, section);
         begin += section.len();
-        let poses = steps.iter().map(|step| step.pose).collect();
-        let ways = || steps[1..].iter().map(|step| step.way);
         // Tables do not specify how the tool turns.
-        let path = if ways().all(|way| way == Move::default()) {
+        let path = if ways.is_empty() {
             Path::with_law(poses, law)
         } else {
-            Path::with_moves(poses, ways().collect())
+            Path::with_moves(poses, ways)
         };
         let path = path.map_err(|error| {
             let line = match error {

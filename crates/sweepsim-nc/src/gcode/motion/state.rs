@@ -288,20 +288,18 @@ impl State {
             if self.poses.len() >= self.most_poses {
                 return Err(self.too_many());
             }
-            self.poses.push(ProgramPose {
-                pose,
-                rapid,
-                file: self.place.file,
-                line: self.place.line,
-                joined: self.joined,
-                tool: self.tool,
-                feed: if rapid { None } else { self.feed },
-                feed_mode: self.feed_mode,
-                call: self.place.call,
-                way,
-                tip_control: coordinates == Coordinates::Tip || self.driver.kinematics().is_none(),
-                exact_stop: self.exact_stop,
-            });
+            let mut made = ProgramPose::new(pose, self.place.line);
+            made.rapid = rapid;
+            made.file = self.place.file;
+            made.joined = self.joined;
+            made.tool = self.tool;
+            made.feed = if rapid { None } else { self.feed };
+            made.feed_mode = self.feed_mode;
+            made.call = self.place.call;
+            made.tip_control = coordinates == Coordinates::Tip || self.driver.kinematics().is_none();
+            made.exact_stop = self.exact_stop;
+            made.set_way(way);
+            self.poses.push(made);
             if self.driver.kinematics().is_some() {
                 let position = match coordinates {
                     Coordinates::Axes => Some(at),

@@ -186,12 +186,12 @@ impl<'a> Plan<'a> {
     fn go(&mut self, index: usize, pose: &ProgramPose, language: &mut impl Language) -> Result<(), GcodeError> {
         let from = self.at.filter(|_| pose.joined);
         let to = self.place(index, &pose.pose)?;
-        if let (Course::Arc(arc), Some(from)) = (pose.way.course, from) {
+        if let (Course::Arc(arc), Some(from)) = (pose.way().course, from) {
             return self.arc(index, &arc, from, to, language);
         }
         if pose.joined
             && self.machine.is_none()
-            && !matches!(pose.way.turning, Turning::Slerp)
+            && !matches!(pose.way().turning, Turning::Slerp)
             && from.is_some_and(|from| from.pose.axis() != to.pose.axis())
         {
             self.lose("how the tool axis turns between two points");

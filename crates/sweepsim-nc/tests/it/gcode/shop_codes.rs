@@ -259,7 +259,7 @@ fn circular_pockets() {
         let found: Vec<(f64, f64)> = program
             .poses
             .iter()
-            .filter_map(|pose| match pose.way.course {
+            .filter_map(|pose| match pose.way().course {
                 Course::Arc(arc) if (arc.angle().abs() - std::f64::consts::TAU).abs() < 1e-12 => {
                     let [x, y, z] = pose.pose.tip();
                     let [cx, cy, _] = arc.centre();

@@ -9,10 +9,15 @@ use crate::sweep::plan::Plan;
 use crate::sweep::report::Statistics;
 use crate::sweep::run::sweep_near;
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_motion::Tool;
 use sweepsim_solve::Monitor;
+
+/// So many moves of a path are prepared at a time, so that memory does not grow with the whole path: each takes 300 bytes.
+const STRETCH: usize = 1 << 16;
 
 /// Which of many tiles a box is over.
 struct TileIndex {
@@ -81,6 +86,61 @@ impl Monitor for TileProgress<'_> {
     }
 }
 
+/// The part of a cut's progress that is due to a stretch of its moves.
+struct Stretch<'a> {
+    monitor: &'a dyn Monitor,
+    moves: Range<usize>,
+    /// Of the cut.
+    total: usize,
+}
+
+impl Monitor for Stretch<'_> {
+    fn advance(&self, done: usize, total: usize) {
+        let own = self.moves.len() as f64 * done as f64 / total.max(1) as f64;
+        self.monitor.advance(self.moves.start + own as usize, self.total);
+    }
+
+    fn cancelled(&self) -> bool {
+        self.monitor.cancelled()
+    }
+}
+
+/// Removes what a tool sweeps in a stretch of a path.
+fn stretch(
+    tool: &Tool,
+    plan: &Plan,
+    (index, whole): (&TileIndex, &Grid),
+    parts: &mut [Simulation],
+    options: &Options,
+    monitor: &dyn Monitor,
+) -> Result<(), SweepError> {
+    let boxes = runs::boxes(tool, plan);
+    let mut members = vec![Vec::new(); parts.len()];
+    for (number, own) in (0_u32..).zip(&boxes) {
+        index.over(whole, own, |tile| members[tile].push(number));
+    }
+    let progress = Progress {
+        monitor,
+        done: Mutex::new(0),
+        total: members.iter().map(Vec::len).sum(),
+    };
+    let one = |(part, members): (&mut Simulation, &Vec<u32>)| {
+        let monitor = TileProgress {
+            all: &progress,
+            done: AtomicUsize::new(0),
+        };
+        let Simulation { remaining, statistics } = part;
+        let (tile, material) = (*remaining.grid(), HeightMap::new(remaining));
+        let swept = sweep_near((tool, plan), (&boxes, members), (&tile, &material), options, &monitor)?;
+        remaining
+            .remove_all(&swept.volume, options.tolerance)
+            .expect("all on one grid");
+        statistics.merge(&swept.statistics);
+        Ok(())
+    };
+    parts.par_iter_mut().zip(&members).map(one).collect()
+}
+
 /// Removes the volumes that the cuts sweep from the stock on some [tiles](Grid::tile) of a grid, each by itself: as [`simulate`](fn@crate::simulate) does on
 /// all tiles of [`Options::tile`] columns and rows. Unresolved dexels are numbered in the whole grid.
 ///
@@ -129,39 +189,24 @@ pub fn simulate_tiles(
         })
         .collect();
     each(cuts, options, monitor, |cut, options, share| {
-        let extent = whole.min().into_iter().chain(whole.max());
-        let plan = Plan::new(cut.tool, cut.path, whole.frame(), extent, options)?;
-        let boxes = runs::boxes(cut.tool, &plan);
-        let mut members = vec![Vec::new(); parts.len()];
-        for (number, own) in (0_u32..).zip(&boxes) {
-            index.over(&whole, own, |tile| members[tile].push(number));
-        }
-        let progress = Progress {
-            monitor: share,
-            done: Mutex::new(0),
-            total: members.iter().map(Vec::len).sum(),
-        };
-        let one = |(part, members): (&mut Simulation, &Vec<u32>)| {
-            let monitor = TileProgress {
-                all: &progress,
-                done: AtomicUsize::new(0),
+        let extent = || whole.min().into_iter().chain(whole.max());
+        // A tool that is not of revolution carries its turn about its axis along the whole path.
+        let length = if cut.tool.is_revolved() { STRETCH } else { usize::MAX };
+        let total = cut.path.moves();
+        let mut begin = 0;
+        // A path of one pose has no moves.
+        while begin == 0 || begin < total {
+            let moves = begin..total.min(begin.saturating_add(length));
+            let share = Stretch {
+                monitor: share,
+                moves: moves.clone(),
+                total,
             };
-            let Simulation { remaining, statistics } = part;
-            let (tile, material) = (*remaining.grid(), HeightMap::new(remaining));
-            let swept = sweep_near(
-                (cut.tool, &plan),
-                (&boxes, members),
-                (&tile, &material),
-                options,
-                &monitor,
-            )?;
-            remaining
-                .remove_all(&swept.volume, options.tolerance)
-                .expect("all on one grid");
-            statistics.merge(&swept.statistics);
-            Ok(())
-        };
-        parts.par_iter_mut().zip(&members).map(one).collect()
+            begin = moves.end.max(1);
+            let plan = Plan::of_moves((cut.tool, cut.path, moves), whole.frame(), extent(), options)?;
+            stretch(cut.tool, &plan, (&index, &whole), &mut parts, options, &share)?;
+        }
+        Ok(())
     })?;
     let moves = cuts.iter().map(|cut| cut.path.moves()).sum();
     for Simulation { remaining, statistics } in &mut parts {
