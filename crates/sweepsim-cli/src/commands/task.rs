@@ -2,8 +2,8 @@
 
 use crate::arguments::RunOptions;
 use crate::warnings::Use;
-use sweepsim::Options;
-use sweepsim_formats::Job;
+use sweepsim::{Options, UnresolvedDexel};
+use sweepsim_formats::{Job, ReportedDexel};
 
 /// What to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +17,15 @@ pub(crate) enum Task {
 }
 
 impl Task {
+    /// The name of the command.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Simulate => "simulate",
+            Self::Sweep => "sweep",
+            Self::Verify => "verify",
+        }
+    }
+
     /// What of a job it looks at.
     pub fn uses(self) -> Use {
         let command = match self {
@@ -39,4 +48,10 @@ pub(crate) fn sweeping(job: &Job, options: &RunOptions) -> Options {
         .method(options.method)
         .boundary(options.boundary)
         .tile(options.tile)
+}
+
+/// Uncertified dexels as they are reported.
+pub(crate) fn reported(unresolved: &[UnresolvedDexel]) -> Vec<ReportedDexel> {
+    let one = |dexel: &UnresolvedDexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string());
+    unresolved.iter().map(one).collect()
 }

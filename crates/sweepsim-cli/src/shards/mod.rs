@@ -10,4 +10,4 @@ mod tiling;
 pub(crate) use digest::identity;
 pub(crate) use piece::{Piece, PieceFile, PieceTile, TileNotes};
 pub(crate) use pieces::{Gathered, files, gather, is_done};
-pub(crate) use tiling::{Tiling, TilingSet};
+pub(crate) use tiling::{Purpose, Tiling, TilingSet};

@@ -12,11 +12,12 @@ use sha2::{Digest, Sha256};
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
+use sweepsim::verify::TileRecord;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::{FormatError, ReportedDexel, read_dexels_binary, write_atomically, write_dexels_binary};
 
 const MAGIC: &[u8; 8] = b"sweeppce";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 32;
 const END: usize = 32;
 
@@ -84,6 +85,9 @@ pub(crate) struct TileNotes {
     pub repaired: usize,
     /// In the whole grid.
     pub unresolved: Vec<ReportedDexel>,
+    /// What was found, if moves were judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<TileRecord>,
 }
 
 #[derive(Serialize, Deserialize)]

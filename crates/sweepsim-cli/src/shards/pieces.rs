@@ -1,11 +1,12 @@
 //! Finds the pieces of a run, and joins them: all, once each, of this very run.
 
 use super::piece::{Identity, Piece, PieceFile, PieceTile};
-use super::tiling::Tiling;
+use super::tiling::{Purpose, Tiling, TilingSet};
 use crate::session::Failure;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use sweepsim::verify::TileRecord;
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::{ReportedDexel, io_reason};
 
@@ -18,6 +19,20 @@ pub(crate) struct Gathered {
     pub crossings: u64,
     pub repaired: usize,
     pub unresolved: Vec<ReportedDexel>,
+    /// What was found on each tile, if moves were judged.
+    pub records: Vec<TileRecord>,
+}
+
+impl Gathered {
+    pub fn empty(set: &TilingSet) -> Self {
+        Self {
+            dexels: Dexels::empty(set.tiles[0]),
+            crossings: 0,
+            repaired: 0,
+            unresolved: Vec::new(),
+            records: Vec::new(),
+        }
+    }
 }
 
 /// The pieces in these folders, sorted by name. A file counts as a piece.
@@ -108,11 +123,12 @@ pub(crate) fn files(folders: &[PathBuf]) -> Result<Vec<(PathBuf, PieceFile)>, Fa
     Ok(pieces)
 }
 
-/// Joins the pieces along each direction of the tiling of the same run.
+/// Joins the pieces along each direction of the tiling of the same run. `moves`: of each path.
 pub(crate) fn gather(
     pieces: Vec<(PathBuf, PieceFile)>,
     run: &Identity,
     tiling: &Tiling,
+    moves: &[usize],
 ) -> Result<Vec<Gathered>, Failure> {
     let mut tiles: Vec<Vec<PieceTile>> = tiling.sets.iter().map(|_| Vec::new()).collect();
     for (file, piece) in pieces {
@@ -127,23 +143,26 @@ pub(crate) fn gather(
             .tiles(grid)
             .ok_or_else(|| refused("this piece is damaged: its tiles are invalid".to_owned()))?;
         for tile in own {
+            let judged = tiling.sets[tile.notes.set].purpose != Purpose::Cut;
+            let fits = |record: &TileRecord| judged && record.is_of(moves);
+            if !tile.notes.record.as_ref().map_or(!judged, fits) {
+                return Err(refused(
+                    "this piece is damaged: its findings are of another program".to_owned(),
+                ));
+            }
             tiles[tile.notes.set].push(tile);
         }
     }
     let sets = tiling.sets.iter().zip(tiles);
     sets.map(|(set, mut tiles)| {
         tiles.sort_by_key(|tile| tile.notes.number);
-        let mut gathered = Gathered {
-            dexels: Dexels::empty(set.tiles[0]),
-            crossings: 0,
-            repaired: 0,
-            unresolved: Vec::new(),
-        };
+        let mut gathered = Gathered::empty(set);
         let mut dexels = Vec::with_capacity(tiles.len());
         for tile in tiles {
             gathered.crossings += tile.notes.crossings;
             gathered.repaired += tile.notes.repaired;
             gathered.unresolved.extend(tile.notes.unresolved);
+            gathered.records.extend(tile.notes.record);
             dexels.push(tile.dexels);
         }
         gathered.unresolved.sort_by_key(|dexel| (dexel.i, dexel.j));

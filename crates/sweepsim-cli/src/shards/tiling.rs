@@ -5,9 +5,24 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use sweepsim::Cut;
 use sweepsim_dexel::{Dexels, Grid, Operation, Stock, StockError};
+use sweepsim_formats::Job;
+
+/// What is computed on tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// What is left of the stock.
+    Cut,
+    /// The same, and which moves do harm on the way; what each move does, if asked for.
+    Judge { each_move: bool },
+    /// Which moves of a set-up touch its fixtures.
+    Fixtures(usize),
+}
 
 /// The lines along one direction.
 pub(crate) struct TilingSet {
+    /// What progress is called.
+    pub name: &'static str,
+    pub purpose: Purpose,
     pub grid: Grid,
     /// What of the stock counts, if not all.
     pub within: Option<Stock>,
@@ -24,16 +39,25 @@ pub(crate) struct Tiling {
 const MOVE: f64 = 300.0;
 const FREE_FORM_MOVE: f64 = 3_000.0;
 const LINE: f64 = 0.5;
+/// How many times as much it costs to judge moves as to cut.
+const JUDGING: f64 = 1.5;
 /// At most so many moves of a path are looked at to estimate the work: every other one, every third…
 const MOVES: usize = 200_000;
 
 impl TilingSet {
-    pub fn new(grid: Grid, within: Option<Stock>, tile: usize) -> Self {
+    pub fn new(name: &'static str, grid: Grid, within: Option<Stock>, tile: usize) -> Self {
         Self {
+            name,
+            purpose: Purpose::Cut,
             tiles: grid.tiles(tile),
             grid,
             within,
         }
+    }
+
+    /// For another purpose than to cut.
+    pub fn to(self, purpose: Purpose) -> Self {
+        Self { purpose, ..self }
     }
 
     /// The stock on a tile.
@@ -118,11 +142,21 @@ fn starts(all: impl Iterator<Item = usize>) -> Vec<usize> {
 
 impl Tiling {
     /// The directions and numbers of the tiles of a shard, sorted: the tile with the most work goes to the shard that has the least so far, then the next.
-    pub fn share(&self, shard: ShardNumber, cuts: &[Cut], stock: &Stock) -> Vec<(usize, usize)> {
+    pub fn share(&self, shard: ShardNumber, job: &Job, cuts: &[Cut]) -> Vec<(usize, usize)> {
         let mut tiles = Vec::new();
         for (set, own) in self.sets.iter().enumerate() {
-            let work = own.work(cuts, stock).into_iter().enumerate();
-            tiles.extend(work.map(|(number, work)| (work, (set, number))));
+            let (work, weight) = match own.purpose {
+                Purpose::Cut => (own.work(cuts, &job.stock), 1.0),
+                Purpose::Judge { .. } => (own.work(cuts, &job.stock), JUDGING),
+                Purpose::Fixtures(setup) => {
+                    let mine = cuts.iter().zip(&job.paths).filter(|(_, path)| path.setup == setup);
+                    let mine: Vec<Cut> = mine.map(|(cut, _)| *cut).collect();
+                    let fixtures = Stock::Union(job.setups[setup].fixtures.clone());
+                    (own.work(&mine, &fixtures), 1.0)
+                }
+            };
+            let work = work.into_iter().enumerate();
+            tiles.extend(work.map(|(number, work)| (weight * work, (set, number))));
         }
         dealt(tiles, shard)
     }
@@ -177,7 +211,7 @@ mod tests {
     #[test]
     fn work_is_where_the_tool_cuts() {
         let grid = Grid::new([0.0; 2], [40.0, 40.0], [40, 40]).unwrap();
-        let set = TilingSet::new(grid, None, 10);
+        let set = TilingSet::new("cut", grid, None, 10);
         let stock = Stock::Block {
             min: [0.0; 3],
             max: [40.0, 40.0, 10.0],

@@ -1,28 +1,35 @@
 //! A program in its order: runs of moves, one after the other.
 
 use super::finding::Finding;
-use super::scene::{PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
+use super::record::{Judgement, TileFinding, TileRecord};
+use super::scene::{Scene, ToolPath, Verification, VerifyOptions};
 use super::solid::MovingSolid;
 use super::target::Target;
 use crate::error::SweepError;
 use crate::sweep::heights::HeightMap;
-use crate::sweep::{CHUNK, Options};
+use crate::sweep::{CHUNK, Options, UnresolvedDexel};
+use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::Dexels;
 use sweepsim_motion::{Assembly, Path};
 use sweepsim_solve::Monitor;
 
-/// The state between two runs.
+/// The state between two runs, on one grid or tile.
 pub(super) struct Work<'a> {
     pub(super) remaining: Dexels,
     pub(super) heights: HeightMap,
+    /// The scene's own fixtures.
+    own_fixtures: Option<&'a Dexels>,
     pub(super) fixtures: Option<(&'a Dexels, HeightMap)>,
     pub(super) target: Option<&'a Target>,
     /// Options of the sweeps; the path number is that of the present toolpath.
     pub(super) options: Options,
     pub(super) each_move: bool,
     pub(super) monitor: &'a dyn Monitor,
-    pub(super) done: Verification,
+    pub(super) done: TileRecord,
+    pub(super) crossings: u64,
+    pub(super) unresolved: Vec<UnresolvedDexel>,
 }
 
 /// Judges the moves of a program in their order, and removes what they cut.
@@ -62,71 +69,163 @@ pub fn verify(
     receive: &mut dyn FnMut(&Finding) -> ControlFlow<()>,
     monitor: &dyn Monitor,
 ) -> Result<Verification, SweepError> {
-    let grid = *scene.stock.grid();
-    let other = |dexels: &Dexels| dexels.grid().frame() != grid.frame();
-    let mut fixtures = program
-        .iter()
-        .filter_map(|toolpath| toolpath.fixtures)
-        .chain(scene.fixtures);
-    if fixtures.any(other) || scene.target.is_some_and(|t| *t.solid().grid() != grid) {
-        return Err(SweepError::Grid);
+    let mut works = [Work::new(scene, program, options, monitor)?];
+    let mut seen = 0;
+    drive(&mut works, program, options, 1, &mut |works| {
+        let work = &mut works[0];
+        work.done.findings[seen..].sort_by(|a, b| {
+            let key = |own: &TileFinding| (own.finding.number, own.finding.time, own.finding.kind);
+            key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        let mut found = work.done.findings[seen..].iter();
+        let last = found.position(|own| receive(&own.finding).is_break());
+        if let Some(last) = last {
+            work.done.findings.truncate(seen + last + 1);
+            return ControlFlow::Break(());
+        }
+        seen = work.done.findings.len();
+        ControlFlow::Continue(())
+    })?;
+    let [work] = works;
+    let tile = work.finish();
+    let Judgement {
+        findings,
+        paths,
+        moves,
+        undecided,
+        stopped,
+    } = Judgement::of_tiles(&[tile.record]);
+    Ok(Verification {
+        remaining: tile.remaining,
+        findings,
+        paths,
+        moves,
+        crossings: tile.crossings,
+        unresolved: tile.unresolved,
+        undecided,
+        stopped,
+    })
+}
+
+/// What is found on a tile, and what remains of it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct TileVerification {
+    /// What remains of the stock on the tile.
+    pub remaining: Dexels,
+    /// What is found, to be joined with what other tiles find by [`Judgement::of_tiles`].
+    pub record: TileRecord,
+    /// Crossings found, but for those of the search within runs.
+    pub crossings: u64,
+    /// Dexels of sweeps that could not be certified, numbered in the whole grid. Those of fixtures are numbered in their grid.
+    pub unresolved: Vec<UnresolvedDexel>,
+}
+
+/// Judges a program on some [tiles](sweepsim_dexel::Grid::tile) of a grid, each by itself; what is found on a tile depends on no other, unless the verification ends
+/// [at the first finding](VerifyOptions::first). [`Judgement::of_tiles`] joins what is found.
+///
+/// # Errors
+/// Those of [`verify`], and [`SweepError::Tiles`] if the scenes are not on tiles of one grid.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use sweepsim::prelude::*;
+/// use sweepsim::motion::Assembly;
+/// use sweepsim::verify::{Judgement, MoveState, Scene, ToolPath, VerifyOptions, verify, verify_tiles};
+///
+/// let grid = Grid::new([-10.0, -10.0], [10.0, 10.0], [40, 40])?;
+/// let stock = Stock::Block { min: [-10.0, -10.0, 0.0], max: [10.0, 10.0, 8.0] };
+/// let cutter = Assembly::new(Tool::flat(3.0, 20.0)?);
+/// let at = |x: f64, z: f64| Pose::new([x, 0.0, z], [0.0, 0.0, 1.0]);
+/// let path = Path::new(vec![at(-20.0, 5.0)?, at(20.0, 5.0)?])?;
+/// let program = [ToolPath::new(&cutter, &path).with_states(&[MoveState::RAPID])];
+/// let options = VerifyOptions::default();
+/// let mut records = Vec::new();
+/// for tile in grid.tiles(20) {
+///     let scene = Scene::new(stock.dexels(&tile)?);
+///     records.extend(verify_tiles(vec![scene], &program, &options, &())?.into_iter().map(|tile| tile.record));
+/// }
+/// let joined = Judgement::of_tiles(&records);
+/// let whole = verify(Scene::new(stock.dexels(&grid)?), &program, &options, &mut |_| ControlFlow::Continue(()), &())?;
+/// let ([joined], [whole]) = (&joined.findings[..], &whole.findings[..]) else { panic!("one finding") };
+/// assert_eq!((joined.kind, joined.number, joined.depth), (whole.kind, whole.number, whole.depth));
+/// assert!((joined.volume - whole.volume).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn verify_tiles(
+    scenes: Vec<Scene>,
+    program: &[ToolPath],
+    options: &VerifyOptions,
+    monitor: &dyn Monitor,
+) -> Result<Vec<TileVerification>, SweepError> {
+    let mut wholes = scenes.iter().map(|scene| scene.stock.grid().whole());
+    if let Some(first) = wholes.next()
+        && wholes.any(|other| other != first)
+    {
+        return Err(SweepError::Tiles);
     }
-    let mut work = Work {
-        heights: HeightMap::new(&scene.stock),
-        fixtures: None,
-        target: scene.target,
-        options: options.sweep.clone(),
-        each_move: options.each_move,
-        monitor,
-        done: Verification {
-            remaining: Dexels::empty(grid),
-            findings: Vec::new(),
-            paths: vec![PathRemoval::default(); program.len()],
-            moves: Vec::new(),
-            crossings: 0,
-            unresolved: Vec::new(),
-            undecided: Vec::new(),
-            stopped: false,
-        },
-        remaining: scene.stock,
-    };
+    let works = scenes.into_par_iter();
+    let works = works.map(|scene| Work::new(scene, program, options, monitor));
+    let mut works = works.collect::<Result<Vec<_>, _>>()?;
+    let step = if options.first { 1 } else { usize::MAX };
+    drive(&mut works, program, options, step, &mut |works| {
+        if options.first && works.iter().any(|work| !work.done.findings.is_empty()) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    })?;
+    Ok(works.into_iter().map(Work::finish).collect())
+}
+
+/// Judges all runs of a program, on tiles of one grid: `step` runs of a toolpath at a time, after which `after` may end it.
+fn drive<'a>(
+    works: &mut [Work<'a>],
+    program: &[ToolPath<'a>],
+    options: &VerifyOptions,
+    step: usize,
+    after: &mut dyn FnMut(&mut [Work<'a>]) -> ControlFlow<()>,
+) -> Result<(), SweepError> {
     let total = program.iter().map(|tool| tool.path.moves()).sum();
     let mut before = 0;
     for (number, toolpath) in program.iter().enumerate() {
-        if work.done.stopped {
-            break;
+        for work in works.iter_mut() {
+            let path_number = u32::try_from(number).unwrap_or(u32::MAX);
+            work.options = options.sweep.clone().path_number(path_number);
+            work.set_fixtures(toolpath.fixtures);
         }
-        work.options = options
-            .sweep
-            .clone()
-            .path_number(u32::try_from(number).unwrap_or(u32::MAX));
-        work.set_fixtures(toolpath.fixtures.or(scene.fixtures));
-        let solids = Solids::new(toolpath, toolpath.path, &work)?;
-        for moves in runs(toolpath) {
-            let seen = work.done.findings.len();
-            work.run(number, toolpath, &solids, moves.clone())?;
-            monitor.advance(before + moves.end, total);
-            work.done.findings[seen..].sort_by(|a, b| {
-                (a.number, a.time, a.kind)
-                    .partial_cmp(&(b.number, b.time, b.kind))
-                    .unwrap_or(std::cmp::Ordering::Equal)
-            });
-            let mut found = work.done.findings[seen..].iter();
-            if let Some(last) = found.position(|finding| receive(finding).is_break()) {
-                work.done.findings.truncate(seen + last + 1);
-                work.done.stopped = true;
+        let Some(first) = works.first() else { return Ok(()) };
+        let (monitor, count) = (first.monitor, works.len());
+        // The same for all tiles: they see the extent of the whole grid.
+        let solids = Solids::new(toolpath, toolpath.path, first)?;
+        let mut runs = runs(toolpath);
+        let last = options.until.filter(|(path, _)| *path == number);
+        if let Some((_, last)) = last {
+            runs.truncate(runs.partition_point(|run| run.start <= last).max(1));
+        }
+        let mut stop = ControlFlow::Continue(());
+        for batch in runs.chunks(step) {
+            let judged = AtomicUsize::new(0);
+            works.par_iter_mut().try_for_each(|work| {
+                batch.iter().try_for_each(|moves| {
+                    work.run(number, toolpath, &solids, moves.clone())?;
+                    let judged = judged.fetch_add(moves.len(), Ordering::Relaxed) + moves.len();
+                    monitor.advance(before + batch[0].start + judged / count, total);
+                    Ok(())
+                })
+            })?;
+            stop = after(works);
+            if stop.is_break() {
                 break;
             }
         }
+        if stop.is_break() || last.is_some() {
+            works.iter_mut().for_each(|work| work.done.stopped = true);
+            break;
+        }
         before += toolpath.path.moves();
     }
-    let Work {
-        remaining, mut done, ..
-    } = work;
-    done.unresolved.sort_by_key(|open| (open.i, open.j));
-    done.unresolved.dedup_by_key(|open| (open.i, open.j));
-    done.undecided.dedup();
-    Ok(Verification { remaining, ..done })
+    Ok(())
 }
 
 /// A cutter and its bodies, prepared.
@@ -140,8 +239,8 @@ pub(super) struct Solids<'a> {
 impl<'a> Solids<'a> {
     /// Along a path, which is the toolpath's or another course of one of its moves.
     pub(super) fn new(toolpath: &ToolPath<'a>, path: &Path, work: &Work) -> Result<Self, SweepError> {
-        let mut grids = vec![work.remaining.grid()];
-        grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid()));
+        let mut grids = vec![work.remaining.grid().whole()];
+        grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
         let solid = |tool| MovingSolid::new(tool, path, &grids, &work.options);
         let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
             let bodies = assembly.bodies().iter();
@@ -190,7 +289,55 @@ fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
 }
 
 impl<'a> Work<'a> {
+    fn new(
+        scene: Scene<'a>,
+        program: &[ToolPath<'a>],
+        options: &VerifyOptions,
+        monitor: &'a dyn Monitor,
+    ) -> Result<Self, SweepError> {
+        let grid = *scene.stock.grid();
+        let other = |dexels: &Dexels| dexels.grid().frame() != grid.frame();
+        let mut fixtures = program
+            .iter()
+            .filter_map(|toolpath| toolpath.fixtures)
+            .chain(scene.fixtures);
+        if fixtures.any(other) || scene.target.is_some_and(|t| *t.solid().grid() != grid) {
+            return Err(SweepError::Grid);
+        }
+        Ok(Self {
+            heights: HeightMap::new(&scene.stock),
+            own_fixtures: scene.fixtures,
+            fixtures: None,
+            target: scene.target,
+            options: options.sweep.clone(),
+            each_move: options.each_move,
+            monitor,
+            done: TileRecord::new(program.len()),
+            crossings: 0,
+            unresolved: Vec::new(),
+            remaining: scene.stock,
+        })
+    }
+
+    fn finish(mut self) -> TileVerification {
+        let [i, j] = self.remaining.grid().first();
+        for open in &mut self.unresolved {
+            (open.i, open.j) = (open.i + i, open.j + j);
+        }
+        self.unresolved.sort_by_key(|open| (open.i, open.j));
+        self.unresolved.dedup_by_key(|open| (open.i, open.j));
+        self.done.undecided.dedup();
+        TileVerification {
+            remaining: self.remaining,
+            record: self.done,
+            crossings: self.crossings,
+            unresolved: self.unresolved,
+        }
+    }
+
+    /// Those of a toolpath, or of the scene.
     fn set_fixtures(&mut self, fixtures: Option<&'a Dexels>) {
+        let fixtures = fixtures.or(self.own_fixtures);
         let now = self.fixtures.as_ref().map(|(dexels, _)| std::ptr::from_ref(*dexels));
         if now != fixtures.map(std::ptr::from_ref) {
             self.fixtures = fixtures.map(|dexels| (dexels, HeightMap::new(dexels)));

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 /// What is wrong with a move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum FindingKind {
     /// A shank, holder or other body touches the workpiece.
@@ -37,6 +38,7 @@ impl FindingKind {
 
 /// A move that does harm: when, where, and how much.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Finding {
     /// What is wrong.
@@ -65,7 +67,7 @@ pub struct Finding {
 
 impl Finding {
     /// The harm it tells of: that of one kind that a move does with its cutter, or with a body.
-    fn harm(&self) -> (usize, usize, FindingKind, Option<usize>) {
+    pub(super) fn harm(&self) -> (usize, usize, FindingKind, Option<usize>) {
         (self.path, self.number, self.kind, self.body)
     }
 
@@ -96,7 +98,12 @@ pub fn joined(directions: impl IntoIterator<Item = Vec<Finding>>) -> Vec<Finding
             .and_modify(|known| known.learn(&finding))
             .or_insert(finding);
     }
-    let mut all: Vec<Finding> = all.into_values().collect();
+    in_order(all.into_values())
+}
+
+/// In the order of the program, of findings that are sorted by harm.
+pub(super) fn in_order(findings: impl Iterator<Item = Finding>) -> Vec<Finding> {
+    let mut all: Vec<Finding> = findings.collect();
     // A stable sort: at one time in the order of kinds.
     all.sort_by(|a, b| {
         (a.path, a.number)
@@ -108,6 +115,7 @@ pub fn joined(directions: impl IntoIterator<Item = Vec<Finding>>) -> Vec<Finding
 
 /// Courses of a rapid move, where it is not known which of them the machine takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum RapidCourses {
     /// The path's own.

@@ -13,13 +13,14 @@
 //! What is left at the end is compared with the target by [`deviations`].
 //!
 //! No such move is missed on the lines of the grid; what is narrower than their distance may hide between them. Grids in [frames](sweepsim_dexel::Frame) look along other directions;
-//! [`joined`] makes one list of what is found along several.
+//! [`joined`] makes one list of what is found along several. [`verify_tiles`] judges parts of a grid by themselves, in other processes if need be.
 
 mod depth;
 mod deviation;
 mod driver;
 mod finding;
 mod lines;
+mod record;
 mod run;
 mod scene;
 mod search;
@@ -27,7 +28,8 @@ mod solid;
 mod target;
 
 pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
-pub use driver::verify;
+pub use driver::{TileVerification, verify, verify_tiles};
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
+pub use record::{Judgement, TileRecord};
 pub use scene::{MoveRemoval, OtherCourse, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 pub use target::{Target, TargetError, TargetRegion};

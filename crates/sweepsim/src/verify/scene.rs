@@ -139,6 +139,10 @@ pub struct VerifyOptions {
     pub sweep: Options,
     /// Whether to find what each single move removes. It takes a sweep of each.
     pub each_move: bool,
+    /// For [`verify_tiles`](super::verify_tiles): whether all tiles end after the run of at most 256 moves in which the first finding is.
+    pub first: bool,
+    /// The last move to judge, by path and number: what is left of its run of at most 256 moves is judged as well.
+    pub until: Option<(usize, usize)>,
 }
 
 impl VerifyOptions {
@@ -147,7 +151,7 @@ impl VerifyOptions {
     pub fn new(sweep: Options) -> Self {
         Self {
             sweep,
-            each_move: false,
+            ..Self::default()
         }
     }
 
@@ -158,6 +162,18 @@ impl VerifyOptions {
             each_move: wanted,
             ..self
         }
+    }
+
+    /// Ends at the first finding.
+    #[must_use]
+    pub fn first(self, wanted: bool) -> Self {
+        Self { first: wanted, ..self }
+    }
+
+    /// Ends after the run with this move of this path.
+    #[must_use]
+    pub fn until(self, last: Option<(usize, usize)>) -> Self {
+        Self { until: last, ..self }
     }
 }
 
@@ -209,6 +225,6 @@ pub struct Verification {
     pub unresolved: Vec<UnresolvedDexel>,
     /// Moves, by path and number, in which a body follows its cutter so closely that it is not known whether it touches.
     pub undecided: Vec<(usize, usize)>,
-    /// Whether the receiver of the findings ended the verification early.
+    /// Whether the receiver of the findings, or [`VerifyOptions::until`], ended the verification early.
     pub stopped: bool,
 }

@@ -15,12 +15,17 @@ use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Segment, Tool};
 use sweepsim_solve::Monitor;
 
+/// So many parts of a path have a box in common.
+const BLOCK: usize = 32;
+
 /// A solid and its path, prepared.
 pub(super) struct MovingSolid<'a> {
     tool: &'a Tool,
     plan: Plan,
     /// One box for each part of the path, which holds all that the solid sweeps there.
     boxes: Vec<Box3>,
+    /// One for each block of parts.
+    hulls: Vec<Box3>,
     spaces: Arc<Mutex<Vec<Workspace>>>,
 }
 
@@ -40,17 +45,26 @@ fn travel(segment: &Segment, reach: f64) -> f64 {
     tip + reach * turn
 }
 
+/// The box that holds some boxes.
+fn hull(boxes: &[Box3]) -> Box3 {
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+    let both = |a: Box3, b: &Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
+    boxes.iter().fold(none, both)
+}
+
 impl<'a> MovingSolid<'a> {
     /// `extent`: coordinates of the grids on which it will be swept; all of them in one frame.
-    pub fn new(tool: &'a Tool, path: &Path, grids: &[&Grid], options: &Options) -> Result<Self, SweepError> {
+    pub fn new(tool: &'a Tool, path: &Path, grids: &[Grid], options: &Options) -> Result<Self, SweepError> {
         let extent = grids.iter().flat_map(|grid| grid.min().into_iter().chain(grid.max()));
         let plan = Plan::new(tool, path, grids[0].frame(), extent, options)?;
         let cylinder = tool.bounding_cylinder();
         // More than all displacements together.
         let margin = options.tolerance;
         let boxes = plan.parts.iter().map(|part| swept_box(&part.segment, cylinder, margin));
+        let boxes: Vec<Box3> = boxes.collect();
         Ok(Self {
-            boxes: boxes.collect(),
+            hulls: boxes.chunks(BLOCK).map(hull).collect(),
+            boxes,
             tool,
             plan,
             spaces: Arc::default(),
@@ -104,15 +118,23 @@ impl<'a> MovingSolid<'a> {
 
     /// A box that holds all that the solid sweeps in a move.
     pub fn reaches(&self, number: usize) -> Option<Box3> {
-        let hull = |a: Box3, b: &Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
-        let (first, rest) = self.boxes[self.parts(number..number + 1)].split_first()?;
-        Some(rest.iter().fold(*first, hull))
+        let boxes = &self.boxes[self.parts(number..number + 1)];
+        (!boxes.is_empty()).then(|| hull(boxes))
     }
 
     /// The parts of these moves that come near material, in runs of consecutive ones, and the lines with that material.
     pub fn near(&self, moves: Range<usize>, grid: &Grid, material: &HeightMap) -> Vec<(Range<usize>, Vec<u32>)> {
         let mut runs: Vec<(Range<usize>, Vec<u32>)> = Vec::new();
-        for at in self.parts(moves) {
+        let parts = self.parts(moves);
+        let mut from = parts.start;
+        // Blocks of parts that are beside the grid are left out at once.
+        let near_blocks = std::iter::from_fn(|| {
+            let own = from..parts.end.min((from / BLOCK + 1) * BLOCK);
+            from = own.end;
+            (!own.is_empty()).then_some(own)
+        });
+        let near_blocks = near_blocks.filter(|own| window(grid, &self.hulls[own.start / BLOCK]).is_some());
+        for at in near_blocks.flatten() {
             let Some(window) = window(grid, &self.boxes[at]) else {
                 continue;
             };
@@ -207,7 +229,7 @@ mod tests {
             let path = Path::with_moves(vec![at_rest, at_rest], vec![circle]).unwrap();
             let grid = Grid::new([-20.0, -20.0], [28.0, 26.0], [96, 92]).unwrap();
             let (tool, options) = (Tool::flat(6.0, 26.0).unwrap(), Options::default());
-            let solid = MovingSolid::new(&tool, &path, &[&grid], &options).unwrap();
+            let solid = MovingSolid::new(&tool, &path, &[grid], &options).unwrap();
             let parts = solid.within(0, [at, at + 0.5_f64.powi(halvings)]);
             let mask = LineMask::new(&grid, 0..grid.len() as u32).unwrap();
             let swept = solid.swept(&parts, &grid, &mask, &options, &()).unwrap();

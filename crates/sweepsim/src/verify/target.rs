@@ -1,5 +1,6 @@
 //! The part that is wanted, and how far it may be cut into.
 
+use std::sync::Arc;
 use sweepsim_dexel::{Dexels, DistanceTo, Grid, GridMismatch, MeshError, Operation, Stock, StockError, TriangleSoup};
 use thiserror::Error;
 
@@ -12,18 +13,18 @@ pub struct Target {
     core: Dexels,
     /// The part, and what is nearer to it than the limit for excess.
     allowed: Dexels,
-    distance: DistanceTo,
-    /// For gouges and for excess.
-    limits: [f64; 2],
-    /// The surface outside all regions, then that of each region; none if there are no regions.
-    parts: Vec<Part>,
+    shape: Arc<Shape>,
 }
 
-/// A part of the surface.
-#[derive(Clone, Debug)]
-struct Part {
+/// What does not depend on the grid.
+#[derive(Debug)]
+struct Shape {
+    mesh: TriangleSoup,
     distance: DistanceTo,
-    limits: [f64; 2],
+    /// The surface outside all regions, then that of each region.
+    parts: Vec<TargetRegion>,
+    /// From each of them; none if there are no regions.
+    distances: Vec<DistanceTo>,
 }
 
 /// A region of a target's surface with limits of its own.
@@ -108,9 +109,22 @@ impl Target {
                 return Err(TargetError::Limit { name, value });
             }
         }
-        let solid = Stock::Mesh(mesh.clone()).dexels(grid)?;
+        let parts: Vec<TargetRegion> = all().cloned().collect();
+        let distances = parts.iter().filter(|_| !regions.is_empty());
+        let distances = distances.map(|part| DistanceTo::new(&part.surface));
+        let shape = Shape {
+            distance: DistanceTo::new(mesh)?,
+            distances: distances.collect::<Result<_, MeshError>>()?,
+            mesh: mesh.clone(),
+            parts,
+        };
+        Self::of_shape(grid, Arc::new(shape))
+    }
+
+    fn of_shape(grid: &Grid, shape: Arc<Shape>) -> Result<Self, TargetError> {
+        let solid = Stock::Mesh(shape.mesh.clone()).dexels(grid)?;
         let (mut core, mut allowed) = (solid.clone(), solid.clone());
-        for part in all() {
+        for part in &shape.parts {
             let [gouge, excess] = part.limits;
             if gouge > 0.0 {
                 core.combine(Operation::Difference, &part.surface.thickened(grid, gouge))?;
@@ -119,48 +133,52 @@ impl Target {
                 allowed.combine(Operation::Union, &part.surface.thickened(grid, excess))?;
             }
         }
-        let part = |part: &TargetRegion| {
-            let distance = DistanceTo::new(&part.surface)?;
-            Ok(Part {
-                distance,
-                limits: part.limits,
-            })
-        };
         Ok(Self {
             solid,
             core,
             allowed,
-            distance: DistanceTo::new(mesh)?,
-            limits: rest.limits,
-            parts: if regions.is_empty() {
-                Vec::new()
-            } else {
-                all().map(part).collect::<Result<_, MeshError>>()?
-            },
+            shape,
+        })
+    }
+
+    /// The same target on another grid, such as a tile.
+    ///
+    /// # Errors
+    /// Those of [`new`](Self::new).
+    pub fn on(&self, grid: &Grid) -> Result<Self, TargetError> {
+        Self::of_shape(grid, Arc::clone(&self.shape))
+    }
+
+    /// The same on a tile of its grid: what [`on`](Self::on) would compute. `None` if it is none.
+    #[must_use]
+    pub fn tile(&self, tile: &Grid) -> Option<Self> {
+        Some(Self {
+            solid: self.solid.tile(tile)?,
+            core: self.core.tile(tile)?,
+            allowed: self.allowed.tile(tile)?,
+            shape: Arc::clone(&self.shape),
         })
     }
 
     /// Whether a point at a (signed) distance from the surface is beyond the limit, which is that of any part of the surface.
     pub(super) fn is_beyond(&self, place: [f64; 3], distance: f64) -> bool {
         let side = usize::from(distance >= 0.0);
-        if self.parts.is_empty() {
-            return distance.abs() > self.limits[side];
+        let Shape { parts, distances, .. } = &*self.shape;
+        if distances.is_empty() {
+            return distance.abs() > parts[0].limits[side];
         }
-        let within = |part: &Part| {
-            let near = part.distance.nearest(place);
+        let within = |(part, to): (&TargetRegion, &DistanceTo)| {
+            let near = to.nearest(place);
             near.is_some_and(|near| near.distance.abs() <= part.limits[side])
         };
-        !self.parts.iter().any(within)
+        !parts.iter().zip(distances).any(within)
     }
 
     /// The part of the surface nearest to a point: 0 outside all regions, or 1 plus the number of a region.
     pub(super) fn part_at(&self, place: [f64; 3]) -> usize {
         let mut best = (f64::INFINITY, 0);
-        for (number, part) in self.parts.iter().enumerate() {
-            let near = part
-                .distance
-                .nearest(place)
-                .map_or(f64::INFINITY, |near| near.distance.abs());
+        for (number, to) in self.shape.distances.iter().enumerate() {
+            let near = to.nearest(place).map_or(f64::INFINITY, |near| near.distance.abs());
             if near < best.0 {
                 best = (near, number);
             }
@@ -189,12 +207,12 @@ impl Target {
     /// The limits for gouges and for excess, outside all regions.
     #[must_use]
     pub fn limits(&self) -> [f64; 2] {
-        self.limits
+        self.shape.parts[0].limits
     }
 
     /// Distances from its surface.
     #[must_use]
     pub fn distance(&self) -> &DistanceTo {
-        &self.distance
+        &self.shape.distance
     }
 }

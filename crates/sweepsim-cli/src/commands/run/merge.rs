@@ -1,10 +1,11 @@
 //! `merge`: the pieces of shards as the outputs of one run.
 
 use super::{Outcome, Pieces, shard, whole};
-use crate::arguments::{Arguments, Command, MergeOptions, RunOptions};
+use crate::arguments::{Arguments, Command, JudgeOptions, MergeOptions, RunOptions};
 use crate::commands::task::Task;
+use crate::commands::verify;
 use crate::session::{Failure, JobSession, output_folder, phase};
-use crate::shards::{files, gather, identity};
+use crate::shards::{Purpose, files, gather, identity};
 use clap::Parser;
 use std::path::{Path, absolute};
 use std::process::ExitCode;
@@ -24,9 +25,10 @@ pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
     let unknown =
         |error: &dyn std::fmt::Display| refused(&format!("the arguments of its run are not understood: {error}"));
     let words = std::iter::once("sweepsim").chain(arguments.iter().map(String::as_str));
-    let (task, mut run) = match Arguments::try_parse_from(words).map(|parsed| parsed.command) {
-        Ok(Command::Simulate(run)) => (Task::Simulate, run),
-        Ok(_) => return Err(unknown(&"expected `simulate`")),
+    let (task, mut run, judging) = match Arguments::try_parse_from(words).map(|parsed| parsed.command) {
+        Ok(Command::Simulate(run)) => (Task::Simulate, run, JudgeOptions::default()),
+        Ok(Command::Verify { run, judging }) => (Task::Verify, run, judging),
+        Ok(_) => return Err(unknown(&"expected `simulate` or `verify`")),
         Err(error) => return Err(unknown(&error)),
     };
     let from_here = |path: &Path| {
@@ -43,26 +45,35 @@ pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
         let message = format!("cannot change to the folder of its run, {}", there.display());
         return Err(refused(&message));
     }
-    whole(task, &run, &Default::default(), Some((pieces, arguments)))
+    whole(task, &run, &judging, Some((pieces, arguments)))
 }
 
 /// What the shards have computed, in place of computing it.
 pub(super) fn gathered(
     task: Task,
     session: &JobSession,
-    options: &RunOptions,
+    (options, judging): (&RunOptions, &JudgeOptions),
     (pieces, arguments): Pieces,
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
-    shard::check(task)?;
-    let tiling = shard::tiling(session, options)?;
-    let run = identity("simulate", &session.job, options, &tiling, arguments);
+    shard::check(task, judging)?;
+    let tiling = shard::tiling(task, session, options, judging)?;
+    let run = identity(task.name(), &session.job, options, &tiling, arguments);
     session.progress.phase("merge");
-    let mut sets = phase(report, "merge", || gather(pieces, &run, &tiling))?.into_iter();
-    let along_z = sets
-        .next()
-        .ok_or_else(|| Failure::message("the pieces hold no dexels"))?;
     let job = &session.job;
+    let moves: Vec<usize> = job.paths.iter().map(|path| path.path.moves()).collect();
+    let mut sets = phase(report, "merge", || gather(pieces, &run, &tiling, &moves))?;
+    if task == Task::Verify {
+        let judged = tiling.sets.iter().take_while(|set| set.purpose != Purpose::Cut).count();
+        let aside = sets.split_off(judged);
+        let done = verify::merged(session, judging, &tiling.sets[..judged], sets, report)?;
+        return Ok(Outcome {
+            aside,
+            ..Outcome::from(done)
+        });
+    }
+    let aside = sets.split_off(1);
+    let along_z = sets.remove(0);
     session.progress.phase("stock");
     let before = phase(report, "stock", || {
         job.stock.dexels(&job.grid).map(|stock| stock.volume())
@@ -75,7 +86,7 @@ pub(super) fn gathered(
         repaired: along_z.repaired,
         unresolved: along_z.unresolved,
         uncertified: 0,
-        aside: sets.collect(),
+        aside,
         target: None,
         moves: Vec::new(),
         picture: None,

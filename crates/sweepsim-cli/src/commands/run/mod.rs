@@ -10,9 +10,9 @@ pub(crate) use merge::merge;
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::commands::page::{self, PageSource};
 use crate::commands::summary::{json, summary};
-use crate::commands::task::{Task, sweeping};
+use crate::commands::task::{Task, reported, sweeping};
 use crate::commands::tri_surface;
-use crate::commands::verify::{setups, verified};
+use crate::commands::verify::{Verified, setups, verified};
 use crate::frames::Frames;
 use crate::session::{Failure, JobRead, JobSession, phase, print, read_job};
 use crate::shards::{Gathered, PieceFile};
@@ -47,14 +47,11 @@ struct Outcome {
 
 impl Outcome {
     fn new(dexels: Dexels, statistics: &Statistics) -> Self {
-        let unresolved = statistics.unresolved.iter();
         Self {
             dexels,
             crossings: statistics.crossings,
             repaired: statistics.repaired,
-            unresolved: unresolved
-                .map(|dexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string()))
-                .collect(),
+            unresolved: reported(&statistics.unresolved),
             volume_removed: None,
             uncertified: 0,
             aside: Vec::new(),
@@ -65,10 +62,27 @@ impl Outcome {
     }
 }
 
+impl From<Verified> for Outcome {
+    fn from(done: Verified) -> Self {
+        Self {
+            dexels: done.remaining,
+            crossings: done.crossings,
+            repaired: 0,
+            unresolved: done.unresolved,
+            volume_removed: Some(done.volume_removed),
+            uncertified: done.uncertified,
+            aside: Vec::new(),
+            target: done.target,
+            moves: done.moves,
+            picture: None,
+        }
+    }
+}
+
 /// Runs a job, or one shard of it, and writes its outputs.
 pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> Result<ExitCode, Failure> {
     match options.shard {
-        Some(number) => shard::run(task, options, number),
+        Some(number) => shard::run(task, options, judging, number),
         None => whole(task, options, judging, None),
     }
 }
@@ -189,7 +203,7 @@ fn work(
     report: &mut Report,
 ) -> Result<Outcome, Failure> {
     let mut outcome = match pieces {
-        Some(pieces) => merge::gathered(task, session, options, pieces, report)?,
+        Some(pieces) => merge::gathered(task, session, (options, judging), pieces, report)?,
         None => compute(task, session, options, judging, report)?,
     };
     session.progress.check()?;
@@ -249,16 +263,7 @@ fn compute(
                 ..Outcome::new(done.remaining, &done.statistics)
             })
         }
-        Task::Verify => {
-            let done = verified(session, options, judging, report)?;
-            Ok(Outcome {
-                volume_removed: Some(done.volume_removed),
-                uncertified: done.uncertified,
-                target: done.target,
-                moves: done.moves,
-                ..Outcome::new(done.remaining, &done.statistics)
-            })
-        }
+        Task::Verify => Ok(verified(session, options, judging, report)?.into()),
         Task::Sweep => {
             progress.phase("sweep");
             let done = phase(report, "sweep", || {

@@ -1,14 +1,14 @@
 //! One shard of a run: the dexels of some tiles, left as a piece.
 
 use super::{along_three_axes, check_directions, pool, read};
-use crate::arguments::{Output, RunOptions, ShardNumber};
-use crate::commands::task::{Task, sweeping};
-use crate::commands::tri_surface;
+use crate::arguments::{JudgeOptions, Output, RunOptions, ShardNumber};
+use crate::commands::task::{Task, reported, sweeping};
+use crate::commands::{tri_surface, verify};
 use crate::session::{Failure, JobSession, output_folder, print, words};
-use crate::shards::{Piece, PieceTile, TileNotes, Tiling, TilingSet, identity, is_done};
+use crate::shards::{Piece, PieceTile, Purpose, TileNotes, Tiling, TilingSet, identity, is_done};
 use std::process::ExitCode;
-use sweepsim::{Monitor, simulate_tiles};
-use sweepsim_formats::{Job, ReportedDexel};
+use sweepsim::{Monitor, UnresolvedDexel, simulate_tiles};
+use sweepsim_dexel::Dexels;
 
 /// Options that concern one shard, or how it is run: with a value, and without.
 const OWN: [&[&str]; 2] = [&["--shard", "--out", "--threads"], &["--resume", "--quiet", "--json"]];
@@ -31,36 +31,51 @@ fn common(arguments: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// The tiles of a run, which follow from the job and the options alone.
-pub(super) fn tiling(session: &JobSession, options: &RunOptions) -> Result<Tiling, Failure> {
+pub(super) fn tiling(
+    task: Task,
+    session: &JobSession,
+    options: &RunOptions,
+    judging: &JudgeOptions,
+) -> Result<Tiling, Failure> {
     let job = &session.job;
-    let mut sets = vec![TilingSet::new(job.grid, None, options.tile)];
+    let mut sets = match task {
+        Task::Verify => verify::sets(session, options, judging)?,
+        Task::Simulate | Task::Sweep => vec![TilingSet::new("along z", job.grid, None, options.tile)],
+    };
     let outputs = [Output::Mesh, Output::Picture, Output::Tridexels];
     let surface = outputs.into_iter().any(|output| session.outputs.wants(output));
     if surface && along_three_axes(job, options, tri_surface::stock_heights(job)) == Ok(true) {
         let aside =
             tri_surface::grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
         if let Some((grids, within)) = aside {
-            sets.extend(grids.map(|grid| TilingSet::new(grid, Some(within.clone()), options.tile)));
+            let grids = grids.into_iter().zip(["along x", "along y"]);
+            sets.extend(grids.map(|(grid, name)| TilingSet::new(name, grid, Some(within.clone()), options.tile)));
         }
     }
     Ok(Tiling { sets })
 }
 
 /// Only stock that is divided into tiles can be shared out.
-pub(super) fn check(task: Task) -> Result<(), Failure> {
-    let other = match task {
-        Task::Simulate => return Ok(()),
-        Task::Sweep => "a swept volume is",
-        Task::Verify => "the findings of `verify` are",
-    };
-    Err(Failure::message(format!(
-        "--shard is for `simulate`: {other} computed in one run"
-    )))
+pub(super) fn check(task: Task, judging: &JudgeOptions) -> Result<(), Failure> {
+    match task {
+        Task::Sweep => Err(Failure::message(
+            "--shard is for `simulate` and `verify`: a swept volume is computed in one run",
+        )),
+        Task::Verify if judging.first => Err(Failure::message(
+            "--first with --shard: no shard knows of what another finds first, so none can end there. Leave out one of them",
+        )),
+        Task::Simulate | Task::Verify => Ok(()),
+    }
 }
 
 /// Computes a shard, and writes its piece.
-pub(super) fn run(task: Task, options: &RunOptions, number: ShardNumber) -> Result<ExitCode, Failure> {
-    check(task)?;
+pub(super) fn run(
+    task: Task,
+    options: &RunOptions,
+    judging: &JudgeOptions,
+    number: ShardNumber,
+) -> Result<ExitCode, Failure> {
+    check(task, judging)?;
     let unreadable = |_| Failure::message("--shard: expected arguments of Unicode characters only");
     let arguments = std::env::args_os()
         .skip(1)
@@ -71,8 +86,8 @@ pub(super) fn run(task: Task, options: &RunOptions, number: ShardNumber) -> Resu
     let name = Piece::name(number.index, number.count);
     let file = output_folder(options.out.as_deref(), &read.job.name).join(&name);
     let session = JobSession::new(&options.job, read, options.out.as_deref(), &options.only, options.quiet)?;
-    let tiling = tiling(&session, options)?;
-    let run = identity("simulate", &session.job, options, &tiling, arguments);
+    let tiling = tiling(task, &session, options, judging)?;
+    let run = identity(task.name(), &session.job, options, &tiling, arguments);
     if options.resume && is_done(&file, &run, [number.index, number.count]) {
         session.progress.finish();
         if !options.quiet {
@@ -82,7 +97,7 @@ pub(super) fn run(task: Task, options: &RunOptions, number: ShardNumber) -> Resu
     }
     let pool = pool(options.threads)?;
     let tiles = pool
-        .install(|| tiles(&session, options, &tiling, number))
+        .install(|| tiles(&session, (options, judging), &tiling, number))
         .inspect_err(|_| session.progress.finish())?;
     let lines: usize = tiles.iter().map(|tile| tile.dexels.grid().len()).sum();
     let count = tiles.len() as u64;
@@ -112,38 +127,52 @@ pub(super) fn run(task: Task, options: &RunOptions, number: ShardNumber) -> Resu
 /// Computes the tiles of a shard.
 fn tiles(
     session: &JobSession,
-    options: &RunOptions,
+    (options, judging): (&RunOptions, &JudgeOptions),
     tiling: &Tiling,
     number: ShardNumber,
 ) -> Result<Vec<PieceTile>, Failure> {
-    let job: &Job = &session.job;
+    let job = &session.job;
     let (cuts, sweeping) = (session.cuts(), sweeping(job, options));
-    let share = tiling.share(number, &cuts, &job.stock);
+    let share = tiling.share(number, job, &cuts);
     let mut done = Vec::with_capacity(share.len());
-    let names = ["along z", "along x", "along y"];
-    for ((direction, set), phase) in tiling.sets.iter().enumerate().zip(names) {
+    for (direction, set) in tiling.sets.iter().enumerate() {
         let mine = share.iter().filter(|(own, _)| *own == direction);
         let mine: Vec<usize> = mine.map(|(_, tile)| *tile).collect();
-        session.progress.phase(phase);
+        session.progress.phase(set.name);
+        let notes = |number: usize, crossings: u64, unresolved: &[UnresolvedDexel]| TileNotes {
+            set: direction,
+            number,
+            crossings,
+            repaired: 0,
+            unresolved: reported(unresolved),
+            record: None,
+        };
+        if set.purpose != Purpose::Cut {
+            let judged = verify::judged_tiles(session, options, judging, set, &mine)?;
+            done.extend(mine.into_iter().zip(judged).map(|(number, tile)| PieceTile {
+                notes: TileNotes {
+                    record: Some(tile.record),
+                    ..notes(number, tile.crossings, &tile.unresolved)
+                },
+                // Only what is left along z is part of the result.
+                dexels: match direction {
+                    0 => tile.remaining,
+                    _ => Dexels::empty(*tile.remaining.grid()),
+                },
+            }));
+            continue;
+        }
         let stock = mine.iter().map(|tile| set.stock(&job.stock, *tile));
         let stock = stock.collect::<Result<Vec<_>, _>>();
         let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
         let cut = simulate_tiles(stock, &cuts, &sweeping, &session.progress as &dyn Monitor);
         let cut = cut.map_err(|error| session.failed(error))?;
-        done.extend(mine.into_iter().zip(cut).map(|(number, tile)| {
-            let unresolved = tile.statistics.unresolved.iter();
-            let unresolved = unresolved.map(|dexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string()));
-            let notes = TileNotes {
-                set: direction,
-                number,
-                crossings: tile.statistics.crossings,
+        done.extend(mine.into_iter().zip(cut).map(|(number, tile)| PieceTile {
+            notes: TileNotes {
                 repaired: tile.statistics.repaired,
-                unresolved: unresolved.collect(),
-            };
-            PieceTile {
-                dexels: tile.remaining,
-                notes,
-            }
+                ..notes(number, tile.statistics.crossings, &tile.statistics.unresolved)
+            },
+            dexels: tile.remaining,
         }));
     }
     Ok(done)

@@ -1,6 +1,7 @@
 //! Axes of the machine beyond their limits, as findings; axes that are too slow, as a note: the machine slows the move down.
 
-use super::{ProgramTexts, work};
+use super::findings::ProgramTexts;
+use super::work;
 use crate::session::words;
 use sweepsim_formats::{Job, JobPath, Report, ReportedFinding};
 use sweepsim_nc::{AxisFault, AxisFinding};

@@ -1,19 +1,13 @@
 //! The fixtures of a job as dexels.
 
 use crate::session::{Failure, JobSession};
-use sweepsim_dexel::{Dexels, Grid, Operation, Stock};
+use sweepsim_dexel::{Dexels, Grid, Operation, Stock, StockError};
 
 /// The most lines of a grid of fixtures.
 const MOST_LINES: f64 = 4e6;
 
-/// Those of each set-up, for a stock on this grid.
-pub(super) fn of_setups(session: &JobSession, stock: &Grid) -> Result<Vec<Option<Dexels>>, Failure> {
-    let setups = session.job.setups.iter();
-    setups.map(|setup| together(session, stock, &setup.fixtures)).collect()
-}
-
-/// Fixtures on a grid that holds all of them, with lines as far apart as the stock's.
-fn together(session: &JobSession, stock: &Grid, fixtures: &[Stock]) -> Result<Option<Dexels>, Failure> {
+/// A grid that holds fixtures, in the frame of the stock's and with lines as far apart; `None` if there are none.
+pub(super) fn grid(session: &JobSession, stock: &Grid, fixtures: &[Stock]) -> Result<Option<Grid>, Failure> {
     let frame = stock.frame();
     let corners = fixtures.iter().filter_map(|fixture| fixture.bounds());
     let corners = corners.flat_map(|[low, high]| {
@@ -34,14 +28,17 @@ fn together(session: &JobSession, stock: &Grid, fixtures: &[Stock]) -> Result<Op
     if too_many > 1.0 {
         cells = cells.map(|n| (n / too_many).ceil());
     }
-    let failed = |error: &dyn std::fmt::Display| session.failure(format!("fixtures: {error}"));
     let [min, max] = [0, 1].map(|end| [range[0][end], range[1][end]]);
-    let grid = Grid::new(min, max, cells.map(|n| n as usize)).map_err(|error| failed(&error))?;
-    let grid = grid.in_frame(*frame);
-    let mut all = Dexels::empty(grid);
+    let grid = Grid::new(min, max, cells.map(|n| n as usize));
+    let grid = grid.map_err(|error| session.failure(format!("fixtures: {error}")))?;
+    Ok(Some(grid.in_frame(*frame)))
+}
+
+/// Fixtures on such a grid, or a tile of it.
+pub(super) fn on(grid: &Grid, fixtures: &[Stock]) -> Result<Dexels, StockError> {
+    let mut all = Dexels::empty(*grid);
     for fixture in fixtures {
-        let own = fixture.dexels(&grid).map_err(|error| failed(&error))?;
-        all.combine(Operation::Union, &own).map_err(|error| failed(&error))?;
+        all.combine(Operation::Union, &fixture.dexels(grid)?)?;
     }
-    Ok(Some(all))
+    Ok(all)
 }

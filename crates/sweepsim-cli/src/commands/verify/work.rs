@@ -3,7 +3,7 @@
 use crate::session::JobSession;
 use std::collections::BTreeMap;
 use std::path::Path;
-use sweepsim::verify::Verification;
+use sweepsim::verify::Judgement;
 use sweepsim_formats::{Job, JobPath, MoveSummary, Report, Setup, SetupSummary, ToolSummary, WorkSummary};
 use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
 
@@ -19,7 +19,7 @@ pub(super) fn place(path: &JobPath, number: usize, folder: &Path) -> Option<(Str
 }
 
 /// Sums by tool and in all, for the report; and a row for each move, if the verification knows what each removes.
-pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Verification) -> Vec<MoveSummary> {
+pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Judgement) -> Vec<MoveSummary> {
     let job = &session.job;
     let folder = session.file().parent().unwrap_or(Path::new(""));
     // By set-up and tool.

@@ -2,6 +2,7 @@
 
 mod faults;
 mod fixtures;
+mod judged;
 
 use crate::support::{Workdir, text};
 use std::fs;
@@ -23,26 +24,48 @@ const JOB: &str = r#"Job(
 const SMALL: [&str; 6] = ["--tile", "8", "--size", "64x48", "--moments", "0"];
 const OUTPUTS: &str = "dexels,mesh,picture,report,binary";
 
-/// What one run leaves in `whole`, and what shards leave in `merged`: the same, but for times.
-fn assert_same(workdir: &Workdir, whole: &str, merged: &str) {
-    let read = |folder: &str, name: &str| fs::read(workdir.path(folder).join(name)).expect(name);
-    for name in ["dexels.csv", "part.dexels", "part.ply", "part.png"] {
-        assert!(read(whole, name) == read(merged, name), "{merged}: {name} differs");
-    }
-    let report = |folder: &str| {
-        let mut report: serde_json::Value = serde_json::from_slice(&read(folder, "report.json")).unwrap();
-        assert!(report.as_object_mut().unwrap().remove("seconds").is_some());
-        report
+/// The page without its table of computing times.
+fn timeless(html: &str) -> String {
+    let (before, rest) = html.split_once("<h2>Computing time</h2>").expect("such a table");
+    let (_, after) = rest.split_once("</table>").expect("the end of a table");
+    before.to_owned() + after
+}
+
+/// All files that one run and a merge leave are the same, but for times.
+fn assert_same(folder: &Workdir, whole: &str, merged: &str) {
+    let names = |of: &str| -> Vec<String> {
+        let entries = fs::read_dir(folder.path(of)).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
     };
-    assert_eq!(report(whole), report(merged));
+    assert_eq!(names(whole), names(merged));
+    let read = |of: &str, name: &str| fs::read(folder.path(of).join(name)).unwrap();
+    for name in names(whole) {
+        let [a, b] = [whole, merged].map(|of| read(of, &name));
+        match Path::new(&name).extension().and_then(|e| e.to_str()) {
+            Some("json") => {
+                let report = |bytes: &[u8]| {
+                    let mut report: serde_json::Value = serde_json::from_slice(bytes).unwrap();
+                    assert!(report.as_object_mut().unwrap().remove("seconds").is_some());
+                    report
+                };
+                assert_eq!(report(&a), report(&b), "{merged}");
+            }
+            Some("html") => assert!(timeless(&text(&a)) == timeless(&text(&b)), "{merged}: {name} differs"),
+            _ => assert!(a == b, "{merged}: {name} differs"),
+        }
+    }
 }
 
 /// Runs all shards into a folder of pieces, and merges them; the exit status of merge.
-fn run_shards(workdir: &Workdir, job: &str, more: &[&str], count: usize, merged: &str) -> Option<i32> {
+fn run_shards(workdir: &Workdir, [command, job]: [&str; 2], more: &[&str], count: usize, merged: &str) -> Option<i32> {
     let pieces = format!("pieces-{count}");
     for index in 0..count {
         let shard = format!("{index}/{count}");
-        let arguments = [&["simulate", job, "--shard", &shard, "--out", &pieces][..], more].concat();
+        let arguments = [&[command, job, "--shard", &shard, "--out", &pieces][..], more].concat();
         workdir.good(&arguments);
     }
     let output = workdir.run(&["merge", &pieces, "--out", merged]);
@@ -58,7 +81,10 @@ fn shards_give_what_one_run_gives() {
     workdir.good(&arguments);
     for count in [1, 2, 7] {
         let merged = format!("merged-{count}");
-        assert_eq!(run_shards(&workdir, "job.ron", &more, count, &merged), Some(0));
+        assert_eq!(
+            run_shards(&workdir, ["simulate", "job.ron"], &more, count, &merged),
+            Some(0)
+        );
         assert_same(&workdir, "whole", &merged);
     }
     // Nothing but pieces is left by shards, and none is empty: there are tiles enough.

@@ -7,6 +7,7 @@ use crate::sweep::heights::{HeightMap, window};
 use crate::verify::driver::{Solids, Work};
 use crate::verify::finding::{Finding, FindingKind, RapidCourses};
 use crate::verify::lines::Lines;
+use crate::verify::record::TileFinding;
 use crate::verify::scene::{OtherCourse, ToolPath};
 use crate::verify::search::{Arena, Touch, Touching};
 use crate::verify::solid::MovingSolid;
@@ -46,7 +47,7 @@ impl Work<'_> {
         let mut arena = Arena::new(&grid, &self.options, self.monitor);
         let parts = larger.cutter.slice(larger.cutter.parts(moves.clone()));
         let swept = arena.swept(&larger.cutter, parts, &material)?;
-        self.done.unresolved.extend(arena.unresolved);
+        self.unresolved.extend(arena.unresolved);
         let met = material.common(&swept, self.options.tolerance);
         let met = self.more_than_contact(&grid, question, moves.clone(), met)?;
         let before = self.done.findings.len();
@@ -54,26 +55,38 @@ impl Work<'_> {
         let near = self.done.findings.split_off(before);
         let own: Vec<usize> = self.done.findings[seen..]
             .iter()
-            .filter(|finding| finding.kind == FindingKind::Rapid)
-            .map(|finding| finding.number)
+            .filter(|own| own.finding.kind == FindingKind::Rapid)
+            .map(|own| own.finding.number)
             .collect();
-        let near = near.into_iter().filter(|finding| !own.contains(&finding.number));
-        self.done
-            .findings
-            .extend(near.map(|finding| Finding { near: true, ..finding }));
+        for mut own_near in near {
+            if !own.contains(&own_near.finding.number) {
+                own_near.finding.near = true;
+                self.done.findings.push(own_near);
+            }
+        }
         Ok(())
     }
 
     /// The material that a cutter does not meet on its way out of the stock along its axis.
     fn without_withdrawal(&self, larger: &Assembly, start: &Pose, material: Lines) -> Result<Lines, SweepError> {
         let grid = self.remaining.grid();
+        let whole = grid.whole();
         let ends = material.0.iter().flat_map(|(_, heights)| heights.iter().flatten());
-        let height =
-            ends.clone().fold(f64::NEG_INFINITY, |a, b| a.max(*b)) - ends.fold(f64::INFINITY, |a, b| a.min(*b));
-        let [dx, dy] = [0, 1].map(|k| grid.max()[k] - grid.min()[k]);
+        let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| {
+            (low.min(*z), high.max(*z))
+        });
         let bound = larger.cutter().bounding_cylinder();
-        let length = dx.hypot(dy).hypot(height.max(0.0)) + bound.radius + bound.z[1] - bound.z[0];
         let (tip, axis) = (start.tip(), start.axis());
+        // Beyond all material, wherever it starts: also from beside this tile.
+        let from = grid.frame().from_world(tip);
+        let size = [0, 1].map(|k| whole.max()[k] - whole.min()[k]);
+        let far = [0, 1].map(|k| {
+            size[k]
+                .max((from[k] - whole.min()[k]).abs())
+                .max((whole.max()[k] - from[k]).abs())
+        });
+        let up = (high - low).max((from[2] - low).abs()).max((high - from[2]).abs());
+        let length = far[0].hypot(far[1]).hypot(up) + bound.radius + bound.z[1] - bound.z[0];
         let out = std::array::from_fn(|k| tip[k] + length * axis[k]);
         let (Ok(end), true) = (Pose::new(out, axis), length.is_finite()) else {
             return Ok(material);
@@ -81,7 +94,7 @@ impl Work<'_> {
         let Ok(path) = Path::new(vec![*start, end]) else {
             return Ok(material);
         };
-        let solid = MovingSolid::new(larger.cutter(), &path, &[grid], &self.options)?;
+        let solid = MovingSolid::new(larger.cutter(), &path, &[whole], &self.options)?;
         let mut arena = Arena::new(grid, &self.options, self.monitor);
         let swept = arena.swept(&solid, solid.slice(solid.parts(0..1)), &material)?;
         Ok(material.without(&swept).longer_than(self.options.tolerance))
@@ -134,7 +147,7 @@ impl Work<'_> {
                     }
                 }
             }
-            self.done.unresolved.extend(unresolved);
+            self.unresolved.extend(unresolved);
             self.merge(course.number, seen, found);
         }
         Ok(())
@@ -168,7 +181,7 @@ impl Work<'_> {
         course: &OtherCourse,
         (material, heights): (&Dexels, &HeightMap),
         unresolved: &mut Vec<UnresolvedDexel>,
-    ) -> Result<Option<Finding>, SweepError> {
+    ) -> Result<Option<TileFinding>, SweepError> {
         let (grid, probe) = (*material.grid(), question.touching.probe);
         let moves = 0..course.path.moves();
         let swept = probe.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
@@ -193,23 +206,25 @@ impl Work<'_> {
     }
 
     /// Adds what is found on the other course of a move.
-    fn merge(&mut self, number: usize, seen: usize, found: Vec<Finding>) {
+    fn merge(&mut self, number: usize, seen: usize, found: Vec<TileFinding>) {
         for own in &mut self.done.findings[seen..] {
             // Gouges are not looked for on other courses.
+            let own = &mut own.finding;
             if own.number == number && own.kind != FindingKind::Gouge {
                 own.courses = Some(RapidCourses::Own);
             }
         }
-        for other in found {
+        for mut other in found {
+            other.finding.courses = Some(RapidCourses::Other);
+            let harm = |of: &Finding| (of.number, of.kind, of.body);
             let own = self.done.findings[seen..]
                 .iter_mut()
-                .find(|own| own.number == number && (own.kind, own.body) == (other.kind, other.body));
-            let courses = Some(RapidCourses::Other);
+                .find(|own| harm(&own.finding) == (number, other.finding.kind, other.finding.body));
             match own {
-                Some(own) if own.near == other.near => own.courses = Some(RapidCourses::Both),
-                Some(own) if own.near => *own = Finding { courses, ..other },
+                Some(own) if own.finding.near == other.finding.near => own.finding.courses = Some(RapidCourses::Both),
+                Some(own) if own.finding.near => *own = other,
                 Some(_) => {}
-                None => self.done.findings.push(Finding { courses, ..other }),
+                None => self.done.findings.push(other),
             }
         }
     }

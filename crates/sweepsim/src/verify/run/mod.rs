@@ -8,6 +8,7 @@ use crate::verify::depth::{Side, greatest};
 use crate::verify::driver::{Solids, Work};
 use crate::verify::finding::{Finding, FindingKind};
 use crate::verify::lines::Lines;
+use crate::verify::record::TileFinding;
 use crate::verify::scene::ToolPath;
 use crate::verify::search::{Arena, Swept, Touch, Touching};
 use crate::verify::solid::MovingSolid;
@@ -151,8 +152,8 @@ impl Work<'_> {
     fn sweep_near_stock(&mut self, solid: &MovingSolid, moves: Range<usize>) -> Result<Swept, SweepError> {
         let grid = *self.remaining.grid();
         let swept = solid.swept_near(moves, &grid, &self.heights, &self.options, self.monitor)?;
-        self.done.unresolved.extend(swept.unresolved);
-        self.done.crossings += swept.crossings;
+        self.unresolved.extend(swept.unresolved);
+        self.crossings += swept.crossings;
         Ok(swept.lines)
     }
 
@@ -168,7 +169,7 @@ impl Work<'_> {
             met.push((body, probe, itself, swept));
         }
         for (body, probe, itself, swept) in met {
-            self.done.unresolved.extend(swept.unresolved);
+            self.unresolved.extend(swept.unresolved);
             let material = Lines::of(fixtures, swept.lines.iter().map(|(line, _)| *line));
             let touched = material.common(&swept.lines, self.options.tolerance);
             let question = Question {
@@ -194,7 +195,7 @@ impl Work<'_> {
         let probe = question.touching.probe;
         let mut arena = Arena::new(grid, &self.options, self.monitor);
         let met = arena.certified(probe, probe.slice(probe.parts(moves)), met)?;
-        self.done.unresolved.extend(arena.unresolved);
+        self.unresolved.extend(arena.unresolved);
         Ok(met)
     }
 
@@ -209,10 +210,11 @@ impl Work<'_> {
     ) -> Result<(), SweepError> {
         let mut arena = Arena::new(grid, &self.options, self.monitor);
         let touches = arena.touches(question.touching, moves, material, each)?;
-        self.done.unresolved.extend(arena.unresolved);
-        let undecided = arena.undecided.into_iter().map(|number| (question.path, number));
+        self.unresolved.extend(arena.unresolved);
+        let undecided = arena.undecided.into_iter();
+        let undecided = undecided.map(|number| (question.path, number, question.body));
         self.done.undecided.extend(undecided);
-        let found: Vec<Finding> = touches
+        let found: Vec<TileFinding> = touches
             .par_iter()
             .map(|touch| self.finding(grid, question, touch))
             .collect();
@@ -220,7 +222,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    fn finding(&self, grid: &Grid, question: Question, touch: &Touch) -> Finding {
+    fn finding(&self, grid: &Grid, question: Question, touch: &Touch) -> TileFinding {
         let Question { path, kind, body, .. } = question;
         let [dx, dy] = grid.spacing();
         let (line, heights) = touch.first.longest().unwrap_or((0, [0.0; 2]));
@@ -230,7 +232,7 @@ impl Work<'_> {
             (FindingKind::Gouge, Some(target)) => greatest(&touch.all, grid, target.distance(), Side::Inside).0,
             _ => touch.all.longest().map_or(0.0, |(_, [lower, upper])| upper - lower),
         };
-        Finding {
+        let finding = Finding {
             kind,
             path,
             number: touch.number,
@@ -241,6 +243,10 @@ impl Work<'_> {
             volume: touch.all.length() * dx * dy,
             near: touch.near,
             courses: None,
+        };
+        TileFinding {
+            finding,
+            stays: touch.stays,
         }
     }
 }

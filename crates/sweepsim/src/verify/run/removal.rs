@@ -4,7 +4,7 @@ use crate::error::SweepError;
 use crate::time::path_parts::PathPart;
 use crate::verify::driver::{Solids, Work};
 use crate::verify::lines::Lines;
-use crate::verify::scene::MoveRemoval;
+use crate::verify::record::{Extent, TileRemoval};
 use crate::verify::search::Swept;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -32,14 +32,15 @@ impl Work<'_> {
         for (number, swept) in moves.zip(swept) {
             let removed = material.common(swept, 0.0);
             let parts = solids.cutter.slice(solids.cutter.parts(number..number + 1));
-            let [depth, width] = engagement(&removed, &grid, parts);
-            self.done.moves.push(MoveRemoval {
-                path,
-                number,
-                volume: removed.length() * dx * dy,
-                depth,
-                width,
-            });
+            if !removed.is_empty() {
+                self.done.moves.push(TileRemoval {
+                    path,
+                    number,
+                    volume: removed.length() * dx * dy,
+                    extent: engagement(&removed, &grid, parts),
+                });
+            }
+            self.done.each[path] = number + 1;
             material.remove(swept);
         }
     }
@@ -59,10 +60,13 @@ impl Work<'_> {
 
     /// Removes what a run has swept.
     pub(super) fn remove(&mut self, path: usize, cut: &[(u32, Vec<Interval>)]) {
+        if cut.is_empty() {
+            return;
+        }
         let grid = *self.remaining.grid();
         let [dx, dy] = grid.spacing();
         let before = Lines::of(&self.remaining, cut.iter().map(|(line, _)| *line));
-        self.done.paths[path].volume += before.common(cut, 0.0).length() * dx * dy;
+        self.done.volumes[path] += before.common(cut, 0.0).length() * dx * dy;
         let pieces: Vec<(u32, Interval)> = cut
             .iter()
             .flat_map(|(line, intervals)| intervals.iter().map(|interval| (*line, *interval)))
@@ -78,28 +82,18 @@ impl Work<'_> {
                 *range = [range[0].min(n), range[1].max(n)];
             }
         }
-        if !cut.is_empty() {
-            self.heights.refresh(window[0], window[1]);
-        }
+        self.heights.refresh(window[0], window[1]);
     }
 }
 
-/// Ranges of coordinates.
-struct Extent([[f64; 2]; 3]);
+/// Ranges of the coordinates of some points.
+#[derive(Default)]
+struct Points(Option<Extent>);
 
-impl Extent {
-    fn new() -> Self {
-        Self([[f64::INFINITY, f64::NEG_INFINITY]; 3])
-    }
-
+impl Points {
     fn add(&mut self, place: [f64; 3]) {
-        for (range, c) in self.0.iter_mut().zip(place) {
-            *range = [range[0].min(c), range[1].max(c)];
-        }
-    }
-
-    fn length(&self, k: usize) -> f64 {
-        (self.0[k][1] - self.0[k][0]).max(0.0)
+        let own = Extent::of(place);
+        self.0 = Some(self.0.map_or(own, |all| all.hull(own)));
     }
 }
 
@@ -111,14 +105,12 @@ fn across(axis: Vector3<f64>) -> Vector3<f64> {
     axis.cross(&other).normalize()
 }
 
-/// Depth and width of the material that a move removes (see [`MoveRemoval`]), in the frame of the grid.
-fn engagement(removed: &Lines, grid: &Grid, parts: &[PathPart]) -> [f64; 2] {
-    if removed.is_empty() {
-        return [0.0; 2];
-    }
+/// Depth and width of the material that a move removes (see [`MoveRemoval`](crate::verify::MoveRemoval)), as ranges along the tool's axis and across the feed, in the frame of the
+/// grid. The third range is a width at right angles to the second, if there is one.
+fn engagement(removed: &Lines, grid: &Grid, parts: &[PathPart]) -> Option<Extent> {
     match parts {
         [part] if part.segment.is_arc() && part.segment.turns().len() == 1 => straight(removed, grid, part),
-        [] => [0.0; 2],
+        [] => None,
         _ => along(removed, grid, parts),
     }
 }
@@ -134,7 +126,7 @@ fn pieces(removed: &Lines, grid: &Grid) -> impl Iterator<Item = (Vector3<f64>, f
 }
 
 /// The tool does not turn, and its tip follows a line: all is linear along an interval, but for the move's two ends.
-fn straight(removed: &Lines, grid: &Grid, part: &PathPart) -> [f64; 2] {
+fn straight(removed: &Lines, grid: &Grid, part: &PathPart) -> Option<Extent> {
     let axis = part.segment.start().column(2).into_owned();
     let (tip, way) = (
         Vector3::from(part.segment.tips()[0]),
@@ -155,7 +147,7 @@ fn straight(removed: &Lines, grid: &Grid, part: &PathPart) -> [f64; 2] {
         feed / feed.norm_squared()
     };
     let rise = if plunge { 0.0 } else { way.dot(&axis) };
-    let mut extent = Extent::new();
+    let mut extent = Points::default();
     for (lower, length) in pieces(removed, grid) {
         let from = lower - tip;
         let mut put = |height: f64| {
@@ -172,7 +164,7 @@ fn straight(removed: &Lines, grid: &Grid, part: &PathPart) -> [f64; 2] {
             }
         }
     }
-    [extent.length(0), extent.length(1).max(extent.length(2))]
+    extent.0
 }
 
 /// A placement of the tool: its tip, its axis, and how both change from the placement before to the next.
@@ -204,11 +196,11 @@ fn placements(parts: &[PathPart]) -> Vec<Placement> {
 }
 
 /// Any move, at a number of times and points.
-fn along(removed: &Lines, grid: &Grid, parts: &[PathPart]) -> [f64; 2] {
+fn along(removed: &Lines, grid: &Grid, parts: &[PathPart]) -> Option<Extent> {
     let places = placements(parts);
     let spacing = grid.spacing();
     let step = spacing[0].min(spacing[1]);
-    let mut extent = Extent::new();
+    let mut extent = Points::default();
     for (lower, length) in pieces(removed, grid) {
         let count = ((length / step).ceil().max(1.0) as usize).min(POINTS);
         for n in 0..=count {
@@ -235,5 +227,5 @@ fn along(removed: &Lines, grid: &Grid, parts: &[PathPart]) -> [f64; 2] {
             extent.add([height, from.dot(&sideways), 0.0]);
         }
     }
-    [extent.length(0), extent.length(1)]
+    extent.0
 }

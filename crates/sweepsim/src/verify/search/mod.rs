@@ -56,6 +56,8 @@ pub(super) struct Touch {
     pub first: Lines,
     /// Only the larger solid touches.
     pub near: bool,
+    /// Whether `all` is there throughout, and not removed by the same move later.
+    pub stays: bool,
     /// All that it touches. For a body, what even the end of the move has not removed, if there is such material.
     pub all: Lines,
 }

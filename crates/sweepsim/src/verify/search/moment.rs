@@ -55,6 +55,7 @@ impl Arena<'_> {
                 time,
                 first,
                 near: false,
+                stays: true,
                 all,
             }));
         }
@@ -89,12 +90,14 @@ impl Arena<'_> {
             found = Some(earlier);
         }
         let Some((time, first)) = found else { return Ok(None) };
-        let all = if left.is_empty() { first.clone() } else { left };
+        let stays = !left.is_empty();
+        let all = if stays { left } else { first.clone() };
         Ok(Some(Touch {
             number,
             time,
             first,
             near: false,
+            stays,
             all,
         }))
     }

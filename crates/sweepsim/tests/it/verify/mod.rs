@@ -6,6 +6,7 @@ mod regions;
 mod removal;
 mod setups;
 mod threads;
+mod tiles;
 
 use by_force::{Case, Cylinder, pose};
 use std::ops::ControlFlow;
