@@ -1,4 +1,4 @@
-//! The paper's Figures 8 to 10: tools and what they sweep.
+//! Pictures that are drawn here: the paper's Figures 8 to 10, tools and what they sweep.
 
 use super::sheet;
 use crate::bench::{Cutter, cutter};
@@ -10,10 +10,11 @@ use sweepsim_picture::{Drawing, Image, View};
 type Make = fn() -> Result<Image, String>;
 
 /// The figures, by the names of their files.
-pub const FIGURES: [(&str, Make); 3] = [
+pub const FIGURES: [(&str, Make); 4] = [
     ("figure-8", || figure("ball")),
     ("figure-9", || figure("flat")),
     ("figure-10", || figure("form")),
+    ("figure-envelope", super::envelope::envelope),
 ];
 
 /// Pixels of a panel.
@@ -23,7 +24,7 @@ const CELLS: f64 = 260.0;
 /// Cosine of 40°: sharper edges are drawn sharp.
 const CRISP: f64 = 0.766;
 
-fn said(error: impl std::fmt::Display) -> String {
+pub fn said(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
 

@@ -1,5 +1,6 @@
 //! `cargo xtask pictures`: draws the pictures of the docs anew.
 
+mod envelope;
 mod figures;
 mod runs;
 
