@@ -66,7 +66,10 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
             Solid::Mesh(mesh) => mesh.clone(),
             Solid::Dexels(_) | Solid::TriDexels(_) => solid.surface()?,
         };
-        let mut mesh = decimated(&surface, options.decimate)?;
+        let (mut mesh, note) = decimated(&surface, options.decimate)?;
+        if let Some(note) = note {
+            line("note", &note);
+        }
         // 3D printers need triangles that share vertices.
         if format == MeshFormat::ThreeMf && !matches!(solid, Solid::Mesh(_)) {
             mesh = Cow::Owned(soup(&mesh).indexed()?);

@@ -114,12 +114,16 @@ impl Solid {
     }
 }
 
-/// A mesh of fewer triangles, nowhere further than `deviation` from this one; the same mesh without one.
-pub(crate) fn decimated(mesh: &Mesh, deviation: Option<f64>) -> Result<Cow<'_, Mesh>, MeshError> {
-    match deviation {
-        Some(deviation) => Ok(Cow::Owned(mesh.decimated(deviation)?.crisp(CRISP)?)),
-        None => Ok(Cow::Borrowed(mesh)),
-    }
+/// A mesh of fewer triangles, nowhere further than `deviation` from this one; the same mesh without one. A note says if none was found.
+pub(crate) fn decimated(mesh: &Mesh, deviation: Option<f64>) -> Result<(Cow<'_, Mesh>, Option<String>), MeshError> {
+    let Some(deviation) = deviation else {
+        return Ok((Cow::Borrowed(mesh), None));
+    };
+    let small = mesh.decimated(deviation)?;
+    let note = (small.triangles.len() >= mesh.triangles.len()).then(|| {
+        format!("--decimate: no smaller mesh within {deviation} mm of the surface was found: all triangles are kept")
+    });
+    Ok((Cow::Owned(small.crisp(CRISP)?), note))
 }
 
 fn is_step(file: &Path) -> bool {

@@ -270,6 +270,8 @@ fn dexels_along_three_axes_are_inspected_compared_and_converted() {
         assert!((28..100).contains(&triangles), "{few}: {triangles}");
         assert!((volume(&workdir, few) - (1200.0 - REMOVED)).abs() < 2.0);
     }
+    let (code, said) = run(&["convert", "moved/part.tridexels", "all.stl", "--decimate", "1e-15"]);
+    assert!(code == Some(0) && said.contains("all triangles are kept"), "{said}");
     let (code, said) = run(&["convert", "moved/part.tridexels", "few.stl", "--decimate", "0"]);
     assert!(code == Some(2) && said.contains("--decimate"), "{said}");
     // Damaged anywhere, it is refused.

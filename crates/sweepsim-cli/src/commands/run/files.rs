@@ -93,10 +93,12 @@ pub(super) fn write_mesh(
 ) -> Result<Option<Vec<u8>>, Failure> {
     let JobSession { outputs, progress, .. } = session;
     if outputs.wants(Output::Mesh) {
-        phase(report, "mesh", || {
-            let written = decimated(mesh, options.decimate)?;
-            outputs.write("part.ply", |file| write_ply(&written, file))
+        let note = phase(report, "mesh", || {
+            let (written, note) = decimated(mesh, options.decimate)?;
+            outputs.write("part.ply", |file| write_ply(&written, file))?;
+            Ok::<_, Failure>(note)
         })?;
+        report.warnings.extend(note);
     }
     progress.check()?;
     if !outputs.wants(Output::Picture) {
