@@ -5,7 +5,7 @@ use crate::session::words::{length, point};
 use std::collections::BTreeMap;
 use sweepsim_dexel::{Dexels, End, Source};
 use sweepsim_formats::{Job, JobPath};
-use sweepsim_motion::{Segment, Tool};
+use sweepsim_motion::Segment;
 
 /// The cosine between the tool's axis and the normal of the roof is at least this: the rim of a leaning tool makes one, too, but no wall beside it.
 const ABOVE: f64 = 0.3;
@@ -21,12 +21,6 @@ pub(super) fn roofs(job: &Job, remaining: &Dexels) -> Vec<String> {
     let (grid, frame) = (remaining.grid(), remaining.grid().frame());
     let mut found: BTreeMap<u32, ([f64; 3], u64)> = BTreeMap::new();
     let mut known: Option<(u32, u32, Vec<Segment>)> = None;
-    // Of a free-form tool these are sums over all its patches: too much for each end.
-    let sizes: BTreeMap<u32, Size> = job
-        .tools
-        .iter()
-        .map(|(number, tool)| (*number, Size::of(tool)))
-        .collect();
     for (line, intervals) in remaining.iter() {
         let (i, j) = grid.place(line);
         for interval in intervals.iter() {
@@ -37,13 +31,13 @@ pub(super) fn roofs(job: &Job, remaining: &Dexels) -> Vec<String> {
                 continue;
             };
             if known.as_ref().is_none_or(|(p, s, _)| (*p, *s) != (path, segment)) {
-                known = Some((path, segment, segments(cut, segment, sizes[&cut.tool])));
+                known = Some((path, segment, segments(job, cut, segment)));
             }
             let Some((.., parts)) = &known else { continue };
             let End { z, normal, .. } = interval.lower;
             let place = frame.to_world([grid.x(i), grid.y(j), z]);
             let outward = frame.turn_to_world(normal.map(f64::from));
-            if is_end(sizes[&cut.tool], parts, f64::from(t), (place, outward)) {
+            if is_end(job, cut, parts, f64::from(t), (place, outward)) {
                 found.entry(path).or_insert((place, 0)).1 += 1;
             }
         }
@@ -62,33 +56,19 @@ pub(super) fn roofs(job: &Job, remaining: &Dexels) -> Vec<String> {
     found.into_iter().map(sentence).collect()
 }
 
-/// How far a tool reaches from its tip, and along its axis.
-#[derive(Clone, Copy)]
-struct Size {
-    reach: f64,
-    top: f64,
-}
-
-impl Size {
-    fn of(tool: &Tool) -> Self {
-        Self {
-            reach: tool.reach(),
-            top: tool.bounding_cylinder().z[1],
-        }
-    }
-}
-
-fn segments(path: &JobPath, number: u32, tool: Size) -> Vec<Segment> {
+fn segments(job: &Job, path: &JobPath, number: u32) -> Vec<Segment> {
+    let tool = &job.tools[&path.tool];
     if number as usize >= path.path.moves() {
         return Vec::new();
     }
     // Enough to tell the end of the tool from its sides.
-    let deviation = 0.1 * CLOSE * tool.reach;
-    path.path.segments(number as usize, tool.reach, deviation)
+    let deviation = 0.1 * CLOSE * tool.reach();
+    path.path.segments(number as usize, tool.reach(), deviation)
 }
 
 /// Whether the upper end of the tool touches a point of the surface of the material, whose outward normal is given, at a time of a move.
-fn is_end(tool: Size, parts: &[Segment], time: f64, (place, outward): ([f64; 3], [f64; 3])) -> bool {
+fn is_end(job: &Job, path: &JobPath, parts: &[Segment], time: f64, (place, outward): ([f64; 3], [f64; 3])) -> bool {
+    let tool = &job.tools[&path.tool];
     let scaled = time * parts.len() as f64;
     let Some(part) = parts.get((scaled as usize).min(parts.len().saturating_sub(1))) else {
         return false;
@@ -100,8 +80,8 @@ fn is_end(tool: Size, parts: &[Segment], time: f64, (place, outward): ([f64; 3],
     let along = |v: [f64; 3]| (0..3).map(|k| turn[(k, 2)] * v[k]).sum::<f64>();
     let [from, to] = part.tips();
     let length = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
-    let close = CLOSE * tool.reach + length / TIMES;
+    let close = CLOSE * tool.reach() + length / TIMES;
     let height = along([0, 1, 2].map(|k| place[k] - tip[k]));
     let away = along(outward);
-    away < -ABOVE && height > tool.top - close
+    away < -ABOVE && height > tool.bounding_cylinder().z[1] - close
 }

@@ -2,6 +2,41 @@
 
 mod apt;
 mod circle_segment;
+fn reach(patches: &[Patch]) -> f64 {
+    let control = |patch: &Patch| {
+        let weights = patch.weight().coefficients();
+        let point = |i: usize| Vector3::from([0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weights[i]));
+        (0..weights.len()).map(|i| point(i).norm()).fold(0.0, f64::max)
+    };
+    patches.iter().map(control).fold(0.0, f64::max)
+}
+
+fn bounding_cylinder(profile: Option<&Profile>, patches: &[Patch]) -> BoundingCylinder {
+    let mut bound = BoundingCylinder {
+        radius: 0.0,
+        z: [f64::INFINITY, f64::NEG_INFINITY],
+    };
+    let mut add = |rho: f64, z: f64| {
+        bound.radius = bound.radius.max(rho);
+        bound.z = [bound.z[0].min(z), bound.z[1].max(z)];
+    };
+    // Control points: their hull holds the surface, as weights are positive.
+    if let Some(profile) = profile {
+        for curve in profile.pieces().iter().flat_map(|piece| piece.curves()) {
+            curve.points.iter().for_each(|point| add(point.x, point.y));
+        }
+        return bound;
+    }
+    for patch in patches {
+        let weights = patch.weight().coefficients();
+        for (i, w) in weights.iter().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / w);
+            add(x.hypot(y), z);
+        }
+    }
+    bound
+}
+
 #[cfg(test)]
 mod circle_segment_tests;
 mod cutters;
@@ -37,9 +72,22 @@ pub struct Tool {
     profile: Option<Profile>,
     patches: Vec<Patch>,
     edges: Vec<Edge>,
+    reach: f64,
+    cylinder: BoundingCylinder,
 }
 
 impl Tool {
+    /// Its reach and its cylinder are asked for in every move, and are sums over all control points.
+    fn new(profile: Option<Profile>, patches: Vec<Patch>, edges: Vec<Edge>) -> Self {
+        Self {
+            reach: reach(&patches),
+            cylinder: bounding_cylinder(profile.as_ref(), &patches),
+            profile,
+            patches,
+            edges,
+        }
+    }
+
     /// The seven-parameter APT cutter, with warnings about unusual parameters.
     ///
     /// # Errors
@@ -52,11 +100,11 @@ impl Tool {
     /// The solid of revolution of a profile.
     #[must_use]
     pub fn from_profile(profile: Profile) -> Self {
-        Self {
-            patches: boundary::patches_of_profile(&profile),
-            edges: boundary::edges_of_profile(&profile),
-            profile: Some(profile),
-        }
+        let (patches, edges) = (
+            boundary::patches_of_profile(&profile),
+            boundary::edges_of_profile(&profile),
+        );
+        Self::new(Some(profile), patches, edges)
     }
 
     /// A tool of any shape: the solid that `patches` enclose, in any order.
@@ -85,11 +133,8 @@ impl Tool {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_patches(patches: Vec<Patch>, tolerance: f64) -> Result<Self, ToolError> {
-        Ok(Self {
-            edges: boundary::edges_of_patches(&patches, tolerance)?,
-            patches,
-            profile: None,
-        })
+        let edges = boundary::edges_of_patches(&patches, tolerance)?;
+        Ok(Self::new(None, patches, edges))
     }
 
     /// The tool enclosed by B-spline surfaces, each with `F_u × F_v` pointing out of it. They are split at their knots.
@@ -109,40 +154,13 @@ impl Tool {
     /// A bound on the distance of all points of the tool from its tip.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let control = |patch: &Patch| {
-            let weights = patch.weight().coefficients();
-            let point = |i: usize| Vector3::from([0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / weights[i]));
-            (0..weights.len()).map(|i| point(i).norm()).fold(0.0, f64::max)
-        };
-        self.patches.iter().map(control).fold(0.0, f64::max)
+        self.reach
     }
 
     /// A cylinder about the axis that holds the tool. For lines and arcs of a profile it is the smallest, up to the corners of the arcs' control polygons.
     #[must_use]
     pub fn bounding_cylinder(&self) -> BoundingCylinder {
-        let mut bound = BoundingCylinder {
-            radius: 0.0,
-            z: [f64::INFINITY, f64::NEG_INFINITY],
-        };
-        let mut add = |rho: f64, z: f64| {
-            bound.radius = bound.radius.max(rho);
-            bound.z = [bound.z[0].min(z), bound.z[1].max(z)];
-        };
-        // Control points: their hull holds the surface, as weights are positive.
-        if let Some(profile) = &self.profile {
-            for curve in profile.pieces().iter().flat_map(|piece| piece.curves()) {
-                curve.points.iter().for_each(|point| add(point.x, point.y));
-            }
-            return bound;
-        }
-        for patch in &self.patches {
-            let weights = patch.weight().coefficients();
-            for (i, w) in weights.iter().enumerate() {
-                let [x, y, z] = [0, 1, 2].map(|k| patch.position()[k].coefficients()[i] / w);
-                add(x.hypot(y), z);
-            }
-        }
-        bound
+        self.cylinder
     }
 
     /// The solid of all points no farther than `distance` from this one ([`Profile::offset`]). Of tools without a profile, from the cylinder that holds them,
