@@ -6,48 +6,47 @@ use super::{Dexels, GridMismatch, Operation};
 use crate::intervals::{AuditFailure, Crossing, Interval, IntervalError, check_lengths, cover, difference, normalise};
 use rayon::prelude::*;
 
-/// Items (crossings or intervals) of several lists by chunk of lines, in the order of the lists. Those beyond the grid are left out.
+/// A stretch of a list with items (crossings or intervals) of the same chunk of lines.
+type Run<'a, T> = &'a [(u32, T)];
+
+/// Runs of several lists by chunk, in the order of the lists. Items beyond the grid are left out.
 struct ByChunk<'a, T> {
-    /// Where the items of each chunk end.
+    /// Where the runs of each chunk end.
     ends: Vec<usize>,
-    items: Vec<&'a (u32, T)>,
+    runs: Vec<Run<'a, T>>,
 }
 
 impl<'a, T> ByChunk<'a, T> {
     /// `lines`: their number in the grid.
     fn new(lists: &[&'a [(u32, T)]], lines: usize) -> Self {
-        let chunks = lines.div_ceil(LINES);
-        let all = || {
-            lists
-                .iter()
-                .copied()
-                .flatten()
-                .filter(|(line, _)| (*line as usize) < lines)
-        };
-        let mut ends = vec![0_usize; chunks + 1];
-        for (line, _) in all() {
-            ends[*line as usize / LINES + 1] += 1;
-        }
-        for k in 0..chunks {
-            ends[k + 1] += ends[k];
-        }
-        let mut items = Vec::new();
-        if let Some(any) = all().next() {
-            items.resize(ends[chunks], any);
-            for item in all() {
-                let end = &mut ends[item.0 as usize / LINES];
-                items[*end] = item;
-                *end += 1;
+        let chunk_of = |(line, _): &(u32, T)| ((*line as usize) < lines).then_some(*line as usize / LINES);
+        let mut ends = vec![0_usize; lines.div_ceil(LINES) + 1];
+        // The lists are long, and are read once here: lines of a chunk are often next to each other.
+        let mut found: Vec<(usize, Run<T>)> = Vec::new();
+        for list in lists {
+            for run in list.chunk_by(|a, b| chunk_of(a) == chunk_of(b)) {
+                if let Some(chunk) = run.first().and_then(chunk_of) {
+                    ends[chunk + 1] += 1;
+                    found.push((chunk, run));
+                }
             }
         }
+        for k in 1..ends.len() {
+            ends[k] += ends[k - 1];
+        }
+        let mut runs: Vec<Run<T>> = vec![&[]; found.len()];
+        for (chunk, run) in found {
+            runs[ends[chunk]] = run;
+            ends[chunk] += 1;
+        }
         // Each has moved on to where the next one began.
-        ends.truncate(chunks);
-        Self { ends, items }
+        ends.pop();
+        Self { ends, runs }
     }
 
-    fn of(&self, chunk: usize) -> &[&'a (u32, T)] {
+    fn of(&self, chunk: usize) -> &[Run<'a, T>] {
         let begin = chunk.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.items[begin..self.ends[chunk]]
+        &self.runs[begin..self.ends[chunk]]
     }
 }
 
@@ -69,20 +68,21 @@ impl<T> Default for Sorted<T> {
 
 impl<T: Copy> Sorted<T> {
     /// Sorts the items of the chunk that begins with line `first`, those of a line in their order.
-    fn fill(&mut self, items: &[&(u32, T)], first: usize) {
+    fn fill(&mut self, runs: &[Run<T>], first: usize) {
         self.items.clear();
         self.begin = [0; LINES + 1];
-        let Some((_, any)) = items.first() else { return };
-        self.items.resize(items.len(), *any);
+        let items = || runs.iter().copied().flatten();
+        let Some((_, any)) = items().next() else { return };
+        self.items.resize(runs.iter().map(|run| run.len()).sum(), *any);
         let line = |item: &(u32, T)| item.0 as usize - first;
-        for item in items {
+        for item in items() {
             self.begin[line(item) + 1] += 1;
         }
         for k in 0..LINES {
             self.begin[k + 1] += self.begin[k];
         }
         let mut next = self.begin;
-        for item in items {
+        for item in items() {
             let at = &mut next[line(item)];
             self.items[*at as usize] = item.1;
             *at += 1;

@@ -59,8 +59,10 @@ pub(super) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Op
         return None;
     }
     // Both are in the window now, so casts round down.
-    let (a, b) = (a as usize + usize::from((a as usize as f64) < a), b as usize);
-    (a <= b).then_some([a, b])
+    // There are no more than 2³² lines.
+    let (low, b) = (a as u32, b as u32);
+    let a = low as usize + usize::from(f64::from(low) < a);
+    (a <= b as usize).then_some([a, b as usize])
 }
 
 /// Visits all lines with `p` and `q` in these ranges, and a few others.

@@ -65,6 +65,8 @@ struct Lanes {
     p: [f64; LANES],
     q: [f64; LANES],
     curve: [f64; LANES],
+    /// What the curve keeps of each.
+    own: [f64; LANES],
     place: [usize; LANES],
     met: [f64; LANES],
     ahead: [f64; LANES],
@@ -78,6 +80,7 @@ impl Default for Lanes {
             p: none,
             q: none,
             curve: none,
+            own: none,
             place: [0; LANES],
             met: none,
             ahead: none,
@@ -246,24 +249,26 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             }
             return;
         };
-        graph.many_q(&lanes.p[..count], &mut lanes.curve[..count]);
+        graph.many_q(&lanes.p[..count], &mut lanes.curve[..count], &mut lanes.own[..count]);
         let doubt = error.max(part.blurs[0]).max(part.blurs[1]);
         let mut met = 0;
         let mut doubtful = 0;
         for k in 0..count {
             let (p, ahead) = (lanes.p[k], lanes.q[k] - lanes.curve[k]);
-            let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
+            let certain = (ahead > error) & (ahead < heading.length - error) & (p >= sure[0]) & (p < sure[1]);
             // Written always, kept if certain.
             (lanes.place[met], lanes.met[met], lanes.ahead[met]) = (first + k, p, ahead);
+            lanes.own[met] = lanes.own[k];
             met += usize::from(certain);
-            let near = ahead > -doubt && ahead < heading.length + doubt && p >= wide[0] && p < wide[1];
+            // NaN is near.
+            let near = !(ahead <= -doubt) & !(ahead >= heading.length + doubt) & (p >= wide[0]) & (p < wide[1]);
             doubtful += usize::from(near & !certain);
         }
         if doubtful > 0 {
             for k in 0..count {
                 let (p, ahead) = (self.lanes.p[k], self.lanes.q[k] - self.lanes.curve[k]);
                 let certain = ahead > error && ahead < heading.length - error && p >= sure[0] && p < sure[1];
-                let near = ahead > -doubt && ahead < heading.length + doubt && p >= wide[0] && p < wide[1];
+                let near = !(ahead <= -doubt || ahead >= heading.length + doubt) && p >= wide[0] && p < wide[1];
                 if near && !certain {
                     self.one(graph, part, (i, first + k), [p, self.lanes.q[k]]);
                 }
@@ -273,7 +278,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             return;
         }
         let lanes = &mut self.lanes;
-        graph.many(&lanes.met[..met], &mut lanes.points[..met]);
+        graph.many(&lanes.met[..met], &lanes.own[..met], &mut lanes.points[..met]);
         let rate = heading.length.recip();
         for k in 0..met {
             if lattice.asks(i, lanes.place[k]) {

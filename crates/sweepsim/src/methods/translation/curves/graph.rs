@@ -43,23 +43,12 @@ pub(crate) trait Graph {
     /// A bound of `|dq/dp|` between these values; `None` if each point has to tell.
     fn steepest(&self, between: [f64; 2]) -> Option<f64>;
 
-    /// `q` at many values: as [`at`](Self::at) has it.
-    fn many_q(&self, p: &[f64], q: &mut [f64]) {
-        for (p, q) in p.iter().zip(q) {
-            *q = self.at(*p).q;
-        }
-    }
+    /// `q` at many values: as [`at`](Self::at) has it, or NaN where that is needed. `own` is what [`many`](Self::many) gets of each value. Beyond the span
+    /// there may be any numbers.
+    fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]);
 
     /// Heights and normals at many values, between two of which all jumps are the same, and not 0.
-    fn many(&self, p: &[f64], points: &mut [Point]) {
-        for (p, point) in p.iter().zip(points) {
-            let spot = self.at(*p);
-            *point = Point {
-                z: spot.z,
-                normal: spot.normal,
-            };
-        }
-    }
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]);
 }
 
 /// What a crossing has of a graph.

@@ -6,6 +6,7 @@ mod parabola;
 pub(crate) mod ring;
 pub(crate) mod slant;
 pub(crate) mod torus;
+mod torus_about;
 
 pub(crate) use graph::{Graph, Point};
 pub(crate) use heading::{Heading, slack, stands};

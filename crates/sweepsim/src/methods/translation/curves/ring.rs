@@ -315,18 +315,21 @@ impl Graph for Ring {
         Some(a.max(b))
     }
 
-    fn many_q(&self, p: &[f64], q: &mut [f64]) {
-        for (p, q) in p.iter().zip(q) {
+    fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]) {
+        for ((p, q), own) in p.iter().zip(q).zip(own) {
             let [c, s] = self.turn(*p);
             *q = self.centre[0] + (c * self.first[0] + s * self.second[0]);
+            *own = s;
         }
     }
 
-    fn many(&self, p: &[f64], points: &mut [Point]) {
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]) {
+        let values = p.iter().zip(own);
+        let turn = |(p, s): (&f64, &f64)| [((p - self.centre[1]) / self.width).clamp(-1.0, 1.0), *s];
         match &self.role {
             Role::Ball { out, .. } => {
-                for (p, point) in p.iter().zip(points) {
-                    let [c, s] = self.turn(*p);
+                for (value, point) in values.zip(points) {
+                    let [c, s] = turn(value);
                     let arm = along(&self.first.map(|x| c * x), s, &self.second);
                     *point = Point {
                         z: self.centre[2] + arm[2],
@@ -342,8 +345,8 @@ impl Graph for Ring {
                 axis,
                 ..
             } => {
-                for (p, point) in p.iter().zip(points) {
-                    let turn = self.turn(*p);
+                for (value, point) in values.zip(points) {
+                    let turn = turn(value);
                     let arm = along(&self.first.map(|x| turn[0] * x), turn[1], &self.second);
                     let cosine = azimuth[0] * turn[0] + azimuth[1] * turn[1];
                     let [a, b] = rates.map(|[ahead, up]| (ahead * cosine + up).abs());

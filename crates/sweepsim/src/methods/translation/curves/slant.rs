@@ -97,13 +97,13 @@ impl Graph for Slant {
         Some(self.slope.abs())
     }
 
-    fn many_q(&self, p: &[f64], q: &mut [f64]) {
+    fn many_q(&self, p: &[f64], q: &mut [f64], _: &mut [f64]) {
         for (p, q) in p.iter().zip(q) {
             *q = self.place(*p)[0];
         }
     }
 
-    fn many(&self, p: &[f64], points: &mut [Point]) {
+    fn many(&self, p: &[f64], _: &[f64], points: &mut [Point]) {
         for (p, point) in p.iter().zip(points) {
             *point = Point {
                 z: self.place(*p)[1],

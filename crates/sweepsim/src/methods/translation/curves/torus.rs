@@ -10,26 +10,30 @@
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
 use super::Heading;
-use super::graph::{Graph, Spot};
+use super::graph::{Graph, Point, Spot};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Steps of Newton's method, or bisections, of which a handful suffice.
-const STEPS: usize = 80;
+pub(super) const STEPS: usize = 80;
+/// Steps of many values together, after which those that have not converged are left to the other way.
+const STEPS_TOGETHER: usize = 8;
+/// Where `q` changes faster than this, relative to `p`, each value is looked at by itself.
+const STEEPEST: f64 = 1e9;
 /// Ways less steep than this, but not level, are left to the general method: angles have no more digits.
 const FLATTEST: f64 = 1e-14;
 
 /// A monotone stretch on one side of the way.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Torus {
-    centre: [f64; 2],
-    radius: f64,
-    slope: f64,
+    pub(super) centre: [f64; 2],
+    pub(super) radius: f64,
+    pub(super) slope: f64,
     /// `|e|` at the smaller and the larger `|p|`.
-    ends: [f64; 2],
+    pub(super) ends: [f64; 2],
     /// The signs of `e` and `f`.
-    signs: [f64; 2],
+    pub(super) signs: [f64; 2],
     /// The side of the way, and the span of `|p|`.
-    side: f64,
+    pub(super) side: f64,
     span: [f64; 2],
     margins: [f64; 2],
     reach: [f64; 2],
@@ -130,19 +134,19 @@ pub(crate) fn stretches(
 
 impl Torus {
     /// `w`, at `|e|`.
-    fn sine(&self, e: f64) -> f64 {
+    pub(super) fn sine(&self, e: f64) -> f64 {
         let ratio = self.slope / e.max(f64::MIN_POSITIVE);
         (1.0 + self.slope * self.slope - ratio * ratio).max(0.0).sqrt()
     }
 
     /// `ρ` and `f`.
-    fn meridian(&self, e: f64) -> [f64; 2] {
+    pub(super) fn meridian(&self, e: f64) -> [f64; 2] {
         let rho = self.centre[0] + self.radius * self.signs[0] * e;
         [rho, self.signs[1] * ((1.0 - e) * (1.0 + e)).max(0.0).sqrt()]
     }
 
     /// `|p|` and `q`.
-    fn place(&self, e: f64) -> [f64; 2] {
+    pub(super) fn place(&self, e: f64) -> [f64; 2] {
         let [rho, f] = self.meridian(e);
         [rho * self.sine(e), -rho * self.slope * f / (self.signs[0] * e)]
     }
@@ -154,14 +158,7 @@ impl Torus {
         let (mut a, mut b) = (low.min(high), low.max(high));
         let square = self.slope * self.slope;
         let [offset, radius] = [self.centre[0], self.signs[0] * self.radius];
-        // On a level way p is the radius; where the surface is nearly as flat as the way, the radius is that of the centre.
-        let level = (p - offset) / radius;
-        let mut e = if level > 2.0 * self.slope.abs() {
-            level
-        } else {
-            let w = p / offset;
-            (square / (1.0 + square - w * w).max(f64::MIN_POSITIVE)).sqrt()
-        };
+        let mut e = self.first_guess(p);
         for _ in 0..STEPS {
             if !(e > a && e < b) {
                 e = if b > 4.0 * a && a > 0.0 {
@@ -189,115 +186,58 @@ impl Torus {
         None
     }
 
-    /// The parts of the stretch over which the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone, as ranges of
-    /// `|e|`; `None` if that is not certain.
-    ///
-    /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`. So the two terms of `ds/dρ` have one sign, or they cancel where
-    /// `h = ρ w/k` is `R`. The three terms of `d ln h/de` are `±r/ρ`, `m²/(e³ w²)` and `3 ρ_c m²/(r e⁴ k)`: `h` is monotone if the first is the
-    /// largest by far, or if all have one sign: by at least `r/2ρ`, so that rounding shifts the place where it is `R` by no more than that of a coordinate.
-    pub(crate) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
+    /// `|e|`, about, where `|p|` has this value.
+    #[inline]
+    fn first_guess(&self, p: f64) -> f64 {
+        let [offset, radius] = [self.centre[0], self.signs[0] * self.radius];
         let square = self.slope * self.slope;
-        let (offset, bulge) = (self.centre[0], self.signs[0] * self.radius);
-        let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
-        // On a level way all but the first term are 0, also where the normal is vertical.
-        let part = |size: f64, e: f64| if square == 0.0 { 0.0 } else { size * square / e };
-        let rate = |e: f64| 1.0 + square + part(offset / bulge, e * e * e);
-        let whole = Some([Some([low, high]), None]);
-        let (rising, falling) = (rate(low).min(rate(high)) >= 0.0, rate(low).max(rate(high)) <= 0.0);
-        let outside = side * self.side < 0.0;
-        if (rising && outside) || (falling && !outside) {
-            return whole;
+        // On a level way p is the radius; where the surface is nearly as flat as the way, the radius is that of the centre.
+        let level = (p - offset) / radius;
+        if level > 2.0 * self.slope.abs() {
+            level
+        } else {
+            let w = p / offset;
+            (square / (1.0 + square - w * w).max(f64::MIN_POSITIVE)).sqrt()
         }
-        if !rising {
-            return None;
-        }
-        let widest = self.meridian(low)[0].max(self.meridian(high)[0]);
-        let (w, k) = (self.sine(low), rate(low).min(rate(high)));
-        let others = part(1.0, low * low * low * w * w) + part(3.0 * (offset / bulge).abs(), low * low * low * low * k);
-        if !((offset >= 0.0 && bulge > 0.0) || self.radius / widest > 2.0 * others) {
-            return None;
-        }
-        // Negative where h is less than R.
-        let over = |e: f64| self.meridian(e)[0] * self.sine(e) - radius * rate(e);
-        let [before, after] = [over(low) > 0.0, over(high) > 0.0];
-        if before == after {
-            return whole;
-        }
-        let (mut a, mut b) = (low, high);
-        for _ in 0..STEPS {
-            let middle = if b > 4.0 * a && a > 0.0 {
-                (a * b).sqrt()
-            } else {
-                0.5 * (a + b)
-            };
-            if (over(middle) > 0.0) == before {
-                a = middle;
-            } else {
-                b = middle;
-            }
-        }
-        Some([Some([low, b]), Some([b, high])])
     }
 
-    /// `p` at a value of `|e|`.
-    pub(crate) fn across(&self, e: f64) -> f64 {
-        self.side * self.place(e)[0]
-    }
-
-    /// `p` where the squared distance from that point has the value `s`, over a range of `|e|` where it is monotone.
-    pub(crate) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
-        let (mut a, mut b) = (low, high);
-        let sign = side * self.side;
-        let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
+    /// `|e|` where `|p|` has these values, by the same steps for all; NaN where they do not suffice.
+    fn invert_many(&self, p: &[f64], found: &mut [f64]) {
+        let [a, b] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
         let square = self.slope * self.slope;
-        // Outwards, and q²: small numbers next to the centre.
-        let seen = |e: f64| {
-            let rho = offset + bulge * e;
-            let ahead = rho * self.slope / e.max(f64::MIN_POSITIVE);
-            [
-                radius - sign * rho * self.sine(e),
-                ahead * ahead * (1.0 - e) * (1.0 + e),
-            ]
-        };
-        let value = |e: f64| {
-            let [out, ahead] = seen(e);
-            out * out + ahead - s
-        };
-        let rising = value(high) > value(low);
-        let noise = 4.0 * f64::EPSILON * (radius + s.sqrt()) * s.sqrt();
-        // On a level way, the distance is R − σρ, or that less than 0.
-        let guess = |distance: f64| (sign * (radius - distance) - offset) / bulge;
-        let mut e = guess(s.sqrt());
-        if !(e > a && e < b) {
-            e = guess(-s.sqrt());
+        let [offset, radius] = [self.centre[0], self.signs[0] * self.radius];
+        let place = |p: f64| p.abs().clamp(self.span[0], self.span[1]);
+        for (p, e) in p.iter().zip(&mut *found) {
+            // NaN becomes the lower end.
+            *e = self.first_guess(place(*p)).max(a).min(b);
         }
-        for _ in 0..STEPS {
-            if !(e > a && e < b) {
-                e = if b > 4.0 * a && a > 0.0 {
-                    (a * b).sqrt()
-                } else {
-                    0.5 * (a + b)
-                };
+        // The quotient of the value in `invert` and its derivative.
+        let step = |p: f64, e: f64| {
+            let rho = offset + radius * e;
+            let inverse = 1.0 / (e * rho);
+            let (steep, flat) = (square * (inverse * rho) * (inverse * rho), p * inverse * e);
+            let flat = flat * flat;
+            let value = 1.0 + square - steep - flat;
+            let rate = 2.0 * (steep * (inverse * rho) + flat * radius * (inverse * e));
+            value / rate
+        };
+        for _ in 0..STEPS_TOGETHER {
+            let mut off = 0;
+            for (p, e) in p.iter().zip(&mut *found) {
+                let step = step(place(*p), *e);
+                // NaN is off, too.
+                off += usize::from(!(step.abs() <= 4.0 * f64::EPSILON * *e));
+                *e = (*e - step).max(a).min(b);
             }
-            let value = value(e);
-            if (value < 0.0) == rising {
-                a = e;
-            } else {
-                b = e;
+            if off == 0 {
+                return;
             }
-            let rho = offset + bulge * e;
-            let w = self.sine(e);
-            let cube = e * e * e;
-            let by = (bulge * cube * (1.0 + square) + offset * square) / (cube * w);
-            let rate = sign * seen(e)[0] * by + rho * square * (bulge + offset / cube);
-            let next = e + value / (2.0 * rate);
-            if value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
-                let e = next.clamp(low, high);
-                return Some(self.side * (offset + bulge * e) * self.sine(e));
-            }
-            e = next;
         }
-        None
+        for (p, e) in p.iter().zip(found) {
+            if !(step(place(*p), *e).abs() <= 8.0 * f64::EPSILON * *e) {
+                *e = f64::NAN;
+            }
+        }
     }
 }
 
@@ -346,8 +286,43 @@ impl Graph for Torus {
         Some(self.jump)
     }
 
-    /// On a level way there is nothing but the circles of its widest points.
-    fn steepest(&self, _: [f64; 2]) -> Option<f64> {
-        (self.slope == 0.0).then_some(0.0)
+    /// The product of the extremes of all factors.
+    fn steepest(&self, between: [f64; 2]) -> Option<f64> {
+        // On a level way there is nothing but the circles of its widest points.
+        if self.slope == 0.0 {
+            return Some(0.0);
+        }
+        let ends = [self.invert(between[0].abs())?, self.invert(between[1].abs())?];
+        let high = ends[0].max(ends[1]);
+        let square = self.slope * self.slope;
+        let offset = self.centre[0];
+        let cubes = ends.map(|e| self.radius * self.signs[0] * e * e * e);
+        let over = cubes.map(|cube| (cube + offset).abs());
+        let under = cubes.map(|cube| cube * (1.0 + square) + offset * square);
+        let flat = ((1.0 - high) * (1.0 + high)).max(0.0).sqrt();
+        let least = under[0].abs().min(under[1].abs()) * flat;
+        let bound = self.slope.abs() * over[0].max(over[1]) * high * self.sine(high) / least;
+        // With room for the rounding of all this; NaN is no bound.
+        (under[0] * under[1] > 0.0 && bound < STEEPEST).then_some(1.1 * bound)
+    }
+
+    fn many_q(&self, p: &[f64], q: &mut [f64], own: &mut [f64]) {
+        self.invert_many(p, own);
+        for (q, e) in q.iter_mut().zip(own) {
+            let [rho, f] = self.meridian(*e);
+            *q = -rho * self.slope * f / (self.signs[0] * *e);
+        }
+    }
+
+    fn many(&self, p: &[f64], own: &[f64], points: &mut [Point]) {
+        let sign = self.out * self.signs[0];
+        for ((p, e), point) in p.iter().zip(own).zip(points) {
+            let [rho, f] = self.meridian(*e);
+            let across = sign * e;
+            *point = Point {
+                z: self.centre[1] + self.radius * f,
+                normal: [-self.out * self.slope * f, across * (p / rho), self.out * f],
+            };
+        }
     }
 }

@@ -1,0 +1,116 @@
+//! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
+
+use super::torus::{STEPS, Torus};
+
+impl Torus {
+    /// The parts of the stretch over which the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone, as ranges of
+    /// `|e|`; `None` if that is not certain.
+    ///
+    /// With `s = R² − 2 σ R p + ρ²` and `k = 1 + m² + ρ_c m²/(r e³)`, `d|p|/dρ = k/w`. So the two terms of `ds/dρ` have one sign, or they cancel where
+    /// `h = ρ w/k` is `R`. The three terms of `d ln h/de` are `±r/ρ`, `m²/(e³ w²)` and `3 ρ_c m²/(r e⁴ k)`: `h` is monotone if the first is the
+    /// largest by far, or if all have one sign: by at least `r/2ρ`, so that rounding shifts the place where it is `R` by no more than that of a coordinate.
+    pub(crate) fn halves_about(&self, radius: f64, side: f64) -> Option<[Option<[f64; 2]>; 2]> {
+        let square = self.slope * self.slope;
+        let (offset, bulge) = (self.centre[0], self.signs[0] * self.radius);
+        let [low, high] = [self.ends[0].min(self.ends[1]), self.ends[0].max(self.ends[1])];
+        // On a level way all but the first term are 0, also where the normal is vertical.
+        let part = |size: f64, e: f64| if square == 0.0 { 0.0 } else { size * square / e };
+        let rate = |e: f64| 1.0 + square + part(offset / bulge, e * e * e);
+        let whole = Some([Some([low, high]), None]);
+        let (rising, falling) = (rate(low).min(rate(high)) >= 0.0, rate(low).max(rate(high)) <= 0.0);
+        let outside = side * self.side < 0.0;
+        if (rising && outside) || (falling && !outside) {
+            return whole;
+        }
+        if !rising {
+            return None;
+        }
+        let widest = self.meridian(low)[0].max(self.meridian(high)[0]);
+        let (w, k) = (self.sine(low), rate(low).min(rate(high)));
+        let others = part(1.0, low * low * low * w * w) + part(3.0 * (offset / bulge).abs(), low * low * low * low * k);
+        if !((offset >= 0.0 && bulge > 0.0) || self.radius / widest > 2.0 * others) {
+            return None;
+        }
+        // Negative where h is less than R.
+        let over = |e: f64| self.meridian(e)[0] * self.sine(e) - radius * rate(e);
+        let [before, after] = [over(low) > 0.0, over(high) > 0.0];
+        if before == after {
+            return whole;
+        }
+        let (mut a, mut b) = (low, high);
+        for _ in 0..STEPS {
+            let middle = if b > 4.0 * a && a > 0.0 {
+                (a * b).sqrt()
+            } else {
+                0.5 * (a + b)
+            };
+            if (over(middle) > 0.0) == before {
+                a = middle;
+            } else {
+                b = middle;
+            }
+        }
+        Some([Some([low, b]), Some([b, high])])
+    }
+
+    /// `p` at a value of `|e|`.
+    pub(crate) fn across(&self, e: f64) -> f64 {
+        self.side * self.place(e)[0]
+    }
+
+    /// `p` where the squared distance from that point has the value `s`, over a range of `|e|` where it is monotone.
+    pub(crate) fn invert_about(&self, [low, high]: [f64; 2], radius: f64, side: f64, s: f64) -> Option<f64> {
+        let (mut a, mut b) = (low, high);
+        let sign = side * self.side;
+        let [offset, bulge] = [self.centre[0], self.signs[0] * self.radius];
+        let square = self.slope * self.slope;
+        // Outwards, and q²: small numbers next to the centre.
+        let seen = |e: f64| {
+            let rho = offset + bulge * e;
+            let ahead = rho * self.slope / e.max(f64::MIN_POSITIVE);
+            [
+                radius - sign * rho * self.sine(e),
+                ahead * ahead * (1.0 - e) * (1.0 + e),
+            ]
+        };
+        let value = |e: f64| {
+            let [out, ahead] = seen(e);
+            out * out + ahead - s
+        };
+        let rising = value(high) > value(low);
+        let noise = 4.0 * f64::EPSILON * (radius + s.sqrt()) * s.sqrt();
+        // On a level way, the distance is R − σρ, or that less than 0.
+        let guess = |distance: f64| (sign * (radius - distance) - offset) / bulge;
+        let mut e = guess(s.sqrt());
+        if !(e > a && e < b) {
+            e = guess(-s.sqrt());
+        }
+        for _ in 0..STEPS {
+            if !(e > a && e < b) {
+                e = if b > 4.0 * a && a > 0.0 {
+                    (a * b).sqrt()
+                } else {
+                    0.5 * (a + b)
+                };
+            }
+            let value = value(e);
+            if (value < 0.0) == rising {
+                a = e;
+            } else {
+                b = e;
+            }
+            let rho = offset + bulge * e;
+            let w = self.sine(e);
+            let cube = e * e * e;
+            let by = (bulge * cube * (1.0 + square) + offset * square) / (cube * w);
+            let rate = sign * seen(e)[0] * by + rho * square * (bulge + offset / cube);
+            let next = e + value / (2.0 * rate);
+            if value.abs() <= noise || (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
+                let e = next.clamp(low, high);
+                return Some(self.side * (offset + bulge * e) * self.sine(e));
+            }
+            e = next;
+        }
+        None
+    }
+}
