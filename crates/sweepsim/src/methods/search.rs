@@ -91,7 +91,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles what it can of the placement of a tool that stands along the lines between two moves without rotation.
+    /// Settles what it can of the placement of a tool between two moves without rotation, or arcs with which it turns.
     fn placed_in_closed_form(
         &self,
         (at, end): (usize, SegmentEnd),
@@ -118,9 +118,16 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             lines: self.lines,
             harvest,
         };
-        let place = (tip, translation::slack(self.size.slack));
-        let collector = (&mut collector, self.ceiling);
-        translation::placements(outline, place, sides, collector, source, &mut space.done.placed);
+        let slack = translation::slack(self.size.slack);
+        let done = &mut space.done.placed;
+        let part = &self.parts[at];
+        if translation::stands(part) {
+            let collector = (&mut collector, self.ceiling);
+            translation::placements(outline, (tip, slack), sides, collector, source, done);
+        } else {
+            let place = (&part.segment.start(), tip, slack);
+            translation::leaning(outline, place, sides, &mut collector, source, done);
+        }
     }
 
     /// Whether any line passes near the segment.

@@ -271,3 +271,63 @@ proptest! {
         agree(name, tool, &moves, &grid, if fine { least } else { least.max(TOLERANCE) })?;
     }
 }
+
+/// 3+2 with tools of lines and balls: joints and ends of the path are in closed form, too, whichever way the tool leans.
+#[test]
+fn no_box_of_tilted_tools() {
+    let tips = [
+        [-4.0, 1.3, 0.2],
+        [1.0, 2.2, -0.7],
+        [1.5, -2.0, -0.6],
+        [3.3, -2.4, 2.9],
+        [3.2, 1.0, 2.9],
+    ];
+    for (number, axis) in [0, 1, 3, 4, 10].into_iter().zip([
+        [0.3, 0.2, 1.0],
+        [-0.9, 0.4, 0.5],
+        [0.05, -0.6, 1.0],
+        [0.7, 0.1, -0.4],
+        [0.2, 0.9, 0.3],
+    ]) {
+        let (name, tool, _) = &tools()[number];
+        let [closed, charts] = agree(name, tool, &path(&tips, axis), &grid([61, 57]), TOLERANCE).expect("the same");
+        let [own, other] = [&closed.statistics, &charts.statistics];
+        assert_eq!((own.boxes, own.repaired), (0, 0), "{name}: {own:?}");
+        assert!(other.boxes > 500, "{name}: {other:?}");
+        let off = own.crossings.abs_diff(other.crossings);
+        assert!(off <= 4 + other.crossings / 100, "{name}: {own:?} {other:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// Tools that lean by next to nothing, or almost lie, on moves along the grid and along their own axis.
+    #[test]
+    fn hardly_tilted(number in 0..13usize, exponent in -14..-1i32, lying in any::<bool>(), heading in 0.0..6.3,
+        start in [-3..3, -3..3, -2..2], steps in prop::collection::vec((0..4usize, -3..4), 1..4)) {
+        let off = 10f64.powi(exponent);
+        let (c, s) = (f64::cos(heading), f64::sin(heading));
+        let axis = if lying { [c, s, off] } else { [c * off, s * off, 1.0] };
+        let mut tips = vec![start.map(f64::from)];
+        for (direction, step) in steps {
+            let mut next = tips[tips.len() - 1];
+            if direction == 3 {
+                next = [0, 1, 2].map(|k| next[k] + axis[k] * f64::from(step));
+            } else {
+                next[direction] += f64::from(step);
+            }
+            tips.push(next);
+        }
+        let (name, tool, _) = &tools()[number];
+        // All lines of a disc that stands on them would be in it.
+        prop_assume!(!lying || off > 1e-6);
+        // In a wall that leans by less than the tolerance, a line is anywhere.
+        let grid = if exponent < -5 {
+            grid([21, 23])
+        } else {
+            Grid::new([-10.25, -10.25], [10.25, 10.25], [21, 21]).expect("a grid")
+        };
+        agree(name, tool, &path(&tips, axis), &grid, TOLERANCE)?;
+    }
+}

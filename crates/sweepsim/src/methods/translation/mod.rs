@@ -10,15 +10,19 @@
 
 mod bend;
 mod ceiling;
+mod cones;
 mod curves;
 mod discs;
+mod leaning;
 mod placed;
 mod rows;
 mod strip;
+mod wedges;
 
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
+pub(crate) use leaning::leaning;
 pub(crate) use placed::{Neighbour, placements};
 pub(crate) use strip::envelope;
 

@@ -21,9 +21,9 @@ pub(crate) enum Neighbour {
 }
 
 impl Neighbour {
-    /// An end of a move of a tool that stands along the dexels. A turn about its own axis moves no point out of its surface.
+    /// An end of a move of a tool that does not turn, or that stands along the dexels: a turn about its own axis moves no point out of its surface.
     pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
-        if !stands(part) {
+        if !(part.segment.is_arc() && part.segment.turns().len() == 1 || stands(part)) {
             return None;
         }
         let travel = part.segment.travel();

@@ -1,8 +1,17 @@
 //! The lines of a lattice in a rectangle along a move, or in a sector about the centre of an arc, row by row.
 
-use super::curves::Heading;
 use crate::methods::lattice::Lattice;
 use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A plane across the dexels, seen from the tip: `q` ahead, `p` to the left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Floor {
+    pub tip: [f64; 3],
+    /// A unit vector.
+    pub ahead: [f64; 2],
+    /// The rounding error of coordinates.
+    pub slack: f64,
+}
 
 /// Lines of one column of the lattice (the same `x`), next to each other.
 #[derive(Clone, Copy, Debug)]
@@ -66,24 +75,24 @@ pub(super) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Op
 }
 
 /// Visits all lines with `p` and `q` in these ranges, and a few others.
-pub(super) fn rows(lines: &Lattice, heading: &Heading, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row)) {
-    let margin = 2.0 * heading.slack;
+pub(super) fn rows(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row)) {
+    let margin = 2.0 * floor.slack;
     let [p, q] = [p, q].map(|[low, high]| [low - margin, high + margin]);
-    let [ux, uy] = heading.ahead;
+    let [ux, uy] = floor.ahead;
     let spread = |a: f64, [low, high]: [f64; 2]| {
         let (s, t) = (a * low, a * high);
         [s.min(t), s.max(t)]
     };
     let (by_q, by_p) = (spread(ux, q), spread(-uy, p));
-    let xs = [heading.tip[0] + by_q[0] + by_p[0], heading.tip[0] + by_q[1] + by_p[1]];
+    let xs = [floor.tip[0] + by_q[0] + by_p[0], floor.tip[0] + by_q[1] + by_p[1]];
     let Some([first, last]) = numbers(lines, 0, xs) else {
         return;
     };
     let (across, along) = (Band::new(p, ux), Band::new(q, uy));
     for i in first..=last {
-        let x = lines.coordinate(0, i) - heading.tip[0];
+        let x = lines.coordinate(0, i) - floor.tip[0];
         let (a, b) = (across.within(-uy * x), along.within(ux * x));
-        let ys = [heading.tip[1] + a[0].max(b[0]), heading.tip[1] + a[1].min(b[1])];
+        let ys = [floor.tip[1] + a[0].max(b[0]), floor.tip[1] + a[1].min(b[1])];
         if let Some(j) = numbers(lines, 1, ys) {
             visit(Row { i, j, x });
         }

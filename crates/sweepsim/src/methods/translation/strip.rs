@@ -1,7 +1,7 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
 use super::curves::{Graph, Heading, Point, ring, slant, torus};
-use super::rows::{Row, rows};
+use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use sweepsim_dexel::Source;
@@ -102,6 +102,14 @@ struct Part {
     jump: Option<i8>,
     /// The error of the way to a line; `None` if each point has to tell.
     error: Option<f64>,
+}
+
+fn floor(heading: &Heading) -> Floor {
+    Floor {
+        tip: heading.tip,
+        ahead: heading.ahead,
+        slack: heading.slack,
+    }
 }
 
 impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
@@ -216,7 +224,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
             }),
         };
         let lattice = self.lines.lines;
-        rows(lattice, heading, [wide, reach], |Row { i, j, x }| {
+        rows(lattice, &floor(heading), [wide, reach], |Row { i, j, x }| {
             let mut first = j[0];
             while first <= j[1] {
                 let last = j[1].min(first + LANES - 1);
@@ -339,7 +347,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         let lattice = self.lines.lines;
         let [ux, uy] = heading.ahead;
         let collector = &mut *self.lines;
-        rows(lattice, heading, [p, reach], |Row { i, j, x }| {
+        rows(lattice, &floor(heading), [p, reach], |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lattice.coordinate(1, j) - heading.tip[1];
                 let (own, q) = (ux * y - uy * x, ux * x + uy * y);

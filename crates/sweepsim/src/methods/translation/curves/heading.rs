@@ -114,6 +114,11 @@ impl Heading {
         })
     }
 
+    /// How far a tool turned by `turn` travels along its axis: as all headings have it.
+    pub fn along_axis(turn: &Matrix3<f64>, way: [f64; 3]) -> f64 {
+        turned_back(turn, &way.into()).z
+    }
+
     /// `d_a/d_⊥`: the slope of the move, seen from the tool's axis.
     pub fn slope(&self) -> f64 {
         self.along / self.across

@@ -1,0 +1,143 @@
+//! Where on a cone the sign of `g` is not the same before and after a placement: between a few azimuths.
+
+use super::leaning::Side;
+use std::f64::consts::PI;
+
+/// Wedges are wider than they need to be by this angle on both sides.
+const MARGIN: f64 = 1e-6;
+/// Of a cosine: nearer to 1 than this, it does not determine an angle well, and wedges are as wide as [`BLUR`].
+const STEEP: f64 = 1e-6;
+const BLUR: f64 = 2e-3;
+
+/// A range of azimuths: its middle, and half of its width.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wedge {
+    middle: f64,
+    half: f64,
+    /// Of the middle.
+    cosine: f64,
+    sine: f64,
+    /// Cosine of the half.
+    least: f64,
+}
+
+impl Wedge {
+    fn new(low: f64, high: f64) -> Self {
+        let (middle, half) = (0.5 * (low + high), (0.5 * (high - low)).min(PI));
+        let (sine, cosine) = middle.sin_cos();
+        Self {
+            middle,
+            half,
+            cosine,
+            sine,
+            least: half.cos(),
+        }
+    }
+
+    /// Whether it has an azimuth.
+    pub fn holds(&self, cosine: f64, sine: f64) -> bool {
+        self.half >= PI || cosine * self.cosine + sine * self.sine >= self.least
+    }
+
+    /// The range of the sine of the azimuth less an angle.
+    fn sines(&self, angle: f64) -> [f64; 2] {
+        let [low, high] = [self.middle - self.half, self.middle + self.half].map(|end| end - angle);
+        let ends = [low.sin(), high.sin()];
+        let passes = |place: f64| ((low - place) / (2.0 * PI)).ceil() <= ((high - place) / (2.0 * PI)).floor();
+        [
+            if passes(-0.5 * PI) { -1.0 } else { ends[0].min(ends[1]) },
+            if passes(0.5 * PI) { 1.0 } else { ends[0].max(ends[1]) },
+        ]
+    }
+
+    /// The range of `b`, for radii in a range.
+    pub fn across(&self, [inner, outer]: [f64; 2]) -> [f64; 2] {
+        let [low, high] = self.sines(0.0);
+        [(inner * low).min(outer * low), (inner * high).max(outer * high)]
+    }
+
+    /// The range of `q = s ζ − k a` along a line of the meridian, given `s` and `k`.
+    pub fn along(&self, ends: [[f64; 2]; 2], [s, k]: [f64; 2]) -> [f64; 2] {
+        let cosines = self.sines(-0.5 * PI);
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for [radius, height] in ends {
+            for cosine in cosines {
+                let q = s * height - k * radius * cosine;
+                range = [range[0].min(q), range[1].max(q)];
+            }
+        }
+        range
+    }
+}
+
+/// The azimuths at which the sign of `g` on a line of the meridian changes, or may change.
+pub(super) fn wedges([n, m]: [f64; 2], sides: &[Side; 2]) -> Vec<Wedge> {
+    let mut borders: Vec<f64> = Vec::with_capacity(6);
+    let mut ranges: Vec<[f64; 2]> = Vec::with_capacity(8);
+    for side in sides {
+        let Side::Along([da, db, dc]) = *side else { continue };
+        let (size, offset) = (n.abs() * da.hypot(db), m * dc);
+        if offset.abs() > size * (1.0 + STEEP) {
+            continue;
+        }
+        // g = size cos(φ − towards) + offset
+        let towards = (n * db).atan2(n * da);
+        let ratio = if size > 0.0 { -offset / size } else { 0.0 };
+        let open = ratio.clamp(-1.0, 1.0).acos();
+        borders.extend([towards - open, towards + open]);
+        if ratio.abs() > 1.0 - STEEP {
+            let middle = if ratio > 0.0 { towards } else { towards + PI };
+            ranges.push([middle - BLUR, middle + BLUR]);
+        }
+    }
+    let negative = |angle: f64| {
+        let [before, after] = [0, 1].map(|k| match sides[k] {
+            Side::Beyond(negative) => negative,
+            Side::Along([da, db, dc]) => n * (da * angle.cos() + db * angle.sin()) + m * dc < 0.0,
+        });
+        before != after
+    };
+    if borders.is_empty() {
+        return if negative(0.0) {
+            vec![Wedge::new(-PI, PI)]
+        } else {
+            Vec::new()
+        };
+    }
+    let turned = |angle: f64| angle - 2.0 * PI * (angle / (2.0 * PI)).floor();
+    for border in &mut borders {
+        *border = turned(*border);
+    }
+    borders.sort_by(f64::total_cmp);
+    borders.push(borders[0] + 2.0 * PI);
+    for pair in borders.windows(2) {
+        if pair[1] > pair[0] && negative(0.5 * (pair[0] + pair[1])) {
+            ranges.push([pair[0] - MARGIN, pair[1] + MARGIN]);
+        }
+    }
+    // Each begins in the first turn; those that overlap are one.
+    for range in &mut ranges {
+        let first = turned(range[0]);
+        *range = [first, first + range[1] - range[0]];
+    }
+    ranges.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut joined: Vec<[f64; 2]> = Vec::with_capacity(ranges.len());
+    for range in ranges {
+        match joined.last_mut() {
+            Some(last) if range[0] <= last[1] => last[1] = last[1].max(range[1]),
+            _ => joined.push(range),
+        }
+    }
+    // The last may reach into the first.
+    while let [first, .., last] = joined[..]
+        && last[1] - 2.0 * PI >= first[0]
+    {
+        joined.remove(0);
+        let end = joined.len() - 1;
+        joined[end][1] = last[1].max(first[1] + 2.0 * PI);
+    }
+    if joined.iter().any(|[low, high]| high - low >= 2.0 * PI - MARGIN) {
+        return vec![Wedge::new(-PI, PI)];
+    }
+    joined.into_iter().map(|[low, high]| Wedge::new(low, high)).collect()
+}
