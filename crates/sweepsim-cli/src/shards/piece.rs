@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
-use sweepsim::verify::TileRecord;
+use sweepsim::verify::{TileDeviation, TileRecord};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::{FormatError, ReportedDexel, read_dexels_binary, write_atomically, write_dexels_binary};
 
@@ -88,6 +88,9 @@ pub(crate) struct TileNotes {
     /// What was found, if moves were judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub record: Option<TileRecord>,
+    /// How what is left differs from the target, if it is to be compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<TileDeviation>,
 }
 
 #[derive(Serialize, Deserialize)]

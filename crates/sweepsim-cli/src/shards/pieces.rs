@@ -6,7 +6,7 @@ use crate::session::Failure;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use sweepsim::verify::TileRecord;
+use sweepsim::verify::{TileDeviation, TileRecord};
 use sweepsim_dexel::Dexels;
 use sweepsim_formats::{ReportedDexel, io_reason};
 
@@ -21,6 +21,8 @@ pub(crate) struct Gathered {
     pub unresolved: Vec<ReportedDexel>,
     /// What was found on each tile, if moves were judged.
     pub records: Vec<TileRecord>,
+    /// How each tile differs from the target, if it was compared.
+    pub deviations: Vec<TileDeviation>,
 }
 
 impl Gathered {
@@ -31,6 +33,7 @@ impl Gathered {
             repaired: 0,
             unresolved: Vec::new(),
             records: Vec::new(),
+            deviations: Vec::new(),
         }
     }
 }
@@ -143,9 +146,11 @@ pub(crate) fn gather(
             .tiles(grid)
             .ok_or_else(|| refused("this piece is damaged: its tiles are invalid".to_owned()))?;
         for tile in own {
-            let judged = tiling.sets[tile.notes.set].purpose != Purpose::Cut;
+            let purpose = tiling.sets[tile.notes.set].purpose;
+            let judged = purpose != Purpose::Cut;
+            let compared = matches!(purpose, Purpose::Judge { compare: true, .. });
             let fits = |record: &TileRecord| judged && record.is_of(moves);
-            if !tile.notes.record.as_ref().map_or(!judged, fits) {
+            if !tile.notes.record.as_ref().map_or(!judged, fits) || tile.notes.deviation.is_some() != compared {
                 return Err(refused(
                     "this piece is damaged: its findings are of another program".to_owned(),
                 ));
@@ -163,6 +168,7 @@ pub(crate) fn gather(
             gathered.repaired += tile.notes.repaired;
             gathered.unresolved.extend(tile.notes.unresolved);
             gathered.records.extend(tile.notes.record);
+            gathered.deviations.extend(tile.notes.deviation);
             dexels.push(tile.dexels);
         }
         gathered.unresolved.sort_by_key(|dexel| (dexel.i, dexel.j));

@@ -12,8 +12,8 @@ use sweepsim_formats::Job;
 pub(crate) enum Purpose {
     /// What is left of the stock.
     Cut,
-    /// The same, and which moves do harm on the way; what each move does, if asked for.
-    Judge { each_move: bool },
+    /// The same, and which moves do harm on the way; what each move does, and how the rest differs from the target, if asked for.
+    Judge { each_move: bool, compare: bool },
     /// Which moves of a set-up touch its fixtures.
     Fixtures(usize),
 }

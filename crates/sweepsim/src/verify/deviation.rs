@@ -68,25 +68,77 @@ pub struct Deviations {
     pub beyond_stock: f64,
 }
 
+/// How what remains on a tile differs from the target there: what can be joined with [other tiles](deviations_of_tiles). It can be stored with the feature `serde`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct TileDeviation {
+    /// Of the surface: inside the target, and outside.
+    sums: [Sums; 2],
+    /// The greatest distances of what is missing, and of what is left.
+    greatest: [f64; 2],
+    /// The volume of the target outside the stock.
+    beyond_stock: f64,
+}
+
+impl TileDeviation {
+    /// Of a stock, what remains of it, and the target, all on the lines of one tile.
+    #[must_use]
+    pub fn new(stock: &Dexels, remaining: &Dexels, target: &Target) -> Self {
+        let grid = *stock.grid();
+        let [dx, dy] = grid.spacing();
+        let (before, rest, solid) = (all(stock), all(remaining), all(target.solid()));
+        let inside = solid.intersection(&before, 0.0).minus(&rest);
+        let outside = rest.minus(&solid);
+        let to = target.distance();
+        Self {
+            sums: surface(remaining, target),
+            greatest: [
+                greatest(&inside, &grid, to, Side::Inside).0,
+                greatest(&outside, &grid, to, Side::Outside).0,
+            ],
+            beyond_stock: solid.minus(&before).length() * dx * dy,
+        }
+    }
+}
+
+/// All the material of some dexels.
+fn all(dexels: &Dexels) -> Lines {
+    Lines::of(dexels, dexels.iter().map(|(line, _)| line as u32))
+}
+
 /// Compares what remains of a stock with the target, on the lines of their common grid. Regions are exact there; distances of the surface are those of the
 /// ends of intervals.
 #[must_use]
 pub fn deviations(stock: &Dexels, remaining: &Dexels, target: &Target) -> Deviations {
+    deviations_of_tiles(
+        &[TileDeviation::new(stock, remaining, target)],
+        stock,
+        remaining,
+        target,
+    )
+}
+
+/// The same if it is known of all tiles how they differ, in the order of the tiles: only regions are looked for, since they cross tiles.
+#[must_use]
+pub fn deviations_of_tiles(tiles: &[TileDeviation], stock: &Dexels, remaining: &Dexels, target: &Target) -> Deviations {
     let grid = *stock.grid();
-    let [dx, dy] = grid.spacing();
-    let all = |dexels: &Dexels| Lines::of(dexels, dexels.iter().map(|(line, _)| line as u32));
-    let (before, rest, solid) = (all(stock), all(remaining), all(target.solid()));
-    let missing = all(target.core()).intersection(&before, 0.0).minus(&rest);
+    let rest = all(remaining);
+    let missing = all(target.core()).intersection(&all(stock), 0.0).minus(&rest);
     let left = rest.minus(&all(target.allowed()));
     let webs = Webs { remaining, target };
     let mut regions = connected(&missing, &grid, target, DeviationKind::Gouge, &webs);
     regions.extend(connected(&left, &grid, target, DeviationKind::Excess, &webs));
-    let [mut gouge, mut excess] = surface(remaining, target);
-    let inside = solid.intersection(&before, 0.0).minus(&rest);
-    let outside = rest.minus(&solid);
-    let to = target.distance();
-    gouge.max = gouge.max.max(greatest(&inside, &grid, to, Side::Inside).0);
-    excess.max = excess.max.max(greatest(&outside, &grid, to, Side::Outside).0);
+    let mut sums = [Sums::default(); 2];
+    let mut greatest = [0.0_f64; 2];
+    for tile in tiles {
+        for side in 0..2 {
+            sums[side].merge(&tile.sums[side]);
+            greatest[side] = greatest[side].max(tile.greatest[side]);
+        }
+    }
+    let [mut gouge, mut excess] = sums.map(|sums| sums.deviation());
+    gouge.max = gouge.max.max(greatest[0]);
+    excess.max = excess.max.max(greatest[1]);
     for region in &regions {
         let side = match region.kind {
             DeviationKind::Gouge => &mut gouge,
@@ -97,7 +149,7 @@ pub fn deviations(stock: &Dexels, remaining: &Dexels, target: &Target) -> Deviat
     Deviations {
         gouge,
         excess,
-        beyond_stock: (solid.minus(&before).length() * dx * dy).max(0.0),
+        beyond_stock: tiles.iter().map(|tile| tile.beyond_stock).sum::<f64>().max(0.0),
         regions,
     }
 }
@@ -146,7 +198,8 @@ impl Webs<'_> {
 }
 
 /// Sums over the points of a surface on one side.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Sums {
     max: f64,
     area: f64,
@@ -189,7 +242,7 @@ impl Sums {
 }
 
 /// The distances of all ends: inside the target, and outside.
-fn surface(remaining: &Dexels, target: &Target) -> [Deviation; 2] {
+fn surface(remaining: &Dexels, target: &Target) -> [Sums; 2] {
     let grid = *remaining.grid();
     let [dx, dy] = grid.spacing();
     let lines: Vec<usize> = remaining.iter().map(|(line, _)| line).collect();
@@ -220,7 +273,7 @@ fn surface(remaining: &Dexels, target: &Target) -> [Deviation; 2] {
             all.merge(own);
         }
     }
-    all.map(|sums| sums.deviation())
+    all
 }
 
 /// Lines this many columns or rows apart are neighbours: what is thinner than their distance is on some of them only.

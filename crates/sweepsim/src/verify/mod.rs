@@ -27,7 +27,7 @@ mod search;
 mod solid;
 mod target;
 
-pub use deviation::{Deviation, DeviationKind, Deviations, Region, deviations};
+pub use deviation::{Deviation, DeviationKind, Deviations, Region, TileDeviation, deviations, deviations_of_tiles};
 pub use driver::{TileVerification, verify, verify_tiles};
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use record::{Judgement, TileRecord};

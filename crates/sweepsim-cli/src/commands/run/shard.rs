@@ -146,20 +146,26 @@ fn tiles(
             repaired: 0,
             unresolved: reported(unresolved),
             record: None,
+            deviation: None,
         };
         if set.purpose != Purpose::Cut {
             let judged = verify::judged_tiles(session, options, judging, set, &mine)?;
-            done.extend(mine.into_iter().zip(judged).map(|(number, tile)| PieceTile {
-                notes: TileNotes {
-                    record: Some(tile.record),
-                    ..notes(number, tile.crossings, &tile.unresolved)
-                },
-                // Only what is left along z is part of the result.
-                dexels: match direction {
-                    0 => tile.remaining,
-                    _ => Dexels::empty(*tile.remaining.grid()),
-                },
-            }));
+            done.extend(
+                mine.into_iter()
+                    .zip(judged)
+                    .map(|(number, (tile, deviation))| PieceTile {
+                        notes: TileNotes {
+                            record: Some(tile.record),
+                            deviation,
+                            ..notes(number, tile.crossings, &tile.unresolved)
+                        },
+                        // Only what is left along z is part of the result.
+                        dexels: match direction {
+                            0 => tile.remaining,
+                            _ => Dexels::empty(*tile.remaining.grid()),
+                        },
+                    }),
+            );
             continue;
         }
         let stock = mine.iter().map(|tile| set.stock(&job.stock, *tile));

@@ -14,9 +14,9 @@ use super::tri_surface::grids_aside;
 use crate::arguments::{Directions, JudgeOptions, Output, RunOptions};
 use crate::session::{Failure, JobSession, phase, words};
 use crate::shards::{Gathered, Purpose, TilingSet};
-use program::JudgedProgram;
+use program::{JudgedProgram, JudgedTile};
 use std::collections::BTreeMap;
-use sweepsim::verify::{Judgement, Target, TileVerification, deviations, joined};
+use sweepsim::verify::{Judgement, Target, TileDeviation, deviations_of_tiles, joined};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
 
@@ -46,13 +46,18 @@ pub(super) fn sets(
     // The page plots what each move does, where that costs little.
     let plotted = session.outputs.wants(Output::Report) && job.moves() <= PLOTTED;
     let each_move = judging.moves || plotted;
-    let mut sets = vec![TilingSet::new("verify", job.grid, None, options.tile).to(Purpose::Judge { each_move })];
+    let compare = job.target.is_some() && !judging.first;
+    let along_z = Purpose::Judge { each_move, compare };
+    let mut sets = vec![TilingSet::new("verify", job.grid, None, options.tile).to(along_z)];
     if options.directions == Some(Directions::Xyz) {
         let aside = grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
         if let Some((grids, within)) = aside {
             for (grid, name) in grids.into_iter().zip(["along x", "along y"]) {
                 let set = TilingSet::new(name, grid, Some(within.clone()), options.tile);
-                sets.push(set.to(Purpose::Judge { each_move: false }));
+                sets.push(set.to(Purpose::Judge {
+                    each_move: false,
+                    compare: false,
+                }));
             }
         }
     }
@@ -74,7 +79,7 @@ pub(super) fn judged_tiles(
     judging: &JudgeOptions,
     set: &TilingSet,
     tiles: &[usize],
-) -> Result<Vec<TileVerification>, Failure> {
+) -> Result<Vec<JudgedTile>, Failure> {
     JudgedProgram::new(session, options, judging)?.judge(set, tiles, (None, None), None)
 }
 
@@ -103,7 +108,7 @@ pub(super) fn verified(
         let known = (stock, before.target.as_ref());
         let done = phase(report, "sweep", || program.judge(set, &all, known, until))?;
         if judging.first {
-            let first = done.iter().filter_map(|tile| tile.record.first()).min();
+            let first = done.iter().filter_map(|(tile, _)| tile.record.first()).min();
             until = [until, first].into_iter().flatten().min();
         }
         looks.insert(number, joined_tiles(set, done)?);
@@ -123,10 +128,11 @@ pub(super) fn merged(
 }
 
 /// What the tiles of a set find together.
-fn joined_tiles(set: &TilingSet, done: Vec<TileVerification>) -> Result<Gathered, Failure> {
+fn joined_tiles(set: &TilingSet, done: Vec<JudgedTile>) -> Result<Gathered, Failure> {
     let mut all = Gathered::empty(set);
     let mut remaining = Vec::with_capacity(done.len());
-    for tile in done {
+    for (tile, deviation) in done {
+        all.deviations.extend(deviation);
         all.crossings += tile.crossings;
         all.unresolved.extend(reported(&tile.unresolved));
         all.records.push(tile.record);
@@ -190,10 +196,16 @@ impl Before {
         }
         session.progress.phase("deviation");
         let remaining = along_z.dexels;
-        let found = target
-            .as_ref()
-            .filter(|_| !done.stopped)
-            .map(|target| phase(report, "deviation", || deviations(&stock, &remaining, target)));
+        let differ = |target: &Target| {
+            // Not known where the first finding was looked for, but nothing was found.
+            let own: Vec<TileDeviation> = match &along_z.deviations[..] {
+                [] => vec![TileDeviation::new(&stock, &remaining, target)],
+                known => known.to_vec(),
+            };
+            deviations_of_tiles(&own, &stock, &remaining, target)
+        };
+        let compared = target.as_ref().filter(|_| !done.stopped);
+        let found = compared.map(|target| phase(report, "deviation", || differ(target)));
         findings::describe(report, session, &done, found.as_ref());
         Ok(Verified {
             volume_removed: stock.volume() - remaining.volume(),

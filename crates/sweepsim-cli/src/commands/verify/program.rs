@@ -10,10 +10,13 @@ use std::collections::BTreeMap;
 use sweepsim::Monitor;
 use sweepsim::motion::{Assembly, Tool};
 use sweepsim::verify::{
-    MoveState, OtherCourse, Scene, Target, TileVerification, ToolPath, VerifyOptions, verify_tiles,
+    MoveState, OtherCourse, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
 };
-use sweepsim_dexel::Dexels;
+use sweepsim_dexel::{Dexels, StockError};
 use sweepsim_formats::{Job, JobPath, Report};
+
+/// What is found on a tile, and how what is left there differs from the target.
+pub(in crate::commands) type JudgedTile = (TileVerification, Option<TileDeviation>);
 
 /// The program of a job.
 pub(super) struct JudgedProgram<'a> {
@@ -66,7 +69,7 @@ impl<'a> JudgedProgram<'a> {
         tiles: &[usize],
         (stock, target): (Option<&Dexels>, Option<&Target>),
         until: Option<(usize, usize)>,
-    ) -> Result<Vec<TileVerification>, Failure> {
+    ) -> Result<Vec<JudgedTile>, Failure> {
         let (job, progress) = (&self.session.job, &self.session.progress);
         let failed = |what: &'static str| move |error: &dyn std::fmt::Display| format!("{what}: {error}");
         let failure = |text: String| self.session.failure(text);
@@ -74,7 +77,7 @@ impl<'a> JudgedProgram<'a> {
         let monitor = progress as &dyn Monitor;
         match set.purpose {
             Purpose::Cut => Ok(Vec::new()),
-            Purpose::Judge { each_move } => {
+            Purpose::Judge { each_move, compare } => {
                 let on_tile = |tile: &usize| match stock {
                     Some(whole) => Ok(whole.tile(&set.tiles[*tile]).expect("a tile of the stock's grid")),
                     None => set.stock(&job.stock, *tile),
@@ -90,7 +93,20 @@ impl<'a> JudgedProgram<'a> {
                 let (_, toolpaths) = self.toolpaths(None);
                 let options = options.each_move(each_move);
                 let done = verify_tiles(scenes.collect(), &toolpaths, &options, monitor);
-                done.map_err(|error| self.session.failed(error))
+                let done = done.map_err(|error| self.session.failed(error))?;
+                // Computed again: to keep all of it would take twice the memory.
+                let compared = |((tile, target), done): ((&usize, &Option<Target>), TileVerification)| {
+                    let target = target.as_ref().filter(|_| compare);
+                    let differs = |target: &Target| {
+                        let before = on_tile(tile)?;
+                        Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target))
+                    };
+                    let deviation = target.map(differs).transpose()?;
+                    Ok((done, deviation))
+                };
+                let tiles = tiles.par_iter().zip(&targets).zip(done);
+                let done = tiles.map(compared).collect::<Result<_, StockError>>();
+                done.map_err(|error| failure(failed("stock")(&error)))
             }
             Purpose::Fixtures(setup) => {
                 let fixtures = tiles
@@ -113,7 +129,7 @@ impl<'a> JudgedProgram<'a> {
                 for tile in &mut done {
                     tile.record = std::mem::take(&mut tile.record).renumbered(&numbers, job.paths.len());
                 }
-                Ok(done)
+                Ok(done.into_iter().map(|tile| (tile, None)).collect())
             }
         }
     }

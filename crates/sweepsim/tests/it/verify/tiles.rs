@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use sweepsim::SweepError;
 use sweepsim::prelude::*;
 use sweepsim::verify::{
-    FindingKind, Judgement, MoveState, Scene, Target, TileRecord, TileVerification, ToolPath, Verification,
-    VerifyOptions, verify, verify_tiles,
+    FindingKind, Judgement, MoveState, Scene, Target, TileDeviation, TileRecord, TileVerification, ToolPath,
+    Verification, VerifyOptions, deviations, deviations_of_tiles, verify, verify_tiles,
 };
 use sweepsim_dexel::{Grid, TriangleSoup};
 use sweepsim_motion::{Assembly, BodyKind};
@@ -212,6 +212,35 @@ fn targets_on_tiles_are_parts_of_the_whole() {
         assert!(own.solid() == part.solid() && own.core() == part.core() && own.allowed() == part.allowed());
     }
     assert!(whole.tile(&Grid::new([0.0; 2], [1.0; 2], [4, 4]).unwrap()).is_none());
+}
+
+#[test]
+fn deviations_of_tiles_are_those_of_the_whole() {
+    let program = Program::new(903);
+    let grid = program.case.grid();
+    let done = program.whole(&VerifyOptions::default());
+    let [min, max] = program.case.stock;
+    let stock = Stock::Block { min, max }.dexels(&grid).unwrap();
+    let target = Target::new(&program.target, &grid, 0.3, 0.2).unwrap();
+    let whole = deviations(&stock, &done.remaining, &target);
+    assert!(whole.gouge.count > 0 && whole.excess.count > 0 && !whole.regions.is_empty());
+    for side in [13, 40] {
+        let on = |tile: &Grid| {
+            let part = |dexels: &Dexels| dexels.tile(tile).unwrap();
+            TileDeviation::new(&part(&stock), &part(&done.remaining), &target.tile(tile).unwrap())
+        };
+        let tiles: Vec<TileDeviation> = grid.tiles(side).iter().map(on).collect();
+        let joined = deviations_of_tiles(&tiles, &stock, &done.remaining, &target);
+        assert_eq!(joined.regions, whole.regions);
+        for (a, b) in [(joined.gouge, whole.gouge), (joined.excess, whole.excess)] {
+            assert_eq!(a.count, b.count);
+            // The search for the greatest ends within a ten-thousandth.
+            assert!((a.max - b.max).abs() <= 1e-4 * b.max, "{a:?} {b:?}");
+            for (a, b) in [(a.mean, b.mean), (a.rms, b.rms), (a.area, b.area)] {
+                assert!((a - b).abs() <= 1e-12 * b, "{a} {b}");
+            }
+        }
+    }
 }
 
 #[test]
