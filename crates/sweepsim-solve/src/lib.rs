@@ -28,7 +28,7 @@ mod systems;
 
 pub use bundles::{Bundle, BundleError, BundleSolver};
 pub use charts::{
-    ChartMap, ChartOptions, ChartSolver, ChartStatistics, ChartTarget, Preimage, Sample, Sink, Targets,
+    Affine, ChartMap, ChartOptions, ChartSolver, ChartStatistics, ChartTarget, Preimage, Sample, Sink, Targets,
     UnresolvedTarget,
 };
 pub use coefficients::MAX_DEGREE;

@@ -15,8 +15,8 @@ type Square<const N: usize> = SMatrix<f64, N, N>;
 /// A box of positions, in coordinates scaled to the box of a chart.
 #[derive(Clone, Copy)]
 pub(crate) struct Region<const N: usize> {
-    lo: SVector<f64, N>,
-    hi: SVector<f64, N>,
+    pub lo: SVector<f64, N>,
+    pub hi: SVector<f64, N>,
 }
 
 impl<const N: usize> Region<N> {

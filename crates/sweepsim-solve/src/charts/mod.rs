@@ -7,7 +7,8 @@
 //! 2. encloses the Jacobian over the box and preconditions it with the inverse `K` of its midpoint. With `R = |I − K J(box)|`
 //!    (entrywise bound, in coordinates scaled to the box) every preimage `x` in the box satisfies, by the mean value theorem
 //!    around the centre `m`, `|x − m + K(Φ(m) − q)| ≤ R·1` componentwise: targets that fail this have no preimage in the box;
-//! 3. if `‖R‖∞ < 1` the box is a chart: two preimages `p, q` of one target would give `(I − K J*)(p − q) = p − q`. Newton's
+//! 3. if the spectral radius of `R` is below 1, the box is a chart: two preimages `p, q` of one target would give `(I − K J*)(p − q) = p − q`, so
+//!    that `|p − q| ≤ Rⁿ|p − q|` for all `n`. Newton's
 //!    method finds the preimage, or the interval iteration of step 2 around ever better centres proves that there is none;
 //! 4. otherwise splits the box.
 //!
@@ -16,10 +17,12 @@
 
 mod chart;
 mod linear;
+mod sides;
 mod solver;
 mod trail;
 
 use crate::{Cause, Enclosure};
+pub use sides::Affine;
 pub use solver::ChartSolver;
 pub(crate) use solver::{BETWEEN, collapses, largest, widest};
 pub(crate) use trail::Trail;
@@ -43,6 +46,11 @@ pub trait ChartMap<const N: usize> {
 
     /// The two parts of the box, cut across `axis`; the first is the lower one.
     fn split(&mut self, cell: &Self::Cell, axis: usize) -> [Self::Cell; 2];
+
+    /// Two functions over the box, if only those solutions are of interest where exactly one of them is negative (0 is not). Others need not be found.
+    fn sides(&self, _cell: &Self::Cell) -> Option<[Affine<N>; 2]> {
+        None
+    }
 
     /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;

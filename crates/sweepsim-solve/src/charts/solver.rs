@@ -2,6 +2,7 @@
 
 use super::chart::{Chart, Outcome, Region, Witness};
 use super::linear::{Contraction, Linear};
+use super::sides::Sides;
 use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail, UnresolvedTarget, all_of};
 use crate::{Cause, Enclosure, Monitor};
 use nalgebra::{Const, DimMin, SVector, ToTypenum};
@@ -13,15 +14,22 @@ pub struct ChartSolver<C> {
     pub options: ChartOptions,
     /// Totals over all calls.
     pub statistics: ChartStatistics,
-    stack: Vec<(C, u32)>,
+    /// Boxes, their depth, and the direction to split them in where they are too large to be charts.
+    stack: Vec<(C, u32, Option<usize>)>,
 }
 
 /// If a box has at most this many targets, each is tested before a split.
 const FEW: usize = 4;
 /// A box whose range holds this many targets is a chart only if it is [`CLOSE`] to linear.
 const MANY: usize = 1000;
-/// With `‖R‖∞` below this, one evaluation decides most targets: see [`Contraction`].
+/// With the spectral radius of `R` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
+/// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`, 0.68 for a hundred. Nearer to 1,
+/// targets beyond a face of the box take more evaluations than smaller boxes would. Both found by trial.
+const LIMIT: f64 = 0.8;
+const SHARE: i32 = 12;
+/// With a spectral radius beyond this, the two parts of a box are not charts, either: they are split without a look at their derivatives.
+const FAR: f64 = 3.0;
 /// The number of targets between two calls of the monitor.
 pub(crate) const BETWEEN: usize = 16;
 
@@ -74,8 +82,8 @@ impl<C: Clone> ChartSolver<C> {
     {
         let mut budget = self.options.boxes;
         self.stack.clear();
-        self.stack.push((part, 0));
-        while let Some((cell, depth)) = self.stack.pop() {
+        self.stack.push((part, 0, None));
+        while let Some((cell, depth, planned)) = self.stack.pop() {
             let Some(values) = map.values(&cell) else {
                 self.statistics.boxes += 1;
                 continue;
@@ -86,6 +94,17 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             let bounds = map.bounds(&cell);
+            if let Some(axis) = planned
+                && budget > 0
+                && bounds[axis].radius() > self.options.smallest * domain[axis].radius()
+                && !monitor.cancelled()
+            {
+                budget -= 1;
+                let [lower, upper] = map.split(&cell, axis);
+                self.stack.push((upper, depth + 1, None));
+                self.stack.push((lower, depth + 1, None));
+                continue;
+            }
             let jacobian = map.jacobian(&cell);
             // Directions in which nothing changes need no splitting: a continuum of solutions must not flood the search.
             let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
@@ -109,15 +128,18 @@ impl<C: Clone> ChartSolver<C> {
             budget -= 1;
             let linear = Linear::new(&bounds, &jacobian, &map.rounding());
             let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
+            let mut planned = None;
             if let Some(linear) = linear {
                 let value = map.evaluate(&linear.centre).value;
                 self.statistics.evaluations += 1;
                 // With many targets, smaller charts pay off: each target is then settled by one evaluation.
-                let norm = linear.norm();
-                let chart = norm < 1.0 && (count < MANY || norm < CLOSE);
+                let limit = if count < MANY { LIMIT } else { CLOSE };
+                let chart = linear.radius < limit && linear.radius.powi(SHARE) * (count as f64) < 1.0;
                 let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
+                    let sides = map.sides(&cell).map(Sides);
                     self.chart(
                         map,
+                        sides.as_ref(),
                         &linear,
                         &contraction,
                         &bounds,
@@ -145,6 +167,12 @@ impl<C: Clone> ChartSolver<C> {
                 let smear = largest(&linear.smear);
                 if depth % 3 != 2 && !collapses(&bounds, &jacobian, smear) {
                     axis = smear;
+                    if linear.radius > FAR {
+                        // The radii of the derivatives halve, and so does the side.
+                        let mut next = linear.smear;
+                        next[axis] *= 0.25;
+                        planned = Some(largest(&next)).filter(|next| !collapses(&bounds, &jacobian, *next));
+                    }
                 }
             }
             if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
@@ -156,8 +184,8 @@ impl<C: Clone> ChartSolver<C> {
                     .unwrap_or(0);
             }
             let [lower, upper] = map.split(&cell, axis);
-            self.stack.push((upper, depth + 1));
-            self.stack.push((lower, depth + 1));
+            self.stack.push((upper, depth + 1, planned));
+            self.stack.push((lower, depth + 1, planned));
         }
     }
 
@@ -166,6 +194,7 @@ impl<C: Clone> ChartSolver<C> {
     fn chart<const N: usize, M, T, S>(
         &mut self,
         map: &M,
+        sides: Option<&Sides<N>>,
         linear: &Linear<N>,
         contraction: &Contraction<N>,
         bounds: &[Enclosure; N],
@@ -187,7 +216,7 @@ impl<C: Clone> ChartSolver<C> {
             value: *value,
         };
         let whole = Region::around(&centre.at, &SVector::repeat(1.0));
-        let close = linear.norm() < CLOSE;
+        let close = linear.radius < CLOSE;
         let mark = sink.mark();
         let mut trail = Trail::new();
         let mut clear = true;
@@ -199,7 +228,13 @@ impl<C: Clone> ChartSolver<C> {
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
         let mut asked = 0_usize;
-        let window = |q: &[f64; N]| linear.window(value, q);
+        let window = |q: &[f64; N]| {
+            let own = linear.window(value, q)?;
+            match sides {
+                Some(sides) => own.intersection(sides.window(linear, value, q)?),
+                None => Some(own),
+            }
+        };
         targets.visit(values, &window, &mut |target| {
             asked += 1;
             if asked.is_multiple_of(BETWEEN) && monitor.cancelled() {
@@ -218,7 +253,7 @@ impl<C: Clone> ChartSolver<C> {
                 let start = linear.predict(&centre.at, value, q);
                 region.intersect(&Region::around(&start, &reach));
             }
-            if region.is_empty() {
+            if region.is_empty() || sides.is_some_and(|sides| sides.agree(&region)) {
                 return true;
             }
             let guess = trail.guess(target.place).map_or(near, SVector::from);

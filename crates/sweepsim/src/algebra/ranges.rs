@@ -2,6 +2,8 @@
 //!
 //! Points are processed four at a time, which compilers vectorise.
 
+use smallvec::SmallVec;
+
 const LANES: usize = 4;
 
 /// Sums of products of a few numbers are accurate to within this fraction of the sum of their absolute values.
@@ -49,6 +51,7 @@ impl Band {
         }
     }
 
+    #[inline(always)]
     fn take(&mut self, values: &[f64; LANES]) {
         for k in 0..LANES {
             self.lo[k] = if values[k] < self.lo[k] { values[k] } else { self.lo[k] };
@@ -108,21 +111,19 @@ pub(crate) fn range_of(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
 /// Four points, component by component.
 type Four<'a> = [&'a [f64; LANES]; 3];
 
-impl Triples<'_> {
-    /// The number of [fours](Self::four).
-    fn fours(&self) -> usize {
-        if self.len() < LANES {
-            0
-        } else {
-            self.len().div_ceil(LANES)
-        }
+impl<'a> Triples<'a> {
+    /// The points in groups of four; the last group may repeat some. None of fewer than four.
+    #[inline(always)]
+    fn fours(&self) -> impl Iterator<Item = Four<'a>> {
+        let (x, rest) = self.x.as_chunks::<LANES>();
+        let (y, z) = (self.y.as_chunks::<LANES>().0, self.z.as_chunks::<LANES>().0);
+        let last = if rest.is_empty() { None } else { self.last() };
+        x.iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z]).chain(last)
     }
 
-    /// The points in groups of four; the last group may repeat some.
     #[inline(always)]
-    fn four(&self, k: usize) -> Four<'_> {
-        let start = (LANES * k).min(self.len() - LANES);
-        [self.x, self.y, self.z].map(|list| list[start..].first_chunk().unwrap_or(&[f64::NAN; LANES]))
+    fn last(&self) -> Option<Four<'a>> {
+        Some([self.x.last_chunk()?, self.y.last_chunk()?, self.z.last_chunk()?])
     }
 
     /// The points, if there are fewer than four.
@@ -131,15 +132,29 @@ impl Triples<'_> {
     }
 }
 
+#[inline(always)]
 fn dots(row: &[f64; 3], [x, y, z]: Four) -> [f64; LANES] {
     std::array::from_fn(|k| row[0] * x[k] + row[1] * y[k] + row[2] * z[k])
 }
 
+#[inline(always)]
+fn sum(a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
 /// Range of `⟨row, point⟩` over all rows and points.
 pub(crate) fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
+    // The loop over three rows, those of an arc, is unrolled.
+    match <&[[f64; 3]; 3]>::try_from(rows) {
+        Ok(three) => products_of(three, points),
+        Err(_) => products_of(rows, points),
+    }
+}
+
+#[inline(always)]
+fn products_of<'r>(rows: impl IntoIterator<Item = &'r [f64; 3]> + Copy, points: &Triples) -> (f64, f64) {
     let mut band = Band::new();
-    for k in 0..points.fours() {
-        let four = points.four(k);
+    for four in points.fours() {
         for row in rows {
             band.take(&dots(row, four));
         }
@@ -155,8 +170,7 @@ pub(crate) fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
 /// Range of `⟨row, point⟩ + offset` over all rows with their offsets, and all points.
 pub(crate) fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Triples) -> (f64, f64) {
     let mut band = Band::new();
-    for k in 0..points.fours() {
-        let four = points.four(k);
+    for four in points.fours() {
         for (row, offset) in rows.iter().zip(offsets) {
             band.take(&dots(row, four).map(|x| x + offset));
         }
@@ -170,14 +184,13 @@ pub(crate) fn shifted_products(rows: &[[f64; 3]], offsets: &[f64], points: &Trip
 }
 
 /// Range of `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` over all pairs of a spin and a row and all coefficients; a single spin is paired with all rows.
-pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples; 2]) -> (f64, f64) {
-    let mut band = Band::new();
-    let add = |a: [f64; LANES], b: [f64; LANES]| std::array::from_fn(|k| a[k] + b[k]);
+pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], fields: &[Triples; 2]) -> (f64, f64) {
     let [constant] = spins else {
-        for k in 0..n.fours() {
-            let (of_n, of_m) = (n.four(k), m.four(k));
+        let [n, m] = fields;
+        let mut band = Band::new();
+        for (of_n, of_m) in n.fours().zip(m.fours()) {
             for (spin, row) in spins.iter().zip(rows) {
-                band.take(&add(dots(spin, of_m), dots(row, of_n)));
+                band.take(&sum(dots(spin, of_m), dots(row, of_n)));
             }
         }
         for i in n.few() {
@@ -187,20 +200,43 @@ pub(crate) fn envelope(spins: &[[f64; 3]], rows: &[[f64; 3]], [n, m]: &[Triples;
         }
         return band.range();
     };
-    for k in 0..n.fours() {
-        let (of_n, of_m) = (n.four(k), m.four(k));
-        let fixed = dots(constant, of_m);
+    match <&[[f64; 3]; 3]>::try_from(rows) {
+        Ok(three) => envelope_of(constant, three, fields),
+        Err(_) => envelope_of(constant, rows, fields),
+    }
+}
+
+#[inline(always)]
+fn envelope_of<'r>(
+    spin: &[f64; 3],
+    rows: impl IntoIterator<Item = &'r [f64; 3]> + Copy,
+    [n, m]: &[Triples; 2],
+) -> (f64, f64) {
+    let mut band = Band::new();
+    for (of_n, of_m) in n.fours().zip(m.fours()) {
+        let fixed = dots(spin, of_m);
         for row in rows {
-            band.take(&add(fixed, dots(row, of_n)));
+            band.take(&sum(fixed, dots(row, of_n)));
         }
     }
     for i in n.few() {
-        let fixed = m.dot(constant, i);
+        let fixed = m.dot(spin, i);
         for row in rows {
             band.take_one(fixed + n.dot(row, i));
         }
     }
     band.range()
+}
+
+/// `⟨spin, Mᵢ⟩ + ⟨row, Nᵢ⟩` for all coefficients, for one pair of a spin and a row after the other; a single spin is paired with all rows.
+pub(crate) fn envelope_coefficients(
+    spins: &[[f64; 3]],
+    rows: &[[f64; 3]],
+    [n, m]: &[Triples; 2],
+) -> SmallVec<[f64; 32]> {
+    let all = rows.iter().zip(spins.iter().cycle());
+    all.flat_map(|(row, spin)| (0..n.len()).map(|i| m.dot(spin, i) + n.dot(row, i)))
+        .collect()
 }
 
 #[cfg(test)]

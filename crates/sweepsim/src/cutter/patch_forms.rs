@@ -201,6 +201,11 @@ impl PatchForms {
         (spot, fields)
     }
 
+    /// The number of coefficients of a cell's field along the first variable.
+    pub fn field_length(&self, field: usize) -> usize {
+        self.layout.fields[field].degrees[0] + 1
+    }
+
     /// The frame of [`PatchForms::revolution`] in the tool; `None` if it is the tool's frame.
     pub fn frame(&self) -> Option<&LocalFrame> {
         self.frame.as_ref()

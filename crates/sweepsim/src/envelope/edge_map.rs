@@ -1,7 +1,7 @@
 //! Eq. 7 as a map: a sharp edge under a motion.
 
 use crate::algebra::quad::{Quad, vector};
-use crate::algebra::ranges::{envelope, products};
+use crate::algebra::ranges::{envelope, envelope_coefficients, products};
 use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
@@ -9,7 +9,7 @@ use crate::envelope::enclosures::{Brick, Near, Size, envelope_error, interval, n
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
-use sweepsim_solve::{ChartMap, Enclosure, Sample};
+use sweepsim_solve::{Affine, ChartMap, Enclosure, Sample};
 
 /// Additional data at a point of an edge: its height, and `g` and the normal in space for both faces.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +64,16 @@ impl ChartMap<2> for EdgeMap<'_> {
         } else {
             self.cells.split(self.element, cell.0, 0).map(|part| (part, cell.1))
         }
+    }
+
+    fn sides(&self, cell: &Brick) -> Option<[Affine<2>; 2]> {
+        let error = envelope_error(self.element, self.times);
+        let (spins, travels) = self.times.twist(cell.1);
+        Some([0, 1].map(|side| {
+            let field = self.cells.field(self.element, cell.0, side);
+            let coefficients = envelope_coefficients(spins, travels, &field);
+            Affine::of_form(&coefficients, self.element.field_length(side), error)
+        }))
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnEdge> {

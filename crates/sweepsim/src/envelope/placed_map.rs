@@ -1,8 +1,7 @@
 //! Caps and kinks as a map: a patch at rest between two motions.
 
 use crate::algebra::quad::vector;
-use crate::algebra::ranges::Triples;
-use crate::algebra::ranges::{envelope, products};
+use crate::algebra::ranges::{Triples, envelope, envelope_coefficients, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::cutter::reduced::Missing;
@@ -10,7 +9,7 @@ use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, prod
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
-use sweepsim_solve::{ChartMap, Enclosure, Sample};
+use sweepsim_solve::{Affine, ChartMap, Enclosure, Sample};
 
 /// Additional data at a point of a placed patch: its height, `g` before and after, and the normal in space.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +45,23 @@ impl Side {
                 let g = envelope(&[twist.spin], &[twist.travel], field);
                 let error = ROUNDING * product_size(&twist.sizes, &element.rounding);
                 negative(widened(g, product_size(&twist.sizes, &missing.value)), error)
+            }
+        }
+    }
+
+    /// Over a cell, `length` coefficients of the field in a row.
+    fn affine(&self, (field, length): (&[Triples; 2], usize), missing: &Missing, element: &PatchForms) -> Affine<2> {
+        match self {
+            Self::Beyond(negative) => Affine {
+                value: if *negative { -1.0 } else { 1.0 },
+                slope: [0.0; 2],
+                error: 0.0,
+            },
+            Self::Moving(twist) => {
+                let rounding = ROUNDING * product_size(&twist.sizes, &element.rounding);
+                let error = rounding + product_size(&twist.sizes, &missing.value);
+                let coefficients = envelope_coefficients(&[twist.spin], &[twist.travel], field);
+                Affine::of_form(&coefficients, length, error)
             }
         }
     }
@@ -134,6 +150,12 @@ impl ChartMap<2> for PlacedMap<'_> {
 
     fn split(&mut self, cell: &u32, axis: usize) -> [u32; 2] {
         self.cells.split(self.element, *cell, axis)
+    }
+
+    fn sides(&self, cell: &u32) -> Option<[Affine<2>; 2]> {
+        let field = self.cells.field(self.element, *cell, 0);
+        let (length, missing) = (self.element.field_length(0), self.cells.missing(*cell));
+        Some([&self.before, &self.after].map(|side| side.affine((&field, length), missing, self.element)))
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnPlaced> {
