@@ -141,3 +141,59 @@ pub(super) fn wedges([n, m]: [f64; 2], sides: &[Side; 2]) -> Vec<Wedge> {
     }
     joined.into_iter().map(|[low, high]| Wedge::new(low, high)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn side() -> impl Strategy<Value = Side> {
+        let moving = ([-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], -12..1i32);
+        prop_oneof![
+            4 => moving.prop_map(|([a, b, c], size)| {
+                let size = 10f64.powi(size);
+                Side::Along([a * size, b * size, c])
+            }),
+            1 => any::<bool>().prop_map(Side::Beyond),
+        ]
+    }
+
+    proptest! {
+        /// Azimuths at which the signs differ are in one wedge, others in one at most.
+        #[test]
+        fn wedges_hold_all_changes(angle in 0.0..2.0 * PI, sides in [side(), side()], near in any::<bool>(), off in -1e-7..1e-7_f64) {
+            let (m, n) = f64::sin_cos(angle);
+            let wedges = wedges([n, m], &sides);
+            // Some where one of the signs changes.
+            let border = match sides[0] {
+                Side::Along([a, b, c]) if near => {
+                    let ratio = -m * c / (n.abs() * a.hypot(b));
+                    Some((n * b).atan2(n * a) + ratio.clamp(-1.0, 1.0).acos() + off)
+                }
+                _ => None,
+            };
+            for azimuth in (0..200).map(|k| 0.0314 * f64::from(k)).chain(border) {
+                let (sine, cosine) = azimuth.sin_cos();
+                let negative = sides.map(|side| match side {
+                    Side::Beyond(negative) => negative,
+                    Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
+                });
+                let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
+                prop_assert!(held <= 1, "{wedges:?} {azimuth}");
+                prop_assert!(held == 1 || negative[0] == negative[1], "{wedges:?} {azimuth}");
+            }
+            // Points on a circle are where the ranges say.
+            for wedge in &wedges {
+                for share in [-1.0, -0.3, 0.0, 0.6, 1.0] {
+                    let (sine, cosine) = (wedge.middle + share * wedge.half).sin_cos();
+                    let ([low, high], [back, front]) =
+                        (wedge.across([1.0, 2.0]), wedge.along([[1.0, 0.0], [2.0, 3.0]], [0.6, 0.8]));
+                    for [radius, height] in [[1.0, 0.0], [2.0, 3.0]] {
+                        let (b, q) = (radius * sine, 0.6 * height - 0.8 * radius * cosine);
+                        prop_assert!(b >= low - 1e-9 && b <= high + 1e-9 && q >= back - 1e-9 && q <= front + 1e-9);
+                    }
+                }
+            }
+        }
+    }
+}
