@@ -250,6 +250,14 @@ pub fn scaling(filter: Option<&str>) -> Result<(), String> {
     }
     let write = |name: &str, text: &str| fs::write(docs.join(name), text).map_err(|error| format!("{name}: {error}"));
     write("performance.csv", &table)?;
+    // What has not been measured yet has no plot.
+    let draw = |file: &str, figures: &[&str], panels: &[Panel], label: &str| {
+        if curves.iter().any(|curve| figures.contains(&curve.figure)) {
+            write(file, &figure(panels, panels.len(), label))
+        } else {
+            Ok(())
+        }
+    };
     let times = [
         panel(
             &curves,
@@ -266,13 +274,17 @@ pub fn scaling(filter: Option<&str>) -> Result<(), String> {
             true,
         ),
     ];
-    write(
+    draw(
         "pictures/performance-moves.svg",
-        &figure(&times[..1], 1, "Seconds on one thread against the number of moves"),
+        &["moves"],
+        &times[..1],
+        "Seconds on one thread against the number of moves",
     )?;
-    write(
+    draw(
         "pictures/performance-grid.svg",
-        &figure(&times[1..], 1, "Seconds on one thread against the dexels along a side"),
+        &["grid"],
+        &times[1..],
+        "Seconds on one thread against the dexels along a side",
     )?;
     let threads = panel(
         &curves,
@@ -281,9 +293,11 @@ pub fn scaling(filter: Option<&str>) -> Result<(), String> {
         ["threads", "speed / that of one thread"],
         false,
     );
-    write(
+    draw(
         "pictures/performance-threads.svg",
-        &figure(&[threads], 1, "Speed against the number of threads"),
+        &["threads"],
+        &[threads],
+        "Speed against the number of threads",
     )?;
     let memory = [
         panel(&curves, "memory", "Memory by moves", ["moves", "MiB at most"], true),
@@ -295,8 +309,10 @@ pub fn scaling(filter: Option<&str>) -> Result<(), String> {
             true,
         ),
     ];
-    write(
+    draw(
         "pictures/performance-memory.svg",
-        &figure(&memory, 2, "The most memory against moves, and against the grid"),
+        &["memory", "memory-grid"],
+        &memory,
+        "The most memory against moves, and against the grid",
     )
 }

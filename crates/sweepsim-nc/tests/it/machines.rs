@@ -94,3 +94,12 @@ fn moves_take_as_long_as_their_feeds_and_axes() {
     assert_eq!(times.iter().map(|time| time.rest).sum::<f64>(), 1.5);
     assert!(times.iter().all(|time| !time.assumed));
 }
+
+#[test]
+fn an_unknown_machine_names_the_ready_ones() {
+    let error = Machine::read_file("hexapod".as_ref()).unwrap_err().to_string();
+    assert!(
+        error.contains("no such file") && error.contains("trunnion-ac"),
+        "{error}"
+    );
+}

@@ -207,22 +207,26 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
     use proptest::prelude::*;
 
+    fn preconditioned(rest: Matrix3<f64>, weights: Vector3<f64>, radius: f64) -> Linear<3> {
+        Linear {
+            centre: [0.0; 3],
+            half: [1.0; 3],
+            inverse: Matrix3::identity(),
+            rest,
+            smear: [0.0; 3],
+            weights,
+            radius,
+            slack: Vector3::new(1e-12, 2e-12, 3e-12),
+            orientation: 1,
+        }
+    }
+
     /// The bound of [`Contraction`] encloses `R(I − R)⁻¹`, and closely.
     #[test]
     fn contractions_are_the_limits_of_their_series() {
         for norm in [0.0, 1e-3, 0.3, 0.9, 0.999] {
             let rest = Matrix3::new(0.2, 0.5, 0.3, 0.1, 0.6, 0.2, 0.4, 0.0, 0.6) * norm;
-            let linear = Linear::<3> {
-                centre: [0.0; 3],
-                half: [1.0; 3],
-                inverse: Matrix3::identity(),
-                rest,
-                smear: [0.0; 3],
-                weights: Vector3::repeat(1.0),
-                radius: norm,
-                slack: Vector3::new(1e-12, 2e-12, 3e-12),
-                orientation: 1,
-            };
+            let linear = preconditioned(rest, Vector3::repeat(1.0), norm);
             let found = linear.contraction().unwrap();
             let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
             let (exact, slack) = (rest * inverse, inverse * linear.slack);
@@ -252,17 +256,7 @@ mod tests {
             // Without the stretch, no row sum is larger than three times the scale.
             prop_assert!(weights.iter().all(|w| *w > 0.0));
             prop_assume!(radius < 0.999);
-            let linear = Linear::<3> {
-                centre: [0.0; 3],
-                half: [1.0; 3],
-                inverse: Matrix3::identity(),
-                rest,
-                smear: [0.0; 3],
-                weights,
-                radius,
-                slack: Vector3::new(1e-12, 2e-12, 3e-12),
-                orientation: 1,
-            };
+            let linear = preconditioned(rest, weights, radius);
             let found = linear.contraction().unwrap();
             let inverse = (Matrix3::identity() - rest).try_inverse().unwrap();
             let (exact, slack) = (rest * inverse, inverse * linear.slack);

@@ -20,6 +20,15 @@ fn along(a: &Local, s: f64, b: &Local) -> Local {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
+/// The middle of a bracket of Newton's method: the geometric one where its ends differ by much.
+fn middle(a: f64, b: f64) -> f64 {
+    if b > 4.0 * a && a > 0.0 {
+        (a * b).sqrt()
+    } else {
+        0.5 * (a + b)
+    }
+}
+
 fn dot(a: &Local, b: &Local) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

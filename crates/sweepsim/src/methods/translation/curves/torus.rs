@@ -9,8 +9,8 @@
 //!
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
-use super::Heading;
 use super::graph::{Graph, Point, Spot};
+use super::{Heading, middle};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Steps of Newton's method, or bisections, of which a handful suffice.
@@ -161,11 +161,7 @@ impl Torus {
         let mut e = self.first_guess(p);
         for _ in 0..STEPS {
             if !(e > a && e < b) {
-                e = if b > 4.0 * a && a > 0.0 {
-                    (a * b).sqrt()
-                } else {
-                    0.5 * (a + b)
-                };
+                e = middle(a, b);
             }
             // w² − (p/ρ)², which has the sign of |p(e)| − |p|.
             let rho = offset + radius * e;

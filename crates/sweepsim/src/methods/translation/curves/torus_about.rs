@@ -1,5 +1,6 @@
 //! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
 
+use super::middle;
 use super::torus::{STEPS, Torus};
 
 impl Torus {
@@ -39,15 +40,11 @@ impl Torus {
         }
         let (mut a, mut b) = (low, high);
         for _ in 0..STEPS {
-            let middle = if b > 4.0 * a && a > 0.0 {
-                (a * b).sqrt()
+            let e = middle(a, b);
+            if (over(e) > 0.0) == before {
+                a = e;
             } else {
-                0.5 * (a + b)
-            };
-            if (over(middle) > 0.0) == before {
-                a = middle;
-            } else {
-                b = middle;
+                b = e;
             }
         }
         Some([Some([low, b]), Some([b, high])])
@@ -87,11 +84,7 @@ impl Torus {
         }
         for _ in 0..STEPS {
             if !(e > a && e < b) {
-                e = if b > 4.0 * a && a > 0.0 {
-                    (a * b).sqrt()
-                } else {
-                    0.5 * (a + b)
-                };
+                e = middle(a, b);
             }
             let value = value(e);
             if (value < 0.0) == rising {
