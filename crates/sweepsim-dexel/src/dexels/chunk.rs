@@ -81,10 +81,17 @@ impl Chunk {
         }
     }
 
-    /// Appends stored intervals of another chunk to `out`, their moves to the table.
-    pub fn adopt(&mut self, table: Table<'_>, pieces: &[PackedInterval], out: &mut Vec<PackedInterval>) {
+    /// Appends stored intervals of another chunk to `out`, their moves to the table. `numbers` is memory.
+    pub fn adopt(
+        &mut self,
+        table: Table<'_>,
+        pieces: &[PackedInterval],
+        numbers: &mut Vec<u32>,
+        out: &mut Vec<PackedInterval>,
+    ) {
         self.make_room(table.moves.len().min(2 * pieces.len()), out);
-        let mut numbers = vec![u32::MAX; table.moves.len()];
+        numbers.clear();
+        numbers.resize(table.moves.len(), u32::MAX);
         let moves = &mut self.moves;
         let mut end = |end: &Packed| {
             let old = (end.source >> table.time) as usize;
@@ -226,6 +233,41 @@ impl Chunk {
         self.moves.moves.shrink_to_fit();
     }
 
+    /// Takes packed intervals in normal form, line after line up to these ends, in place of all that there are.
+    pub fn take(&mut self, ends: &[usize; LINES + 1], pieces: &[PackedInterval]) {
+        self.first = ends.map(|end| end as u32);
+        self.refill(pieces);
+    }
+
+    /// Fills an empty chunk with stored lines, stretch by stretch: neighbouring lines of another chunk, or lines without material.
+    pub fn fill_from<'a>(
+        &mut self,
+        (scratch, numbers): (&mut Vec<PackedInterval>, &mut Vec<u32>),
+        stretches: impl Iterator<Item = (usize, Option<(&'a Self, usize)>)>,
+    ) {
+        scratch.clear();
+        let mut line = 0;
+        for (count, from) in stretches {
+            let begin = scratch.len();
+            if let Some((other, first)) = from {
+                let ends = &other.first[first..=first + count];
+                let pieces = &other.pieces[ends[0] as usize..ends[count] as usize];
+                if !pieces.is_empty() {
+                    self.adopt(other.table(), pieces, numbers, scratch);
+                }
+                for (own, end) in self.first[line + 1..].iter_mut().zip(&ends[1..]) {
+                    *own = begin as u32 + end - ends[0];
+                }
+            } else {
+                self.first[line + 1..=line + count].fill(begin as u32);
+            }
+            line += count;
+        }
+        self.first[line + 1..].fill(scratch.len() as u32);
+        self.refill(scratch);
+        self.moves.moves.shrink_to_fit();
+    }
+
     /// Releases spare capacity.
     pub fn shrink(&mut self) {
         self.tidy(&mut []);
@@ -318,7 +360,7 @@ mod tests {
         // Among few, times are good to a quarter of a ten-millionth, and those of binary fractions exact.
         let mut other = Chunk::default();
         let mut adopted = Vec::new();
-        other.adopt(chunk.table(), chunk.line(5), &mut adopted);
+        other.adopt(chunk.table(), chunk.line(5), &mut Vec::new(), &mut adopted);
         other.replace(63, &adopted);
         for (a, b) in other.line(63).iter().zip(chunk.line(5)) {
             assert_eq!(other.table().interval(a), chunk.table().interval(b));

@@ -272,8 +272,8 @@ impl Dexels {
         }
         let both = self.chunks.par_iter_mut().zip(&other.chunks);
         both.for_each_init(
-            <(Vec<PackedInterval>, Vec<PackedInterval>)>::default,
-            |(packed, scratch), (slot, more)| {
+            <(Vec<PackedInterval>, Vec<u32>, Vec<PackedInterval>)>::default,
+            |(packed, numbers, scratch), (slot, more)| {
                 let (chunk, more) = match (slot.as_deref_mut(), more) {
                     (Some(chunk), Some(more)) => (chunk, more),
                     (None, Some(more)) if operation == Operation::Union => {
@@ -288,7 +288,7 @@ impl Dexels {
                 };
                 // The whole other chunk, line after line, with its moves numbered as in this one's table.
                 packed.clear();
-                chunk.adopt(more.table(), more.all(), packed);
+                chunk.adopt(more.table(), more.all(), numbers, packed);
                 let mut from = 0;
                 chunk.rebuild(scratch, |line, old, out| {
                     let to = from + more.line(line).len();

@@ -1,7 +1,9 @@
 //! Dexels in tiles: a grid divided into rectangles of lines, each with dexels of its own.
 
+use super::chunk::{Chunk, LINES};
 use super::{Dexels, GridMismatch};
 use crate::grid::Grid;
+use rayon::prelude::*;
 use thiserror::Error;
 
 /// Why tiles do not make up a grid.
@@ -69,9 +71,10 @@ impl Dexels {
         if self.grid.tile(i0..i0 + columns, j0..j0 + rows)? != *tile {
             return None;
         }
-        Some(Self::filled(*tile, |index, line| {
+        let all = self.grid.cells()[1];
+        Some(Self::copied(*tile, |index| {
             let (i, j) = tile.place(index);
-            line.extend(self.intervals(i0 + i, j0 + j));
+            (self, (i0 + i) * all + j0 + j, rows - 1 - j)
         }))
     }
 
@@ -149,13 +152,41 @@ impl Dexels {
                 });
             }
         }
-        Ok(Self::filled(grid, |index, line| {
+        Ok(Self::copied(grid, |index| {
             let (i, j) = grid.place(index);
             let list = &of_column[i];
             let number = list[list.partition_point(|number| from(number) <= j) - 1];
             let tile = &tiles[number as usize];
-            let [first_i, first_j] = tile.grid.first();
-            line.extend(tile.intervals(i + i0 - first_i, j + j0 - first_j));
+            let ([first_i, first_j], [_, rows]) = (tile.grid.first(), tile.grid.cells());
+            let own = j + j0 - first_j;
+            (tile, (i + i0 - first_i) * rows + own, rows - 1 - own)
         }))
+    }
+
+    /// Copies stored lines: `from` tells of a line of `grid` which line of which dexels it is, and how many behind it go on from there.
+    fn copied<'a>(grid: Grid, from: impl Fn(usize) -> (&'a Self, usize, usize) + Sync) -> Self {
+        let mut dexels = Self::empty(grid);
+        let chunks = dexels.chunks.par_iter_mut().enumerate();
+        chunks.for_each_init(Default::default, |(scratch, numbers), (number, slot)| {
+            let end = grid.len().min((number + 1) * LINES);
+            let mut next = number * LINES;
+            let stretches = std::iter::from_fn(|| {
+                (next < end).then(|| {
+                    let (other, index, more) = from(next);
+                    let (at, first) = (index / LINES, index % LINES);
+                    // Within one chunk of both.
+                    let count = (more + 1).min(end - next).min(LINES - first);
+                    next += count;
+                    let chunk = other.chunks.get(at).and_then(Option::as_deref);
+                    (count, chunk.map(|chunk| (chunk, first)))
+                })
+            });
+            let mut chunk = Box::new(Chunk::default());
+            chunk.fill_from((scratch, numbers), stretches);
+            if !chunk.is_empty() {
+                *slot = Some(chunk);
+            }
+        });
+        dexels
     }
 }

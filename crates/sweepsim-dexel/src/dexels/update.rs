@@ -54,6 +54,7 @@ impl<'a, T> ByChunk<'a, T> {
 struct Sorted<T> {
     /// Where those of each line begin.
     begin: [u32; LINES + 1],
+    /// As many as any chunk had.
     items: Vec<T>,
 }
 
@@ -69,11 +70,13 @@ impl<T> Default for Sorted<T> {
 impl<T: Copy> Sorted<T> {
     /// Sorts the items of the chunk that begins with line `first`, those of a line in their order.
     fn fill(&mut self, runs: &[Run<T>], first: usize) {
-        self.items.clear();
         self.begin = [0; LINES + 1];
         let items = || runs.iter().copied().flatten();
         let Some((_, any)) = items().next() else { return };
-        self.items.resize(runs.iter().map(|run| run.len()).sum(), *any);
+        let count = runs.iter().map(|run| run.len()).sum();
+        if self.items.len() < count {
+            self.items.resize(count, *any);
+        }
         let line = |item: &(u32, T)| item.0 as usize - first;
         for item in items() {
             self.begin[line(item) + 1] += 1;
@@ -233,7 +236,7 @@ impl Dexels {
                 let first = number * LINES;
                 sorted.fill(mine, first);
                 let chunk = slot.get_or_insert_default();
-                let mut ends = [0; LINES + 1];
+                let mut ends = [0_usize; LINES + 1];
                 packed.clear();
                 for line in 0..LINES {
                     let group = sorted.of(line);
@@ -244,9 +247,13 @@ impl Dexels {
                     }
                     ends[line + 1] = packed.len();
                 }
-                chunk.rebuild(scratch, |line, old, out| {
-                    run(old, &packed[ends[line]..ends[line + 1]], out)
-                });
+                if operation == Operation::Union && chunk.is_empty() {
+                    chunk.take(&ends, packed);
+                } else {
+                    chunk.rebuild(scratch, |line, old, out| {
+                        run(old, &packed[ends[line]..ends[line + 1]], out)
+                    });
+                }
                 if chunk.is_empty() {
                     *slot = None;
                 }

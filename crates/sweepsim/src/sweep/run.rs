@@ -60,7 +60,7 @@ pub(crate) fn sweep_near(
     let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
     let length = chunk_length(options);
     for run in Runs::new((tool, plan), (boxes, members), (tile, material), (length, closed)) {
-        (job.mask, job.ceiling, job.beside) = (run.mask, run.ceiling, run.beside);
+        (job.mask, job.ceiling) = (run.mask, run.ceiling);
         found.add(&job, &run.parts)?;
         monitor.advance(run.done, members.len());
     }

@@ -53,7 +53,6 @@ impl Plan {
             path: options.path_number,
             mask: None,
             ceiling: None,
-            beside: Vec::new(),
             size: Size {
                 spacing: grid.spacing(),
                 slack: self.tolerances.rounding(),
@@ -79,8 +78,6 @@ pub(crate) struct SweepJob<'a> {
     pub mask: Option<Cow<'a, LineMask>>,
     /// A height above which crossings are not wanted.
     pub ceiling: Option<Ceiling>,
-    /// The parts of a chunk that meet no line; none if it is empty.
-    pub beside: Vec<bool>,
     pub size: Size,
     /// What repairs may cost.
     pub repairs: RepairBudget,
@@ -172,9 +169,6 @@ impl SweepJob<'_> {
                     for at in share.parts {
                         if self.monitor.cancelled() {
                             break;
-                        }
-                        if self.beside.get(at) == Some(&true) {
-                            continue;
                         }
                         search.part(at, space, &mut harvest);
                     }

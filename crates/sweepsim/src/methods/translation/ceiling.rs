@@ -101,6 +101,11 @@ impl Ceiling {
 /// By how much of the tool's reach a disc may grow along an arc: lines so near to its boundary are open.
 const STEADY: f64 = 1e-8;
 
+/// A line is beyond doubt on one side of an end that is this many times as far away as it may be off,
+const WIDE: f64 = 4.0;
+/// and this part of the distance of lines, since [`numbers`] may have a line more that is half as far outside.
+const FRACTION: f64 = 2e-3;
+
 #[derive(Clone, Copy, Debug)]
 struct Disc {
     centre: [f64; 2],
@@ -147,10 +152,12 @@ impl Capsule {
         let p = (self.ahead[0] * dy - self.ahead[1] * dx).abs();
         let [s, c] = self.lean;
         let foot = q * c - p * s;
+        // Coordinates are bounded: there is no need to care for overflow.
+        let from = |dx: f64, dy: f64| (dx * dx + dy * dy).sqrt();
         if self.length == 0.0 || foot < 0.0 {
-            dx.hypot(dy) - a.radius
+            from(dx, dy) - a.radius
         } else if foot > c * self.length {
-            (x - b.centre[0]).hypot(y - b.centre[1]) - b.radius
+            from(x - b.centre[0], y - b.centre[1]) - b.radius
         } else {
             p * c + q * s - a.radius
         }
@@ -168,32 +175,48 @@ impl Capsule {
         ]
     }
 
-    /// About where a column enters and leaves it.
-    fn crossed(&self, x: f64, slack: f64) -> Option<[f64; 2]> {
-        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut add = |y: f64| range = [range[0].min(y), range[1].max(y)];
-        for disc in &self.ends {
+    /// About where a column enters and leaves it, and how far these places may be off.
+    fn crossed(&self, x: f64, slack: f64) -> Option<[[f64; 2]; 2]> {
+        let (mut range, mut off) = ([f64::INFINITY, f64::NEG_INFINITY], [slack; 2]);
+        let mut add = |y: f64, error: f64| {
+            if y < range[0] {
+                (range[0], off[0]) = (y, error);
+            }
+            if y > range[1] {
+                (range[1], off[1]) = (y, error);
+            }
+        };
+        let discs = if self.length == 0.0 {
+            &self.ends[..1]
+        } else {
+            &self.ends
+        };
+        for disc in discs {
             let across = x - disc.centre[0];
             let square = (disc.radius - across) * (disc.radius + across);
             if square > -8.0 * disc.radius * slack {
                 let half = square.max(0.0).sqrt();
-                add(disc.centre[1] - half);
-                add(disc.centre[1] + half);
+                let error = slack * (1.0 + disc.radius / half);
+                add(disc.centre[1] - half, error);
+                add(disc.centre[1] + half, error);
             }
         }
-        let [ux, uy] = self.ahead;
-        let [s, c] = self.lean;
-        for side in [1.0, -1.0] {
-            let out = [s * ux - side * c * uy, s * uy + side * c * ux];
-            let [a, b] = self
-                .ends
-                .map(|disc| [0, 1].map(|k| disc.centre[k] + disc.radius * out[k]));
-            let share = (x - a[0]) / (b[0] - a[0]);
-            if (0.0..=1.0).contains(&share) {
-                add(a[1] + share * (b[1] - a[1]));
+        if self.length > 0.0 {
+            let [ux, uy] = self.ahead;
+            let [s, c] = self.lean;
+            for side in [1.0, -1.0] {
+                let out = [s * ux - side * c * uy, s * uy + side * c * ux];
+                let [a, b] = self
+                    .ends
+                    .map(|disc| [0, 1].map(|k| disc.centre[k] + disc.radius * out[k]));
+                let slope = (b[1] - a[1]) / (b[0] - a[0]);
+                let share = (x - a[0]) / (b[0] - a[0]);
+                if (0.0..=1.0).contains(&share) {
+                    add(a[1] + share * (b[1] - a[1]), slack * (1.0 + slope.abs()));
+                }
             }
         }
-        (range[0] <= range[1]).then_some(range)
+        (range[0] <= range[1]).then_some([range, off])
     }
 }
 
@@ -275,12 +298,24 @@ impl Counts {
         let Some(is) = numbers(lattice, 0, [low - slack, high + slack]) else {
             return;
         };
+        let around = lattice.grid.spacing()[1];
         for i in is[0]..=is[1] {
             let x = lattice.coordinate(0, i);
-            let Some([from, to]) = capsule.crossed(x, slack) else {
+            let Some([[from, to], off]) = capsule.crossed(x, slack) else {
                 continue;
             };
-            let around = lattice.grid.spacing()[1];
+            // Where no line is close to the ends, those between them need no look. Columns close to the outermost points may be close to the boundary everywhere.
+            let close = off.map(|off| WIDE * off + FRACTION * around);
+            let within = x - low > 2.0 * WIDE * slack && high - x > 2.0 * WIDE * slack;
+            if within && close[0] + close[1] < around {
+                let sure = numbers(lattice, 1, [from + close[0], to - close[1]]);
+                if sure == numbers(lattice, 1, [from - close[0], to + close[1]]) {
+                    if let Some(range) = sure {
+                        self.put(i, range, by);
+                    }
+                    continue;
+                }
+            }
             let Some([mut a, mut b]) = numbers(lattice, 1, [from - around, to + around]) else {
                 continue;
             };

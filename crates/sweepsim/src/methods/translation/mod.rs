@@ -14,6 +14,7 @@ mod cones;
 mod curves;
 mod discs;
 mod leaning;
+mod lunes;
 mod placed;
 mod rows;
 mod strip;

@@ -2,6 +2,7 @@
 //! distance from the axis.
 
 use super::curves::stands;
+use super::lunes::Lune;
 use super::rows::numbers;
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
@@ -162,12 +163,25 @@ impl Placed<'_, '_> {
         {
             return;
         }
-        let (slack, [tx, ty, tz]) = (2.0 * self.slack, self.tip);
+        let (slack, tx) = (2.0 * self.slack, self.tip[0]);
         let inner = if inner <= slack { -1.0 } else { inner };
         let lattice = self.lines.lines;
+        let [across, along] = lattice.grid.spacing();
+        let lune = match radial {
+            Radial::Arc {
+                centre, radius, half, ..
+            } if centre[0] == 0.0 => Some(Lune::new(*radius, *half, &self.sides, slack, along)),
+            _ => None,
+        };
         let reach = outer + slack;
         let Some([first, last]) = numbers(lattice, 0, [tx - reach, tx + reach]) else {
             return;
+        };
+        let stretch = Stretch {
+            radial,
+            inner,
+            outer,
+            slack,
         };
         for i in first..=last {
             let x = lattice.coordinate(0, i) - tx;
@@ -180,43 +194,91 @@ impl Placed<'_, '_> {
                 -1.0
             };
             let ranges = if gap > 0.0 {
-                [[ty - half, ty - gap], [ty + gap, ty + half]]
+                [[-half, -gap], [gap, half]]
             } else {
-                [[ty - half, ty + half], [f64::INFINITY, f64::NEG_INFINITY]]
+                [[-half, half], [f64::INFINITY, f64::NEG_INFINITY]]
+            };
+            let marks = match &lune {
+                // Beside the edge of the hole, lines along it may be close to it.
+                Some(_) if inner > 0.0 && (inner - x.abs()).abs() < across => None,
+                Some(lune) => lune.marks(x).map(|marks| (lune, marks)),
+                None => None,
             };
             let mut next = 0;
             for range in ranges {
-                let Some([low, high]) = numbers(lattice, 1, range) else {
-                    continue;
-                };
-                for j in low.max(next)..=high {
-                    let y = lattice.coordinate(1, j) - ty;
-                    let rho = x.hypot_fast(y);
-                    if rho < inner - slack || rho > outer + slack {
-                        continue;
-                    }
-                    let spot = radial.at(rho, [inner.max(0.0), outer]);
-                    let (certain, change) = self.change(&spot, [x, y], rho, slack);
-                    if certain && change == 0 {
-                        continue;
-                    }
-                    if !lattice.asks(i, j) {
-                        continue;
-                    }
-                    let line = lattice.line(i, j);
-                    if !certain || rho < inner + slack || rho > outer - slack {
-                        self.lines.open(line);
-                        continue;
-                    }
-                    let [n_rho, n_zeta] = spot.normal;
-                    let jump = if n_zeta > 0.0 { -change } else { change };
-                    let normal = nalgebra::Vector3::new(n_rho * x / rho, n_rho * y / rho, n_zeta);
-                    self.lines
-                        .crossing(line, tz + spot.height, jump, unit(normal), self.source);
+                let marked = marks
+                    .as_ref()
+                    .and_then(|(lune, marks)| Some((marks.places(), [lune.margin(range[0])?, lune.margin(range[1])?])));
+                match marked {
+                    None => self.lines(&stretch, (i, x), range, &mut next),
+                    Some((places, margins)) => self.between(&stretch, (i, x), (range, margins), places, &mut next),
                 }
-                next = high + 1;
             }
         }
+    }
+
+    /// The lines of a column near its ends and some places, and between those of them where the signs of `g` differ.
+    fn between(
+        &mut self,
+        stretch: &Stretch,
+        (i, x): (usize, f64),
+        ([low, high], margins): ([f64; 2], [f64; 2]),
+        places: &[[f64; 2]],
+        next: &mut usize,
+    ) {
+        if !(low < high) {
+            return;
+        }
+        self.lines(stretch, (i, x), [low, low + margins[0]], next);
+        let mut from = low;
+        let end = [high, margins[1]];
+        let inner = places.iter().filter(|[y, _]| *y > low && *y < high);
+        for [y, off] in inner.chain([&end]).copied() {
+            let middle = 0.5 * (from + y);
+            let rho = x.hypot_fast(middle);
+            let (certain, change) = self.change(&stretch.at(rho), [x, middle], rho, stretch.slack);
+            let begin = if certain && change == 0 { y - off } else { from };
+            self.lines(stretch, (i, x), [begin, y + off], next);
+            from = y;
+        }
+    }
+
+    /// The lines of a column in a range, but for those before `next`.
+    fn lines(&mut self, stretch: &Stretch, (i, x): (usize, f64), range: [f64; 2], next: &mut usize) {
+        let [_, ty, tz] = self.tip;
+        let lattice = self.lines.lines;
+        let Stretch {
+            inner, outer, slack, ..
+        } = *stretch;
+        let Some([low, high]) = numbers(lattice, 1, range.map(|y| ty + y)) else {
+            return;
+        };
+        for j in low.max(*next)..=high {
+            let y = lattice.coordinate(1, j) - ty;
+            let rho = x.hypot_fast(y);
+            if rho < inner - slack || rho > outer + slack {
+                continue;
+            }
+            let spot = stretch.at(rho);
+            let (certain, change) = self.change(&spot, [x, y], rho, slack);
+            if certain && change == 0 {
+                continue;
+            }
+            if !lattice.asks(i, j) {
+                continue;
+            }
+            let line = lattice.line(i, j);
+            if !certain || rho < inner + slack || rho > outer - slack {
+                self.lines.open(line);
+                continue;
+            }
+            let [n_rho, n_zeta] = spot.normal;
+            let jump = if n_zeta > 0.0 { -change } else { change };
+            let normal = nalgebra::Vector3::new(n_rho * x / rho, n_rho * y / rho, n_zeta);
+            self.lines
+                .crossing(line, tz + spot.height, jump, unit(normal), self.source);
+        }
+        *next = (*next).max(high + 1);
     }
 
     /// Whether the signs of `g` before and after are certain, and the difference `[g₊ < 0] − [g₋ < 0]`.
@@ -239,6 +301,22 @@ impl Placed<'_, '_> {
         let [before, after] = [&self.sides[0], &self.sides[1]].map(sign);
         certain &= before.0 && after.0;
         (certain, after.1 - before.1)
+    }
+}
+
+/// A stretch, its least and greatest radius, and how far a line may be off.
+struct Stretch<'a> {
+    radial: &'a Radial,
+    /// Negative without a hole.
+    inner: f64,
+    outer: f64,
+    slack: f64,
+}
+
+impl Stretch<'_> {
+    #[inline]
+    fn at(&self, rho: f64) -> Spot {
+        self.radial.at(rho, [self.inner.max(0.0), self.outer])
     }
 }
 

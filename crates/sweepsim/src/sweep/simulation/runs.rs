@@ -13,11 +13,12 @@ use std::borrow::Cow;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
 
-/// Consecutive parts of a path, and where they meet material.
+/// Parts of a path that are consecutive over a tile, and where they meet material.
+///
+/// Parts between them meet no line of the tile. Nor does the tool at either end of a gap, where it is at rest: so the run needs no
+/// caps there, and its parts count as one motion.
 pub(crate) struct Run {
     pub parts: Vec<PathPart>,
-    /// Which of them are beside the tile; none if it is empty.
-    pub beside: Vec<bool>,
     /// How many parts over the tile lie before its end.
     pub done: usize,
     /// `None` if all lines near have some.
@@ -25,9 +26,6 @@ pub(crate) struct Run {
     /// A height above all material.
     pub ceiling: Option<Ceiling>,
 }
-
-/// The most parts beside a tile that are taken along, so that a run does not end where the path leaves the tile for a moment: there, it would need two caps.
-const BRIDGE: usize = 64;
 
 /// Boxes around all that a tool sweeps in each part of a path.
 pub(crate) fn boxes(tool: &Tool, plan: &Plan) -> Vec<Box3> {
@@ -87,15 +85,6 @@ impl<'a> Runs<'a> {
         window(self.grid, own).is_some_and(|window| !self.material.visit(window, own[2], &mut |_| false))
     }
 
-    /// Whether the parts between two others may be taken along: few that are beside the tile, and no higher than material.
-    fn bridges(&self, from: usize, to: usize) -> bool {
-        let between = from + 1..to;
-        between.is_empty()
-            || (between.len() <= BRIDGE
-                && self.grid.whole() != *self.grid
-                && self.boxes[between].iter().all(|own| own[2][0] <= self.top))
-    }
-
     /// A part without the beginning or the end during which the tool is above all material; `None` if that is all of it.
     fn trimmed(&self, at: usize) -> Option<(PathPart, [bool; 2])> {
         let part = &self.plan.parts[at];
@@ -128,7 +117,7 @@ impl<'a> Runs<'a> {
     }
 
     /// The lines with material near parts with these boxes.
-    fn run(&self, parts: Vec<PathPart>, beside: Vec<bool>, members: &[u32]) -> Option<Run> {
+    fn run(&self, parts: Vec<PathPart>, members: &[u32]) -> Option<Run> {
         let hull = |a: Box3, b: Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
         let boxes = members.iter().map(|number| self.boxes[*number as usize]);
         let whole: Box3 = boxes.reduce(hull)?;
@@ -148,7 +137,6 @@ impl<'a> Runs<'a> {
         };
         Some(Run {
             parts,
-            beside,
             done: self.at,
             mask,
             ceiling,
@@ -161,7 +149,7 @@ impl Iterator for Runs<'_> {
 
     fn next(&mut self) -> Option<Run> {
         loop {
-            let (mut parts, mut beside) = (Vec::new(), Vec::new());
+            let mut parts = Vec::new();
             let mut first = self.at;
             while let Some(number) = self.members.get(self.at).map(|number| *number as usize)
                 && parts.len() < self.length
@@ -180,17 +168,8 @@ impl Iterator for Runs<'_> {
                     }
                     break;
                 };
-                if !parts.is_empty() {
-                    let last = self.members[self.at - 1] as usize;
-                    let room = parts.len() + (number - last) <= self.length;
-                    if late || !room || !self.bridges(last, number) {
-                        break;
-                    }
-                    if number > last + 1 {
-                        beside.resize(parts.len(), false);
-                        parts.extend_from_slice(&self.plan.parts[last + 1..number]);
-                        beside.resize(parts.len(), true);
-                    }
+                if late && !parts.is_empty() {
+                    break;
                 }
                 parts.push(part);
                 self.at += 1;
@@ -201,7 +180,7 @@ impl Iterator for Runs<'_> {
             if parts.is_empty() {
                 return None;
             }
-            if let Some(run) = self.run(parts, beside, &self.members[first..self.at]) {
+            if let Some(run) = self.run(parts, &self.members[first..self.at]) {
                 return Some(run);
             }
         }
