@@ -94,6 +94,27 @@ impl<const N: usize> Linear<N> {
         })
     }
 
+    /// `K`, as rows.
+    pub fn rows(&self) -> [[f64; N]; N] {
+        std::array::from_fn(|i| std::array::from_fn(|k| self.inverse[(i, k)]))
+    }
+
+    /// Makes use of closer enclosures of the product of `K` and the Jacobian.
+    pub fn sharpen(&mut self, products: &[[Enclosure; N]; N], jacobian: &[[Enclosure; N]; N]) {
+        for i in 0..N {
+            for j in 0..N {
+                let unit = if i == j { 1.0 } else { 0.0 };
+                let (lo, hi) = (products[i][j].lo() * self.half[j], products[i][j].hi() * self.half[j]);
+                let terms = (0..N).map(|k| self.inverse[(i, k)].abs() * jacobian[k][j].magnitude() * self.half[j]);
+                let rest = (lo - unit).abs().max((hi - unit).abs()) + 32.0 * f64::EPSILON * terms.sum::<f64>();
+                if rest < self.rest[(i, j)] {
+                    self.rest[(i, j)] = rest;
+                }
+            }
+        }
+        (self.weights, self.radius) = spectral(&self.rest);
+    }
+
     /// How far a preimage in the box may be from the centre's prediction, in direction `i`.
     pub fn reach(&self, i: usize) -> f64 {
         self.rest.row(i).iter().sum::<f64>() + self.slack[i]

@@ -52,6 +52,18 @@ pub trait ChartMap<const N: usize> {
         None
     }
 
+    /// Whether the box certainly holds no preimage of this target, by a bound that is better than that of [`values`](Self::values) where `∂Φ` is
+    /// singular. Asked for boxes that hold few targets.
+    fn is_absent(&mut self, _cell: &Self::Cell, _target: &[f64; N]) -> bool {
+        false
+    }
+
+    /// Encloses the product of `matrix` and `∂Φ` over the box, if that can be done more closely than by multiplying enclosures, because values depend on each
+    /// other. Asked for boxes that hold few targets and where `∂Φ` is nearly singular. Rounding may be left out.
+    fn combined_jacobian(&mut self, _cell: &Self::Cell, _matrix: &[[f64; N]; N]) -> Option<[[Enclosure; N]; N]> {
+        None
+    }
+
     /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;
 

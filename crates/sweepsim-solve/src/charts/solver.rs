@@ -126,7 +126,13 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             budget -= 1;
-            let linear = Linear::new(&bounds, &jacobian, &map.rounding());
+            let mut linear = Linear::new(&bounds, &jacobian, &map.rounding());
+            if count <= FEW
+                && let Some(linear) = linear.as_mut().filter(|linear| linear.radius >= 1.0)
+                && let Some(products) = map.combined_jacobian(&cell, &linear.rows())
+            {
+                linear.sharpen(&products, &jacobian);
+            }
             let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
             let mut planned = None;
             if let Some(linear) = linear {
@@ -159,7 +165,11 @@ impl<C: Clone> ChartSolver<C> {
                     // Newton's method failed for some target: nothing of this box has been reported yet.
                     Some(false) => {}
                     None => {
-                        if count <= FEW && all_absent(&linear, &value, &values, targets) {
+                        let singular = linear.radius >= 1.0;
+                        if count <= FEW
+                            && (all_absent(&linear, &value, &values, targets)
+                                || singular && all_beside(map, &cell, &values, targets))
+                        {
                             continue;
                         }
                     }
@@ -174,6 +184,8 @@ impl<C: Clone> ChartSolver<C> {
                         planned = Some(largest(&next)).filter(|next| !collapses(&bounds, &jacobian, *next));
                     }
                 }
+            } else if count <= FEW && all_beside(map, &cell, &values, targets) {
+                continue;
             }
             if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
                 axis = (0..N)
@@ -303,6 +315,21 @@ fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
     targets.visit(values, &all_of, &mut |target| {
         let start = linear.predict(&origin, value, &target.value);
         absent = (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
+        absent
+    });
+    absent
+}
+
+/// Whether the map excludes each target in the range.
+fn all_beside<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>(
+    map: &mut M,
+    cell: &M::Cell,
+    values: &[Enclosure; N],
+    targets: &T,
+) -> bool {
+    let mut absent = true;
+    targets.visit(values, &all_of, &mut |target| {
+        absent = map.is_absent(cell, &target.value);
         absent
     });
     absent

@@ -5,6 +5,7 @@ use crate::algebra::ranges::{envelope, envelope_coefficients, products};
 use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::absent::is_absent_from_edge;
 use crate::envelope::enclosures::{Brick, Near, Size, envelope_error, interval, negative, plane_values, turning};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
@@ -74,6 +75,10 @@ impl ChartMap<2> for EdgeMap<'_> {
             let coefficients = envelope_coefficients(spins, travels, &field);
             Affine::of_form(&coefficients, self.element.field_length(side), error)
         }))
+    }
+
+    fn is_absent(&mut self, cell: &Brick, line: &[f64; 2]) -> bool {
+        is_absent_from_edge((self.element, self.cells), (self.times, &self.size), *cell, *line)
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnEdge> {

@@ -4,6 +4,7 @@ use crate::algebra::quad::vector;
 use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::absent::is_absent;
 use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_size, interval, largest, plane_values, product_size, turning, widened,
 };
@@ -26,6 +27,40 @@ pub(crate) struct PatchMap<'a> {
     pub times: &'a mut Times,
     pub motion: FramedMotion<'a>,
     pub size: Size,
+}
+
+impl PatchMap<'_> {
+    /// The part of a cell outside which `g` has a sign, if it is a small one at a corner from which `g` grows, or falls, in both directions.
+    fn part_with_zeros(&mut self, brick: &Brick) -> Option<[[f64; 2]; 2]> {
+        /// Of the cell's sides.
+        const SMALL: f64 = 0.25;
+        /// Of the domain's: far below what matters, far above rounding.
+        const LEAST: f64 = 1e-13;
+        let [_, _, g] = self.values(brick)?;
+        let [_, _, slopes] = self.jacobian(brick);
+        // From the corner where g is least, then from the one where it is largest.
+        [(true, -g.lo()), (false, g.hi())]
+            .into_iter()
+            .find_map(|(least, distance)| {
+                let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+                for axis in 0..2 {
+                    let (start, end) = self.cells.bounds(brick.0, axis);
+                    let slope = slopes[axis];
+                    let steepness = slope.lo().max(-slope.hi());
+                    let reach = f64::max(distance / steepness, LEAST);
+                    if !(steepness > 0.0 && reach < SMALL * (end - start)) {
+                        return None;
+                    }
+                    let at_start = (slope.lo() > 0.0) == least;
+                    (lower[axis], upper[axis]) = if at_start {
+                        (start, start + reach)
+                    } else {
+                        (end - reach, end)
+                    };
+                }
+                Some([lower, upper])
+            })
+    }
 }
 
 impl ChartMap<3> for PatchMap<'_> {
@@ -89,6 +124,18 @@ impl ChartMap<3> for PatchMap<'_> {
         } else {
             self.cells.split(self.element, cell.0, axis).map(|part| (part, cell.1))
         }
+    }
+
+    fn is_absent(&mut self, cell: &Brick, line: &[f64; 3]) -> bool {
+        let [x, y, _] = *line;
+        is_absent((self.element, self.cells), (self.times, &self.size), *cell, [x, y])
+            || self.part_with_zeros(cell).is_some_and(|[lower, upper]| {
+                let mark = self.cells.mark();
+                let part = (self.cells.place(self.element, lower, upper), cell.1);
+                let values = self.values(&part);
+                self.cells.release(mark);
+                values.is_none_or(|values| !(values[0].contains(x) && values[1].contains(y)))
+            })
     }
 
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnPatch> {

@@ -5,6 +5,7 @@ use crate::algebra::ranges::{Triples, envelope, envelope_coefficients, products}
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::cutter::reduced::Missing;
+use crate::envelope::absent::is_separate;
 use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, widened};
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
@@ -156,6 +157,26 @@ impl ChartMap<2> for PlacedMap<'_> {
         let field = self.cells.field(self.element, *cell, 0);
         let (length, missing) = (self.element.field_length(0), self.cells.missing(*cell));
         Some([&self.before, &self.after].map(|side| side.affine((&field, length), missing, self.element)))
+    }
+
+    fn is_absent(&mut self, cell: &u32, line: &[f64; 2]) -> bool {
+        let position = self.cells.position(self.element, *cell);
+        let from = [line[0] - self.tip[0], line[1] - self.tip[1]];
+        let rows = [self.row(0), self.row(1)];
+        is_separate(
+            rows.each_ref().map(|row| &row[..]),
+            &position,
+            from,
+            [2.0 * self.size.slack; 2],
+        )
+    }
+
+    fn combined_jacobian(&mut self, cell: &u32, matrix: &[[f64; 2]; 2]) -> Option<[[Enclosure; 2]; 2]> {
+        let [[x], [y]] = [self.row(0), self.row(1)];
+        Some(matrix.map(|[a, b]| {
+            let row: [f64; 3] = std::array::from_fn(|i| a * x[i] + b * y[i]);
+            [0, 1].map(|axis| interval(products(&[row], &self.cells.slope(self.element, *cell, axis))))
+        }))
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnPlaced> {

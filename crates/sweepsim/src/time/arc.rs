@@ -16,8 +16,8 @@ struct TimePiece {
     parts: u32,
     turns: [Matrix3<f64>; 3],
     weights: [f64; 3],
-    /// Control rows of `A` for X and for Y.
-    rows: [Rows; 2],
+    /// Control rows of `A`.
+    rows: [Rows; 3],
     /// Control rows of `[κk]× A` for X and for Y.
     spin_rows: [Rows; 2],
     /// Coefficients of `Âᵀ b′`, and of its derivative in `t`.
@@ -100,7 +100,7 @@ impl ArcTimes {
             parts: u32::MAX,
             turns,
             weights,
-            rows: [[[0.0; 3]; 3]; 2],
+            rows: [[[0.0; 3]; 3]; 3],
             spin_rows: [[[0.0; 3]; 3]; 2],
             travel: [[0.0; 3]; 3],
             travel_slope: [[0.0; 3]; 2],
@@ -109,8 +109,10 @@ impl ArcTimes {
         for i in 0..self.count {
             let turn = turns[i] / weights[i];
             let spin = self.pace.cross_matrix() * turn;
-            for r in 0..2 {
+            for r in 0..3 {
                 node.rows[r][i] = row(&turn, r);
+            }
+            for r in 0..2 {
                 node.spin_rows[r][i] = row(&spin, r);
             }
             node.travel[i] = match self.nodes.first() {
@@ -161,7 +163,7 @@ impl ArcTimes {
         [first, first + 1]
     }
 
-    /// Control rows of the coordinate `r` (0: X, 1: Y) of `A`.
+    /// Control rows of the coordinate `r` of `A`.
     pub fn rows(&self, piece: u32, r: usize) -> &[[f64; 3]] {
         &self.nodes[piece as usize].rows[r][..self.count]
     }

@@ -75,7 +75,7 @@ struct TimePiece {
     upper: f64,
     parts: u32,
     channels: [Channel; 6],
-    rows: [Vec<[f64; 3]>; 2],
+    rows: [Vec<[f64; 3]>; 3],
     spin_rows: [Vec<[f64; 3]>; 2],
     tip: [(f64, f64); 2],
     velocity: [(f64, f64); 2],
@@ -289,7 +289,7 @@ fn node(lower: f64, upper: f64, channels: [Channel; 6], joint: bool) -> TimePiec
     let width = upper - lower;
     TimePiece {
         offsets: joint.then(|| [TIP, TIP_RATE].map(|k| [0, 1].map(|r| values(&channels[k], r)))),
-        rows: [0, 1].map(|r| control_rows(&channels[TURN], r)),
+        rows: [0, 1, 2].map(|r| control_rows(&channels[TURN], r)),
         spin_rows: [0, 1].map(|r| control_rows(&channels[TURN_RATE], r)),
         tip: [0, 1].map(|r| range(&channels[TIP], r)),
         velocity: [0, 1].map(|r| range(&channels[TIP_RATE], r)),

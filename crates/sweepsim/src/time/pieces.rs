@@ -81,7 +81,7 @@ impl Times {
         }
     }
 
-    /// Control rows of the coordinate `r` (0: X, 1: Y) of `A`.
+    /// Control rows of the coordinate `r` (0: X, 1: Y, 2: Z) of `A`.
     pub fn rows(&self, piece: u32, r: usize) -> Rows<'_> {
         match self {
             Self::Arc(times) => times.rows(piece, r),

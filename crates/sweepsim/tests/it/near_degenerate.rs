@@ -14,11 +14,16 @@ const DISTANCES: [f64; 11] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e
 const GENERIC: f64 = 0.23;
 const MOST: f64 = 3.0;
 /// Where it is more, as it is now: the cost grows with the logarithm of the distance, and the generic neighbour's is small.
-const EXCEPTIONS: [(&str, f64); 4] = [
+const EXCEPTIONS: [(&str, f64); 6] = [
     ("tilt on an arc about a line", 3.4),
-    ("line from the wall", 6.5),
-    ("turn about the tip over a line", 6.5),
-    ("tool's radius from that of the arc", 4.8),
+    ("line from the wall", 7.1),
+    (
+        "of a line from one that the tip moves along and the tool turns about",
+        5.1,
+    ),
+    ("tilt while the tip moves along a line that the tool turns about", 6.1),
+    ("move along a line that the tool turns about", 4.7),
+    ("tool's radius from that of the arc", 5.1),
 ];
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
@@ -42,6 +47,13 @@ fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
     let course = Course::Arc(TipArc::between(from, to, [0.0; 3], UP, 1).expect("an arc"));
     let poses = vec![pose(from, axes[0]), pose(to, axes[1])];
     Path::with_moves(poses, vec![Move { course, turning }]).expect("a path")
+}
+
+/// A turn about a line along the dexels, `d` from the nearest one, while the tip moves along it by `rise`; the axis leans by `tilt` out of the plane
+/// across the line.
+fn about_a_line(d: f64, rise: f64, tilt: f64) -> (Path, Grid) {
+    let poses = [0.2, -0.2].map(|side| pose([0.0, 0.0, rise * side], [side, 1.0, tilt]));
+    (through(poses.into(), Law::Slerp), around([0.8 * d, 0.6 * d]))
 }
 
 /// 15 × 15 lines, the middle one at a place.
@@ -103,6 +115,19 @@ fn families() -> Vec<Family> {
         ("turn about the tip over a line", |d| {
             let poses = vec![pose([0.0; 3], UP), pose([0.0; 3], leaning(0.7))];
             (through(poses, Law::ConstantSpeed), around([0.8 * d, 0.6 * d]))
+        }),
+        (
+            "of a line from one that the tip moves along and the tool turns about",
+            |d| about_a_line(d, 100.0, 0.0),
+        ),
+        ("of a line from one that the tool turns about", |d| {
+            about_a_line(d, 0.0, 0.0)
+        }),
+        ("tilt while the tip moves along a line that the tool turns about", |d| {
+            about_a_line(0.0, 100.0, d)
+        }),
+        ("move along a line that the tool turns about", |d| {
+            about_a_line(0.0, 100.0 * d, 0.0)
         }),
         ("tilt while turning about the own axis", |d| {
             let (table, tilt) = (RotaryTable::Ac, d.to_degrees());
