@@ -299,8 +299,61 @@ fn no_box_of_tilted_tools() {
     }
 }
 
+/// The tools with tori, convex and concave.
+const WITH_TORI: [usize; 5] = [2, 6, 7, 8, 11];
+
+/// The tori of tilted tools along their moves: charts are left with the joints and ends of the path.
+#[test]
+fn fewer_boxes_of_tilted_tori() {
+    let tips = [
+        [-4.0, 1.3, 0.2],
+        [1.0, 2.2, -0.7],
+        [1.5, -2.0, -0.6],
+        [3.3, -2.4, 2.9],
+        [3.2, 1.0, 2.9],
+    ];
+    let mut sum = [0, 0];
+    for (number, axis) in WITH_TORI.into_iter().zip([
+        [0.3, 0.2, 1.0],
+        [-0.9, 0.4, 0.5],
+        [0.05, -0.6, 1.0],
+        [0.7, 0.1, -0.4],
+        [0.2, 0.9, 0.3],
+    ]) {
+        let (name, tool, _) = &tools()[number];
+        let [closed, charts] = agree(name, tool, &path(&tips, axis), &grid([61, 57]), TOLERANCE).expect("the same");
+        let [own, other] = [&closed.statistics, &charts.statistics];
+        assert_eq!(own.repaired, 0, "{name}: {own:?}");
+        assert!(5 * own.boxes < 4 * other.boxes, "{name}: {own:?} {other:?}");
+        sum = [sum[0] + own.boxes, sum[1] + other.boxes];
+        let off = own.crossings.abs_diff(other.crossings);
+        assert!(off <= 4 + other.crossings / 100, "{name}: {own:?} {other:?}");
+    }
+    assert!(2 * sum[0] < sum[1], "{sum:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// Tori on moves across their axis, or almost: there the grazing curve goes half around the circle of centres within an angle as small as the slope.
+    #[test]
+    fn across_the_axis(
+        tool in prop::sample::select(WITH_TORI.to_vec()), axis in lean(), start in tip(),
+        steps in prop::collection::vec((-4.0..4.0_f64, -4.0..4.0_f64, -1.0..1.0_f64, -15..1i32), 1..4)
+    ) {
+        let (name, tool, _) = &tools()[tool];
+        let along = Vector3::from(axis).normalize();
+        let first = along.cross(&Vector3::new(0.3, 1.0, 0.1)).normalize();
+        let second = along.cross(&first);
+        let mut tips = vec![start];
+        for (x, y, z, exponent) in steps {
+            let last = Vector3::from(tips[tips.len() - 1]);
+            tips.push((last + first * x + second * y + along * (z * 10f64.powi(exponent))).into());
+        }
+        let [closed, charts] = agree(name, tool, &path(&tips, axis), &grid([29, 26]), TOLERANCE)?;
+        let [own, other] = [&closed.statistics, &charts.statistics];
+        prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
+    }
 
     /// Tools that lean by next to nothing, or almost lie, on moves along the grid and along their own axis.
     #[test]

@@ -1,6 +1,6 @@
 //! The lines over the strips that grazing curves and edges sweep.
 
-use super::curves::{Graph, Heading, Point, ring, slant, torus};
+use super::curves::{Graph, Heading, Point, quarters, ring, slant, torus};
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
@@ -139,7 +139,8 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
                     let graphs = torus::stretches(heading, centre, radius, angles, out)?;
                     self.all(&graphs);
                 } else {
-                    return None;
+                    let graphs = quarters::stretches(heading, centre, radius, angles, out)?;
+                    self.all(&graphs);
                 }
             }
         }
@@ -191,8 +192,7 @@ impl<S: Fn(f64) -> Source> Strip<'_, '_, S> {
         let [low, high] = graph.span();
         let margins = graph.margins();
         let heading = self.heading;
-        let ends = [graph.at(a).q, graph.at(b).q];
-        let (back, front) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        let [back, front] = graph.between([a, b]);
         // At the ends of the span, `p` may belong to it or not.
         let (below, above) = (a == low, b == high);
         let wide = [

@@ -17,7 +17,7 @@ pub(crate) struct Spot {
     pub certain: bool,
 }
 
-/// A stretch of a curve fixed to the tool over which `p` is strictly monotone, and so is `q`.
+/// A stretch of a curve fixed to the tool over which `p` is strictly monotone.
 pub(crate) trait Graph {
     /// The point at `p`, within the [span](Self::span).
     fn at(&self, p: f64) -> Spot;
@@ -30,6 +30,12 @@ pub(crate) trait Graph {
 
     /// The range of `q`.
     fn reach(&self) -> [f64; 2];
+
+    /// A range of `q` between two values: that of its ends where `q` is monotone, too.
+    fn between(&self, between: [f64; 2]) -> [f64; 2] {
+        let [a, b] = between.map(|p| self.at(p).q);
+        [a.min(b), a.max(b)]
+    }
 
     /// The value `share` of the way through the span, for dividing it into parts of similar length.
     fn part(&self, share: f64) -> f64 {

@@ -2,7 +2,9 @@
 
 mod graph;
 mod heading;
+mod oblique;
 mod parabola;
+pub(crate) mod quarters;
 pub(crate) mod ring;
 pub(crate) mod slant;
 pub(crate) mod torus;

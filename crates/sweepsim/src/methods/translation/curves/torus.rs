@@ -174,8 +174,12 @@ impl Torus {
             }
             let rate = 2.0 * (steep / e + flat * flat * radius / rho);
             let next = e - value / rate;
-            if (next - e).abs() <= 4.0 * f64::EPSILON * e || b - a <= 2.0 * f64::EPSILON * b {
+            if (next - e).abs() <= 4.0 * f64::EPSILON * e {
                 return Some(next.clamp(low.min(high), low.max(high)));
+            }
+            // Next to an extreme the step may be anything.
+            if b - a <= 2.0 * f64::EPSILON * b {
+                return Some(e);
             }
             e = next;
         }
