@@ -58,7 +58,7 @@ pub use dexels::{
 };
 pub use drafts::{Draft, DraftOptions, DraftStock, draft};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
-pub use jobs::{Job, JobPath, LimitRegion, Limits, Origin, RegionPlace, Setup, Target, Units};
+pub use jobs::{Flags, Job, JobPath, LimitRegion, Limits, Origin, Origins, RegionPlace, Seconds, Setup, Target, Units};
 pub use meshes::{
     Colour, MeshFormat, parse_stl, read_3mf, read_coloured_mesh_file, read_glb, read_mesh_file, read_ply, read_stl,
     read_vtp, write_3mf, write_glb, write_mesh_file, write_ply, write_stl, write_vtp,

@@ -6,6 +6,7 @@
 
 mod assembly;
 mod boundary;
+mod packed;
 mod path;
 mod pose;
 mod profile;
@@ -15,7 +16,11 @@ mod tool;
 
 pub use assembly::{Assembly, Body, BodyKind};
 pub use boundary::{Edge, Fold, NormalField, Patch, PatchError, Revolved, Side, ToolError};
-pub use path::{ArcError, Course, Law, Move, Path, PathError, RotaryTable, TipArc, Turning, UnknownTable};
+pub use packed::PackedRows;
+pub use path::{
+    ArcError, Course, Law, Move, PackedMoves, PackedPoses, Path, PathBuilder, PathError, RotaryTable, TipArc, Turning,
+    UnknownTable,
+};
 pub use pose::{Pose, PoseError};
 pub use profile::{Profile, ProfileError, ProfileSegment, SplineFault, Turn};
 pub use segment::{Segment, SegmentEnd, turned_back};

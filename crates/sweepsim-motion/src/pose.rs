@@ -81,6 +81,15 @@ impl Pose {
         Self { tip, axis, side: None }
     }
 
+    /// A pose from the parts of one.
+    pub(crate) fn of_parts(tip: [f64; 3], axis: [f64; 3], side: Option<[f64; 3]>) -> Self {
+        Self {
+            tip: tip.into(),
+            axis: Unit::new_unchecked(axis.into()),
+            side: side.map(|side| Unit::new_unchecked(side.into())),
+        }
+    }
+
     /// The same pose in another place; `None` beyond the range of numbers.
     pub(crate) fn moved(&self, turn: &Matrix3<f64>, shift: Vector3<f64>) -> Option<Self> {
         let unit = |v: Unit<Vector3<f64>>| Unit::new_normalize(turn * v.into_inner());

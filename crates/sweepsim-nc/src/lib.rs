@@ -48,10 +48,11 @@ pub use machines::{
 pub use model::accelerations::CORNER_DEVIATION;
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
+pub use model::poses::ProgramPoses;
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use model::stock::StockDescription;
-pub use model::times::{MoveTime, RAPID_SPEED, RAPID_TURN};
+pub use model::times::{MoveClock, MoveTime, RAPID_SPEED, RAPID_TURN};
 pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
 pub use read::read_file;

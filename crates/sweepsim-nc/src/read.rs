@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use crate::content::Content;
 use crate::controls::{heidenhain, siemens};
@@ -43,7 +44,7 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
         open().and_then(|reader| table::read_from(reader, unit(options)))
     } else {
         let bytes = open().and_then(lines::all);
-        bytes.and_then(|bytes| read_bytes(&bytes, file, extension.as_deref(), options))
+        bytes.and_then(|bytes| read_bytes(bytes, file, extension.as_deref(), options))
     };
     let mut program = read.map_err(|error| error.in_file(file))?;
     // Subprograms come after the main program.
@@ -54,12 +55,22 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
     Ok(program)
 }
 
-fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
+fn read_bytes(bytes: Vec<u8>, file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
     let unit = unit(options);
+    // Comments come in all encodings; anything else that is not ASCII is an error of the reader. Only then there are two copies.
+    let (text, other) = match String::from_utf8(bytes) {
+        Ok(text) => (text, None),
+        Err(error) => (
+            String::from_utf8_lossy(error.as_bytes()).into_owned(),
+            Some(error.into_bytes()),
+        ),
+    };
+    let text = Rc::new(text);
+    let bytes = other.as_deref().unwrap_or(text.as_bytes());
     let read_table = || table::read_from(bytes, unit);
     match options.format {
-        Some(Format::Gcode) => return gcode::read_at(&String::from_utf8_lossy(bytes), Some(file), options),
-        Some(Format::Apt) => return apt::read(&String::from_utf8_lossy(bytes), options),
+        Some(Format::Gcode) => return gcode::read_at(&text, Some(file), options),
+        Some(Format::Apt) => return apt::read(&text, options),
         Some(Format::Table) => return read_table(),
         Some(Format::Rows) => {
             let problem = NcProblem::value("the first row", "of other content", "six numbers");
@@ -67,8 +78,6 @@ fn read_bytes(bytes: &[u8], file: &Path, extension: Option<&str>, options: &Read
         }
         None => {}
     }
-    // Comments come in all encodings; anything else that is not ASCII is an error of the reader.
-    let text = String::from_utf8_lossy(bytes);
     let fail = |problem, line: usize| {
         let whole = text.lines().nth(line - 1).unwrap_or("");
         let width = whole.chars().count();

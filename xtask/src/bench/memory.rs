@@ -10,7 +10,7 @@ use std::time::Duration;
 use std::{fs, thread};
 
 /// Moves of the programs, on `CELLS` × `CELLS` dexels: few, since this is about moves.
-const MOVES: [usize; 6] = [1_000, 4_000, 16_000, 64_000, 200_000, 400_000];
+const MOVES: [usize; 8] = [1_000, 4_000, 16_000, 64_000, 200_000, 400_000, 1_000_000, 4_000_000];
 const CELLS: usize = 100;
 /// Sides of the grids, of a program of `FEW` moves.
 const GRIDS: [usize; 4] = [250, 500, 1000, 2000];

@@ -1,5 +1,6 @@
 //! The stored systems of equations, `../shared/data/systems`: what the solvers find, how long it takes, and what others took.
 
+use super::records::{Records, heading};
 use super::shortest;
 use crate::workspace;
 use serde_json::Value;
@@ -105,9 +106,13 @@ pub fn systems(filter: Option<&str>) -> Result<(), String> {
     let file = workspace::root().join("../shared/data/systems/systems.json");
     let text = std::fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
     let stored: Vec<Value> = serde_json::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?;
+    let mut records = Records::open();
+    heading(
+        "Stored systems of equations, one thread; `IRIT` and `prototype` in ms, `ratio`: IRIT's time over this one's",
+    );
     println!(
-        "{:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10} {:>9} {:>9} {:>6}",
-        "system", "n", "expected", "found", "open", "boxes", "ms", "IRIT", "prototype", "ratio"
+        "{:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10} {:>9} {:>9} {:>6} {:>7}",
+        "system", "n", "expected", "found", "open", "boxes", "ms", "IRIT", "prototype", "ratio", "before"
     );
     let mut states = Vec::new();
     let mut total = 0.0;
@@ -136,8 +141,9 @@ pub fn systems(filter: Option<&str>) -> Result<(), String> {
             ratios.push(irit / (time * 1e3));
         }
         let fails = if FAILED.contains(&name) { "fails" } else { "" };
+        let before = records.note(&format!("systems/{}", name.replace(',', "")), time);
         println!(
-            "{name:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10.3} {:>9} {:>9} {:>6} {}",
+            "{name:<30} {:>2} {:>14} {:>14} {:>5} {:>9} {:>10.3} {:>9} {:>9} {:>6} {before:>7} {}",
             system.variables(),
             expected.as_deref().unwrap_or("?"),
             outcome.found,
@@ -166,7 +172,7 @@ pub fn systems(filter: Option<&str>) -> Result<(), String> {
             mean.exp()
         );
     }
-    Ok(())
+    records.save()
 }
 
 fn expected(json: &Value) -> Option<String> {

@@ -142,7 +142,11 @@ fn job(text: &mut Lines, job: &Job) {
             &format!("{moves}{rapids} of tool {}, from {}", path.tool, path.source),
         );
         // In the coordinates of its program.
-        text.bounds(path.path.poses().iter().map(|pose| path.frame.from_world(pose.tip())));
+        text.bounds(
+            path.path
+                .poses_in_order(0)
+                .map(|pose| path.frame.from_world(pose.tip())),
+        );
         text.notes(path.notes.iter());
     }
     if let Some(target) = &job.target {

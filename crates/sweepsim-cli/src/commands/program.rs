@@ -28,10 +28,10 @@ pub(crate) fn program(text: &mut Lines, program: &Program) {
             "{}{arcs} and {}, in {}",
             counted(sum(|tool| tool.feed_moves), "feed move"),
             counted(sum(|tool| tool.rapid_moves), "rapid"),
-            counted(program.sections().count() as u64, "piece")
+            counted(pieces(program) as u64, "piece")
         ),
     );
-    text.labelled_bounds("extent", program.poses.iter().map(|pose| pose.pose.tip()));
+    text.labelled_bounds("extent", program.poses.in_order().map(|pose| pose.pose.tip()));
     let cuts = usage.iter().filter_map(|tool| tool.extent).flatten();
     text.labelled_bounds("cutting", cuts);
     text.line("tool axis", &directions(program));
@@ -55,6 +55,12 @@ pub(crate) fn program(text: &mut Lines, program: &Program) {
     for note in &program.notes {
         text.line(kind(&note.message), &note.to_string());
     }
+}
+
+/// The number of stretches of joined poses.
+fn pieces(program: &Program) -> usize {
+    let begins = program.poses.in_order().enumerate();
+    begins.filter(|(index, pose)| *index == 0 || !pose.joined).count()
 }
 
 /// The format, the control and the units.
@@ -86,16 +92,22 @@ fn directions(program: &Program) -> String {
     let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
     let mut held: Vec<[f64; 3]> = Vec::new();
     let mut turns = false;
-    for pair in program.poses.windows(2).filter(|pair| pair[1].joined && !pair[1].rapid) {
-        turns |= !near(axis(&pair[0]), axis(&pair[1]));
-        if held.len() <= MOST_LISTED && !held.iter().any(|known| near(*known, axis(&pair[1]))) {
-            held.push(axis(&pair[1]));
+    let mut last: Option<[f64; 3]> = None;
+    for pose in program.poses.in_order() {
+        let own = axis(&pose);
+        let before = last.replace(own);
+        let Some(before) = before.filter(|_| pose.joined && !pose.rapid) else {
+            continue;
+        };
+        turns |= !near(before, own);
+        if held.len() <= MOST_LISTED && !held.iter().any(|known| near(*known, own)) {
+            held.push(own);
         }
     }
     let tilt = program
         .poses
-        .iter()
-        .map(|pose| axis(pose)[2].clamp(-1.0, 1.0).acos().to_degrees())
+        .in_order()
+        .map(|pose| axis(&pose)[2].clamp(-1.0, 1.0).acos().to_degrees())
         .fold(0.0, f64::max);
     let words = |axis: &[f64; 3]| match axis {
         [0.0, 0.0, 1.0] => "z".to_owned(),

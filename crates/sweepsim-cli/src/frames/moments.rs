@@ -19,12 +19,12 @@ pub(super) fn moments(job: &Job, count: usize) -> Vec<Moment> {
     let timed = job.paths.iter().all(timed);
     let mut durations = Vec::new();
     for (path, of_path) in job.paths.iter().enumerate() {
-        for number in 0..of_path.path.moves() {
-            let duration = match of_path.seconds.get(number) {
-                Some(Some(seconds)) if timed => *seconds,
-                _ => of_path.path.tip_length(number),
-            };
-            durations.push((path, number, duration));
+        if timed {
+            let seconds = of_path.seconds.iter().enumerate();
+            durations.extend(seconds.map(|(number, seconds)| (path, number, seconds.unwrap_or_default())));
+        } else {
+            let lengths = of_path.path.tip_lengths().enumerate();
+            durations.extend(lengths.map(|(number, length)| (path, number, length)));
         }
     }
     spread(&durations, count)

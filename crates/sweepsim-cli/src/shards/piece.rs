@@ -10,7 +10,7 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::io::Write as _;
+use std::io::{self, Read as _, Write as _};
 use std::path::Path;
 use sweepsim::verify::{TileDeviation, TileRecord};
 use sweepsim_dexel::{Dexels, Grid};
@@ -186,7 +186,12 @@ impl Piece {
 
     /// Reads a whole file and checks it. `grids`: the grid of each tile, by direction and number.
     pub fn read(file: &Path) -> Result<PieceFile, Unfit> {
-        let bytes = fs::read(file).map_err(|error| Unfit::Unreadable(sweepsim_formats::io_reason(&error)))?;
+        let unreadable = |error: io::Error| Unfit::Unreadable(sweepsim_formats::io_reason(&error));
+        let mut open = fs::File::open(file).map_err(unreadable)?;
+        let mut bytes = Vec::new();
+        // The head tells how much there is; a file of another kind is not read on.
+        let mut read = |most: u64, bytes: &mut Vec<u8>| (&mut open).take(most).read_to_end(bytes).map_err(unreadable);
+        read(HEADER as u64, &mut bytes)?;
         if !bytes.starts_with(MAGIC) {
             // A file that was cut off within its first bytes begins like one.
             return Err(if MAGIC.starts_with(&bytes) {
@@ -210,6 +215,7 @@ impl Piece {
             .iter()
             .try_fold((HEADER + END) as u64, |sum, own| sum.checked_add(*own));
         let told = told.ok_or(Unfit::Damaged)?;
+        read((told - HEADER as u64).saturating_add(1), &mut bytes)?;
         match (bytes.len() as u64).cmp(&told) {
             std::cmp::Ordering::Less => return Err(Unfit::Truncated),
             std::cmp::Ordering::Greater => return Err(Unfit::Damaged),

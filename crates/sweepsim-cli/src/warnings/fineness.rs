@@ -64,13 +64,16 @@ fn coarsest(job: &Job) -> f64 {
 fn cut_radius(job: &Job, path: &JobPath, tool: &Tool, top: Option<f64>) -> f64 {
     let whole = tool.bounding_cylinder().radius;
     let frame = job.grid.frame();
-    let poses = path.path.poses();
-    let upright = poses.iter().all(|pose| frame.turn_from_world(pose.axis())[2] > UPRIGHT);
-    let (Some(top), true) = (top, upright) else {
-        return whole;
-    };
-    let lowest = poses.iter().map(|pose| frame.from_world(pose.tip())[2]);
-    match top - lowest.fold(f64::INFINITY, f64::min) {
+    let Some(top) = top else { return whole };
+    let mut lowest = f64::INFINITY;
+    for pose in path.path.poses_in_order(0) {
+        if frame.turn_from_world(pose.axis())[2] > UPRIGHT {
+            lowest = lowest.min(frame.from_world(pose.tip())[2]);
+        } else {
+            return whole;
+        }
+    }
+    match top - lowest {
         depth if depth > 0.0 => tool.radius_below(depth),
         // It stays above the stock, which has a warning of its own.
         _ => 0.0,

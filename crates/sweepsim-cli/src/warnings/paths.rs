@@ -55,7 +55,7 @@ pub(super) fn miss(job: &Job) -> Option<String> {
     let [low, high] = job.stock.bounds()?;
     let apart = |number: &usize| {
         let path = &job.paths[*number];
-        if path.rapid.iter().all(|rapid| *rapid) {
+        if path.rapid.count() == path.rapid.len() {
             return None;
         }
         let [a, b] = Cut::new(&job.tools[&path.tool], &path.path).bounds()?;
@@ -90,7 +90,7 @@ pub(super) fn without_effect(job: &Job, volume: Option<f64>, removed: Option<&[f
     let nothing = job.tolerance * dx * dy;
     let idle = |n: &usize| {
         let path = &job.paths[*n];
-        removed.get(*n).is_some_and(|removed| *removed <= nothing) && path.rapid.iter().any(|rapid| !rapid)
+        removed.get(*n).is_some_and(|removed| *removed <= nothing) && path.rapid.count() < path.rapid.len()
     };
     let idle: Vec<usize> = (0..job.paths.len()).filter(idle).collect();
     if idle.is_empty() {

@@ -16,6 +16,7 @@ use super::vtu::write_dexels_vtu;
 use crate::atomic::write_atomically;
 use crate::error::{FormatError, Problem};
 use crate::extension::{extension, unknown};
+use crate::text::whole;
 
 /// The extensions of [`DexelFormat`] that are read, for messages.
 const DEXELS: &str = ".csv, .dexels, .tridexels, .npz";
@@ -89,13 +90,13 @@ pub fn read_dexels_file(file: &Path, grid: Option<&Grid>) -> Result<Dexels, Form
                 dexels_from_rows(*grid, &read_dexels_csv(reader)?)
             }
             DexelFormat::Npz => {
-                let mut bytes = Vec::new();
-                reader.read_to_end(&mut bytes).map_err(failed)?;
+                let bytes = whole::at_most(reader.into_inner(), whole::DATA).map_err(failed)?;
                 read_dexels_npz(&bytes)
             }
             DexelFormat::Binary if starts_with(&mut reader, b"sweepsim dexels ").map_err(failed)? => {
-                let mut text = String::new();
-                reader.read_to_string(&mut text).map_err(failed)?;
+                let bytes = whole::at_most(reader.into_inner(), whole::DATA).map_err(failed)?;
+                let text = String::from_utf8(bytes);
+                let text = text.map_err(|error| failed(io::Error::new(io::ErrorKind::InvalidData, error)))?;
                 Ok(Fixture::parse(&text)?.dexels())
             }
             DexelFormat::Binary => read_dexels_binary(&mut reader),

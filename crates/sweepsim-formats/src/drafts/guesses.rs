@@ -24,7 +24,7 @@ impl Drafter<'_> {
     /// The numbers of the tools in use, in the order of the program; tool 1 if it names none.
     fn used(&self) -> Vec<u32> {
         let mut used = Vec::new();
-        for pose in &self.program.poses {
+        for pose in self.program.poses.in_order() {
             let number = pose.tool.unwrap_or(1);
             if !used.contains(&number) {
                 used.push(number);
@@ -96,8 +96,8 @@ impl Drafter<'_> {
             guess(format!("a point of {POINT_ANGLE} degrees"));
         }
         if tool.flute_length.is_none() && !matches!(tool.kind, Some(CutterKind::Apt(_))) {
-            let own = |pose: &&ProgramPose| pose.tool.unwrap_or(1) == number && !pose.rapid;
-            let heights = self.program.poses.iter().filter(own).map(|pose| pose.pose.tip()[2]);
+            let own = |pose: &ProgramPose| pose.tool.unwrap_or(1) == number && !pose.rapid;
+            let heights = self.program.poses.in_order().filter(own).map(|pose| pose.pose.tip()[2]);
             let lowest = heights.fold(f64::INFINITY, f64::min);
             let deep = top.map_or(0.0, |top| (top - lowest).max(0.0));
             let length = (FLUTES * diameter).max(if deep.is_finite() { deep + diameter } else { 0.0 });
@@ -148,7 +148,7 @@ impl Drafter<'_> {
         let mut range: Option<[[f64; 3]; 2]> = None;
         let mut upright = true;
         let program = self.chords.as_ref().unwrap_or(&self.program);
-        for pose in program.poses.iter().filter(|pose| !pose.rapid) {
+        for pose in program.poses.in_order().filter(|pose| !pose.rapid) {
             let tip = pose.pose.tip();
             let [low, high] = range.unwrap_or([tip; 2]);
             range = Some([
@@ -174,7 +174,7 @@ impl Drafter<'_> {
         // Programs of three axes usually have their zero on the stock.
         let highest = program
             .poses
-            .iter()
+            .in_order()
             .map(|pose| pose.pose.tip()[2])
             .fold(high[2], f64::max);
         let at_zero = upright && low[2] < 0.0 && highest >= 0.0;

@@ -158,7 +158,7 @@ impl<'a> Drafter<'a> {
         // Extents need the arcs' points, but not many.
         let has_arcs = program
             .poses
-            .iter()
+            .in_order()
             .any(|pose| matches!(pose.way().course, Course::Arc(_)));
         let chords = if has_arcs {
             (read.exact_arcs, read.arc_tolerance) = (false, 0.01);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path as FilePath, PathBuf};
 
 use sweepsim_nc::tools::to_ron;
-use sweepsim_nc::{CutterKind, Machine, ToolDescription, Units, shortest};
+use sweepsim_nc::{CutterKind, Machine, Program, ToolDescription, Units, shortest};
 
 use super::{Draft, DraftStock, Drafter, refuse};
 use crate::error::{FormatError, Problem};
@@ -95,9 +95,7 @@ impl Drafter<'_> {
     /// What the program and the libraries say.
     fn summary(&self, tools: &BTreeMap<u32, ToolDescription>) -> Vec<String> {
         let program = &self.program;
-        let sections = program.sections().count();
-        let moves: usize = program.sections().map(|section| section.len() - 1).sum();
-        let rapids = program.poses.iter().filter(|pose| pose.joined && pose.rapid).count();
+        let [sections, moves, rapids] = counted(program);
         let units = if program.units == Units::Inch {
             "inches"
         } else {
@@ -123,7 +121,7 @@ impl Drafter<'_> {
     /// The fields of the path.
     fn path(&self) -> Result<Vec<String>, FormatError> {
         let mut fields = vec![format!("file: {}", quoted(&self.named(&self.file)?))];
-        if self.program.poses.iter().all(|pose| pose.tool.is_none()) {
+        if self.program.poses.in_order().all(|pose| pose.tool.is_none()) {
             fields.insert(0, "tool: 1".to_owned());
         }
         let options = self.options;
@@ -165,4 +163,18 @@ impl Drafter<'_> {
             refuse(file, message.to_owned())
         })
     }
+}
+
+/// The numbers of sections, of moves, and of rapids among them.
+fn counted(program: &Program) -> [usize; 3] {
+    let (mut sections, mut moves, mut rapids) = (0, 0, 0);
+    for (index, pose) in program.poses.in_order().enumerate() {
+        if pose.joined && index > 0 {
+            moves += 1;
+        } else {
+            sections += 1;
+        }
+        rapids += usize::from(pose.joined && pose.rapid);
+    }
+    [sections, moves, rapids]
 }

@@ -12,5 +12,5 @@ mod tools;
 
 pub use job::{Job, Units};
 pub use judging::{LimitRegion, Limits, RegionPlace, Target};
-pub use paths::{JobPath, Origin};
+pub use paths::{Flags, JobPath, Origin, Origins, Seconds};
 pub use setups::Setup;

@@ -8,7 +8,8 @@ use super::files::{MeshFormat, read_mesh_file};
 use super::glb::coloured_glb;
 use super::ply::coloured_ply;
 use super::threemf::coloured_3mf;
-use crate::error::{FormatError, Problem};
+use crate::error::FormatError;
+use crate::text::whole;
 
 /// Red, green and blue, in sRGB.
 pub type Colour = [u8; 3];
@@ -32,7 +33,7 @@ pub(crate) fn parsed(text: &str) -> Option<Colour> {
 /// # Errors
 /// Those of [`read_mesh_file`].
 pub fn read_coloured_mesh_file(file: &Path) -> Result<(Mesh, Vec<Option<Colour>>), FormatError> {
-    let bytes = || std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file));
+    let bytes = || whole::read(file, whole::DATA);
     match MeshFormat::of(file) {
         Some(MeshFormat::Ply) => coloured_ply(&bytes()?),
         Some(MeshFormat::Glb) => coloured_glb(&bytes()?),

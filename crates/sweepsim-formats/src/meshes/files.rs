@@ -14,6 +14,7 @@ use super::vtp::{read_vtp, write_vtp};
 use crate::atomic::write_atomically;
 use crate::error::{FormatError, Problem};
 use crate::extension::{extension, unknown};
+use crate::text::whole;
 
 /// The extensions of [`MeshFormat`], for messages.
 const MESHES: &str = ".stl, .ply, .glb, .3mf, .vtp";
@@ -64,7 +65,7 @@ impl fmt::Display for MeshFormat {
 /// Reads a mesh: `.stl`, `.ply`, `.glb`, `.3mf` or `.vtp`. Identical corners of an STL become one vertex.
 ///
 /// # Errors
-/// [`FormatError`] with the file's name: the file cannot be read, its extension is unknown, or its content is invalid.
+/// [`FormatError`] with the file's name: the file cannot be read, has more than 2 GiB, its extension is unknown, or its content is invalid.
 pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));
@@ -73,7 +74,7 @@ pub fn read_mesh_file(file: &Path) -> Result<Mesh, FormatError> {
         let mesh = read_stl(file)?.indexed();
         return mesh.map_err(|error| FormatError::new(Problem::syntax(error.to_string()), None).in_file(file));
     }
-    let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
+    let bytes = whole::read(file, whole::DATA)?;
     match format {
         MeshFormat::Stl | MeshFormat::Ply => read_ply(&bytes),
         MeshFormat::Glb => read_glb(&bytes),

@@ -8,6 +8,7 @@ use std::path::Path;
 use sweepsim_dexel::TriangleSoup;
 
 use crate::error::{FormatError, Problem, TextPosition};
+use crate::text::whole;
 
 /// Bytes before the first triangle of a binary file: 80 arbitrary ones, and the number of triangles.
 const HEADER: usize = 84;
@@ -21,7 +22,7 @@ type Triangle = [[f64; 3]; 3];
 /// # Errors
 /// [`FormatError`]: the file cannot be read, or is not STL (with the line of an ASCII file); coordinates that are not finite.
 pub fn read_stl(file: &Path) -> Result<TriangleSoup, FormatError> {
-    let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
+    let bytes = whole::read(file, whole::DATA)?;
     parse_stl(&bytes).map_err(|error| error.in_file(file))
 }
 

@@ -1,6 +1,7 @@
 //! Text files, and RON with the positions of its values.
 
 mod ron_spans;
+pub(crate) mod whole;
 
 pub(crate) use ron_spans::SpanTree;
 
@@ -8,9 +9,9 @@ use std::path::Path;
 
 use crate::error::{FormatError, Problem, TextPosition};
 
-/// Reads a text file.
+/// Reads a text file of at most 128 MiB.
 pub(crate) fn read(file: &Path) -> Result<String, FormatError> {
-    let bytes = std::fs::read(file).map_err(|error| FormatError::new(Problem::Read(error), None).in_file(file))?;
+    let bytes = whole::read(file, whole::TEXT)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());

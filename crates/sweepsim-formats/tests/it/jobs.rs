@@ -194,7 +194,7 @@ fn paths_in_the_job_have_times_and_rapids() {
 )"#;
     let job = Job::parse(text, Path::new("part.ron")).unwrap();
     let path = &job.paths[0];
-    assert_eq!(path.rapid, [true, true, false, false, false, false]);
+    assert!(path.rapid.iter().eq([true, true, false, false, false, false]));
     assert!(path.assumed_rapids && !job.paths[1].assumed_rapids);
     // 5 inches at 10 m/min; a quarter turn at 7,200 degrees per minute; an inch at 30 inches per minute; a turn in place; nothing; a circle.
     let expected = [
@@ -208,11 +208,11 @@ fn paths_in_the_job_have_times_and_rapids() {
     for (found, expected) in path.seconds.iter().zip(expected) {
         let same = match (found, expected) {
             (Some(found), Some(expected)) => (found - expected).abs() < 1e-9,
-            (found, expected) => *found == expected,
+            (found, expected) => found == expected,
         };
         assert!(same, "{:?}", path.seconds);
     }
-    assert!(job.paths[1].seconds.is_empty() && job.paths[1].rapid == [false]);
+    assert!(job.paths[1].seconds.is_empty() && job.paths[1].rapid.iter().eq([false]));
     for (from, to, message) in [
         (
             "feed: 30",

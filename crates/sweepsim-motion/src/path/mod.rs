@@ -1,28 +1,31 @@
 //! Tool paths: the poses that a tool passes through, in order.
 
+mod builder;
+mod checks;
+mod compact;
 mod constant_speed;
 mod error;
+mod extent;
 mod moves;
+mod packed_moves;
 mod placed;
 mod rotary;
 mod tip_arc;
 
+pub use builder::PathBuilder;
+pub use compact::PackedPoses;
 pub use error::PathError;
 pub use moves::{Course, Law, Move, Turning};
+pub use packed_moves::PackedMoves;
 pub use rotary::{RotaryTable, UnknownTable};
 pub use tip_arc::{ArcError, TipArc};
 
 use crate::pose::Pose;
-use crate::segment::{Segment, turn_between};
+use crate::segment::Segment;
 use crate::spline_motion::SplineMotion;
-use nalgebra::Vector3;
 use placed::Placed;
-use std::f64::consts::PI;
+use std::borrow::Cow;
 use std::ops::Range;
-
-/// Axes of consecutive poses must differ from opposite by more than this, in radians: between opposite axes
-/// the plane in which the axis turns is not determined.
-const OPPOSITE: f64 = 1e-9;
 
 /// A sequence of at least one [`Pose`], with a move for each consecutive pair: for
 /// [`Path::new`], a straight line with SLERP of the axis (or of the full orientation, if the poses give it).
@@ -40,14 +43,25 @@ const OPPOSITE: f64 = 1e-9;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    poses: Vec<Pose>,
+    poses: Poses,
     ways: Ways,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Poses {
+    Plain(Vec<Pose>),
+    Packed(Box<PackedPoses>),
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Ways {
     Slerp,
     Each(Vec<Move>),
+    Packed {
+        moves: Box<PackedMoves>,
+        /// A bound of the coordinates of the tip.
+        size: f64,
+    },
     Motion(Box<SplineMotion>),
     Placed(Box<Placed>),
 }
@@ -124,56 +138,92 @@ impl Path {
     #[must_use]
     pub fn along(motion: SplineMotion) -> Self {
         Self {
-            poses: motion.poses(),
+            poses: Poses::Plain(motion.poses()),
             ways: Ways::Motion(Box::new(motion)),
         }
     }
 
-    fn checked(poses: Vec<Pose>, ways: Ways) -> Result<Self, PathError> {
-        if poses.is_empty() {
-            return Err(PathError::Empty);
-        }
-        if let Some(index) = poses
-            .windows(2)
-            .position(|pair| pair[0].side().is_some() != pair[1].side().is_some())
-        {
-            return Err(PathError::Mixed { index: index + 1 });
-        }
-        let path = Self { poses, ways };
-        for (index, pair) in path.poses.windows(2).enumerate() {
-            if let Turning::Rotary { table, from, to } = path.way(index).turning {
-                let good = |pose: &Pose, angles: [f64; 2]| {
-                    let finite = angles.iter().all(|angle| angle.abs() <= 1e6);
-                    finite && pose.side().is_none() && table.points_along(angles, pose.axis_vector())
-                };
-                if !good(&pair[0], from) || !good(&pair[1], to) {
-                    return Err(PathError::Rotary { index });
-                }
-                continue;
-            }
-            if turn_between(&pair[0], &pair[1]).is_some_and(|(_, angle)| PI - angle <= OPPOSITE) {
-                return Err(PathError::HalfTurn { index });
-            }
-            // For nearly opposite unit vectors, the length of the sum is the angle missing to half a turn. Poses with a full
-            // orientation turn about another axis, which is determined.
-            let sum: Vector3<f64> = pair[0].axis_vector().into_inner() + pair[1].axis_vector().into_inner();
-            if pair[0].side().is_none() && sum.norm() <= OPPOSITE {
-                return Err(PathError::OppositeAxes { index });
-            }
-        }
-        Ok(path)
-    }
-
-    /// The poses, at least one.
+    /// The poses, at least one. Those of a long path that was [packed](PathBuilder) are unpacked when they are first asked for, and take 80 bytes each from then on:
+    /// [`pose`](Self::pose), [`poses_in_order`](Self::poses_in_order) and [`part`](Self::part) do without.
     #[must_use]
     pub fn poses(&self) -> &[Pose] {
-        &self.poses
+        match &self.poses {
+            Poses::Plain(poses) => poses,
+            Poses::Packed(poses) => poses.all(),
+        }
+    }
+
+    /// A pose.
+    ///
+    /// # Panics
+    /// If there is no such pose.
+    #[must_use]
+    pub fn pose(&self, index: usize) -> Pose {
+        match &self.poses {
+            Poses::Plain(poses) => poses[index],
+            Poses::Packed(poses) => poses.get(index).expect("a pose of the path"),
+        }
+    }
+
+    /// The poses from this one on, one after the other.
+    pub fn poses_in_order(&self, first: usize) -> impl Iterator<Item = Pose> + '_ {
+        let (plain, packed) = match &self.poses {
+            Poses::Plain(poses) => (poses.get(first..), None),
+            Poses::Packed(poses) => (None, Some(poses.range(first..poses.len()))),
+        };
+        plain
+            .unwrap_or_default()
+            .iter()
+            .copied()
+            .chain(packed.into_iter().flatten())
+    }
+
+    /// How the tool moves in each of the moves.
+    fn ways_in_order(&self) -> impl Iterator<Item = Move> + '_ {
+        let (plain, packed) = match &self.ways {
+            Ways::Packed { moves, .. } => (0..0, Some(moves.range(0..moves.len()))),
+            _ => (0..self.moves(), None),
+        };
+        plain.map(|number| self.way(number)).chain(packed.into_iter().flatten())
+    }
+
+    /// The moves in an unpacked path, and the number of the first move of that: for a long path that is [packed](PathBuilder), a [part](Self::part) with
+    /// these moves; otherwise the path itself.
+    ///
+    /// # Panics
+    /// If there are no such moves.
+    #[must_use]
+    pub fn unpacked(&self, moves: Range<usize>) -> (Cow<'_, Self>, usize) {
+        if self.is_packed() {
+            (Cow::Owned(self.part(moves.clone())), moves.start)
+        } else {
+            (Cow::Borrowed(self), 0)
+        }
+    }
+
+    fn is_packed(&self) -> bool {
+        matches!(self.poses, Poses::Packed(_))
+    }
+
+    /// The path by its parts of at most so many moves, each with the number of its first move. A path that is not packed is one part, however long it is.
+    ///
+    /// # Panics
+    /// If `moves` is 0.
+    pub fn stretches(&self, moves: usize) -> impl Iterator<Item = (usize, Cow<'_, Self>)> + '_ {
+        let step = if self.is_packed() { moves } else { usize::MAX };
+        (0..self.moves().max(1)).step_by(step).map(move |first| {
+            let last = self.moves().min(first.saturating_add(step));
+            (first, self.unpacked(first..last).0)
+        })
     }
 
     /// The number of moves: one less than poses.
     #[must_use]
     pub fn moves(&self) -> usize {
-        self.poses.len() - 1
+        match &self.poses {
+            Poses::Plain(poses) => poses.len() - 1,
+            Poses::Packed(poses) => poses.len() - 1,
+        }
     }
 
     /// The move from pose `index` to the next; along a [motion](Path::along), the SLERP that would join the poses. Angles of rotary axes are those of the
@@ -183,6 +233,7 @@ impl Path {
         match &self.ways {
             Ways::Placed(placed) => placed.way(index),
             Ways::Each(moves) => moves.get(index).copied().unwrap_or_default(),
+            Ways::Packed { moves, .. } => moves.get(index).unwrap_or_default(),
             Ways::Slerp | Ways::Motion(_) => Move::default(),
         }
     }
@@ -204,10 +255,17 @@ impl Path {
     #[must_use]
     pub fn part(&self, moves: Range<usize>) -> Self {
         Self {
-            poses: self.poses[moves.start..=moves.end].to_vec(),
+            poses: Poses::Plain(match &self.poses {
+                Poses::Plain(poses) => poses[moves.start..=moves.end].to_vec(),
+                Poses::Packed(poses) => {
+                    assert!(moves.end < poses.len(), "moves of the path");
+                    poses.range(moves.start..moves.end + 1).collect()
+                }
+            }),
             ways: match &self.ways {
                 Ways::Slerp => Ways::Slerp,
                 Ways::Each(each) => Ways::Each(each[moves].to_vec()),
+                Ways::Packed { moves: each, .. } => Ways::Each(each.range(moves).collect()),
                 Ways::Motion(motion) => Ways::Motion(Box::new(motion.part(moves))),
                 Ways::Placed(placed) => Ways::Placed(Box::new(placed.part(moves))),
             },
@@ -217,18 +275,21 @@ impl Path {
     /// Whether the moves from pose `from` to pose `to` leave the tool where it is.
     #[must_use]
     pub fn rests(&self, from: usize, to: usize) -> bool {
+        let still = |way: &Move| match (way.course, way.turning) {
+            (Course::Arc(_), _) => false,
+            (_, Turning::Rotary { from, to, .. }) => from == to,
+            _ => true,
+        };
+        let same = || match &self.poses {
+            Poses::Plain(poses) => poses[from] == poses[to],
+            Poses::Packed(poses) => poses.get(from) == poses.get(to),
+        };
         match &self.ways {
-            Ways::Slerp => self.poses[from] == self.poses[to],
+            Ways::Slerp => same(),
             Ways::Motion(_) => false,
             Ways::Placed(placed) => placed.own.rests(from, to),
-            Ways::Each(moves) => {
-                let still = |way: &Move| match (way.course, way.turning) {
-                    (Course::Arc(_), _) => false,
-                    (_, Turning::Rotary { from, to, .. }) => from == to,
-                    _ => true,
-                };
-                self.poses[from] == self.poses[to] && moves[from..to].iter().all(still)
-            }
+            Ways::Each(moves) => same() && moves[from..to].iter().all(still),
+            Ways::Packed { moves, .. } => same() && moves.range(from..to).all(|way| still(&way)),
         }
     }
 
@@ -269,79 +330,26 @@ impl Path {
         self.parts(index, (reach, true), deviation)
     }
 
+    /// The poses from which and to which a move leads.
+    fn ends(&self, index: usize) -> (Pose, Pose) {
+        match &self.poses {
+            Poses::Plain(poses) => (poses[index], poses[index + 1]),
+            Poses::Packed(_) => (self.pose(index), self.pose(index + 1)),
+        }
+    }
+
     fn parts(&self, index: usize, tool: (f64, bool), deviation: f64) -> Vec<Segment> {
-        let (from, to) = (&self.poses[index], &self.poses[index + 1]);
+        let (from, to) = &self.ends(index);
         let way = match &self.ways {
             Ways::Slerp => return Segment::between(from, to),
             Ways::Motion(motion) => return vec![motion.segment(index).clone()],
             Ways::Placed(placed) => return placed.segments(index, tool, deviation),
-            Ways::Each(moves) => &moves[index],
+            Ways::Each(moves) => moves[index],
+            Ways::Packed { .. } => self.way(index),
         };
-        if *way == Move::default() {
+        if way == Move::default() {
             return Segment::between(from, to);
         }
-        constant_speed::segments(from, to, way, tool, deviation)
-    }
-
-    /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself along
-    /// [motions](Path::along).
-    ///
-    /// # Panics
-    /// If there is no such move.
-    ///
-    /// ```
-    /// use sweepsim_motion::{Path, Pose};
-    /// let path = Path::new(vec![Pose::new([0.0; 3], [0.0, 0.0, 1.0])?, Pose::new([3.0, 4.0, 0.0], [0.0, 0.1, 1.0])?])?;
-    /// assert_eq!(path.tip_length(0), 5.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
-    pub fn tip_length(&self, index: usize) -> f64 {
-        let (from, to) = (self.poses[index].tip_vector(), self.poses[index + 1].tip_vector());
-        let course = match &self.ways {
-            Ways::Motion(motion) => {
-                let segment = motion.segment(index);
-                let chords = |count: usize| -> f64 {
-                    let at = |k: usize| Vector3::from(segment.at(k as f64 / count as f64).1);
-                    (0..count).map(|k| (at(k + 1) - at(k)).norm()).sum()
-                };
-                // The error of chords is of second order (Richardson 1911).
-                return (4.0 * chords(128) - chords(64)) / 3.0;
-            }
-            Ways::Placed(placed) => return placed.own.tip_length(index),
-            Ways::Slerp => Course::Straight,
-            Ways::Each(moves) => moves[index].course,
-        };
-        match course {
-            Course::Straight => (to - from).norm(),
-            Course::Arc(arc) => {
-                let rise = (to - from).dot(&arc.normal_vector());
-                (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
-            }
-        }
-    }
-
-    /// A bound on the absolute value of all coordinates of the tip.
-    #[must_use]
-    pub fn size(&self) -> f64 {
-        let poses = self.poses.iter().flat_map(|pose| pose.tip());
-        let ends = poses.map(f64::abs).fold(0.0, f64::max);
-        match &self.ways {
-            Ways::Slerp => ends,
-            Ways::Motion(motion) => motion.size().max(ends),
-            Ways::Placed(placed) => placed.size().max(ends),
-            Ways::Each(moves) => moves
-                .iter()
-                .zip(&self.poses)
-                .fold(ends, |size, (way, from)| match way.course {
-                    Course::Straight => size,
-                    // A circle, the rise, and what the rise is measured from.
-                    Course::Arc(arc) => size.max(
-                        arc.turned(from.tip_vector(), 0.0).norm()
-                            + 2.0 * arc.radius_vector(from.tip_vector()).norm()
-                            + 2.0 * ends,
-                    ),
-                }),
-        }
+        constant_speed::segments(from, to, &way, tool, deviation)
     }
 }

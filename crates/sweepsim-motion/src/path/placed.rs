@@ -1,6 +1,6 @@
 //! Paths in another frame.
 
-use super::{Course, Move, Path, PathError, Ways};
+use super::{Course, Move, PackedPoses, Path, PathError, Poses, Ways};
 use crate::pose::Pose;
 use crate::segment::Segment;
 use nalgebra::{Matrix3, Vector3};
@@ -46,7 +46,17 @@ impl Path {
         if *turn == Matrix3::identity() && shift == Vector3::zeros() {
             return Ok(self.clone());
         }
-        let poses: Option<Vec<Pose>> = self.poses.iter().map(|pose| pose.moved(turn, shift)).collect();
+        let moved = |pose: &Pose| pose.moved(turn, shift).ok_or(PathError::NoRotation);
+        let poses = match &self.poses {
+            Poses::Plain(poses) => Poses::Plain(poses.iter().map(moved).collect::<Result<_, _>>()?),
+            Poses::Packed(_) => {
+                let mut packed = PackedPoses::default();
+                for pose in self.poses_in_order(0) {
+                    packed.push(&moved(&pose)?);
+                }
+                Poses::Packed(Box::new(packed))
+            }
+        };
         let placed = match &self.ways {
             Ways::Placed(before) => Placed {
                 own: before.own.clone(),
@@ -60,7 +70,7 @@ impl Path {
             },
         };
         Ok(Self {
-            poses: poses.ok_or(PathError::NoRotation)?,
+            poses,
             ways: Ways::Placed(Box::new(placed)),
         })
     }

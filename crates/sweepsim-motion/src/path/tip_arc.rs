@@ -148,6 +148,15 @@ impl TipArc {
         }
     }
 
+    /// An arc from parts of one.
+    pub(crate) fn of_parts(centre: [f64; 3], normal: [f64; 3], angle: f64) -> Self {
+        Self {
+            centre: centre.into(),
+            normal: Unit::new_unchecked(normal.into()),
+            angle,
+        }
+    }
+
     /// A point on its axis.
     #[must_use]
     pub fn centre(&self) -> [f64; 3] {

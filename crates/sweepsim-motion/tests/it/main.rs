@@ -5,6 +5,7 @@ mod checked_boundary;
 mod misuse;
 mod motions;
 mod offsets;
+mod packed;
 mod parts;
 mod placed;
 mod spline_profiles;

@@ -12,7 +12,8 @@ use super::statement::{Statement, Statements};
 use super::words::{IGNORED, REFUSED, ROTARY, is_geometry};
 use crate::model::event::{Event, EventKind};
 use crate::model::names::Format;
-use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
+use crate::model::poses::ProgramPoses;
+use crate::model::program::{Call, FeedMode, NoteList, Program, Units};
 use crate::model::read_options::ReadOptions;
 use crate::model::stock::StockDescription;
 use crate::text::error::{NcError, NcProblem, TextPosition};
@@ -41,7 +42,7 @@ pub(super) struct Reader<'o> {
     pub nurbs: Nurbs,
     /// Whether the tool moves to the next pose from the last one.
     pub joined: bool,
-    pub poses: Vec<ProgramPose>,
+    pub poses: ProgramPoses,
     pub calls: Vec<Call>,
     pub events: Vec<Event>,
     pub notes: NoteList,
@@ -74,7 +75,7 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
         last_cycle: None,
         nurbs: Nurbs::default(),
         joined: false,
-        poses: Vec::new(),
+        poses: ProgramPoses::default(),
         calls: Vec::new(),
         events: Vec::new(),
         notes: NoteList::default(),

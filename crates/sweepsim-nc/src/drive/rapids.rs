@@ -3,7 +3,7 @@
 use sweepsim_motion::Pose;
 
 use crate::machines::{Kinematics, Position, Rapid};
-use crate::model::program::Program;
+use crate::model::program::{Program, ProgramPose};
 
 /// A point of a rapid move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,37 +120,16 @@ impl Program {
     #[must_use]
     pub fn other_course(&self, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
         let Some(machine) = self.machine.kinematics.as_deref() else {
-            return self.by_equal_axes(pose);
+            return self
+                .poses
+                .get(pose)?
+                .other_course_from(&self.poses.get(pose.checked_sub(1)?)?.pose);
         };
         if machine.rapid() == Rapid::Unknown {
             self.by_machine(machine, pose, tolerance)
         } else {
             None
         }
-    }
-
-    /// X, Y and Z go equally fast until they are there.
-    fn by_equal_axes(&self, pose: usize) -> Option<Vec<(f64, Pose)>> {
-        let end = self.poses.get(pose).filter(|end| end.rapid && end.joined)?.pose;
-        let start = self.poses.get(pose.checked_sub(1)?)?.pose;
-        let (from, to) = (start.tip(), end.tip());
-        if start.axis() != end.axis() {
-            return None;
-        }
-        let ways: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
-        let last = ways.iter().fold(0.0, |last: f64, way| last.max(way.abs()));
-        let mut times: Vec<f64> = ways.iter().map(|way| way.abs() / last).collect();
-        times.retain(|time| *time > 0.0 && *time < 1.0);
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        let corner = |time: &f64| {
-            let tip = std::array::from_fn(|k| from[k] + (time * last).min(ways[k].abs()).copysign(ways[k]));
-            Some((*time, Pose::new(tip, start.axis()).ok()?))
-        };
-        let mut poses = vec![(0.0, start)];
-        poses.extend(times.iter().map(corner).collect::<Option<Vec<_>>>()?);
-        poses.push((1.0, end));
-        (poses.len() > 2).then_some(poses)
     }
 
     fn by_machine(&self, machine: &Kinematics, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
@@ -193,6 +172,35 @@ impl Program {
         if let Some(last) = poses.last_mut() {
             *last = (1.0, end.pose);
         }
+        (poses.len() > 2).then_some(poses)
+    }
+}
+
+impl ProgramPose {
+    /// The dog-leg that the rapid to this pose from another may be where no machine is known, as of [`Program::other_course`]: X, Y and Z go equally fast until they are there.
+    #[must_use]
+    pub fn other_course_from(&self, start: &Pose) -> Option<Vec<(f64, Pose)>> {
+        if !(self.rapid && self.joined) {
+            return None;
+        }
+        let (start, end) = (*start, self.pose);
+        let (from, to) = (start.tip(), end.tip());
+        if start.axis() != end.axis() {
+            return None;
+        }
+        let ways: [f64; 3] = std::array::from_fn(|k| to[k] - from[k]);
+        let last = ways.iter().fold(0.0, |last: f64, way| last.max(way.abs()));
+        let mut times: Vec<f64> = ways.iter().map(|way| way.abs() / last).collect();
+        times.retain(|time| *time > 0.0 && *time < 1.0);
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let corner = |time: &f64| {
+            let tip = std::array::from_fn(|k| from[k] + (time * last).min(ways[k].abs()).copysign(ways[k]));
+            Some((*time, Pose::new(tip, start.axis()).ok()?))
+        };
+        let mut poses = vec![(0.0, start)];
+        poses.extend(times.iter().map(corner).collect::<Option<Vec<_>>>()?);
+        poses.push((1.0, end));
         (poses.len() > 2).then_some(poses)
     }
 }

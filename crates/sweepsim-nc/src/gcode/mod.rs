@@ -31,6 +31,7 @@ mod syntax;
 mod trace;
 
 use std::path::Path;
+use std::rc::Rc;
 
 pub(crate) use self::motion::arc::CircularArc;
 use self::run::interpreter::{self, Input};
@@ -57,11 +58,11 @@ use crate::tools::comments;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    read_at(text, None, options)
+    read_at(&Rc::new(text.to_owned()), None, options)
 }
 
 /// Reads the text of a file; subprograms may be in files beside it.
-pub(crate) fn read_at(text: &str, file: Option<&Path>, options: &ReadOptions) -> Result<Program, NcError> {
+pub(crate) fn read_at(text: &Rc<String>, file: Option<&Path>, options: &ReadOptions) -> Result<Program, NcError> {
     let mut program = interpreter::read(&Input { text, file }, options, false).program?;
     let comments = comments::read(text, program.units.in_mm());
     program.tools = comments.tools;
@@ -83,6 +84,7 @@ pub(crate) fn read_at(text: &str, file: Option<&Path>, options: &ReadOptions) ->
 /// ```
 #[must_use]
 pub fn canonical(text: &str, file: Option<&Path>, options: &ReadOptions) -> (Vec<String>, Option<NcError>) {
+    let text = &Rc::new(text.to_owned());
     let outcome = interpreter::read(&Input { text, file }, options, true);
     let commands = outcome.trace.iter().map(ToString::to_string).collect();
     (commands, outcome.program.err())

@@ -120,7 +120,7 @@ impl Machine {
         if let Some(ready) = file.to_str().and_then(Self::named) {
             return Ok(ready);
         }
-        let text = std::fs::read_to_string(file).map_err(|error| {
+        let text = crate::text::whole::text(file).map_err(|error| {
             MachineError::Read(match error.kind() {
                 std::io::ErrorKind::NotFound => {
                     format!("there is no such file, and ready ones are {}", ready::NAMES.join(", "))

@@ -4,6 +4,7 @@ pub(crate) mod accelerations;
 pub(crate) mod event;
 pub(crate) mod level_arcs;
 pub(crate) mod names;
+pub(crate) mod poses;
 pub(crate) mod profile;
 pub(crate) mod program;
 pub(crate) mod read_options;

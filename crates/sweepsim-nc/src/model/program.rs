@@ -10,6 +10,7 @@ use sweepsim_motion::{Move, Pose};
 use crate::machines::{Machine, Position};
 use crate::model::event::Event;
 use crate::model::names::Format;
+use crate::model::poses::ProgramPoses;
 use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
@@ -173,7 +174,7 @@ pub struct Program {
     /// The units of the program's words at its first move. Poses are in millimetres whatever they are; feeds are as written.
     pub units: Units,
     /// The poses in order; consecutive ones differ where they are joined.
-    pub poses: Vec<ProgramPose>,
+    pub poses: ProgramPoses,
     /// The positions of the machine's axes at each pose, if its kinematics are known; else empty.
     pub positions: Vec<Position>,
     /// The calls of subprograms, loops and cycles that made moves or events, each before those within it.

@@ -3,7 +3,7 @@
 use nalgebra::{Vector3, Vector6};
 
 use crate::machines::{Kinematics, Position};
-use crate::model::event::{EventKind, Spindle};
+use crate::model::event::{Event, EventKind, Spindle};
 use crate::model::program::{FeedMode, Program, ProgramPose};
 use crate::model::usage::length;
 
@@ -43,38 +43,9 @@ impl Program {
     /// ```
     #[must_use]
     pub fn times(&self) -> Vec<MoveTime> {
-        let mut all = Vec::with_capacity(self.poses.len());
-        let mut events = self.events.iter().peekable();
-        let mut rpm = None;
-        let known = self.positions.len() == self.poses.len();
-        for (index, pose) in self.poses.iter().enumerate() {
-            let mut time = MoveTime::default();
-            while let Some(event) = events.next_if(|event| event.pose <= index) {
-                match event.kind {
-                    EventKind::Dwell { seconds } => time.rest += seconds,
-                    EventKind::Spindle(Spindle::Stopped) => rpm = None,
-                    EventKind::Spindle(
-                        Spindle::Clockwise { rpm: speed } | Spindle::CounterClockwise { rpm: speed },
-                    ) => rpm = speed,
-                    _ => {}
-                }
-            }
-            if let (true, Some(from)) = (pose.joined, index.checked_sub(1)) {
-                let machine = self.machine.kinematics.as_deref().filter(|_| known);
-                let axes = machine.map(|machine| Axes::new(machine, &self.positions[from], &self.positions[index]));
-                let from = &self.poses[from];
-                if pose.rapid {
-                    let (seconds, assumed) = axes.map_or_else(|| (assumed_rapid(from, pose), true), Axes::rapid);
-                    (time.seconds, time.assumed) = (Some(seconds), assumed);
-                } else {
-                    let least = axes.map_or(0.0, |axes| axes.at_full_speed());
-                    let seconds = self.feed_seconds(from, pose, rpm);
-                    time.seconds = seconds.map(|seconds| seconds.max(least));
-                }
-            }
-            time.seconds = time.seconds.filter(|seconds| seconds.is_finite());
-            all.push(time);
-        }
+        let mut clock = self.clock();
+        let mut all: Vec<MoveTime> = self.poses.in_order().map(|pose| clock.next(&pose)).collect();
+        let known = clock.machine.is_some();
         if let Some(machine) = self.machine.kinematics.as_deref().filter(|_| known) {
             self.join_chords(machine, &mut all);
         }
@@ -82,6 +53,20 @@ impl Program {
             self.accelerate(machine, &mut all);
         }
         all
+    }
+
+    /// Tells how long moves take one after the other, as [`times`](Self::times) does for programs without a machine.
+    #[must_use]
+    pub fn clock(&self) -> MoveClock<'_> {
+        let known = self.positions.len() == self.poses.len();
+        MoveClock {
+            program: self,
+            machine: self.machine.kinematics.as_deref().filter(|_| known),
+            events: self.events.iter().peekable(),
+            rpm: None,
+            index: 0,
+            before: None,
+        }
     }
 
     /// Rapids that are divided into chords rest at the ends of their block only: its time is shared among them by their ways.
@@ -137,6 +122,52 @@ impl Program {
             FeedMode::InverseTime => 1.0 / feed,
         };
         Some(60.0 * minutes)
+    }
+}
+
+/// How long the moves of a program without a machine take, one after the other, in little memory.
+pub struct MoveClock<'a> {
+    program: &'a Program,
+    machine: Option<&'a Kinematics>,
+    events: std::iter::Peekable<std::slice::Iter<'a, Event>>,
+    rpm: Option<f64>,
+    index: usize,
+    before: Option<ProgramPose>,
+}
+
+impl MoveClock<'_> {
+    /// How long the move to the next pose of the program takes.
+    pub fn next(&mut self, pose: &ProgramPose) -> MoveTime {
+        let index = self.index;
+        self.index += 1;
+        let mut time = MoveTime::default();
+        while let Some(event) = self.events.next_if(|event| event.pose <= index) {
+            match event.kind {
+                EventKind::Dwell { seconds } => time.rest += seconds,
+                EventKind::Spindle(Spindle::Stopped) => self.rpm = None,
+                EventKind::Spindle(Spindle::Clockwise { rpm: speed } | Spindle::CounterClockwise { rpm: speed }) => {
+                    self.rpm = speed;
+                }
+                _ => {}
+            }
+        }
+        let before = self.before.replace(pose.clone());
+        if let (true, Some(from)) = (pose.joined, before) {
+            let positions = &self.program.positions;
+            let axes = self
+                .machine
+                .map(|machine| Axes::new(machine, &positions[index - 1], &positions[index]));
+            if pose.rapid {
+                let (seconds, assumed) = axes.map_or_else(|| (assumed_rapid(&from, pose), true), Axes::rapid);
+                (time.seconds, time.assumed) = (Some(seconds), assumed);
+            } else {
+                let least = axes.map_or(0.0, |axes| axes.at_full_speed());
+                let seconds = self.program.feed_seconds(&from, pose, self.rpm);
+                time.seconds = seconds.map(|seconds| seconds.max(least));
+            }
+        }
+        time.seconds = time.seconds.filter(|seconds| seconds.is_finite());
+        time
     }
 }
 

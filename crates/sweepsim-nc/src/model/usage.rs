@@ -52,10 +52,12 @@ impl Program {
         let mut all: Vec<ToolUsage> = Vec::new();
         let mut events = self.events.iter().peekable();
         let mut rpm = None;
-        let mut last: Option<&ProgramPose> = None;
-        let times = self.times();
+        let mut last: Option<ProgramPose> = None;
+        let mut clock = self.clock();
+        let known = self.machine.kinematics.as_ref().map(|_| self.times());
         let accelerates = self.accelerates().is_some();
-        for (index, pose) in self.poses.iter().enumerate() {
+        for (index, pose) in self.poses.in_order().enumerate() {
+            let time = known.as_ref().map_or_else(|| clock.next(&pose), |times| times[index]);
             let at = all.iter().position(|usage| usage.tool == pose.tool).unwrap_or_else(|| {
                 all.push(ToolUsage {
                     tool: pose.tool,
@@ -76,11 +78,11 @@ impl Program {
                     _ => {}
                 }
             }
-            if let (true, Some(last)) = (pose.joined, last) {
-                let least = times[index].seconds.filter(|_| accelerates).unwrap_or(0.0);
-                usage.add(last, pose, (self.units.in_mm(), rpm), least);
+            if let (true, Some(last)) = (pose.joined, &last) {
+                let least = time.seconds.filter(|_| accelerates).unwrap_or(0.0);
+                usage.add(last, &pose, (self.units.in_mm(), rpm), least);
                 if pose.rapid {
-                    usage.rapid_seconds += times[index].seconds.unwrap_or(0.0);
+                    usage.rapid_seconds += time.seconds.unwrap_or(0.0);
                 }
             }
             last = Some(pose);

@@ -84,7 +84,6 @@ pub fn read_from(reader: impl BufRead, unit: f64) -> Result<Program, NcError> {
         let place = TextPosition::in_line(lines.number.max(1), &last, 1, last.chars().count());
         return Err(NcError::new(problem, Some(place)));
     }
-    program.poses.shrink_to_fit();
     Ok(program)
 }
 

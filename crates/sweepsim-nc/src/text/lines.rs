@@ -6,6 +6,8 @@ use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The longest line of a program or a table, in bytes. Blocks have a few hundred at most.
 pub(crate) const LONGEST: usize = 1 << 16;
+/// The largest program that is read as a whole, in bytes: positions in it are kept as `u32`.
+const MOST: usize = u32::MAX as usize / 2;
 /// How much of a line that is too long is shown.
 const SHOWN: usize = 120;
 
@@ -78,11 +80,17 @@ impl<R: BufRead> Lines<R> {
 /// Everything in a reader.
 ///
 /// # Errors
-/// [`NcError`]: the reader fails, or a line is longer than [`LONGEST`] bytes; nothing beyond it is read.
+/// [`NcError`]: the reader fails, a line is longer than [`LONGEST`] bytes, or there is more than 2 GB; nothing beyond it is read.
 pub(crate) fn all(reader: impl BufRead) -> Result<Vec<u8>, NcError> {
     let mut lines = Lines::new(reader);
     let mut bytes = Vec::new();
     while lines.next_line()? {
+        if bytes.len() + lines.line().len() > MOST {
+            return Err(NcError::new(
+                NcProblem::value("the size of a program", format!("over {MOST} bytes"), "less than 2 GB"),
+                None,
+            ));
+        }
         bytes.extend_from_slice(lines.line());
     }
     Ok(bytes)

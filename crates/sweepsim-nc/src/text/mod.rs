@@ -3,3 +3,4 @@
 pub(crate) mod error;
 pub(crate) mod lines;
 pub(crate) mod numbers;
+pub(crate) mod whole;

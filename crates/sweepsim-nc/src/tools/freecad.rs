@@ -87,7 +87,7 @@ pub(super) fn library(value: &Value, file: &Path) -> Result<ToolLibrary, NcError
             );
             return Err(NcError::new(problem, None));
         };
-        let text = std::fs::read_to_string(&found)
+        let text = crate::text::whole::text(&found)
             .map_err(|error| NcError::new(NcProblem::Read(error), None).in_file(&found))?;
         let tool = json::parse(&text).map_err(|error| error.in_file(&found))?;
         library.add(number, bit(&tool));

@@ -12,6 +12,7 @@ use crate::model::read_options::ToolOffset;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
 use crate::text::error::{NcError, NcProblem};
+use crate::text::whole;
 
 /// The supported formats, for messages.
 const EXPECTED: &str = "a tool library of Fusion 360 (.json), a library or bit of FreeCAD (.fctl, .fctb), \
@@ -51,9 +52,9 @@ impl ToolLibrary {
 /// Reads a tool library from a file, by its content. `inch` is the unit of tool tables, which do not say theirs.
 ///
 /// # Errors
-/// [`NcError`]: the file cannot be read, or is not a tool library.
+/// [`NcError`]: the file cannot be read, has more than 64 MiB, or is not a tool library.
 pub fn read_library(file: &Path, inch: bool) -> Result<ToolLibrary, NcError> {
-    let bytes = std::fs::read(file).map_err(|error| NcError::new(NcProblem::Read(error), None).in_file(file))?;
+    let bytes = whole::bytes(file).map_err(|error| NcError::new(NcProblem::Read(error), None).in_file(file))?;
     let text = String::from_utf8_lossy(&bytes);
     parse(&text, file, inch).map_err(|error| error.in_file(file))
 }

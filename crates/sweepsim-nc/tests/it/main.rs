@@ -13,6 +13,7 @@ mod klartext_cycles;
 mod level_arcs;
 mod limits;
 mod machines;
+mod packed;
 mod pieces;
 mod posted;
 mod programs;

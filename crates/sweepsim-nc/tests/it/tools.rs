@@ -276,3 +276,47 @@ fn tapered_mills() {
             .starts_with("the corner radius is 3")
     );
 }
+
+/// A file of a hole as large as can be takes no room on the disk, and none in memory.
+#[test]
+fn libraries_and_machines_without_end_are_errors() {
+    let folder = std::env::temp_dir().join(format!("sweepsim-endless-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, begin) in [
+        ("tools.json", "{\"data\": ["),
+        ("tools.tbl", "T1 P1 D6\n"),
+        ("machine.ron", "Machine("),
+    ] {
+        let file = folder.join(name);
+        std::fs::write(&file, begin).unwrap();
+        std::fs::File::options()
+            .append(true)
+            .open(&file)
+            .unwrap()
+            .set_len(1 << 40)
+            .unwrap();
+        let told = if name == "machine.ron" {
+            sweepsim_nc::Machine::read_file(&file).unwrap_err().to_string()
+        } else {
+            tools::read_library(&file, false).unwrap_err().to_string()
+        };
+        assert!(told.contains("larger than 67108864 bytes"), "{told}");
+    }
+    // A line without end, which no size tells.
+    let file = folder.join("part.nc");
+    std::fs::write(&file, "G21 G90\nG0 X0 Y0 Z5\nG1 ").unwrap();
+    std::fs::File::options()
+        .append(true)
+        .open(&file)
+        .unwrap()
+        .set_len(1 << 40)
+        .unwrap();
+    let told = sweepsim_nc::read_file(&file, &sweepsim_nc::ReadOptions::default())
+        .unwrap_err()
+        .to_string();
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert!(
+        told.contains("part.nc:3:1: this line is longer than 65536 bytes"),
+        "{told}"
+    );
+}

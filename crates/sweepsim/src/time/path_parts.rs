@@ -26,13 +26,15 @@ pub(crate) struct PathPart {
 /// How it has turned by then follows from all moves before, so that its `moves` must be all of the path's.
 /// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
 pub(crate) fn parts(
-    (path, moves): (&Path, Range<usize>),
+    (whole, moves): (&Path, Range<usize>),
     frame: &Frame,
     symmetric: bool,
     reach: f64,
     tolerances: &Tolerances,
 ) -> Vec<PathPart> {
-    let poses = path.poses();
+    // A long path is unpacked only where it is swept.
+    let (path, first) = whole.unpacked(moves.clone());
+    let (path, poses) = (&*path, path.poses());
     let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
     let shift = -turn * Vector3::from(frame.origin());
     let seen = |segment: Segment| {
@@ -42,7 +44,7 @@ pub(crate) fn parts(
             segment.moved(&turn, shift)
         }
     };
-    let tip = |k: usize| Vector3::from(frame.from_world(poses[k].tip()));
+    let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
     let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
@@ -78,16 +80,16 @@ pub(crate) fn parts(
     };
     let mut from = moves.start;
     for to in moves.start + 1..=moves.end {
-        if !path.rests(from, to) {
+        if !path.rests(from - first, to - first) {
             let segments = if symmetric {
-                path.segments_of_symmetric(to - 1, reach, tolerances.law_deviation())
+                path.segments_of_symmetric(to - 1 - first, reach, tolerances.law_deviation())
             } else {
-                path.segments(to - 1, reach, tolerances.law_deviation())
+                path.segments(to - 1 - first, reach, tolerances.law_deviation())
             };
             let by = [displaced(from), displaced(to)];
             let limit = tolerances.circle_deviation();
             let round = if symmetric {
-                Round::parts(path, to - 1, frame, (segments.len(), reach), (by, limit))
+                Round::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit))
             } else {
                 None
             };

@@ -60,7 +60,7 @@ impl Round {
             Turning::Slerp | Turning::Even => true,
             Turning::Rotary { from, to, .. } => from == to,
         };
-        let ends = [&path.poses()[number], &path.poses()[number + 1]];
+        let ends = [path.pose(number), path.pose(number + 1)];
         let upright = ends.iter().all(|pose| frame.turn_from_world(pose.axis()) == UP);
         let [x, y, side] = frame.turn_from_world(arc.normal());
         if !still || !upright || [x, y] != [0.0; 2] || side.abs() != 1.0 {

@@ -20,6 +20,8 @@ const LINES: usize = 40_000;
 const POINTS: usize = 200_000;
 /// Programs with more moves have no moments unless they are asked for: it takes about as long as the simulation.
 const MOVES: usize = 50_000;
+/// So many moves are unpacked at a time.
+const STRETCH: usize = 4096;
 /// The default number of moments.
 const MOMENTS: u16 = 120;
 
@@ -94,40 +96,41 @@ pub(super) fn made(source: &PageSource, programs: &Programs) -> Result<Courses, 
         if let Some(place) = &before {
             point(clock, place, made.moves, false, true);
         }
-        for number in 0..path.path.moves() {
-            let rapid = path.rapid.get(number).copied().unwrap_or_default();
-            // What is left out of long programs is straight, as far as people can see.
-            let room = if every > 1 { f64::INFINITY } else { room };
-            let places = placements(&path.path, number, 1.0, reach, room);
-            let steps: Vec<[f64; 2]> = std::iter::once(before)
-                .chain(places.iter().copied().map(Some))
-                .zip(&places)
-                .map(|(before, place)| {
-                    let Some(before) = before else { return [0.0; 2] };
-                    let step = distance(before.tip, place.tip);
-                    // A turn on the spot takes time, too.
-                    [step, step.max(0.25 * before.far(place, reach))]
-                })
-                .collect();
-            let whole: f64 = steps.iter().map(|[_, way]| way).sum();
-            let seconds = if timed {
-                path.seconds[number].unwrap_or_default()
-            } else {
-                whole
-            };
-            let pace = if whole > 0.0 { seconds / whole } else { 0.0 };
-            let end = clock + seconds;
-            for (place, [step, way]) in places.iter().zip(&steps) {
-                clock += pace * way;
-                lengths[usize::from(rapid)] += step;
-                if number % every == 0 || number + 1 == path.path.moves() {
-                    point(clock, place, made.moves + number as u32, rapid, false);
+        let mut times = path.seconds.iter();
+        for (first, part) in path.path.stretches(STRETCH) {
+            for own in 0..part.moves() {
+                let number = first + own;
+                let rapid = path.rapid.get(number);
+                // What is left out of long programs is straight, as far as people can see.
+                let room = if every > 1 { f64::INFINITY } else { room };
+                let places = placements(&part, own, 1.0, reach, room);
+                let steps: Vec<[f64; 2]> = std::iter::once(before)
+                    .chain(places.iter().copied().map(Some))
+                    .zip(&places)
+                    .map(|(before, place)| {
+                        let Some(before) = before else { return [0.0; 2] };
+                        let step = distance(before.tip, place.tip);
+                        // A turn on the spot takes time, too.
+                        [step, step.max(0.25 * before.far(place, reach))]
+                    })
+                    .collect();
+                let whole: f64 = steps.iter().map(|[_, way]| way).sum();
+                let known = times.next().flatten();
+                let seconds = if timed { known.unwrap_or_default() } else { whole };
+                let pace = if whole > 0.0 { seconds / whole } else { 0.0 };
+                let end = clock + seconds;
+                for (place, [step, way]) in places.iter().zip(&steps) {
+                    clock += pace * way;
+                    lengths[usize::from(rapid)] += step;
+                    if number % every == 0 || number + 1 == path.path.moves() {
+                        point(clock, place, made.moves + number as u32, rapid, false);
+                    }
                 }
+                before = places.last().copied().or(before);
+                // A move without a way may take its time.
+                clock = end.max(clock);
+                made.clocks.push(clock);
             }
-            before = places.last().copied().or(before);
-            // A move without a way may take its time.
-            clock = end.max(clock);
-            made.clocks.push(clock);
         }
         made.moves += path.path.moves() as u32;
         made.lengths.push(lengths);

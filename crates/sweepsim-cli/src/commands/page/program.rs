@@ -38,9 +38,10 @@ impl Programs {
         let mut lines = Vec::new();
         for path in &session.job.paths {
             let mut last = (usize::MAX, 0);
-            let line = |number: usize| {
-                // A move belongs to the line of the pose where it ends.
-                let Some(origin) = path.origins.get(number + 1) else {
+            // A move belongs to the line of the pose where it ends.
+            let mut origins = path.origins.iter().skip(1);
+            let line = |_: usize| {
+                let Some(origin) = origins.next() else {
                     return (0, 0);
                 };
                 if origin.file != last.0 {

@@ -1,6 +1,6 @@
 //! Axes of the machine beyond their limits, as findings; axes that are too slow, as a note: the machine slows the move down.
 
-use super::findings::ProgramTexts;
+use super::texts::ProgramTexts;
 use super::work;
 use crate::session::words;
 use sweepsim_formats::{Job, JobPath, Report, ReportedFinding};
@@ -120,8 +120,7 @@ fn worse(a: AxisFault, b: AxisFault) -> AxisFault {
 
 /// Where the tip is then.
 fn place(job: &Job, path: &JobPath, finding: &AxisFinding) -> [f64; 3] {
-    let poses = path.path.poses();
-    let end = poses[finding.pose.min(poses.len() - 1)].tip();
+    let end = path.path.pose(finding.pose.min(path.path.moves())).tip();
     let Some(moved) = finding.pose.checked_sub(1).filter(|_| finding.time < 1.0) else {
         return end;
     };

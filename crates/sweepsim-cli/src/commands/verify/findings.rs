@@ -1,9 +1,8 @@
 //! Findings as they are reported: with their lines, sorted, and with the verdict.
 
+use super::texts::ProgramTexts;
 use super::{axes, targets, work};
 use crate::session::JobSession;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 use sweepsim::motion::BodyKind;
 use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
 use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
@@ -114,31 +113,4 @@ fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedF
     reported.time = Some(finding.time);
     (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);
     reported
-}
-
-/// The lines of the programs of a job, read on demand.
-pub(super) struct ProgramTexts {
-    pub folder: PathBuf,
-    files: BTreeMap<String, Vec<String>>,
-}
-
-impl ProgramTexts {
-    fn new(session: &JobSession) -> Self {
-        Self {
-            folder: session.file().parent().unwrap_or(Path::new("")).to_owned(),
-            files: BTreeMap::new(),
-        }
-    }
-
-    /// A line of a file, without the space around it.
-    pub fn line(&mut self, file: &str, line: usize) -> Option<String> {
-        let lines = self.files.entry(file.to_owned()).or_insert_with(|| {
-            let text = std::fs::read(self.folder.join(file)).unwrap_or_default();
-            String::from_utf8_lossy(&text)
-                .lines()
-                .map(|line| line.trim().to_owned())
-                .collect()
-        });
-        lines.get(line.checked_sub(1)?).cloned()
-    }
 }

@@ -5,6 +5,7 @@ mod findings;
 mod fixtures;
 mod program;
 pub(super) mod targets;
+mod texts;
 mod work;
 
 pub(super) use work::setups;

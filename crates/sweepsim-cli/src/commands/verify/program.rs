@@ -229,12 +229,11 @@ pub(super) fn note_margins(job: &Job, judging: &JudgeOptions, report: &mut Repor
 }
 
 fn states(path: &JobPath) -> Vec<MoveState> {
-    let is = |list: &[bool], number: usize| list.get(number).copied().unwrap_or_default();
-    let state = |(number, rapid): (usize, &bool)| {
-        let state = if *rapid { MoveState::RAPID } else { MoveState::FEED };
+    let state = |(number, rapid): (usize, bool)| {
+        let state = if rapid { MoveState::RAPID } else { MoveState::FEED };
         state
-            .with_spindle_stopped(is(&path.spindle_stopped, number))
-            .with_no_feed(is(&path.no_feed, number))
+            .with_spindle_stopped(path.spindle_stopped.get(number))
+            .with_no_feed(path.no_feed.get(number))
     };
     path.rapid.iter().enumerate().map(state).collect()
 }

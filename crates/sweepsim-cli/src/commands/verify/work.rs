@@ -26,9 +26,9 @@ pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Judgeme
     let mut works: BTreeMap<(usize, u32), WorkSummary> = BTreeMap::new();
     for (path, removal) in job.paths.iter().zip(&done.paths) {
         let work = works.entry((path.setup, path.tool)).or_default();
-        for number in 0..path.path.moves() {
-            let seconds = path.seconds.get(number).copied().flatten();
-            work.add_move(rapid(path, number), seconds, path.path.tip_length(number));
+        let mut seconds = path.seconds.iter();
+        for (number, length) in path.path.tip_lengths().enumerate() {
+            work.add_move(path.rapid.get(number), seconds.next().flatten(), length);
         }
         work.dwell_seconds += path.dwell_seconds;
         work.removed += removal.volume;
@@ -43,8 +43,8 @@ pub(super) fn describe(report: &mut Report, session: &JobSession, done: &Judgeme
         let mut row = MoveSummary::default();
         (row.path, row.number, row.tool) = (removal.path, removal.number, path.tool);
         (row.file, row.line) = place(path, removal.number, folder).unzip();
-        row.rapid = rapid(path, removal.number);
-        row.seconds = path.seconds.get(removal.number).copied().flatten();
+        row.rapid = path.rapid.get(removal.number);
+        row.seconds = path.seconds.get(removal.number);
         row.length = path.path.tip_length(removal.number);
         (row.removed, row.depth, row.width) = (removal.volume, removal.depth, removal.width);
         works.entry((path.setup, path.tool)).or_default().add_engagement(&row);
@@ -99,8 +99,4 @@ pub(in crate::commands) fn setups(job: &Job) -> Option<Vec<SetupSummary>> {
         Some(summary)
     };
     job.setups.iter().enumerate().map(summary).collect()
-}
-
-fn rapid(path: &JobPath, number: usize) -> bool {
-    path.rapid.get(number).copied().unwrap_or_default()
 }

@@ -7,7 +7,7 @@ use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, Path, RotaryTable};
 use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions, read_file};
 
-use super::{JobPath, PathPlace, inline, program, spline_motion};
+use super::{Flags, JobPath, Origins, PathPlace, inline, program, spline_motion};
 use crate::error::{FormatError, Problem};
 use crate::jobs::place::Step;
 use crate::jobs::read::JobReader;
@@ -95,26 +95,26 @@ impl JobReader<'_> {
             }
         }
         let whole = |tool: u32, path: Path, source: String| {
-            let rapid = match &raw.moves {
-                Some(moves) => inline::rapids(moves),
-                None => vec![false; path.moves()],
+            let rapid: Flags = match &raw.moves {
+                Some(moves) => inline::rapids(moves).collect(),
+                None => std::iter::repeat_n(false, path.moves()).collect(),
             };
             let seconds = inline::seconds(&path, &rapid, raw.feed.map(|feed| feed * self.unit));
             vec![JobPath {
                 tool,
                 setup: 0,
                 frame: Frame::WORLD,
-                assumed_rapids: rapid.contains(&true),
+                assumed_rapids: rapid.count() > 0,
                 rapid,
                 seconds,
                 other_courses: Vec::new(),
-                spindle_stopped: Vec::new(),
-                no_feed: Vec::new(),
+                spindle_stopped: Flags::default(),
+                no_feed: Flags::default(),
                 beyond: Vec::new(),
                 dwell_seconds: 0.0,
                 path,
                 source,
-                origins: Vec::new(),
+                origins: Origins::default(),
                 files: Arc::new([]),
                 calls: Arc::new([]),
                 notes: Vec::new(),

@@ -4,6 +4,7 @@ use sweepsim_motion::{Course, Law, Move, Path, PathError, Pose, PoseError, TipAr
 
 use sweepsim_nc::{RAPID_SPEED, RAPID_TURN};
 
+use super::{Flags, Seconds};
 use crate::error::Problem;
 use crate::jobs::schema;
 
@@ -94,17 +95,17 @@ pub(crate) fn of_moves(raw: &[schema::Move], law: Law, unit: f64) -> Result<Path
 }
 
 /// Which of these moves are rapids.
-pub(crate) fn rapids(raw: &[schema::Move]) -> Vec<bool> {
+pub(crate) fn rapids(raw: &[schema::Move]) -> impl Iterator<Item = bool> + '_ {
     let moves = raw.iter().skip(1);
-    moves.map(|way| matches!(way, schema::Move::Rapid(_))).collect()
+    moves.map(|way| matches!(way, schema::Move::Rapid(_)))
 }
 
 /// How long each move takes, in seconds: at `feed` in millimetres per minute, or as fast as axes of unknown speed are assumed to be. The duration of a turn in place at a feed is not known.
-pub(crate) fn seconds(path: &Path, rapid: &[bool], feed: Option<f64>) -> Vec<Option<f64>> {
+pub(crate) fn seconds(path: &Path, rapid: &Flags, feed: Option<f64>) -> Seconds {
     let of_move = |number: usize| {
         let length = path.tip_length(number);
-        if rapid.get(number) == Some(&true) {
-            let [a, b] = [number, number + 1].map(|k| path.poses()[k].axis());
+        if rapid.get(number) {
+            let [a, b] = [number, number + 1].map(|k| path.pose(k).axis());
             let cosine: f64 = (0..3).map(|k| a[k] * b[k]).sum();
             let degrees = cosine.clamp(-1.0, 1.0).acos().to_degrees();
             return Some(60.0 * (length / RAPID_SPEED).max(degrees / RAPID_TURN));
@@ -112,10 +113,10 @@ pub(crate) fn seconds(path: &Path, rapid: &[bool], feed: Option<f64>) -> Vec<Opt
         let seconds = 60.0 * length / feed?;
         (seconds > 0.0 || path.rests(number, number + 1)).then_some(seconds)
     };
-    let all: Vec<Option<f64>> = (0..path.moves()).map(of_move).collect();
+    let all: Seconds = (0..path.moves()).map(of_move).collect();
     // Without any feed or rapid nothing is known of the times.
-    if all.iter().all(Option::is_none) {
-        Vec::new()
+    if all.iter().all(|seconds| seconds.is_none()) {
+        Seconds::default()
     } else {
         all
     }

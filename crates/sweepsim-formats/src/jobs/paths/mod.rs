@@ -1,10 +1,14 @@
 //! The paths of a job: poses in the job itself, or a file whose extension determines its format.
 
+mod columns;
 mod course;
 mod entry;
 mod inline;
 mod program;
+mod section;
 mod spline_motion;
+
+pub use columns::{Flags, Origins, Seconds};
 
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
@@ -40,23 +44,23 @@ pub struct JobPath {
     /// Where it comes from, for display: the name of a file, or its position in the job.
     pub source: String,
     /// Whether each move is a rapid.
-    pub rapid: Vec<bool>,
+    pub rapid: Flags,
     /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, sorted by move.
     pub other_courses: Vec<OtherCourse>,
     /// Whether the spindle stands still in each move; empty if the program never mentions the spindle.
-    pub spindle_stopped: Vec<bool>,
+    pub spindle_stopped: Flags,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
-    pub no_feed: Vec<bool>,
+    pub no_feed: Flags,
     /// What the machine cannot do, if one is known: axes beyond their limits, or faster than they can be. The pose is one of this path.
     pub beyond: Vec<AxisFinding>,
     /// How long each move takes, in seconds, as far as that is known; empty for poses in the job itself.
-    pub seconds: Vec<Option<f64>>,
+    pub seconds: Seconds,
     /// How long the tool rests between these moves, in seconds.
     pub dwell_seconds: f64,
     /// Whether the speeds of rapids had to be assumed.
     pub assumed_rapids: bool,
     /// Where each pose comes from; empty for poses in the job itself.
-    pub origins: Vec<Origin>,
+    pub origins: Origins,
     /// The files of the program, the main program first.
     pub files: Arc<[PathBuf]>,
     /// The calls of subprograms, loops and cycles of the program, each before those within it.
@@ -107,6 +111,6 @@ impl JobPath {
     /// The number of moves that are rapids.
     #[must_use]
     pub fn rapid_moves(&self) -> usize {
-        self.rapid.iter().filter(|rapid| **rapid).count()
+        self.rapid.count()
     }
 }

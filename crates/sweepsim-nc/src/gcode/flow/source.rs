@@ -1,6 +1,7 @@
 //! The text of a program or of a file of subprograms, with its lines.
 
 use std::cell::OnceCell;
+use std::rc::Rc;
 
 use super::labels::Labels;
 
@@ -8,7 +9,7 @@ use super::labels::Labels;
 pub(crate) struct Source {
     /// An index of the program's files.
     pub file: usize,
-    text: String,
+    text: Rc<String>,
     /// Where each line begins and ends.
     lines: Vec<(u32, u32)>,
     labels: OnceCell<Labels>,
@@ -18,7 +19,7 @@ pub(crate) struct Source {
 pub(crate) const LONGEST: usize = u32::MAX as usize / 2;
 
 impl Source {
-    pub(crate) fn new(file: usize, text: String) -> Self {
+    pub(crate) fn new(file: usize, text: Rc<String>) -> Self {
         let start = text.as_ptr() as usize;
         let lines = text
             .lines()

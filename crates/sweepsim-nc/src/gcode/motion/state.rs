@@ -9,6 +9,7 @@ use sweepsim_motion::{Course, Move, Pose, TipArc, Turning};
 use crate::drive::{Coordinates, Driver, Place, Sense};
 use crate::machines::{Machine, Position};
 use crate::model::event::{Event, EventKind};
+use crate::model::poses::ProgramPoses;
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::NcProblem;
@@ -51,7 +52,7 @@ pub(crate) struct State {
     /// As given.
     machine: Machine,
     positions: Vec<Position>,
-    poses: Vec<ProgramPose>,
+    poses: ProgramPoses,
     /// Whether the tool moves to the next pose from the last one.
     joined: bool,
 }
@@ -84,7 +85,7 @@ impl State {
             direct: None,
             positions: Vec::new(),
             machine: options.machine.clone(),
-            poses: Vec::new(),
+            poses: ProgramPoses::default(),
             joined: false,
         }
     }

@@ -110,7 +110,7 @@ pub(crate) struct Reader {
 
 /// A text that is read, and where it comes from.
 pub(crate) struct Input<'a> {
-    pub text: &'a str,
+    pub text: &'a Rc<String>,
     pub file: Option<&'a Path>,
 }
 
@@ -182,7 +182,7 @@ impl Reader {
             strict: options.controller.is_some(),
             modal_macro: None,
             frames: vec![Frame::main()],
-            sources: vec![Rc::new(Source::new(0, input.text.to_owned()))],
+            sources: vec![Rc::new(Source::new(0, Rc::clone(input.text)))],
             files: input.file.map(Path::to_owned).into_iter().collect(),
             folders: folders(input.file, &options.subprograms),
             looked_for: BTreeSet::new(),

@@ -16,7 +16,6 @@ mod discs;
 mod leaning;
 mod lunes;
 mod placed;
-mod radial;
 mod rows;
 mod strip;
 mod wedges;

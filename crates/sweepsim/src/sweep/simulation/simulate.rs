@@ -7,12 +7,16 @@ use crate::sweep::options::Options;
 use crate::sweep::report::{Statistics, Sweep};
 use crate::sweep::run::sweep;
 use crate::time::swept_box::swept_box;
+use std::borrow::Cow;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
 
 /// How far [`Cut::bounds`] may be larger than need be, and moves other than SLERP from their law while it is computed, in reaches of the tool.
 const BOX_MARGIN: f64 = 1e-3;
+
+/// So many moves of a packed path are unpacked at a time.
+const STRETCH: usize = 1 << 12;
 
 /// A tool and its path.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +51,12 @@ impl<'a> Cut<'a> {
     /// ```
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
-        hull((0..self.path.moves()).flat_map(|number| self.boxes(number)))
+        let of_part = |(_, part): (usize, Cow<'_, Path>)| {
+            let part = Cut::new(self.tool, &part);
+            hull((0..part.path.moves()).flat_map(|number| part.boxes(number)))
+        };
+        let parts = self.path.stretches(STRETCH).filter_map(of_part);
+        hull(parts.map(|[low, high]| std::array::from_fn(|k| [low[k], high[k]])))
     }
 
     /// As [`bounds`](Self::bounds), of what is swept in one move. `None` beyond the last.

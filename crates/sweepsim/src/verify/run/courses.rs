@@ -33,10 +33,9 @@ impl Work<'_> {
         }
         let grid = *self.remaining.grid();
         let mut material = self.near_stock(&larger.cutter, moves.clone());
-        if let Some(start) = toolpath.path.poses().get(moves.start) {
-            // Out of what it has cut, along its axis.
-            material = self.without_withdrawal(assembly, start, material)?;
-        }
+        // Out of what it has cut, along its axis.
+        let start = toolpath.path.pose(moves.start);
+        material = self.without_withdrawal(assembly, &start, material)?;
         let question = Question {
             touching: Touching {
                 probe: &larger.cutter,
@@ -164,7 +163,7 @@ impl Work<'_> {
         let reach = reaches.fold(0.0, f64::max) + self.options.tolerance;
         let near = |grid: &Grid, heights: &HeightMap| {
             let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-            for pose in course.path.poses() {
+            for pose in course.path.poses_in_order(0) {
                 for (range, c) in reached.iter_mut().zip(grid.frame().from_world(pose.tip())) {
                     *range = [range[0].min(c - reach), range[1].max(c + reach)];
                 }

@@ -58,7 +58,7 @@ fn judged(program: &str, cell: f64, block: [[f64; 3]; 2]) -> [usize; 2] {
     );
     let job = Job::parse(&text, &file).expect("a job");
     let [path] = &job.paths[..] else { panic!("one path") };
-    let state = |rapid: &bool| if *rapid { MoveState::RAPID } else { MoveState::FEED };
+    let state = |rapid: bool| if rapid { MoveState::RAPID } else { MoveState::FEED };
     let states: Vec<MoveState> = path.rapid.iter().map(state).collect();
     let assembly = Assembly::new(job.tools[&1].clone()).with(BodyKind::Holder, HOLDER.tool());
     let stock = job.stock.dexels(&job.grid).expect("a stock");

@@ -98,7 +98,7 @@ fn read(path: &Path, file: usize) -> Result<Source, NcProblem> {
     }
     let open = std::fs::File::open(path).map_err(NcProblem::Read)?;
     let bytes = lines::all(BufReader::new(open)).map_err(|error| error.into_parts().2)?;
-    Ok(Source::new(file, String::from_utf8_lossy(&bytes).into_owned()))
+    Ok(Source::new(file, Rc::new(String::from_utf8_lossy(&bytes).into_owned())))
 }
 
 /// The folders in which to look for subprograms.

@@ -1,0 +1,97 @@
+//! How long the moves of a path are, and how far it goes.
+
+use super::{Course, Path, Poses, Ways};
+use nalgebra::Vector3;
+use std::borrow::Cow;
+
+/// So many moves are unpacked at a time.
+const STRETCH: usize = 1 << 12;
+
+impl Path {
+    /// The length of the tip's way in move `index`: exact for lines, arcs and helices, and to about 1e-6 of itself along
+    /// [motions](Path::along).
+    ///
+    /// # Panics
+    /// If there is no such move.
+    ///
+    /// ```
+    /// use sweepsim_motion::{Path, Pose};
+    /// let path = Path::new(vec![Pose::new([0.0; 3], [0.0, 0.0, 1.0])?, Pose::new([3.0, 4.0, 0.0], [0.0, 0.1, 1.0])?])?;
+    /// assert_eq!(path.tip_length(0), 5.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn tip_length(&self, index: usize) -> f64 {
+        let (from, to) = self.ends(index);
+        let (from, to) = (from.tip_vector(), to.tip_vector());
+        let course = match &self.ways {
+            Ways::Motion(motion) => {
+                let segment = motion.segment(index);
+                let chords = |count: usize| -> f64 {
+                    let at = |k: usize| Vector3::from(segment.at(k as f64 / count as f64).1);
+                    (0..count).map(|k| (at(k + 1) - at(k)).norm()).sum()
+                };
+                // The error of chords is of second order (Richardson 1911).
+                return (4.0 * chords(128) - chords(64)) / 3.0;
+            }
+            Ways::Placed(placed) => return placed.own.tip_length(index),
+            Ways::Slerp => Course::Straight,
+            Ways::Each(_) | Ways::Packed { .. } => self.way(index).course,
+        };
+        match course {
+            Course::Straight => (to - from).norm(),
+            Course::Arc(arc) => {
+                let rise = (to - from).dot(&arc.normal_vector());
+                (arc.radius_vector(from).norm() * arc.angle()).hypot(rise)
+            }
+        }
+    }
+
+    /// The [lengths](Self::tip_length) of all moves, one after the other.
+    pub fn tip_lengths(&self) -> impl Iterator<Item = f64> + '_ {
+        let of_part = |(_, part): (usize, Cow<'_, Self>)| -> Vec<f64> {
+            (0..part.moves()).map(|number| part.tip_length(number)).collect()
+        };
+        self.stretches(STRETCH).flat_map(of_part)
+    }
+
+    /// A bound on the absolute value of all coordinates of the tip.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        let ends = self.largest();
+        match &self.ways {
+            Ways::Slerp => ends,
+            Ways::Motion(motion) => motion.size().max(ends),
+            Ways::Placed(placed) => placed.size().max(ends),
+            Ways::Packed { size, .. } => *size,
+            Ways::Each(_) => self.size_of_arcs(),
+        }
+    }
+
+    /// A bound on the absolute value of all coordinates of the poses.
+    fn largest(&self) -> f64 {
+        match &self.poses {
+            Poses::Plain(poses) => poses
+                .iter()
+                .flat_map(|pose| pose.tip())
+                .map(f64::abs)
+                .fold(0.0, f64::max),
+            Poses::Packed(poses) => poses.largest(),
+        }
+    }
+
+    /// The same of the whole way between them.
+    pub(super) fn size_of_arcs(&self) -> f64 {
+        let ends = self.largest();
+        let moves = self.ways_in_order().zip(self.poses_in_order(0));
+        moves.fold(ends, |size, (way, from)| match way.course {
+            Course::Straight => size,
+            // A circle, the rise, and what the rise is measured from.
+            Course::Arc(arc) => size.max(
+                arc.turned(from.tip_vector(), 0.0).norm()
+                    + 2.0 * arc.radius_vector(from.tip_vector()).norm()
+                    + 2.0 * ends,
+            ),
+        })
+    }
+}
