@@ -131,8 +131,11 @@ pub(super) fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
     [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
 }
 
-/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments. `false` if a factor was left out: see [`without_sides`].
-pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalField, bool) {
+/// For each variable, whether the lower and the upper side of a patch is meant.
+pub(super) type Sides = [[bool; 2]; 2];
+
+/// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments, with the sides whose factors were left out: see [`without_sides`].
+pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalField, Sides) {
     let first = weight.coefficients()[0];
     let polynomial = weight.coefficients().iter().all(|w| *w == first);
     let (pu, pv) = (
@@ -154,10 +157,7 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
         let moment = cross(position, &hat);
         (hat.map(|form| weight.mul(&form)), moment)
     };
-    let degree = normal[0].degrees().to_vec();
-    let (normal, moment) = without_sides(normal, moment);
-    let is_product = normal[0].degrees() == degree;
-    (NormalField { normal, moment }, is_product)
+    without_sides(normal, moment)
 }
 
 /// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.
@@ -165,7 +165,8 @@ const POLE: f64 = 16.0;
 
 /// The same without the factors `u`, `1 − u`, `v` and `1 − v` that all normals have where a side has shrunk to a point, a pole. What remains points in
 /// a definite direction there, and bounds of it need not hold 0.
-fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> ([Bernstein; 3], [Bernstein; 3]) {
+fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> (NormalField, Sides) {
+    let mut sides = Sides::default();
     let largest = |forms: &[Bernstein; 3]| forms.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
     for axis in 0..2 {
         for upper in [false, true] {
@@ -181,10 +182,11 @@ fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> ([Be
                     continue;
                 };
                 (normal, moment) = ([a, b, c], [d, e, f]);
+                sides[axis][usize::from(upper)] = true;
             }
         }
     }
-    (normal, moment)
+    (NormalField { normal, moment }, sides)
 }
 
 /// The coefficients of a form in two variables on one of its sides.

@@ -1,6 +1,6 @@
 //! Patches of a boundary.
 
-use super::normals::{check_form, check_normals, check_place, normals, scaled};
+use super::normals::{Sides, check_form, check_normals, check_place, normals, scaled};
 use super::{NormalField, PatchError, Revolved, recognised};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
@@ -14,7 +14,8 @@ pub struct Patch {
     pub(super) weight: Bernstein,
     pub(super) field: NormalField,
     pub(super) revolved: Option<Revolved>,
-    pub(super) product: Option<f64>,
+    /// The factor of products of derivatives, and the sides whose factors were left out.
+    pub(super) product: Option<(f64, Sides)>,
 }
 
 impl Patch {
@@ -31,9 +32,12 @@ impl Patch {
     pub fn new(position: [Bernstein; 3], weight: Bernstein) -> Result<Self, PatchError> {
         check_place(&position, &weight, 2)?;
         let found = recognised::field(&position, &weight);
-        let (NormalField { normal, moment }, is_product) = match found {
-            Some(field) => (field, false),
-            None => normals(&position, &weight),
+        let (NormalField { normal, moment }, sides) = match found {
+            Some(field) => (field, None),
+            None => {
+                let (field, sides) = normals(&position, &weight);
+                (field, Some(sides))
+            }
         };
         let largest = normal.iter().map(Bernstein::magnitude).fold(0.0, f64::max);
         if largest == 0.0 || !largest.is_finite() {
@@ -47,10 +51,10 @@ impl Patch {
         Ok(Self {
             position: scaled(&position, 1.0),
             // Of polynomial patches, whose weight is constant, `normals` leaves out two of its powers.
-            product: is_product.then(|| {
+            product: sides.map(|sides| {
                 let first = weight.coefficients()[0];
                 let is_constant = weight.coefficients().iter().all(|w| *w == first);
-                1.0 / if is_constant { largest * first * first } else { largest }
+                (1.0 / if is_constant { largest * first * first } else { largest }, sides)
             }),
             weight: weight.assumed_exact(),
             field,
@@ -118,10 +122,18 @@ impl Patch {
         &self.field
     }
 
-    /// The factor `s` of normals `N = s w⁴ (F_u × F_v)`, where `w` is the weight; `None` if they have another form.
+    /// The factor `s` of normals `N = s w⁴ (F_u × F_v)`, where `w` is the weight, divided by the distances `u`, `1 − u`, `v` and `1 − v` from
+    /// [sides that have shrunk to a point](Self::shrunk_sides); `None` if they have another form.
     #[must_use]
     pub fn product(&self) -> Option<f64> {
-        self.product
+        self.product.map(|(factor, _)| factor)
+    }
+
+    /// For each variable, whether the lower and the upper side have shrunk to a point, so that the normals are divided by the distance from it; none if they
+    /// are no [product](Self::product).
+    #[must_use]
+    pub fn shrunk_sides(&self) -> [[bool; 2]; 2] {
+        self.product.map_or_else(Sides::default, |(_, sides)| sides)
     }
 
     /// The patch as products of functions of `u` and of `v`, if it is a piece of a surface of revolution.

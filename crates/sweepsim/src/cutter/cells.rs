@@ -38,8 +38,6 @@ pub(crate) struct Cells {
     /// Per field and axis, the position and length of the derivatives of N and M in `points`.
     derivatives: Vec<[(usize, usize); 2]>,
     points: usize,
-    /// Memory for reductions.
-    space: Vec<f64>,
 }
 
 /// Cells beyond this number are not kept for the next segment.
@@ -70,7 +68,6 @@ impl Cells {
             spare: Vec::new(),
             derivatives,
             points,
-            space: Vec::new(),
         };
         let whole = Buffers {
             c: element.whole.clone(),
@@ -149,7 +146,7 @@ impl Cells {
             let forms = &mut c[slot.start..][..6 * slot.len()];
             let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
             if missing.is_none_or(|missing| missing.is_coarse(forms, slot.degrees, widths)) {
-                own = reduced.on(lower, upper, forms, &mut self.space);
+                own = reduced.on(lower, upper, forms);
             }
         }
         points.resize(self.points, 0.0);

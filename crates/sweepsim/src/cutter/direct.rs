@@ -20,9 +20,14 @@ pub(crate) struct Direct {
     factor: f64,
     /// The weight, if it is constant.
     constant: Option<f64>,
+    /// For each variable, whether `N` is divided by the distance from its lower and its upper side.
+    sides: [[bool; 2]; 2],
     /// Bounds of the rounding errors of `M` and `N`.
     pub rounding: Sizes,
 }
+
+/// Nearer to a pole, normals are left to their forms: divided by the distance, the rounding errors of their products would be too large.
+const POLE: f64 = 1.0 / 16.0;
 
 /// A point relative to the tool, its derivatives, `N` and `M`, and their derivatives.
 pub(crate) struct Site {
@@ -58,8 +63,12 @@ impl Direct {
             let roundings = 1 + 4 * raises.map(|[u, v]| u + v).into_iter().max().unwrap_or(0);
             roundings as f64 * f64::EPSILON * (form.magnitude() + centre[k].abs() * weight.magnitude())
         });
-        let rounding = rounding(&shifted, shift, weight, &centre, factor);
+        let sides = patch.shrunk_sides();
+        let divisions = sides.as_flattened().iter().filter(|side| **side).count();
+        let growth = POLE.recip().powi(divisions as i32) * (1.0 + 4.0 * f64::EPSILON);
+        let rounding = rounding(&shifted, shift, weight, &centre, factor).map(|sizes| sizes.map(|size| growth * size));
         Some(Self {
+            sides,
             places: Table::new(&[x, y, z, raised(weight)], degrees),
             centre,
             factor,
@@ -68,13 +77,42 @@ impl Direct {
         })
     }
 
-    /// The point at `(u, v)`.
+    /// Whether `(u, v)` is not close to a pole.
+    #[inline]
+    pub fn covers(&self, at: [f64; 2]) -> bool {
+        let far = |axis: usize| {
+            let [lower, upper] = self.sides[axis];
+            (!lower || at[axis] >= POLE) && (!upper || at[axis] <= 1.0 - POLE)
+        };
+        far(0) && far(1)
+    }
+
+    /// The product of the distances by which `N` is divided, and the quotients of its derivatives and itself.
+    #[inline]
+    fn divisor(&self, at: [f64; 2]) -> (f64, [f64; 2]) {
+        let (mut product, mut slopes) = (1.0, [0.0; 2]);
+        for axis in 0..2 {
+            let [lower, upper] = self.sides[axis];
+            if lower {
+                product *= at[axis];
+                slopes[axis] += 1.0 / at[axis];
+            }
+            if upper {
+                product *= 1.0 - at[axis];
+                slopes[axis] -= 1.0 / (1.0 - at[axis]);
+            }
+        }
+        (product, slopes)
+    }
+
+    /// The point at `(u, v)`, if it is [covered](Self::covers).
     pub fn at(&self, at: [f64; 2]) -> Site {
         let jet = self.places.jet::<4>(at);
         let weights = jet.map(|form| form[3]);
         let [p, pu, pv, puu, puv, pvv] = jet.map(|[x, y, z, _]| [x, y, z, 0.0]);
         let centre = quad(&self.centre);
-        let (f, fu, fv, second, size, grown);
+        let (f, fu, fv, second);
+        let (mut size, mut grown);
         if let Some(weight) = self.constant {
             let inverse = 1.0 / weight;
             (f, fu, fv) = (scaled(&p, inverse), scaled(&pu, inverse), scaled(&pv, inverse));
@@ -99,6 +137,11 @@ impl Direct {
             ];
             size = self.factor * (w * w) * (w * w);
             grown = [4.0 * wu * inverse, 4.0 * wv * inverse];
+        }
+        if self.sides != [[false; 2]; 2] {
+            let (product, slopes) = self.divisor(at);
+            size /= product;
+            grown = [grown[0] - slopes[0], grown[1] - slopes[1]];
         }
         let place = add(&f, &centre);
         let [fuu, fuv, fvv] = second;
@@ -227,6 +270,36 @@ mod tests {
             let (_, most) = range_of(direct.rounding[1]);
             let farthest = centre.iter().fold(0.0_f64, |most, c: &f64| most.max(c.abs())) + 3.0;
             prop_assert!(most < 1e3 * f64::EPSILON * farthest * 2.0 * 32.0, "{most}");
+        }
+
+        /// The same where a side has shrunk to a point, and the normals are divided by the distance from it.
+        #[test]
+        fn normals_near_a_pole_are_those_of_the_forms(
+            upper in any::<bool>(), bumps in proptest::collection::vec(-0.08..0.08, 16), at in [0.0..=1.0, 0.0..=1.0],
+        ) {
+            // A sector about the z axis: v is the distance from the pole, or 1 less it.
+            let far = |i: usize| (if upper { 3 - i / 4 } else { i / 4 }) as f64 / 3.0;
+            let angle = |i: usize| (i % 4) as f64 / 3.0 * if upper { -1.0 } else { 1.0 };
+            let position = [
+                form([3, 3], &|i| far(i) * f64::cos(angle(i))),
+                form([3, 3], &|i| far(i) * f64::sin(angle(i))),
+                form([3, 3], &|i| far(i) * (1.0 + bumps[i])),
+            ];
+            let patch = Patch::new(position, form([3, 3], &|_| 1.0)).unwrap();
+            prop_assert_eq!(patch.shrunk_sides(), [[false; 2], [!upper, upper]]);
+            let direct = Direct::new(&patch).unwrap();
+            prop_assume!(direct.covers(at));
+            let lists = direct.at(at).lists();
+            let forms: Vec<&Bernstein> = patch.field().normal().iter().chain(patch.field().moment()).collect();
+            for (k, form) in forms.iter().enumerate() {
+                let error = direct.rounding[1 - k / 3][k % 3] + 64.0 * f64::EPSILON * form.magnitude();
+                let value = form.evaluate(&at);
+                prop_assert!((lists[0][k] - value).abs() <= error, "{k}: {} {value} {error}", lists[0][k]);
+                for axis in 0..2 {
+                    let slope = form.derivative(axis).evaluate(&at);
+                    prop_assert!((lists[1 + axis][k] - slope).abs() <= 1e3 * error + 1e-9);
+                }
+            }
         }
     }
 }

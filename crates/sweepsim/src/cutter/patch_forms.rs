@@ -184,7 +184,7 @@ impl PatchForms {
     /// A point of a placed patch, and its fields: `N` and `M`, their derivatives in `u` and in `v`.
     #[inline]
     pub fn spot(&self, placing: &Placing, at: [f64; 2]) -> (Spot, [[f64; 6]; 3]) {
-        let (place, slopes, fields) = if let Some(direct) = &self.direct {
+        let (place, slopes, fields) = if let Some(direct) = self.direct.as_ref().filter(|direct| direct.covers(at)) {
             let site = direct.at(at);
             (site.place, site.slopes, site.lists())
         } else {
