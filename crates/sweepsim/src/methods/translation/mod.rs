@@ -16,6 +16,7 @@ mod discs;
 mod leaning;
 mod lunes;
 mod placed;
+mod radial;
 mod rows;
 mod strip;
 mod wedges;

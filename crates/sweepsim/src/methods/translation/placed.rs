@@ -3,6 +3,7 @@
 
 use super::curves::stands;
 use super::lunes::Lune;
+use super::radial::{Hypot, Radial, Spot, Stretch};
 use super::rows::numbers;
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
@@ -36,20 +37,6 @@ impl Neighbour {
             }
         }))
     }
-}
-
-/// A stretch of the meridian over which the radius is monotone.
-#[derive(Clone, Copy, Debug)]
-enum Radial {
-    /// `ζ` at the smaller radius, its slope, the normal.
-    Line { height: f64, slope: f64, normal: [f64; 2] },
-    Arc {
-        centre: [f64; 2],
-        radius: f64,
-        /// The sign of `ζ − ζ_c`.
-        half: f64,
-        out: f64,
-    },
 }
 
 /// The placement at a joint of two moves, or at an end of the path.
@@ -177,12 +164,7 @@ impl Placed<'_, '_> {
         let Some([first, last]) = numbers(lattice, 0, [tx - reach, tx + reach]) else {
             return;
         };
-        let stretch = Stretch {
-            radial,
-            inner,
-            outer,
-            slack,
-        };
+        let stretch = Stretch::new(radial, [inner, outer], slack, &self.sides);
         for i in first..=last {
             let x = lattice.coordinate(0, i) - tx;
             let half = (reach * reach - x * x).max(0.0).sqrt() + slack;
@@ -256,7 +238,7 @@ impl Placed<'_, '_> {
         for j in low.max(*next)..=high {
             let y = lattice.coordinate(1, j) - ty;
             let rho = x.hypot_fast(y);
-            if rho < inner - slack || rho > outer + slack {
+            if rho < inner - slack || rho > outer + slack || stretch.same([x, y], rho) {
                 continue;
             }
             let spot = stretch.at(rho);
@@ -301,68 +283,5 @@ impl Placed<'_, '_> {
         let [before, after] = [&self.sides[0], &self.sides[1]].map(sign);
         certain &= before.0 && after.0;
         (certain, after.1 - before.1)
-    }
-}
-
-/// A stretch, its least and greatest radius, and how far a line may be off.
-struct Stretch<'a> {
-    radial: &'a Radial,
-    /// Negative without a hole.
-    inner: f64,
-    outer: f64,
-    slack: f64,
-}
-
-impl Stretch<'_> {
-    #[inline]
-    fn at(&self, rho: f64) -> Spot {
-        self.radial.at(rho, [self.inner.max(0.0), self.outer])
-    }
-}
-
-/// A point of a stretch.
-struct Spot {
-    height: f64,
-    normal: [f64; 2],
-    /// How fast the normal turns with the radius.
-    bend: f64,
-}
-
-impl Radial {
-    #[inline]
-    fn at(&self, rho: f64, [inner, outer]: [f64; 2]) -> Spot {
-        match *self {
-            Self::Line { height, slope, normal } => Spot {
-                height: height + (rho.clamp(inner, outer) - inner) * slope,
-                normal,
-                bend: 0.0,
-            },
-            Self::Arc {
-                centre,
-                radius,
-                half,
-                out,
-            } => {
-                let e = ((rho - centre[0]) / radius).clamp(-1.0, 1.0);
-                let f = half * ((1.0 - e) * (1.0 + e)).sqrt();
-                Spot {
-                    height: centre[1] + radius * f,
-                    normal: [out * e, out * f],
-                    bend: 1.0 / (radius * f.abs()),
-                }
-            }
-        }
-    }
-}
-
-/// The length of a vector, without care for overflow: coordinates are bounded.
-trait Hypot {
-    fn hypot_fast(self, other: Self) -> Self;
-}
-
-impl Hypot for f64 {
-    #[inline]
-    fn hypot_fast(self, other: Self) -> Self {
-        (self * self + other * other).sqrt()
     }
 }
