@@ -6,7 +6,6 @@
 pub(crate) mod charts;
 pub(crate) mod harvest;
 pub(crate) mod lattice;
-pub(crate) mod line_mask;
 pub(crate) mod lines;
 pub(crate) mod method;
 mod placement;
@@ -14,4 +13,5 @@ pub(crate) mod planes;
 pub(crate) mod search;
 pub(crate) mod surface;
 pub(crate) mod translation;
+pub(crate) mod turning;
 pub(crate) mod workspace;

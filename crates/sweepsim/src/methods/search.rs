@@ -2,20 +2,23 @@
 //! two caps.
 
 use crate::cutter::Cutter;
+use crate::cutter::cells::Cells;
 use crate::cutter::outline::Outline;
-use crate::envelope::{EdgeMap, Near, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, Size};
+use crate::envelope::{EdgeMap, Near, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT, Size};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
+use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::placement::sides;
 use crate::methods::translation::{self, Ceiling, Collector, Heading, Neighbour};
+use crate::methods::turning::{self, Element, Rest, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd};
-use sweepsim_solve::{Monitor, Preimage};
+use sweepsim_solve::{CancelOnly, ChartMap, Monitor, Preimage, Sink};
 
 /// A search of some lines along some parts of a path.
 pub(crate) struct Search<'a, M> {
@@ -45,13 +48,19 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let mark = harvest.crossings.len();
         space.solvers.limit(self.lines.len());
         space.done.clear();
+        let mut rests = Vec::new();
         if let Some(outline) = self.outline {
             self.envelope_in_closed_form(at, outline, space, harvest);
+            rests = self.envelope_line_by_line(at, outline, space, harvest);
         }
-        if !(space.done.patches.iter().all(|done| *done) && space.done.edges.iter().all(|done| *done)) {
+        let done = space.done.patches.iter().chain(&space.done.edges);
+        if !(done.into_iter().all(|done| *done) && rests.is_empty()) {
             let mut times = Times::new(segment);
             self.patches(at, &mut times, space, harvest);
             self.edges(at, &mut times, space, harvest);
+            for rest in rests {
+                self.rest(at, &rest, &mut times, space, harvest);
+            }
         }
         self.placed(at, SegmentEnd::Start, space, harvest);
         if at + 1 == self.parts.len() {
@@ -91,6 +100,70 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
+    /// Settles what it can of a move that turns, line by line.
+    fn envelope_line_by_line(
+        &self,
+        at: usize,
+        outline: &Outline,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) -> Vec<Rest> {
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let mut searching = self.searching(&mut collector);
+        let settled = [&mut space.done.patches[..], &mut space.done.edges[..]];
+        let source = |t: f64| self.source(at, t);
+        turning::envelope(outline, &self.parts[at].segment, &mut searching, source, settled)
+    }
+
+    fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {
+        Searching {
+            collector,
+            slack: translation::slack(self.size.slack),
+            near: self.near,
+        }
+    }
+
+    /// What was not certain line by line, by charts.
+    fn rest(&self, at: usize, rest: &Rest, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
+        let mask = (!rest.all).then(|| LineMask::new(self.lines.grid, rest.lines.iter().copied()));
+        let lines = match &mask {
+            None => self.lines.clone(),
+            Some(Some(mask)) => self.lines.clone().masked(Some(mask)),
+            Some(None) => return,
+        };
+        let mark = times.mark();
+        let piece = times.place(rest.times[0], rest.times[1]);
+        let monitor = &CancelOnly(self.monitor);
+        match &rest.element {
+            Element::Patches(patches) => {
+                for number in patches.clone() {
+                    let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);
+                    let domain = map.bounds(&ROOT);
+                    let part = (ROOT.0, piece);
+                    space
+                        .solvers
+                        .moving
+                        .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
+                }
+            }
+            Element::Edges(edges) => {
+                for number in edges.clone() {
+                    let (mut map, mut sink) = self.edge((at, number), times, &mut space.edges, harvest);
+                    let domain = map.bounds(&ROOT);
+                    let part = (ROOT.0, piece);
+                    space
+                        .solvers
+                        .moving
+                        .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
+                }
+            }
+        }
+        times.release(mark);
+    }
+
     /// Settles what it can of the placement of a tool between two moves without rotation, or arcs with which it turns.
     fn placed_in_closed_form(
         &self,
@@ -128,6 +201,28 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             let place = (&part.segment.start(), tip, slack);
             translation::leaning(outline, place, sides, &mut collector, source, done);
         }
+    }
+
+    /// Settles what it can of the placement of a tool between two moves of which one turns.
+    fn placed_line_by_line(
+        &self,
+        (at, end): (usize, SegmentEnd),
+        outline: &Outline,
+        source: Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        let own = Some(&self.parts[at].segment);
+        let sides = match end {
+            SegmentEnd::Start => [at.checked_sub(1).map(|k| &self.parts[k].segment), own],
+            SegmentEnd::Finish => [own, None],
+        };
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let mut searching = self.searching(&mut collector);
+        turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
     }
 
     /// Whether any line passes near the segment.
@@ -174,61 +269,86 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
     fn patches(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
-        for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
+        for number in 0..self.cutter.patches.len() {
             if space.done.patches[number] {
                 continue;
             }
-            let mut map = PatchMap {
-                motion: FramedMotion::new(times, element.frame()),
-                element,
-                cells,
-                times,
-                size: self.size,
-            };
-            let mut sink = harvest.reaper(|found: &Preimage<3, OnPatch>| {
-                Some(Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: found.orientation,
-                    normal: unit(found.seen.normal),
-                    source: self.source(at, found.x[2]),
-                })
-            });
+            let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);
             let query = self.query(at, number);
             self.method.on_patch(query, &mut map, &mut space.solvers, &mut sink);
         }
     }
 
+    /// The map of a patch, and what becomes of its preimages.
+    fn patch<'b>(
+        &'b self,
+        (at, number): (usize, usize),
+        times: &'b mut Times,
+        cells: &'b mut [Cells],
+        harvest: &'b mut Harvest,
+    ) -> (PatchMap<'b>, impl Sink<3, OnPatch>) {
+        let element = &self.cutter.patches[number];
+        let map = PatchMap {
+            motion: FramedMotion::new(times, element.frame()),
+            element,
+            cells: &mut cells[number],
+            times,
+            size: self.size,
+        };
+        let sink = harvest.reaper(move |found: &Preimage<3, OnPatch>| {
+            Some(Crossing {
+                z: found.seen.height.at(&found.x, &found.from),
+                jump: found.orientation,
+                normal: unit(found.seen.normal),
+                source: self.source(at, found.x[2]),
+            })
+        });
+        (map, sink)
+    }
+
     /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
     fn edges(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
-        for (number, (element, cells)) in self.cutter.edges.iter().zip(&mut space.edges).enumerate() {
+        for number in 0..self.cutter.edges.len() {
             if space.done.edges[number] {
                 continue;
             }
-            let mut map = EdgeMap {
-                motion: FramedMotion::new(times, None),
-                element,
-                cells,
-                times,
-                size: self.size,
-            };
-            let mut sink = harvest.reaper(|found: &Preimage<2, OnEdge>| {
-                let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
-                if (a < 0.0) == (b < 0.0) {
-                    return None;
-                }
-                // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [n, m] = found.seen.normals;
-                let lengths = n.norm() * m.norm();
-                Some(Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: if a < 0.0 { -found.orientation } else { found.orientation },
-                    normal: unit(n * (b.abs() / lengths) + m * (a.abs() / lengths)),
-                    source: self.source(at, found.x[1]),
-                })
-            });
+            let (mut map, mut sink) = self.edge((at, number), times, &mut space.edges, harvest);
             let query = self.query(at, number);
             self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
         }
+    }
+
+    /// The map of an edge, and what becomes of its preimages.
+    fn edge<'b>(
+        &'b self,
+        (at, number): (usize, usize),
+        times: &'b mut Times,
+        cells: &'b mut [Cells],
+        harvest: &'b mut Harvest,
+    ) -> (EdgeMap<'b>, impl Sink<2, OnEdge>) {
+        let map = EdgeMap {
+            motion: FramedMotion::new(times, None),
+            element: &self.cutter.edges[number],
+            cells: &mut cells[number],
+            times,
+            size: self.size,
+        };
+        let sink = harvest.reaper(move |found: &Preimage<2, OnEdge>| {
+            let [a, b] = found.seen.sides.map(|side| side.at(&found.x, &found.from));
+            if (a < 0.0) == (b < 0.0) {
+                return None;
+            }
+            // The envelope's normal lies in the fan of the two faces, where g = 0.
+            let [n, m] = found.seen.normals;
+            let lengths = n.norm() * m.norm();
+            Some(Crossing {
+                z: found.seen.height.at(&found.x, &found.from),
+                jump: if a < 0.0 { -found.orientation } else { found.orientation },
+                normal: unit(n * (b.abs() / lengths) + m * (a.abs() / lengths)),
+                source: self.source(at, found.x[1]),
+            })
+        });
+        (map, sink)
     }
 
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
@@ -240,6 +360,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         };
         if let Some(outline) = self.outline {
             self.placed_in_closed_form((at, end), outline, source, space, harvest);
+            if !space.done.placed.iter().any(|done| *done) {
+                self.placed_line_by_line((at, end), outline, source, space, harvest);
+            }
             if space.done.placed.iter().all(|done| *done) {
                 return;
             }

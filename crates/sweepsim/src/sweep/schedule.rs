@@ -7,7 +7,7 @@ use crate::error::SweepError;
 use crate::methods::charts::Charts;
 use crate::methods::harvest::{Gathered, Harvest, Numbered};
 use crate::methods::lattice::Lattice;
-use crate::methods::line_mask::LineMask;
+use crate::methods::lattice::LineMask;
 use crate::methods::lines::Lines;
 use crate::methods::method::CrossingMethod;
 use crate::methods::planes::Planes;

@@ -1,7 +1,7 @@
 //! A solid that moves along a path: the cutter, or a body that moves with it.
 
 use crate::error::SweepError;
-use crate::methods::line_mask::LineMask;
+use crate::methods::lattice::LineMask;
 use crate::methods::workspace::Workspace;
 use crate::sweep::heights::{Box3, HeightMap, window};
 use crate::sweep::{CHUNK, Method, Options, Plan, SweptLines};

@@ -19,4 +19,5 @@ mod spline_profiles;
 mod surfaces;
 mod tiles;
 mod translations;
+mod turning;
 mod verify;

@@ -26,6 +26,7 @@ pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
 pub(crate) use leaning::leaning;
 pub(crate) use placed::{Neighbour, placements};
+pub(crate) use rows::numbers;
 pub(crate) use strip::envelope;
 
 use crate::methods::harvest::Harvest;
@@ -41,7 +42,7 @@ pub(crate) struct Collector<'a> {
 
 impl Collector<'_> {
     #[inline]
-    fn crossing(&mut self, line: usize, z: f64, jump: i8, normal: [f32; 3], source: Source) {
+    pub fn crossing(&mut self, line: usize, z: f64, jump: i8, normal: [f32; 3], source: Source) {
         let crossing = Crossing {
             z,
             jump,
@@ -52,7 +53,18 @@ impl Collector<'_> {
     }
 
     /// Leaves a line to the general method.
-    fn open(&mut self, line: usize) {
+    pub fn open(&mut self, line: usize) {
         self.harvest.open.push((line as u32, Cause::Smallest));
+    }
+
+    /// The number of crossings and open lines so far.
+    pub fn mark(&self) -> [usize; 2] {
+        [self.harvest.crossings.len(), self.harvest.open.len()]
+    }
+
+    /// Drops what came after a mark.
+    pub fn forget(&mut self, [crossings, open]: [usize; 2]) {
+        self.harvest.crossings.truncate(crossings);
+        self.harvest.open.truncate(open);
     }
 }

@@ -55,7 +55,7 @@ impl Band {
 
 /// The numbers of the lines of one direction in a range of coordinates, or a few more at most; none if the first is greater than the last.
 #[inline]
-pub(super) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
+pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Option<[usize; 2]> {
     let window = if axis == 0 { lines.i } else { lines.j };
     let (first, density) = lines.scale(axis);
     // A fraction of a line more, since the scale is rounded.

@@ -3,7 +3,7 @@
 //! What a tool that stands along the lines does with its lowest point above all material is left out, also of moves that dive into it.
 
 use super::heights::{Box3, HeightMap, window};
-use crate::methods::line_mask::LineMask;
+use crate::methods::lattice::LineMask;
 use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::time::path_parts::PathPart;

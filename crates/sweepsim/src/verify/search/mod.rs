@@ -11,7 +11,7 @@ mod moves;
 use super::lines::Lines;
 use super::solid::MovingSolid;
 use crate::error::SweepError;
-use crate::methods::line_mask::LineMask;
+use crate::methods::lattice::LineMask;
 use crate::sweep::{Options, UnresolvedDexel};
 use crate::time::path_parts::PathPart;
 use sweepsim_dexel::{Grid, Interval};

@@ -1,6 +1,9 @@
 //! The dexel lines as targets of the charts.
 
-use crate::methods::line_mask::LineMask;
+mod line_mask;
+
+pub(crate) use line_mask::LineMask;
+
 use sweepsim_dexel::Grid;
 use sweepsim_solve::{ChartTarget, Enclosure, Targets};
 

@@ -1,0 +1,224 @@
+//! A ball under a motion that turns.
+//!
+//! Its centre `C = b + ζ_c a` moves on a curve. A line at `d` from it, seen along the dexels, meets it at `N = (d, ∓h)` from its centre, `h² = R² − |d|²`, where
+//!
+//! ```text
+//! G = R g = ⟨N, C′⟩,    G′ = −|C′|² + ⟨N, C″⟩ + C′_z z′,    z′ = G/N_z
+//! ```
+//!
+//! along the line. Where the curve of the centre is less curved than the ball, `|C′|² > R |C″|`, each `G` falls wherever it is 0.
+
+use super::course::{Bounds, Moment};
+use super::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
+use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
+use nalgebra::{Vector2, Vector3};
+
+/// The part of a ball between two heights on the tool's axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ball {
+    /// `ζ_c`, `R`.
+    pub centre: f64,
+    pub radius: f64,
+    /// The range of `ζ − ζ_c`; infinite beyond a pole.
+    pub ends: [f64; 2],
+}
+
+/// A ball at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Centre {
+    place: Vector3<f64>,
+    rate: Vector3<f64>,
+    bend: Vector3<f64>,
+    axis: Vector3<f64>,
+}
+
+impl Centre {
+    /// Seen along the dexels.
+    pub fn level(&self) -> [f64; 2] {
+        [self.place.x, self.place.y]
+    }
+}
+
+/// What is known over a span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BallLimits {
+    /// Of `|C″|`.
+    bow: f64,
+    /// Of `|a′|`.
+    turn: f64,
+    /// `|G| h` below this may be rounding.
+    doubt: f64,
+    /// As far as rounding may move a point.
+    pad: f64,
+}
+
+impl Ball {
+    /// What is certain over a span; `None` if the centre's curve is curved too much there, seen in space or along the dexels.
+    pub fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<BallLimits> {
+        let bow = self.centre.abs() * bounds.bend;
+        let [a, b] = [from, to].map(|moment| self.at(moment).rate);
+        // The slowest on the way: the velocity changes by `bow` per time.
+        let least = |a: f64, b: f64| a.min(b) - 0.5 * bow * bounds.length;
+        let slow = least(a.xy().norm(), b.xy().norm());
+        // Twice as much as is needed: the squared distance of a line is convex up to twice the radius. As the centre stays near its chord, no line that has left
+        // the ball and been that far away returns.
+        let straight = bounds.sag(bow) <= 0.25 * self.radius;
+        (straight && slow > 0.0 && slow * slow > 2.0 * self.radius * bow).then(|| BallLimits {
+            bow,
+            turn: bounds.rate,
+            pad: 16.0 * slack,
+            doubt: 32.0 * slack * self.radius * (bounds.speed + bounds.rate * self.centre.abs()),
+        })
+    }
+
+    /// What a pose at rest has of limits.
+    pub fn at_rest(doubt: f64, slack: f64) -> BallLimits {
+        BallLimits {
+            bow: 0.0,
+            turn: 0.0,
+            doubt,
+            pad: 16.0 * slack,
+        }
+    }
+}
+
+/// Where a straight way is nearest to a line.
+fn share([a, b]: [&Meeting; 2]) -> f64 {
+    let from = Vector2::from(a.place);
+    let way = Vector2::from(b.place) - from;
+    let share = -from.dot(&way) / way.norm_squared();
+    // A way without length has none.
+    if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) }
+}
+
+impl Shell for Ball {
+    type Posed = Centre;
+    type Limits = BallLimits;
+
+    fn at(&self, moment: &Moment) -> Centre {
+        Centre {
+            place: moment.tip + moment.axis * self.centre,
+            rate: moment.velocity + moment.rate * self.centre,
+            bend: moment.bend * self.centre,
+            axis: moment.axis,
+        }
+    }
+
+    #[inline]
+    fn meet(&self, at: &Centre, [x, y]: [f64; 2]) -> Meeting {
+        let place = [x - at.place.x, y - at.place.y];
+        let room = self.radius * self.radius - (place[0] * place[0] + place[1] * place[1]);
+        if room > 0.0 {
+            let half = room.sqrt();
+            let (level, steep) = (place[0] * at.rate.x + place[1] * at.rate.y, half * at.rate.z);
+            Meeting {
+                room,
+                half,
+                place,
+                g: [level - steep, level + steep],
+            }
+        } else {
+            Meeting::beside(room, place)
+        }
+    }
+
+    fn passage(&self, limits: &BallLimits, [a, b]: [&Meeting; 2], length: f64) -> Passage {
+        match (a.room > 0.0, b.room > 0.0) {
+            // The squared distance from the line is convex.
+            (true, true) => Passage::Inside,
+            (true, false) => Passage::Leaves,
+            (false, true) => Passage::Enters,
+            (false, false) => {
+                let (from, to) = (Vector2::from(a.place), Vector2::from(b.place));
+                let nearest = (from + (to - from) * share([a, b])).norm();
+                let sag = 0.125 * limits.bow * length * length;
+                if nearest > (self.radius + sag) * (1.0 + 1e-12) {
+                    Passage::Beside
+                } else {
+                    Passage::Through
+                }
+            }
+        }
+    }
+
+    fn falls(&self, _: &BallLimits, _: [(&Centre, &Meeting); 2], _: f64, _: usize) -> Falls {
+        Falls::Always
+    }
+
+    #[inline]
+    fn signs(&self, limits: &BallLimits, [from, to]: [&Centre; 2], [x, y]: [Range; 2], length: f64) -> [Sign; 2] {
+        let sag = 0.125 * limits.bow * length * length;
+        let seen = |k: usize, range: Range| {
+            let [a, b] = [from, to].map(|centre| range.map(|at| at - centre.place[k]));
+            joined(a, b, sag)
+        };
+        let (dx, dy) = (seen(0, x), seen(1, y));
+        // As far as rounding may move a root.
+        let room = sub([self.radius * self.radius; 2], add(square(dx), square(dy)));
+        let room = wider(room, self.radius * limits.pad);
+        if room[1] < 0.0 {
+            return [Sign::Absent; 2];
+        }
+        let half = square_root(room);
+        let change = limits.bow * length;
+        let rate = |k: usize| between(from.rate[k], to.rate[k], change);
+        let level = add(mul(dx, rate(0)), mul(dy, rate(1)));
+        let steep = mul(half, rate(2));
+        let axis = |k: usize| between(from.axis[k], to.axis[k], limits.turn * length);
+        let along = add(mul(dx, axis(0)), mul(dy, axis(1)));
+        let rise = mul(half, axis(2));
+        let ends = wider(self.ends, limits.pad);
+        let sign = |g: Range, along: Range| {
+            if along[1] < ends[0] || along[0] > ends[1] {
+                Sign::Absent
+            } else {
+                Sign::of(g, limits.doubt / self.radius)
+            }
+        };
+        [
+            sign(sub(level, steep), sub(along, rise)),
+            sign(add(level, steep), add(along, rise)),
+        ]
+    }
+
+    fn doubtful(&self, limits: &BallLimits, meeting: &Meeting, sheet: usize) -> bool {
+        !(meeting.g[sheet].abs() * meeting.half > limits.doubt)
+    }
+
+    #[inline]
+    fn slope(&self, at: &Centre, meeting: &Meeting, sheet: usize) -> [f64; 2] {
+        let up = if sheet == 0 { -meeting.half } else { meeting.half };
+        let rise = meeting.g[sheet] / up;
+        let [x, y] = meeting.place;
+        let bend = x * at.bend.x + y * at.bend.y + up * at.bend.z;
+        [-at.rate.norm_squared() + bend + at.rate.z * rise, rise]
+    }
+
+    fn spot(&self, at: &Centre, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {
+        let up = if sheet == 0 { -meeting.half } else { meeting.half };
+        let normal = Vector3::new(meeting.place[0], meeting.place[1], up);
+        Spot {
+            height: at.place.z + up,
+            normal,
+            along: normal.dot(&at.axis),
+            error: 8.0 * slack * self.radius / meeting.half,
+        }
+    }
+
+    fn speed(&self, at: &Centre) -> f64 {
+        at.rate.norm()
+    }
+
+    fn nearest(&self, ends: [&Meeting; 2]) -> f64 {
+        // Beside the ends, so that a span is divided.
+        share(ends).clamp(0.01, 0.99)
+    }
+
+    fn misses(&self, limits: &BallLimits, poses: [&Centre; 2], (line, length): ([f64; 2], f64), sheet: usize) -> bool {
+        self.signs(limits, poses, line.map(|at| [at; 2]), length)[sheet] == Sign::Absent
+    }
+
+    fn ends(&self) -> Ends {
+        Ends::new(self.ends)
+    }
+}

@@ -1,0 +1,162 @@
+//! The motion of a tool's axis: at one time, and bounded over a span of time.
+
+use nalgebra::{Matrix3, Vector3};
+use sweepsim_motion::{Segment, turned_back};
+
+/// A straight tip, and an axis that turns about one direction: `a = Â/w`, quadratic over quadratic, with `a′ = κ k × a/w`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Course {
+    /// Bernstein coefficients of `w a`, and of `w`.
+    axis: [Vector3<f64>; 3],
+    weights: [f64; 3],
+    /// `κ k`.
+    spin: Vector3<f64>,
+    tip: Vector3<f64>,
+    velocity: Vector3<f64>,
+}
+
+/// The tip and the axis at one time, with their derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    pub t: f64,
+    pub tip: Vector3<f64>,
+    /// `b′`; `b″ = 0`.
+    pub velocity: Vector3<f64>,
+    /// Its part along the axis.
+    pub along: f64,
+    /// `a`, `a′`, `a″`.
+    pub axis: Vector3<f64>,
+    pub rate: Vector3<f64>,
+    pub bend: Vector3<f64>,
+}
+
+/// Bounds over a span of time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// Of `|b′|`, `|a′|`, `|a″|`, and of the parts of `a″` along `a′` and along `a × a′`.
+    pub speed: f64,
+    pub rate: f64,
+    pub bend: f64,
+    pub across: f64,
+    pub askew: f64,
+    /// The range of the length of the horizontal part of `a`, and of `a_z`.
+    pub lean: [f64; 2],
+    pub rise: [f64; 2],
+    /// Of `|ν|` and `|ν′|`: how fast the horizontal direction of the axis turns. Infinite where that may not exist.
+    pub swing: [f64; 2],
+    /// The length of the span.
+    pub length: f64,
+}
+
+impl Course {
+    /// `None` for motions of other kinds.
+    pub fn new(segment: &Segment) -> Option<Self> {
+        let ([a, b, c], [u, v, w]) = (segment.turns(), segment.weights()) else {
+            return None;
+        };
+        segment.is_arc().then(|| Self {
+            axis: [a, b, c].map(|turn| turn.column(2).into_owned()),
+            weights: [*u, *v, *w],
+            spin: segment.spin().into(),
+            tip: segment.tips()[0].into(),
+            velocity: segment.travel().into(),
+        })
+    }
+
+    pub fn at(&self, t: f64) -> Moment {
+        let s = 1.0 - t;
+        let [u, v, w] = [s * s, 2.0 * s * t, t * t];
+        let weight = u * self.weights[0] + v * self.weights[1] + w * self.weights[2];
+        let inverse = weight.recip();
+        let axis = (self.axis[0] * u + self.axis[1] * v + self.axis[2] * w) * inverse;
+        let spin = self.spin * inverse;
+        let rate = spin.cross(&axis);
+        let slope = 2.0 * (s * (self.weights[1] - self.weights[0]) + t * (self.weights[2] - self.weights[1])) * inverse;
+        Moment {
+            t,
+            tip: self.tip + self.velocity * t,
+            velocity: self.velocity,
+            along: self.velocity.dot(&axis),
+            axis,
+            rate,
+            bend: spin.cross(&rate) - rate * slope,
+        }
+    }
+
+    /// Bounds between two times.
+    pub fn bounds(&self, [from, to]: [&Moment; 2]) -> Bounds {
+        let length = to.t - from.t;
+        let least = self.weights.iter().copied().fold(f64::INFINITY, f64::min);
+        let [u, v, w] = self.weights;
+        let slope = 2.0 * (v - u).abs().max((w - v).abs()) / least;
+        let turn = self.spin.norm() / least;
+        // Of `a′`, `κ |k × a|/w`: the angle between `k` and `a` is constant.
+        let rate = self.spin.cross(&from.axis).norm() * (1.0 + 1e-9) / least;
+        // Of the turn about the own axis, and of the vertical part of `a × a′`.
+        let own = self.spin.dot(&from.axis).abs() * (1.0 + 1e-9) / least + 1e-15 * turn;
+        let vertical = self.spin.z.abs() / least + own;
+        let bend = slope * rate + turn * rate;
+        let beside = |a: f64, b: f64, sag: f64| [a.min(b) - sag, a.max(b) + sag];
+        let eighth = 0.125 * length * length;
+        // As fast as `a` at most, and then as its second derivative allows.
+        let least_lean = 0.5 * (from.lean() + to.lean() - rate * length);
+        let lean = if least_lean > 0.0 {
+            let leans = bend + rate * rate / least_lean;
+            beside(from.lean(), to.lean(), eighth * leans)
+        } else {
+            [least_lean, 1.0]
+        };
+        let rise = beside(from.axis.z, to.axis.z, eighth * bend);
+        let swing = if lean[0] > 0.0 {
+            let swing = vertical / (lean[0] * lean[0]);
+            let change = (slope * vertical + rate * own) / (lean[0] * lean[0]) + 2.0 * swing * rate / lean[0];
+            [swing, change]
+        } else {
+            [f64::INFINITY; 2]
+        };
+        Bounds {
+            speed: self.velocity.norm(),
+            rate,
+            bend,
+            across: slope * rate,
+            askew: own * rate,
+            lean,
+            rise,
+            swing,
+            length,
+        }
+    }
+}
+
+impl Moment {
+    /// The tool at rest, turned by `turn`, seen from a motion with this angular velocity and velocity of the tip.
+    pub fn resting(turn: &Matrix3<f64>, tip: [f64; 3], [spin, velocity]: [[f64; 3]; 2]) -> Self {
+        let axis = turn.column(2).into_owned();
+        Self {
+            t: 0.0,
+            tip: tip.into(),
+            velocity: velocity.into(),
+            along: turned_back(turn, &velocity.into()).z,
+            axis,
+            rate: Vector3::from(spin).cross(&axis),
+            bend: Vector3::zeros(),
+        }
+    }
+
+    /// The length of the part of `b′` across the axis.
+    pub fn across(&self) -> f64 {
+        (self.velocity - self.axis * self.along).norm()
+    }
+
+    /// The length of the horizontal part of the axis.
+    pub fn lean(&self) -> f64 {
+        (self.axis.x * self.axis.x + self.axis.y * self.axis.y).sqrt()
+    }
+}
+
+impl Bounds {
+    /// How far a function with this bound of its second derivative may be from its chord.
+    pub fn sag(&self, bow: f64) -> f64 {
+        0.125 * bow * self.length * self.length
+    }
+}

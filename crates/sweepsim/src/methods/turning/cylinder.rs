@@ -1,0 +1,356 @@
+//! A cylinder about the tool's axis, under a motion that turns.
+//!
+//! In the coordinates of the tool, `α` across its axis in the vertical plane of it, `β` horizontally across both, `ζ` along it, with the dexels' direction `(s, 0, k)`, a line at `(q, δ)` along
+//! and across the horizontal part of the axis meets the cylinder at `N = (α, δ, 0)`, `α = ∓√(r² − δ²)`, `s ζ = q + k α`. With the velocity `V = b′ + ζ a′ − x a` of that point, `x = ⟨N, a′⟩`,
+//!
+//! ```text
+//! G = r g = ⟨N, V⟩,    z′ = G/(s α),    G′ = −V_φ²/r + x (x − 2 τ) + ζ ⟨N, a″⟩    where G = 0,
+//! ```
+//!
+//! with `τ = ⟨b′, a⟩` and the part `V_φ` of `V` around the axis. There `|V_φ|` is `S`, the length of the part of `b′ + ζ a′` across the axis, and `|x| = r |⟨b′, a × a′⟩|/S`: so `G` falls wherever it is 0, except
+//! for heights near the one that the tool turns about.
+
+use super::course::{Bounds, Moment};
+use super::intervals::{
+    Range, Sign, add, between, divided, hull, joined, mul, scaled, square, square_root, sub, wider,
+};
+use super::lean::Lean;
+use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
+use nalgebra::Vector3;
+
+/// An axis that leans less than this is left to charts.
+const UPRIGHT: f64 = 0.02;
+
+/// The part of a cylinder between two heights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cylinder {
+    pub radius: f64,
+    pub ends: [f64; 2],
+}
+
+/// What is known over a span.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CylinderLimits {
+    /// Of `|δ″|` and `|q″|`.
+    bow: f64,
+    doubt: f64,
+    /// As far as rounding may move a point.
+    pad: f64,
+    /// Heights at which `G` may rise.
+    pivot: Option<[f64; 2]>,
+    /// How fast the components of `b′` and of `a′` change, and bounds of those of `a″`.
+    travel: f64,
+    rate: f64,
+    bend: f64,
+    lean: [f64; 2],
+    rise: [f64; 2],
+}
+
+impl Cylinder {
+    /// The greatest distance of its points from the tip.
+    fn reach(&self) -> f64 {
+        self.radius + self.ends[0].abs().max(self.ends[1].abs())
+    }
+
+    /// The bound of `|δ″|` and `|q″|` for lines over the span.
+    pub fn bow(&self, bounds: &Bounds) -> f64 {
+        let [swing, change] = bounds.swing;
+        let reach = self.reach() + (bounds.speed + bounds.rate * self.reach()) * bounds.length;
+        (swing * swing + change) * reach + 2.0 * swing * bounds.speed
+    }
+
+    /// The bound of the second derivative of the corners of its shadow, seen along the dexels.
+    pub fn shadow_bow(&self, bounds: &Bounds) -> f64 {
+        let [swing, change] = bounds.swing;
+        // Of `u` and of `k u`, with the horizontal direction `u` of the axis.
+        let turn = swing * swing + change;
+        let tilt = bounds.bend + 2.0 * bounds.rate * swing + turn;
+        bounds.bend * self.reach() + self.radius * (tilt + turn)
+    }
+
+    /// `|G| |α|` below this may be rounding, for points that move across the axis by at most `across`, in all by `speed` and the turn at `rate`, with an axis that leans by `s`.
+    pub fn doubt(&self, [across, speed, rate]: [f64; 3], s: f64, slack: f64) -> f64 {
+        let r = self.radius;
+        32.0 * r * (slack * (across + rate * r / s) + f64::EPSILON * r * speed)
+    }
+
+    /// A bound of `|ζ|` where lines over the span meet the cylinder, however long it is.
+    fn height(&self, bounds: &Bounds) -> f64 {
+        let way = (bounds.speed + bounds.rate * self.reach()) * bounds.length;
+        self.reach() + 2.0 * (self.radius + way) / bounds.lean[0]
+    }
+
+    /// What is certain over a span; `None` if the axis may be upright.
+    pub fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<CylinderLimits> {
+        if !(bounds.lean[0] > UPRIGHT) {
+            return None;
+        }
+        let height = self.height(bounds);
+        let across = [from, to].map(Moment::across).into_iter().fold(0.0, f64::max);
+        let fastest = across + 0.5 * bounds.length * bounds.rate * bounds.speed + bounds.rate * height;
+        // Along unit vectors that turn as fast as the axis and its horizontal direction do.
+        let turn = bounds.swing[0] + bounds.rate;
+        let bend = bounds.across + bounds.askew;
+        Some(CylinderLimits {
+            bow: self.bow(bounds),
+            doubt: self.doubt([fastest, bounds.speed, bounds.rate], bounds.lean[0], slack),
+            pad: 16.0 * slack,
+            pivot: self.pivot([from, to], bounds, height),
+            travel: turn * bounds.speed,
+            rate: bend + turn * bounds.rate,
+            bend,
+            lean: bounds.lean,
+            rise: bounds.rise,
+        })
+    }
+
+    /// Heights at which `G` may rise. With `S` as above and `c = ⟨b′, a × a′⟩/|a′|`,
+    ///
+    /// ```text
+    /// −r G′ ≥ S² − r |c| (|ζ| |a″_e| + 2 |a′ τ|)/S − r² |a′|² c²/S² − r |ζ| |a″_f|,    S ≥ |c|,
+    /// ```
+    ///
+    /// where `a″_e` and `a″_f` are the parts of `a″` along `a′` and along `a × a′`.
+    fn pivot(&self, [from, to]: [&Moment; 2], bounds: &Bounds, height: f64) -> Option<[f64; 2]> {
+        let (r, rate, half) = (self.radius, bounds.rate, 0.5 * bounds.length);
+        let everywhere = Some([f64::NEG_INFINITY, f64::INFINITY]);
+        let least = [from, to]
+            .map(|m| m.rate.norm())
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+            - (bounds.across + bounds.askew) * half;
+        if !(least > 0.5 * rate) {
+            return everywhere;
+        }
+        let seen = [from, to].map(|m| {
+            let e = m.rate.normalize();
+            [m.axis, e, m.axis.cross(&e)].map(|v| m.velocity.dot(&v))
+        });
+        // |e′| ≤ |a″|/|a′|; of it, `a × e` turns with the part across both.
+        let wander = [rate, bounds.bend / least, bounds.askew / least].map(|w| w * bounds.speed * half);
+        let largest = |n: usize| seen[0][n].abs().max(seen[1][n].abs()) + wander[n];
+        let (tau, side) = (largest(0), largest(2));
+        let smallest = if seen[0][2] * seen[1][2] > 0.0 {
+            (seen[0][2].abs().min(seen[1][2].abs()) - wander[2]).max(0.0)
+        } else {
+            0.0
+        };
+        let ahead = [
+            seen[0][1].min(seen[1][1]) - wander[1],
+            seen[0][1].max(seen[1][1]) + wander[1],
+        ];
+        let first = r * side * (height * bounds.across + 2.0 * rate * tau);
+        let second = r * r * rate * rate * side * side;
+        let third = r * height * bounds.askew;
+        // The least `S` for which it is certain, with a margin for rounding.
+        let enough = |s: f64| s * s * s * s > 1.01 * (first * s + second + third * s * s);
+        let (mut low, mut high) = (
+            0.0,
+            (4.0 * first).cbrt() + (4.0 * second).sqrt().sqrt() + (4.0 * third).sqrt(),
+        );
+        for _ in 0..16 {
+            let middle = 0.5 * (low + high);
+            if enough(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        if smallest > high {
+            return None;
+        }
+        let reach = (high * high - smallest * smallest).max(0.0).sqrt() * (1.0 + 1e-9);
+        // Where `|ahead + ζ |a′|| ≤ reach`.
+        let heights = [least, rate].map(|rate| [(-ahead[1] - reach) / rate, (-ahead[0] + reach) / rate]);
+        Some([heights[0][0].min(heights[1][0]), heights[0][1].max(heights[1][1])])
+    }
+
+    /// The ranges of `α`, `δ` and `ζ` of a sheet where lines at `q` and `δ` meet it; `None` if they do not.
+    #[inline]
+    fn ranges(&self, limits: &CylinderLimits, [q, delta]: [Range; 2], sheet: usize) -> Option<[Range; 3]> {
+        let r = self.radius;
+        if delta[0] > r + limits.pad || delta[1] < -r - limits.pad {
+            return None;
+        }
+        let delta = [delta[0].max(-r), delta[1].min(r)];
+        // As far as rounding may move a root.
+        let room = wider(sub([r * r; 2], square(delta)), r * limits.pad);
+        let half = square_root(room);
+        let alpha = if sheet == 0 { [-half[1], -half[0]] } else { half };
+        let zeta = divided(add(q, mul(limits.rise, alpha)), limits.lean);
+        (zeta[1] >= self.ends[0] - limits.pad && zeta[0] <= self.ends[1] + limits.pad).then_some([alpha, delta, zeta])
+    }
+
+    /// The range of `G`, and the two parts of the velocity across the axis.
+    #[inline]
+    fn rates(
+        limits: &CylinderLimits,
+        poses: [&Lean; 2],
+        length: f64,
+        [alpha, delta, zeta]: [Range; 3],
+    ) -> (Range, [Range; 2]) {
+        let [a, b] = poses;
+        let across = [0, 1].map(|k| {
+            let travel = between(a.travel[k], b.travel[k], limits.travel * length);
+            let rate = between(a.rate[k], b.rate[k], limits.rate * length);
+            add(travel, mul(rate, zeta))
+        });
+        (add(mul(alpha, across[0]), mul(delta, across[1])), across)
+    }
+
+    /// What a pose at rest has of limits.
+    pub fn at_rest(&self, pose: &Lean, doubt: f64, slack: f64) -> CylinderLimits {
+        CylinderLimits {
+            bow: 0.0,
+            doubt,
+            pad: 16.0 * slack,
+            pivot: None,
+            travel: 0.0,
+            rate: 0.0,
+            bend: 0.0,
+            lean: [pose.tilt[0]; 2],
+            rise: [pose.tilt[1]; 2],
+        }
+    }
+}
+
+impl Shell for Cylinder {
+    type Posed = Lean;
+    type Limits = CylinderLimits;
+
+    fn at(&self, moment: &Moment) -> Lean {
+        Lean::of(moment)
+    }
+
+    #[inline]
+    fn meet(&self, at: &Lean, line: [f64; 2]) -> Meeting {
+        let [q, delta] = at.place(line);
+        let room = (self.radius - delta) * (self.radius + delta);
+        if room > 0.0 {
+            let half = room.sqrt();
+            let lift = at.tilt[1] * half;
+            let below = (q - lift) * at.inverse;
+            let above = (q + lift) * at.inverse;
+            let g = |alpha: f64, zeta: f64| {
+                alpha * (at.travel[0] + at.rate[0] * zeta) + delta * (at.travel[1] + at.rate[1] * zeta)
+            };
+            Meeting {
+                room,
+                half,
+                place: [q, delta],
+                g: [g(-half, below), g(half, above)],
+            }
+        } else {
+            Meeting::beside(room, [q, delta])
+        }
+    }
+
+    fn passage(&self, limits: &CylinderLimits, [a, b]: [&Meeting; 2], length: f64) -> Passage {
+        let sag = 0.125 * limits.bow * length * length;
+        let [from, to] = [a.place[1], b.place[1]];
+        // Its derivative is within four sags of the difference.
+        let monotone = (to - from).abs() > 4.0 * sag;
+        let r = self.radius;
+        match (a.room > 0.0, b.room > 0.0) {
+            (true, true) if monotone || from.abs().max(to.abs()) + sag < r => Passage::Inside,
+            (true, false) if monotone => Passage::Leaves,
+            (false, true) if monotone => Passage::Enters,
+            (false, false) if from * to < 0.0 => Passage::Through,
+            (false, false) if monotone || from.abs().min(to.abs()) - sag > r => Passage::Beside,
+            _ => Passage::Unknown,
+        }
+    }
+
+    fn falls(
+        &self,
+        limits: &CylinderLimits,
+        [(from, a), (to, b)]: [(&Lean, &Meeting); 2],
+        length: f64,
+        sheet: usize,
+    ) -> Falls {
+        let Some(zone) = limits.pivot else { return Falls::Always };
+        let sag = 0.125 * limits.bow * length * length;
+        let place = [0, 1].map(|k| wider(hull(a.place[k], b.place[k]), sag));
+        let Some([alpha, delta, zeta]) = self.ranges(limits, place, sheet) else {
+            return Falls::Beyond;
+        };
+        if zeta[1] < zone[0] || zeta[0] > zone[1] {
+            return Falls::Always;
+        }
+        let poses = [from, to];
+        let (g, across) = Self::rates(limits, poses, length, [alpha, delta, zeta]);
+        if Sign::of(g, limits.doubt / self.radius) != Sign::Unknown {
+            return Falls::Always;
+        }
+        let rate = [0, 1].map(|k| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length));
+        let tau = between(poses[0].travel[2], poses[1].travel[2], limits.travel * length);
+        let around = sub(mul(alpha, across[1]), mul(delta, across[0]));
+        let x = add(mul(alpha, rate[0]), mul(delta, rate[1]));
+        let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
+        let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
+        let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
+        // NaN is unknown.
+        if slope[1] < 0.0 { Falls::Always } else { Falls::Unknown }
+    }
+
+    #[inline]
+    fn signs(&self, limits: &CylinderLimits, poses: [&Lean; 2], block: [Range; 2], length: f64) -> [Sign; 2] {
+        let sag = 0.125 * limits.bow * length * length;
+        let [a, b] = poses.map(|pose| pose.places(block));
+        let place = [joined(a[0], b[0], sag), joined(a[1], b[1], sag)];
+        [0, 1].map(|sheet| match self.ranges(limits, place, sheet) {
+            None => Sign::Absent,
+            Some(ranges) => Sign::of(Self::rates(limits, poses, length, ranges).0, limits.doubt / self.radius),
+        })
+    }
+
+    fn doubtful(&self, limits: &CylinderLimits, meeting: &Meeting, sheet: usize) -> bool {
+        !(meeting.g[sheet].abs() * meeting.half > limits.doubt)
+    }
+
+    #[inline]
+    fn slope(&self, at: &Lean, meeting: &Meeting, sheet: usize) -> [f64; 2] {
+        let alpha = if sheet == 0 { -meeting.half } else { meeting.half };
+        let [q, delta] = meeting.place;
+        let [s, k] = at.tilt;
+        let zeta = (q + k * alpha) * at.inverse;
+        let (va, vb) = (at.travel[0] + at.rate[0] * zeta, at.travel[1] + at.rate[1] * zeta);
+        let x = alpha * at.rate[0] + delta * at.rate[1];
+        let y = alpha * at.bend[0] + delta * at.bend[1];
+        let rise = meeting.g[sheet] / (s * alpha);
+        let around = alpha * vb - delta * va;
+        // The point slides along the surface.
+        let slides = -alpha * vb - delta * (rise * s - va);
+        let slope = slides * around / (self.radius * self.radius) + zeta * y + x * (rise * k - 2.0 * at.travel[2] + x);
+        [slope, rise]
+    }
+
+    fn spot(&self, at: &Lean, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {
+        let alpha = if sheet == 0 { -meeting.half } else { meeting.half };
+        let [q, delta] = meeting.place;
+        let ([s, k], [ux, uy]) = (at.tilt, at.ahead);
+        let zeta = (q + k * alpha) * at.inverse;
+        let level = -k * alpha;
+        Spot {
+            height: at.tip[2] + s * alpha + k * zeta,
+            normal: Vector3::new(level * ux - delta * uy, level * uy + delta * ux, s * alpha),
+            along: zeta,
+            error: 8.0 * slack * (1.0 + self.radius / meeting.half) * at.inverse,
+        }
+    }
+
+    fn speed(&self, at: &Lean) -> f64 {
+        let [a, b, c] = at.travel;
+        let [u, v] = at.rate;
+        (a * a + b * b + c * c).sqrt() + self.reach() * (u * u + v * v).sqrt()
+    }
+
+    fn nearest(&self, [a, b]: [&Meeting; 2]) -> f64 {
+        let [from, to] = [a.place[1].abs(), b.place[1].abs()];
+        from / (from + to)
+    }
+
+    fn ends(&self) -> Ends {
+        Ends::new(self.ends)
+    }
+}

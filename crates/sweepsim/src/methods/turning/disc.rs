@@ -1,0 +1,210 @@
+//! A disc or a ring across the tool's axis, under a motion that turns.
+//!
+//! A line meets its plane once, at `e` from the centre `c = b + ζ a`, at right angles to `a`. There
+//!
+//! ```text
+//! F = ⟨V, a⟩ = ⟨c′, a⟩ − ⟨e, a′⟩,    z′ = F/a_z,    F′ = 2⟨a′, b′⟩ + ζ |a′|² − ⟨e, a″⟩ − a′_z z′
+//! ```
+//!
+//! along the line. If the axis travels faster along itself than the rim turns, `F` is never 0.
+
+use super::blocks::{around, blocks, distance};
+use super::course::{Bounds, Course, Moment};
+use super::intervals::Range;
+use super::shell::Undecided;
+use super::spans::{Span, Verdict};
+use super::zero::{Sample, Turn, zero};
+use super::{Rest, Searching};
+use crate::methods::harvest::unit;
+use nalgebra::Vector3;
+use sweepsim_dexel::Source;
+
+/// A plane that is steeper than this is left to charts.
+const STEEP: f64 = 1e-3;
+
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disc {
+    /// `ζ`.
+    pub height: f64,
+    /// From the inner to the outer radius; the centre is no end.
+    pub radii: [f64; 2],
+    /// 1 where the normal is the axis, otherwise −1.
+    pub up: f64,
+}
+
+/// The disc at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub centre: Vector3<f64>,
+    pub axis: Vector3<f64>,
+    pub rate: Vector3<f64>,
+    pub bend: Vector3<f64>,
+    /// `c′`, and its part along the axis.
+    pub travel: Vector3<f64>,
+    pub along: f64,
+    inverse: f64,
+}
+
+impl Placed {
+    pub fn new(moment: &Moment, height: f64) -> Self {
+        let travel = moment.velocity + moment.rate * height;
+        Self {
+            centre: moment.tip + moment.axis * height,
+            axis: moment.axis,
+            rate: moment.rate,
+            bend: moment.bend,
+            travel,
+            along: moment.along,
+            inverse: moment.axis.z.recip(),
+        }
+    }
+
+    /// `e` of a line.
+    #[inline]
+    pub fn arm(&self, [x, y]: [f64; 2]) -> Vector3<f64> {
+        let (dx, dy) = (x - self.centre.x, y - self.centre.y);
+        Vector3::new(dx, dy, -(dx * self.axis.x + dy * self.axis.y) * self.inverse)
+    }
+
+    /// `F`.
+    #[inline]
+    pub fn along(&self, arm: &Vector3<f64>) -> f64 {
+        self.along - arm.dot(&self.rate)
+    }
+}
+
+impl Disc {
+    /// Settles one span of a course, unless it is too long.
+    pub fn settle(
+        &self,
+        (course, span): (&Course, &Span),
+        searching: &mut Searching,
+        source: &impl Fn(f64) -> Source,
+        rest: &mut Rest,
+    ) -> Verdict {
+        let Span { from, to, bounds, .. } = span;
+        if self.keeps_its_sign([from, to], bounds, searching.slack) {
+            return Verdict::Settled;
+        }
+        let steep = bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP;
+        let Some(falls) = self.falls([from, to], bounds).filter(|_| !steep) else {
+            return Verdict::Long;
+        };
+        let [a, b] = [from, to].map(|moment| Placed::new(moment, self.height));
+        let sag = bounds.sag(self.height.abs() * bounds.bend);
+        let (slack, reach) = (searching.slack, self.radii[1] + sag);
+        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+        let doubt = 16.0 * slack * (bounds.rate * (1.0 + 1.0 / least) + bounds.speed * f64::EPSILON / slack);
+        let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
+        let lines = searching.collector.lines;
+        let lines_over = around(&centres, reach + slack);
+        // Blocks that the disc does not reach.
+        let beside = |block: [Range; 2]| distance(block, centres) > reach + slack;
+        blocks(lines, lines_over, beside, |(i, j), line| {
+            let ends = [&a, &b].map(|placed| placed.along(&placed.arm(line)));
+            if (ends[0] >= 0.0) == (ends[1] >= 0.0) && ends.iter().all(|f| f.abs() > doubt) {
+                return;
+            }
+            if !lines.asks(i, j) {
+                return;
+            }
+            let number = lines.line(i, j);
+            let found = if ends.iter().any(|f| f.abs() <= doubt) {
+                // Only if it is over the disc.
+                let beside = [&a, &b]
+                    .iter()
+                    .all(|placed| placed.arm(line).norm() > 2.0 * self.radii[1]);
+                if beside { Ok(None) } else { Err(Undecided::Close) }
+            } else if (ends[0] > 0.0) == falls {
+                self.turn((course, span), line, ends, searching)
+            } else {
+                Err(Undecided::Intricate)
+            };
+            match found {
+                Err(Undecided::Close) => searching.collector.open(number),
+                Err(Undecided::Intricate) => rest.lines.push(number as u32),
+                Ok(None) => {}
+                Ok(Some(Turn { t, height, normal })) => {
+                    // From `g > 0` to `g < 0` if `F` falls on the upper side, or rises on the lower one.
+                    let inwards = falls == (self.up > 0.0);
+                    let jump = if (normal.z > 0.0) == inwards { -1 } else { 1 };
+                    searching
+                        .collector
+                        .crossing(number, height, jump, unit(normal), source(t));
+                }
+            }
+        });
+        Verdict::Settled
+    }
+
+    /// Whether `F` is certain not to be 0 on the disc.
+    fn keeps_its_sign(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> bool {
+        let [a, b] = [from, to].map(|m| m.along);
+        let least = a.abs().min(b.abs()) - 0.5 * bounds.length * bounds.speed * bounds.rate;
+        let turning = bounds.rate * self.radii[1] * (1.0 + 1e-9);
+        a * b > 0.0 && least > turning + 16.0 * (bounds.speed * f64::EPSILON + slack * bounds.rate)
+    }
+
+    /// Whether `F` falls wherever it is 0, or rises wherever it is; `None` if that is not certain.
+    fn falls(&self, [from, to]: [&Moment; 2], bounds: &Bounds) -> Option<bool> {
+        let slope = |m: &Moment| 2.0 * m.rate.dot(&m.velocity) + self.height * m.rate.norm_squared();
+        let [a, b] = [slope(from), slope(to)];
+        let changes = 2.0 * bounds.bend * (bounds.speed + self.height.abs() * bounds.rate);
+        // For all lines over the disc at any time of the span, at all times.
+        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+        let way = (bounds.speed + self.height.abs() * bounds.rate) * bounds.length;
+        let arm = (self.radii[1] + way) * (1.0 + least.recip());
+        let rest = 0.5 * bounds.length * changes + arm * (bounds.across + bounds.askew);
+        (a * b > 0.0 && a.abs().min(b.abs()) > rest * (1.0 + 1e-9)).then_some(a < 0.0)
+    }
+
+    /// Where `F` is 0, if that is on the disc.
+    fn turn(
+        &self,
+        (course, span): (&Course, &Span),
+        line: [f64; 2],
+        ends: [f64; 2],
+        searching: &Searching,
+    ) -> Result<Option<Turn>, Undecided> {
+        let side = ends[0].signum();
+        let slack = searching.slack;
+        zero(
+            [span.from.t, span.to.t],
+            ends.map(|f| Some([side * f, f64::NAN])),
+            searching.near,
+            |t| {
+                let placed = Placed::new(&course.at(t), self.height);
+                let arm = placed.arm(line);
+                let f = placed.along(&arm);
+                let rise = f * placed.inverse;
+                let slope = 2.0 * placed.rate.dot(&placed.travel)
+                    - self.height * placed.rate.norm_squared()
+                    - arm.dot(&placed.bend)
+                    - placed.rate.z * rise;
+                Some(Sample {
+                    value: side * f,
+                    slope: side * slope,
+                    rise,
+                    state: (placed, arm),
+                })
+            },
+            |t, step, sample| {
+                let (placed, arm) = &sample.state;
+                let speed = placed.travel.norm() + self.radii[1] * placed.rate.norm();
+                let error = 8.0 * (slack + speed * step.abs()) * (1.0 + placed.inverse.abs());
+                let radius = arm.norm();
+                let [inner, outer] = self.radii;
+                let inner = if inner == 0.0 { -1.0 } else { inner };
+                if radius > outer + error || radius < inner - error {
+                    Some(None)
+                } else if radius < outer - error && radius > inner + error {
+                    let height = placed.centre.z + arm.z + 0.5 * sample.rise * step;
+                    let normal = placed.axis * self.up;
+                    Some(Some(Turn { t, height, normal }))
+                } else {
+                    None
+                }
+            },
+        )
+    }
+}

@@ -1,0 +1,89 @@
+//! Arithmetic of ranges. Rounding is left to margins.
+
+pub(super) type Range = [f64; 2];
+
+pub(super) fn hull(a: f64, b: f64) -> Range {
+    [a.min(b), a.max(b)]
+}
+
+#[inline]
+pub(super) fn add(a: Range, b: Range) -> Range {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+#[inline]
+pub(super) fn sub(a: Range, b: Range) -> Range {
+    [a[0] - b[1], a[1] - b[0]]
+}
+
+#[inline]
+pub(super) fn mul(a: Range, b: Range) -> Range {
+    let [p, q, r, s] = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
+    [p.min(q).min(r.min(s)), p.max(q).max(r.max(s))]
+}
+
+/// By a range without 0.
+#[inline]
+pub(super) fn divided(a: Range, b: Range) -> Range {
+    mul(a, [b[1].recip(), b[0].recip()])
+}
+
+#[inline]
+pub(super) fn scaled(factor: f64, a: Range) -> Range {
+    hull(factor * a[0], factor * a[1])
+}
+
+#[inline]
+pub(super) fn square(a: Range) -> Range {
+    let (low, high) = (a[0].abs().min(a[1].abs()), a[0].abs().max(a[1].abs()));
+    let low = if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { low };
+    [low * low, high * high]
+}
+
+/// Of what is positive.
+#[inline]
+pub(super) fn square_root(a: Range) -> Range {
+    a.map(|end| end.max(0.0).sqrt())
+}
+
+/// The smallest range that holds both, wider by a margin.
+#[inline]
+pub(super) fn joined(a: Range, b: Range, margin: f64) -> Range {
+    [a[0].min(b[0]) - margin, a[1].max(b[1]) + margin]
+}
+
+#[inline]
+pub(super) fn wider(a: Range, margin: f64) -> Range {
+    [a[0] - margin, a[1] + margin]
+}
+
+/// What is certain of the sign of a function on a sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Sign {
+    /// There is no point of the sheet.
+    Absent,
+    Positive,
+    Negative,
+    Unknown,
+}
+
+impl Sign {
+    /// Of a range, beyond a doubt.
+    #[inline]
+    pub fn of(range: Range, doubt: f64) -> Self {
+        if range[0] > doubt {
+            Self::Positive
+        } else if range[1] < -doubt {
+            Self::Negative
+        } else {
+            Self::Unknown
+        }
+    }
+}
+
+/// The range of a function with these values at the ends of a span, that changes at most by this much over all of it.
+#[inline]
+pub(super) fn between(a: f64, b: f64, change: f64) -> Range {
+    let (middle, half) = (0.5 * (a + b), 0.5 * change.max((a - b).abs()));
+    [middle - half, middle + half]
+}

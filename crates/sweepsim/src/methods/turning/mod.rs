@@ -1,0 +1,278 @@
+//! Moves that turn the tool, line by line: see `docs/algorithms/turning.md`.
+//!
+//! Legend: `a(t)` the tool's axis and `b(t)` its tip, `V` the velocity of a point of the tool, `G` a positive multiple of `g = ⟨n, V⟩` on a surface of the tool where a line meets it, `z`
+//! along the dexels. Of a tool of revolution, balls, cylinders about the axis, discs and sharp edges are solved: a line meets each of them in closed form at any time, and `G` has one unknown, the
+//! time. Its sign at the ends of a short span tells whether it is 0 in between, where a bound of its slope holds for all lines. What is not certain is left to charts, for the lines and the span of
+//! time in question.
+
+mod ball;
+mod blocks;
+mod course;
+mod cylinder;
+mod disc;
+mod intervals;
+mod lean;
+mod rest;
+mod rim;
+mod shell;
+mod spans;
+mod zero;
+
+use crate::cutter::outline::{Outline, Piece, Shape};
+use crate::methods::translation::Collector;
+use ball::Ball;
+use blocks::around;
+use course::{Course, Moment};
+use cylinder::Cylinder;
+use disc::Disc;
+use rest::{Resting, Side};
+use rim::RimSearch;
+use shell::{Shell, ShellSearch};
+use spans::{Verdict, settle};
+use std::ops::Range;
+use sweepsim_dexel::Source;
+use sweepsim_motion::{Segment, SegmentEnd};
+
+/// The patches or edges of a piece.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Element {
+    Patches(Range<usize>),
+    Edges(Range<usize>),
+}
+
+/// What is left to charts.
+#[derive(Clone, Debug)]
+pub(crate) struct Rest {
+    pub element: Element,
+    /// From the first time, up to the second.
+    pub times: [f64; 2],
+    /// All lines, or only some.
+    pub all: bool,
+    pub lines: Vec<u32>,
+}
+
+impl Rest {
+    fn new(element: &Element, times: [f64; 2]) -> Self {
+        Self {
+            element: element.clone(),
+            times,
+            all: false,
+            lines: Vec::new(),
+        }
+    }
+
+    /// Whether both are all lines of one element, one after the other.
+    fn follows(&self, next: &Self) -> bool {
+        self.all && self.element == next.element && self.times[1] == next.times[0]
+    }
+}
+
+/// What all parts of a search share.
+pub(crate) struct Searching<'a, 'b> {
+    pub collector: &'a mut Collector<'b>,
+    /// The rounding error of coordinates.
+    pub slack: f64,
+    /// Heights may be off by this much.
+    pub near: f64,
+}
+
+/// A surface of the tool that is solved here.
+enum Kind {
+    Ball(Ball),
+    Cylinder(Cylinder),
+    Disc(Disc),
+}
+
+impl Kind {
+    fn of(piece: &Piece) -> Option<Self> {
+        let heights = [piece.from[1].min(piece.to[1]), piece.from[1].max(piece.to[1])];
+        match piece.shape {
+            Shape::Line { normal: [0.0, up] } => Some(Self::Disc(Disc {
+                height: piece.from[1],
+                radii: [piece.from[0].min(piece.to[0]), piece.from[0].max(piece.to[0])],
+                up,
+            })),
+            Shape::Line { normal: [1.0, _] } => Some(Self::Cylinder(Cylinder {
+                radius: piece.from[0],
+                ends: heights,
+            })),
+            Shape::Arc {
+                centre: [0.0, centre],
+                radius,
+                out: 1.0,
+                ..
+            } => {
+                let [low, high] = if piece.from[1] < piece.to[1] {
+                    [piece.from, piece.to]
+                } else {
+                    [piece.to, piece.from]
+                };
+                Some(Self::Ball(Ball {
+                    centre,
+                    radius,
+                    ends: [
+                        if low[0] == 0.0 {
+                            f64::NEG_INFINITY
+                        } else {
+                            low[1] - centre
+                        },
+                        if high[0] == 0.0 {
+                            f64::INFINITY
+                        } else {
+                            high[1] - centre
+                        },
+                    ],
+                }))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// The envelope and the edges of a tool along a segment that turns. Marks what it settles as done; the rest of that is for charts.
+pub(crate) fn envelope(
+    outline: &Outline,
+    segment: &Segment,
+    searching: &mut Searching,
+    source: impl Fn(f64) -> Source,
+    [patches, edges]: [&mut [bool]; 2],
+) -> Vec<Rest> {
+    let mut rests = Vec::new();
+    let Some(course) = Course::new(segment) else {
+        return rests;
+    };
+    for piece in &outline.pieces {
+        let element = Element::Patches(piece.patches.clone());
+        match Kind::of(piece) {
+            Some(Kind::Ball(ball)) => ball_along(&ball, &course, &element, &mut rests, searching, &source),
+            Some(Kind::Cylinder(cylinder)) => {
+                cylinder_along(&cylinder, &course, &element, &mut rests, searching, &source);
+            }
+            Some(Kind::Disc(disc)) => settle(&course, &element, &mut rests, |span, rest| {
+                disc.settle((&course, span), searching, &source, rest)
+            }),
+            None => continue,
+        }
+        patches[piece.patches.clone()].fill(true);
+    }
+    for rim in &outline.rims {
+        let element = Element::Edges(rim.edges.clone());
+        let search = RimSearch { rim, course: &course };
+        settle(&course, &element, &mut rests, |span, rest| {
+            search.settle(span, searching, &source, rest)
+        });
+        edges[rim.edges.clone()].fill(true);
+    }
+    rests
+}
+
+/// How far lines may be from where a straight way has them: fewer spans for more, fewer lines that need another look for less.
+fn most_sag(searching: &Searching, radius: f64) -> f64 {
+    (0.5 * searching.collector.lines.spacing()).min(0.05 * radius)
+}
+
+fn ball_along(
+    ball: &Ball,
+    course: &Course,
+    element: &Element,
+    rests: &mut Vec<Rest>,
+    searching: &mut Searching,
+    source: &impl Fn(f64) -> Source,
+) {
+    settle(course, element, rests, |span, rest| {
+        let ends = [&span.from, &span.to];
+        let Some(limits) = ball.limits(ends, &span.bounds, searching.slack) else {
+            return Verdict::Long;
+        };
+        let [a, b] = ends.map(|moment| ball.at(moment).level());
+        let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
+        let mut search = ShellSearch {
+            shell: ball,
+            course,
+            limits: &limits,
+            source,
+            rest,
+        };
+        search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack));
+        Verdict::Settled
+    });
+}
+
+fn cylinder_along(
+    cylinder: &Cylinder,
+    course: &Course,
+    element: &Element,
+    rests: &mut Vec<Rest>,
+    searching: &mut Searching,
+    source: &impl Fn(f64) -> Source,
+) {
+    let most = most_sag(searching, cylinder.radius);
+    settle(course, element, rests, |span, rest| {
+        let ends = [&span.from, &span.to];
+        let Some(limits) = cylinder.limits(ends, &span.bounds, searching.slack) else {
+            return Verdict::Long;
+        };
+        let bow = cylinder.bow(&span.bounds);
+        let sag = span.bounds.sag(bow);
+        if sag > most && !span.last {
+            return Verdict::Long;
+        }
+        let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
+        let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
+        let mut search = ShellSearch {
+            shell: cylinder,
+            course,
+            limits: &limits,
+            source,
+            rest,
+        };
+        search.lines(searching, span, around(&[a, b].concat(), wider));
+        Verdict::Settled
+    });
+}
+
+/// The tool at rest at one end of a segment, of which at least one side turns. Marks what it settles as done.
+pub(crate) fn placement(
+    outline: &Outline,
+    [before, after]: [Option<&Segment>; 2],
+    source: Source,
+    searching: &mut Searching,
+    done: &mut [bool],
+) {
+    let (own, end) = match (before, after) {
+        (_, Some(segment)) => (segment, SegmentEnd::Start),
+        (Some(segment), None) => (segment, SegmentEnd::Finish),
+        (None, None) => return,
+    };
+    let (turn, tip) = match end {
+        SegmentEnd::Start => (own.start(), own.tips()[0]),
+        SegmentEnd::Finish => (own.end(), own.tips()[1]),
+    };
+    let side = |segment: Option<&Segment>, end: SegmentEnd, beyond: bool| match segment {
+        Some(segment) => Side::Moving(Moment::resting(&turn, tip, segment.velocity(end))),
+        None => Side::Beyond(beyond),
+    };
+    let sides = [
+        side(before, SegmentEnd::Finish, false),
+        side(after, SegmentEnd::Start, true),
+    ];
+    let resting = Resting {
+        pose: Moment::resting(&turn, tip, [[0.0; 3]; 2]),
+        sides: &sides,
+        source,
+    };
+    for piece in &outline.pieces {
+        let settled = match Kind::of(piece) {
+            Some(Kind::Ball(ball)) => {
+                resting.ball(&ball, searching);
+                true
+            }
+            Some(Kind::Cylinder(cylinder)) => resting.cylinder(&cylinder, searching),
+            Some(Kind::Disc(disc)) => resting.disc(&disc, searching),
+            None => false,
+        };
+        if settled {
+            done[piece.patches.clone()].fill(true);
+        }
+    }
+}

@@ -1,0 +1,239 @@
+//! The tool at rest between two motions, of which one turns: where a line meets it, and the signs of `g` before and after.
+
+use super::Searching;
+use super::ball::Ball;
+use super::blocks::{around, blocks, distance};
+use super::course::Moment;
+use super::cylinder::Cylinder;
+use super::disc::{Disc, Placed};
+use super::intervals::{Range, Sign};
+use super::lean::Lean;
+use super::shell::Shell;
+use crate::methods::harvest::unit;
+use nalgebra::Vector3;
+use sweepsim_dexel::Source;
+
+/// An axis that leans less than this is left to charts, unless it is upright, and a plane that is steeper than this.
+const UPRIGHT: f64 = 0.02;
+const STEEP: f64 = 1e-3;
+
+/// The tool at rest, seen from one side.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Side {
+    Moving(Moment),
+    /// Beyond an end of the path; whether that counts as moving inwards.
+    Beyond(bool),
+}
+
+/// A placement of the tool.
+pub(super) struct Resting<'a> {
+    /// Without a motion.
+    pub pose: Moment,
+    pub sides: &'a [Side; 2],
+    pub source: Source,
+}
+
+/// Whether `g` is negative on a side of the placement, and whether that is certain.
+type Known = (bool, bool);
+
+impl Resting<'_> {
+    /// A ball or a cylinder.
+    fn shell<S: Shell>(
+        &self,
+        shell: &S,
+        (pose, posed): (&S::Posed, [Option<S::Posed>; 2]),
+        doubt: [f64; 2],
+        line: (usize, usize),
+        at: [f64; 2],
+        searching: &mut Searching,
+    ) {
+        let views = posed.map(|posed| posed.map(|posed| shell.meet(&posed, at)));
+        let own = shell.meet(pose, at);
+        if own.room <= 0.0 {
+            return;
+        }
+        for sheet in 0..2 {
+            let sign = |side: usize| -> Known {
+                match (&self.sides[side], &views[side]) {
+                    (Side::Beyond(negative), _) => (*negative, true),
+                    (Side::Moving(_), Some(view)) => {
+                        (view.g[sheet] < 0.0, view.g[sheet].abs() * view.half > doubt[side])
+                    }
+                    (Side::Moving(_), None) => (false, false),
+                }
+            };
+            let [before, after] = [sign(0), sign(1)];
+            if before == (after.0, true) && after.1 {
+                continue;
+            }
+            let spot = shell.spot(pose, &own, sheet, searching.slack);
+            let inside = shell.ends().hold(spot.along, spot.error);
+            if inside == Some(false) || !searching.collector.lines.asks(line.0, line.1) {
+                continue;
+            }
+            let number = searching.collector.lines.line(line.0, line.1);
+            if inside.is_none() || !before.1 || !after.1 {
+                searching.collector.open(number);
+                continue;
+            }
+            let change = i8::from(after.0) - i8::from(before.0);
+            let jump = if sheet == 1 { -change } else { change };
+            searching
+                .collector
+                .crossing(number, spot.height, jump, unit(spot.normal), self.source);
+        }
+    }
+
+    /// The lines of a box.
+    fn lines<S: Shell>(
+        &self,
+        shell: &S,
+        (pose, posed): (&S::Posed, [Option<S::Posed>; 2]),
+        (limits, doubt): (&[S::Limits; 2], [f64; 2]),
+        area: [Range; 2],
+        searching: &mut Searching,
+    ) {
+        let lines = searching.collector.lines;
+        let signs = |block: [Range; 2]| {
+            [0, 1].map(|side| match (&self.sides[side], &posed[side]) {
+                (Side::Beyond(true), _) => [Sign::Negative; 2],
+                (Side::Moving(_), Some(posed)) => shell.signs(&limits[side], [posed; 2], block, 0.0),
+                _ => [Sign::Positive; 2],
+            })
+        };
+        let excluded = |block: [Range; 2]| {
+            let [before, after] = signs(block);
+            (0..2).all(|sheet| {
+                let pair = [before[sheet], after[sheet]];
+                pair.contains(&Sign::Absent) || pair[0] == pair[1] && pair[0] != Sign::Unknown
+            })
+        };
+        blocks(lines, area, excluded, |place, line| {
+            self.shell(shell, (pose, posed), doubt, place, line, searching);
+        });
+    }
+
+    fn speeds(&self, reach: f64) -> [f64; 2] {
+        [0, 1].map(|n| match &self.sides[n] {
+            Side::Moving(moment) => moment.velocity.norm() + moment.rate.norm() * reach,
+            Side::Beyond(_) => 0.0,
+        })
+    }
+
+    fn moving(&self) -> [Option<&Moment>; 2] {
+        [0, 1].map(|n| match &self.sides[n] {
+            Side::Moving(moment) => Some(moment),
+            Side::Beyond(_) => None,
+        })
+    }
+
+    pub fn ball(&self, ball: &Ball, searching: &mut Searching) {
+        let posed = self.moving().map(|side| side.map(|moment| ball.at(moment)));
+        let pose = ball.at(&self.pose);
+        let doubt = self
+            .speeds(ball.centre.abs())
+            .map(|speed| 32.0 * searching.slack * ball.radius * speed);
+        let limits = doubt.map(|doubt| Ball::at_rest(doubt, searching.slack));
+        let area = around(&[pose.level()], ball.radius + searching.slack);
+        self.lines(ball, (&pose, posed), (&limits, doubt), area, searching);
+    }
+
+    /// `false` if it is left to charts.
+    pub fn cylinder(&self, cylinder: &Cylinder, searching: &mut Searching) -> bool {
+        let lean = self.pose.lean();
+        if lean == 0.0 {
+            // No line meets the wall of an upright tool at rest.
+            return true;
+        }
+        let Some(pose) = Lean::new(&self.pose).filter(|_| lean > UPRIGHT) else {
+            return false;
+        };
+        let posed = self.moving().map(|side| side.map(|moment| cylinder.at(moment)));
+        let reach = cylinder.radius + cylinder.ends.map(f64::abs).into_iter().fold(0.0, f64::max);
+        let doubt = self.moving().map(|side| {
+            side.map_or(0.0, |moment| {
+                let (speed, rate) = (moment.velocity.norm(), moment.rate.norm());
+                let height = reach + cylinder.radius / lean;
+                cylinder.doubt([moment.across() + rate * height, speed, rate], lean, searching.slack)
+            })
+        });
+        let limits = doubt.map(|doubt| cylinder.at_rest(&pose, doubt, searching.slack));
+        let area = around(&pose.corners(cylinder.radius, cylinder.ends), searching.slack);
+        self.lines(cylinder, (&pose, posed), (&limits, doubt), area, searching);
+        true
+    }
+
+    /// `false` if it is left to charts.
+    pub fn disc(&self, disc: &Disc, searching: &mut Searching) -> bool {
+        let placed = Placed::new(&self.pose, disc.height);
+        if placed.axis.z.abs() < STEEP {
+            return false;
+        }
+        let slack = searching.slack;
+        let posed = self
+            .moving()
+            .map(|side| side.map(|moment| Placed::new(moment, disc.height)));
+        // No line at all where both signs are certain to be equal all over it.
+        let [before, after] = [0, 1].map(|n| match (&self.sides[n], &posed[n]) {
+            (Side::Beyond(negative), _) => Some(*negative),
+            (_, Some(side)) => {
+                let turning = side.rate.norm() * disc.radii[1] * (1.0 + 1e-9);
+                let error = 16.0 * (side.travel.norm() * f64::EPSILON + slack * side.rate.norm());
+                (side.along.abs() > turning + error).then_some(side.along * disc.up < 0.0)
+            }
+            _ => None,
+        });
+        if before.is_some() && before == after {
+            return true;
+        }
+        let centre = [placed.centre.x, placed.centre.y];
+        let lines = searching.collector.lines;
+        let normal: Vector3<f64> = placed.axis * disc.up;
+        let error = 8.0 * slack * (1.0 + placed.axis.z.recip().abs());
+        let reach = disc.radii[1] + slack;
+        let beside = |block: [Range; 2]| distance(block, [centre; 2]) > reach;
+        blocks(lines, around(&[centre], reach), beside, |(i, j), line| {
+            let arm = placed.arm(line);
+            let radius = arm.norm();
+            let [inner, outer] = disc.radii;
+            let inner = if inner == 0.0 { -1.0 } else { inner };
+            if radius > outer + error || radius < inner - error {
+                return;
+            }
+            let signs = [0, 1].map(|n| match (&self.sides[n], &posed[n]) {
+                (Side::Moving(_), Some(side)) => {
+                    let f = side.along(&arm);
+                    // Without a turn it is a product.
+                    let doubt = (error + 16.0 * slack) * side.rate.norm()
+                        + if side.rate.norm() == 0.0 {
+                            0.0
+                        } else {
+                            16.0 * f64::EPSILON * side.travel.norm()
+                        };
+                    (f * disc.up < 0.0, side.rate.norm() == 0.0 || f.abs() > doubt)
+                }
+                (Side::Beyond(negative), _) => (*negative, true),
+                _ => (false, false),
+            });
+            if signs[0].1 && signs[1].1 && signs[0].0 == signs[1].0 {
+                return;
+            }
+            if !lines.asks(i, j) {
+                return;
+            }
+            let number = lines.line(i, j);
+            let inside = radius < outer - error && radius > inner + error;
+            if !inside || !signs[0].1 || !signs[1].1 {
+                searching.collector.open(number);
+                return;
+            }
+            let change = i8::from(signs[1].0) - i8::from(signs[0].0);
+            let jump = if normal.z > 0.0 { -change } else { change };
+            let height = placed.centre.z + arm.z;
+            searching
+                .collector
+                .crossing(number, height, jump, unit(normal), self.source);
+        });
+        true
+    }
+}

@@ -1,0 +1,238 @@
+//! A sharp edge, a circle about the tool's axis, under a motion that turns.
+//!
+//! A line meets the plane of the circle once, at `e` from its centre `c = b + ζ a` (see [`disc`](super::disc)). It meets the surface that the circle sweeps where
+//!
+//! ```text
+//! E = |e|² − R² = 0,    E′/2 = ⟨e, e′⟩ = e_z z′ − ⟨e, c′⟩
+//! ```
+//!
+//! along the line. With `e = (d, −⟨d, h⟩)`, `h = a_h/a_z`, `E″/2 = |c_h′|² − ⟨d, c_h″⟩ + f′² + f f″`, `f = ⟨d, h⟩`: where the way of the centre is straighter than the circle, seen along the dexels, `E` is
+//! convex, and the signs of `E` and its derivative at the ends of a span tell how often it is 0.
+
+use super::blocks::{around, blocks, distance};
+use super::course::{Bounds, Course, Moment};
+use super::disc::Placed;
+use super::intervals::Range;
+use super::shell::Undecided;
+use super::spans::{Span, Verdict};
+use super::zero::{Sample, zero};
+use super::{Rest, Searching};
+use crate::cutter::outline::Rim;
+use crate::methods::harvest::unit;
+use nalgebra::Vector3;
+use sweepsim_dexel::Source;
+
+/// A plane that is steeper than this is left to charts.
+const STEEP: f64 = 0.02;
+/// A span of one line is halved this many times at most.
+const DEEPEST: u32 = 12;
+
+/// `E`, and half of its derivative.
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    t: f64,
+    square: f64,
+    half: f64,
+}
+
+/// A search of a rim along a span.
+pub(super) struct RimSearch<'a> {
+    pub rim: &'a Rim,
+    pub course: &'a Course,
+}
+
+impl RimSearch<'_> {
+    /// Settles one span, unless it is too long.
+    pub fn settle(
+        &self,
+        span: &Span,
+        searching: &mut Searching,
+        source: &impl Fn(f64) -> Source,
+        rest: &mut Rest,
+    ) -> Verdict {
+        let Span { from, to, bounds, .. } = span;
+        if (bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP) || !self.is_convex([from, to], bounds) {
+            return Verdict::Long;
+        }
+        let [a, b] = [from, to].map(|moment| Placed::new(moment, self.rim.height));
+        let sag = bounds.sag(self.rim.height.abs() * bounds.bend);
+        let slack = searching.slack;
+        let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
+        let lines = searching.collector.lines;
+        let reach = self.rim.radius + sag + slack;
+        let excluded = |block: [Range; 2]| {
+            // `E` is convex in space as well: all of a block is inside at both ends if its corners are.
+            let inside = |placed: &Placed| {
+                let [x, y] = block;
+                x.into_iter().all(|x| {
+                    y.into_iter()
+                        .all(|y| self.value(placed, 0.0, [x, y]).square < -self.doubt(slack))
+                })
+            };
+            distance(block, centres) > reach || inside(&a) && inside(&b)
+        };
+        blocks(lines, around(&centres, reach), excluded, |(i, j), line| {
+            let ends = [self.value(&a, from.t, line), self.value(&b, to.t, line)];
+            if ends.iter().all(|end| end.square < -self.doubt(slack)) {
+                return;
+            }
+            if !lines.asks(i, j) {
+                return;
+            }
+            let mark = searching.collector.mark();
+            if let Err(undecided) = self.between((i, j), line, ends, searching, source, 0) {
+                searching.collector.forget(mark);
+                let number = lines.line(i, j);
+                match undecided {
+                    Undecided::Close => searching.collector.open(number),
+                    Undecided::Intricate => rest.lines.push(number as u32),
+                }
+            }
+        });
+        Verdict::Settled
+    }
+
+    /// Of `E`.
+    fn doubt(&self, slack: f64) -> f64 {
+        16.0 * slack * self.rim.radius / STEEP
+    }
+
+    /// Whether `E` is convex for all lines over the disc at any time of the span.
+    fn is_convex(&self, [from, to]: [&Moment; 2], bounds: &Bounds) -> bool {
+        let least = bounds.rise.map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
+        let height = self.rim.height.abs();
+        let bow = height * bounds.bend;
+        let [a, b] = [from, to].map(|m| (m.velocity + m.rate * self.rim.height).xy().norm());
+        let slow = a.min(b) - 0.5 * bow * bounds.length;
+        let fast = bounds.speed + height * bounds.rate;
+        let reach = self.rim.radius + fast * bounds.length;
+        // h = a_h/a_z
+        let lean = bounds.lean[1].abs().min(1.0) / least;
+        let tilt = bounds.rate * (1.0 + lean) / least;
+        let tilts = bounds.bend * (1.0 + lean) / least + 2.0 * bounds.rate * tilt / least;
+        let f = reach * lean;
+        let f_bend = bow * lean + 2.0 * fast * tilt + reach * tilts;
+        slow > 0.0 && slow * slow > 1.01 * (reach * bow + f * f_bend)
+    }
+
+    #[inline]
+    fn value(&self, placed: &Placed, t: f64, line: [f64; 2]) -> Value {
+        let arm = placed.arm(line);
+        let rise = placed.along(&arm) / placed.axis.z;
+        Value {
+            t,
+            square: arm.norm_squared() - self.rim.radius * self.rim.radius,
+            half: arm.z * rise - arm.dot(&placed.travel),
+        }
+    }
+
+    fn between(
+        &self,
+        place: (usize, usize),
+        line: [f64; 2],
+        [from, to]: [Value; 2],
+        searching: &mut Searching,
+        source: &impl Fn(f64) -> Source,
+        depth: u32,
+    ) -> Result<(), Undecided> {
+        let doubt = self.doubt(searching.slack);
+        if from.square.abs() <= doubt || to.square.abs() <= doubt {
+            return Err(Undecided::Close);
+        }
+        match (from.square < 0.0, to.square < 0.0) {
+            (true, true) => Ok(()),
+            (true, false) => self.pass(place, line, [from, to], -1.0, searching, source),
+            (false, true) => self.pass(place, line, [from, to], 1.0, searching, source),
+            (false, false) => {
+                // Above both tangents.
+                let (a, b) = (2.0 * from.half, 2.0 * to.half);
+                if a >= 0.0 || b <= 0.0 {
+                    return Ok(());
+                }
+                let crossing = (to.square - from.square + a * from.t - b * to.t) / (a - b);
+                let least = from.square + a * (crossing - from.t);
+                if least > doubt {
+                    return Ok(());
+                }
+                if depth == DEEPEST {
+                    return Err(Undecided::Close);
+                }
+                // NaN is in the middle.
+                let t = if crossing > from.t && crossing < to.t {
+                    crossing
+                } else {
+                    0.5 * (from.t + to.t)
+                };
+                let placed = Placed::new(&self.course.at(t), self.rim.height);
+                let middle = self.value(&placed, t, line);
+                self.between(place, line, [from, middle], searching, source, depth + 1)?;
+                self.between(place, line, [middle, to], searching, source, depth + 1)
+            }
+        }
+    }
+
+    /// The only place where a line passes the circle: into it if `inwards` is 1, out of it if it is −1.
+    fn pass(
+        &self,
+        (i, j): (usize, usize),
+        line: [f64; 2],
+        ends: [Value; 2],
+        inwards: f64,
+        searching: &mut Searching,
+        source: &impl Fn(f64) -> Source,
+    ) -> Result<(), Undecided> {
+        let slack = searching.slack;
+        let found = zero(
+            [ends[0].t, ends[1].t],
+            ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
+            searching.near,
+            |t| {
+                let placed = Placed::new(&self.course.at(t), self.rim.height);
+                let arm = placed.arm(line);
+                let rise = placed.along(&arm) / placed.axis.z;
+                Some(Sample {
+                    value: inwards * (arm.norm_squared() - self.rim.radius * self.rim.radius),
+                    slope: 2.0 * inwards * (arm.z * rise - arm.dot(&placed.travel)),
+                    rise,
+                    state: (placed, arm),
+                })
+            },
+            |t, step, sample| {
+                let (placed, arm) = &sample.state;
+                let along = placed.along(arm);
+                let out = arm.dot(&placed.travel) / self.rim.radius;
+                let speed = placed.travel.norm() + self.rim.radius * placed.rate.norm();
+                let error =
+                    16.0 * (slack / STEEP + step.abs() * speed) * (placed.rate.norm() + speed / self.rim.radius)
+                        + 16.0 * f64::EPSILON * speed;
+                let faces = self.rim.normals.map(|[n, m]| n * out + m * along);
+                if faces.iter().any(|g| !(g.abs() > error)) {
+                    return None;
+                }
+                Some((t, placed.centre.z + arm.z + sample.rise * step, (*placed, *arm, faces)))
+            },
+        )?;
+        let (t, height, (placed, arm, [a, b])) = found;
+        if (a < 0.0) == (b < 0.0) {
+            return Ok(());
+        }
+        // The turn of the circle about the tool, from below to above along the meridian, is that of its disc.
+        let orientation = if (placed.axis.z > 0.0) == (inwards < 0.0) {
+            1
+        } else {
+            -1
+        };
+        let jump = if a < 0.0 { -orientation } else { orientation };
+        // The envelope's normal lies in the fan of the two faces, where g = 0.
+        let normals = self
+            .rim
+            .normals
+            .map(|[n, m]| arm * (n / self.rim.radius) + placed.axis * m);
+        let normal: Vector3<f64> = normals[0] * b.abs() + normals[1] * a.abs();
+        let number = searching.collector.lines.line(i, j);
+        searching
+            .collector
+            .crossing(number, height, jump, unit(normal), source(t));
+        Ok(())
+    }
+}

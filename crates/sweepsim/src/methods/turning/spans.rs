@@ -1,0 +1,58 @@
+//! A course is divided into spans of time that are short enough for what has to be certain.
+
+use super::course::{Bounds, Course, Moment};
+use super::{Element, Rest};
+
+/// Spans are halved this many times at most.
+const DEEPEST: u32 = 6;
+
+/// A span between two moments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub from: Moment,
+    pub to: Moment,
+    pub bounds: Bounds,
+    /// Whether it cannot be divided.
+    pub last: bool,
+}
+
+/// What becomes of a span.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Settled,
+    /// It is too long, or charts have to solve it.
+    Long,
+}
+
+/// Settles a course span by span. What remains is left to charts for all lines.
+pub(super) fn settle(
+    course: &Course,
+    element: &Element,
+    rests: &mut Vec<Rest>,
+    mut settle: impl FnMut(&Span, &mut Rest) -> Verdict,
+) {
+    // In the order of time: halves are put back, the later one first.
+    let mut spans = vec![(course.at(0.0), course.at(1.0), 0)];
+    while let Some((from, to, depth)) = spans.pop() {
+        let span = Span {
+            from,
+            to,
+            bounds: course.bounds([&from, &to]),
+            last: depth == DEEPEST,
+        };
+        let mut rest = Rest::new(element, [from.t, to.t]);
+        match settle(&span, &mut rest) {
+            Verdict::Settled if rest.lines.is_empty() => {}
+            Verdict::Settled => rests.push(rest),
+            Verdict::Long if !span.last => {
+                let middle = course.at(0.5 * (from.t + to.t));
+                spans.push((middle, to, depth + 1));
+                spans.push((from, middle, depth + 1));
+            }
+            Verdict::Long => match rests.last_mut() {
+                Some(before) if before.follows(&rest) => before.times[1] = to.t,
+                _ => rests.push(Rest { all: true, ..rest }),
+            },
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Moves that turn, line by line, against charts: the same crossings from other equations, bounds and certificates.
+
+use super::translations::{TOLERANCE, agree, cases, tools};
+use proptest::prelude::*;
+use sweepsim::Statistics;
+use sweepsim::nalgebra::Vector3;
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{Path, Pose};
+
+/// Poses with their axes.
+fn path(poses: &[([f64; 3], [f64; 3])]) -> Option<Path> {
+    let poses = poses.iter().map(|(tip, axis)| Pose::new(*tip, *axis).ok());
+    Path::new(poses.collect::<Option<Vec<_>>>()?).ok()
+}
+
+fn grid(cells: usize) -> Grid {
+    Grid::new([-20.0, -20.0], [20.0, 20.0], [cells; 2]).expect("a grid")
+}
+
+fn tip(size: f64) -> impl Strategy<Value = [f64; 3]> {
+    [-size..size, -size..size, -size..size]
+}
+
+/// An axis that leans by up to about 60°.
+fn axis() -> impl Strategy<Value = [f64; 3]> {
+    [-1.2..1.2_f64, -1.2..1.2_f64, 0.6..1.0_f64]
+}
+
+/// A tool of each kind, agreeing by both methods. Those of balls, cylinders and discs alone need few boxes.
+fn agree_along(number: usize, path: &Path, grid: &Grid) -> Result<[Statistics; 2], TestCaseError> {
+    let (name, tool, _) = &tools()[number];
+    let [own, other] = agree(name, tool, path, grid, TOLERANCE)?.map(|found| found.statistics);
+    prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
+    // But for moves as short as a displacement, the same crossings.
+    let off = own.crossings.abs_diff(other.crossings);
+    prop_assert!(off <= 4 + other.crossings / 100, "{name}: {own:?} {other:?}");
+    Ok([own, other])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// Long moves with large turns, upright on the way or not.
+    #[test]
+    fn long_moves(number in 0..13usize, poses in prop::collection::vec((tip(8.0), axis()), 2..4)) {
+        let Some(path) = path(&poses) else { return Ok(()) };
+        agree_along(number, &path, &grid(31))?;
+    }
+
+    /// Short moves with small turns, as in programs.
+    #[test]
+    fn short_moves(number in 0..13usize, from in tip(5.0), first in axis(), steps in prop::collection::vec((tip(0.7), [-0.05..0.05_f64, -0.05..0.05]), 2..6)) {
+        let mut poses = vec![(from, first)];
+        for (step, turn) in steps {
+            let (tip, axis) = poses[poses.len() - 1];
+            poses.push(([0, 1, 2].map(|k| tip[k] + step[k]), [axis[0] + turn[0], axis[1] + turn[1], axis[2]]));
+        }
+        let Some(path) = path(&poses) else { return Ok(()) };
+        let [own, other] = agree_along(number, &path, &grid(41))?;
+        if number < 2 {
+            prop_assert!(4 * own.boxes <= other.boxes + 400, "{own:?} {other:?}");
+        }
+    }
+
+    /// An axis that always passes one point, within the tool or beside it: there the tool hardly moves across its axis.
+    #[test]
+    fn about_a_point(number in 0..13usize, height in -2.0..12.0_f64, sink in -0.4..0.4_f64, axes in prop::collection::vec(axis(), 2..5), small in any::<bool>()) {
+        let first = axes[0];
+        let poses: Vec<_> = axes.iter().enumerate().map(|(n, axis)| {
+            // Turns as large as they come, or of a few degrees.
+            let mix = if small { 0.05 } else { 1.0 };
+            let axis: Vector3<f64> = (Vector3::from(first) + (Vector3::from(*axis) - Vector3::from(first)) * mix).normalize();
+            ((-axis * (height + sink * n as f64)).into(), axis.into())
+        }).collect();
+        let Some(path) = path(&poses) else { return Ok(()) };
+        agree_along(number, &path, &grid(25))?;
+    }
+
+    /// Retracts along the own axis, level tools, turns and travels that almost vanish, on both sides of a move that turns.
+    #[test]
+    fn almost_without_a_turn(number in prop::sample::select(vec![0_usize, 1, 9]), first in axis(), turn in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], exponents in [-12..0i32, -12..1i32],
+        step in tip(3.0), along in any::<bool>(), level in any::<bool>()) {
+        let mut from = Vector3::from(first);
+        if level {
+            from.z = 0.0;
+        }
+        let from = from.normalize();
+        let to = from + Vector3::from(turn) * 10f64.powi(exponents[0]);
+        let travel = Vector3::from(step) * 10f64.powi(exponents[1]) + if along { from * 4.0 } else { Vector3::zeros() };
+        let tips = [Vector3::zeros(), travel, travel + from * 2.0];
+        let poses = [(tips[0].into(), from.into()), (tips[1].into(), to.into()), (tips[2].into(), to.into())];
+        let Some(path) = path(&poses) else { return Ok(()) };
+        let (name, tool, _) = &tools()[number];
+        // No line through the tips: charts alone need long for some of these.
+        let grid = Grid::new([-9.93, -10.04], [10.0, 9.87], [19; 2]).expect("a grid");
+        agree(name, tool, &path, &grid, TOLERANCE)?;
+    }
+}
