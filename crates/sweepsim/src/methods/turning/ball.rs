@@ -46,8 +46,8 @@ pub(super) struct BallLimits {
     bow: f64,
     /// Of `|a′|`.
     turn: f64,
-    /// `|G| h` below this may be rounding.
-    doubt: f64,
+    /// `|G|` below the first, and the second over `h`, may be rounding.
+    doubt: [f64; 2],
     /// As far as rounding may move a point.
     pad: f64,
 }
@@ -67,16 +67,26 @@ impl Ball {
             bow,
             turn: bounds.rate,
             pad: 16.0 * slack,
-            doubt: 32.0 * slack * self.radius * (bounds.speed + bounds.rate * self.centre.abs()),
+            doubt: self.doubt(
+                [a.xy().norm().max(b.xy().norm()), a.z.abs().max(b.z.abs())].map(|speed| speed + bow * bounds.length),
+                slack,
+            ),
         })
     }
 
+    /// For a centre that moves as fast along the lines' plane and along the lines.
+    fn doubt(&self, [level, steep]: [f64; 2], slack: f64) -> [f64; 2] {
+        let rounding = f64::EPSILON * self.radius * (level + steep);
+        [32.0 * (slack * level + rounding), 32.0 * slack * self.radius * steep]
+    }
+
     /// What a pose at rest has of limits.
-    pub fn at_rest(doubt: f64, slack: f64) -> BallLimits {
+    pub fn at_rest(&self, centre: &Centre, slack: f64) -> BallLimits {
+        let speed = [centre.rate.xy().norm(), centre.rate.z.abs()];
         BallLimits {
             bow: 0.0,
             turn: 0.0,
-            doubt,
+            doubt: self.doubt(speed, slack),
             pad: 16.0 * slack,
         }
     }
@@ -168,11 +178,13 @@ impl Shell for Ball {
         let along = add(mul(dx, axis(0)), mul(dy, axis(1)));
         let rise = mul(half, axis(2));
         let ends = wider(self.ends, limits.pad);
+        // The rounding of `h` is in its range.
+        let doubt = limits.doubt[0] + limits.doubt[1] / self.radius;
         let sign = |g: Range, along: Range| {
             if along[1] < ends[0] || along[0] > ends[1] {
                 Sign::Absent
             } else {
-                Sign::of(g, limits.doubt / self.radius)
+                Sign::of(g, doubt)
             }
         };
         [
@@ -182,7 +194,7 @@ impl Shell for Ball {
     }
 
     fn doubtful(&self, limits: &BallLimits, meeting: &Meeting, sheet: usize) -> bool {
-        !(meeting.g[sheet].abs() * meeting.half > limits.doubt)
+        !(meeting.g[sheet].abs() * meeting.half > limits.doubt[0] * meeting.half + limits.doubt[1])
     }
 
     #[inline]

@@ -199,7 +199,14 @@ impl Cylinder {
     }
 
     /// What a pose at rest has of limits.
-    pub fn at_rest(&self, pose: &Lean, doubt: f64, slack: f64) -> CylinderLimits {
+    pub fn at_rest(&self, (moment, pose): (&Moment, &Lean), slack: f64) -> CylinderLimits {
+        let (rate, [s, _]) = (moment.rate.norm(), pose.tilt);
+        let height = self.reach() + self.radius / s;
+        let doubt = self.doubt(
+            [moment.across() + rate * height, moment.velocity.norm(), rate],
+            s,
+            slack,
+        );
         CylinderLimits {
             bow: 0.0,
             doubt,

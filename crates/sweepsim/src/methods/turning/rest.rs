@@ -33,45 +33,38 @@ pub(super) struct Resting<'a> {
     pub source: Source,
 }
 
-/// Whether `g` is negative on a side of the placement, and whether that is certain.
-type Known = (bool, bool);
+/// Both motions, as a surface needs them.
+type Motions<S> = [Option<(<S as Shell>::Posed, <S as Shell>::Limits)>; 2];
 
 impl Resting<'_> {
-    /// A ball or a cylinder.
+    /// A line over a ball or a cylinder.
     fn shell<S: Shell>(
         &self,
         shell: &S,
-        (pose, posed): (&S::Posed, [Option<S::Posed>; 2]),
-        doubt: [f64; 2],
-        line: (usize, usize),
-        at: [f64; 2],
+        (pose, motions): (&S::Posed, &Motions<S>),
+        (place, line): ((usize, usize), [f64; 2]),
         searching: &mut Searching,
     ) {
-        let views = posed.map(|posed| posed.map(|posed| shell.meet(&posed, at)));
-        let own = shell.meet(pose, at);
+        let own = shell.meet(pose, line);
         if own.room <= 0.0 {
             return;
         }
+        let views = [0, 1].map(|side| motions[side].as_ref().map(|(posed, _)| shell.meet(posed, line)));
         for sheet in 0..2 {
-            let sign = |side: usize| -> Known {
-                match (&self.sides[side], &views[side]) {
-                    (Side::Beyond(negative), _) => (*negative, true),
-                    (Side::Moving(_), Some(view)) => {
-                        (view.g[sheet] < 0.0, view.g[sheet].abs() * view.half > doubt[side])
-                    }
-                    (Side::Moving(_), None) => (false, false),
-                }
-            };
-            let [before, after] = [sign(0), sign(1)];
-            if before == (after.0, true) && after.1 {
+            let [before, after] = [0, 1].map(|side| match (&self.sides[side], &motions[side], &views[side]) {
+                (_, Some((_, limits)), Some(view)) => (view.g[sheet] < 0.0, !shell.doubtful(limits, view, sheet)),
+                (Side::Beyond(negative), ..) => (*negative, true),
+                _ => (false, false),
+            });
+            if before.1 && after.1 && before.0 == after.0 {
                 continue;
             }
             let spot = shell.spot(pose, &own, sheet, searching.slack);
             let inside = shell.ends().hold(spot.along, spot.error);
-            if inside == Some(false) || !searching.collector.lines.asks(line.0, line.1) {
+            if inside == Some(false) || !searching.collector.lines.asks(place.0, place.1) {
                 continue;
             }
-            let number = searching.collector.lines.line(line.0, line.1);
+            let number = searching.collector.lines.line(place.0, place.1);
             if inside.is_none() || !before.1 || !after.1 {
                 searching.collector.open(number);
                 continue;
@@ -88,36 +81,25 @@ impl Resting<'_> {
     fn lines<S: Shell>(
         &self,
         shell: &S,
-        (pose, posed): (&S::Posed, [Option<S::Posed>; 2]),
-        (limits, doubt): (&[S::Limits; 2], [f64; 2]),
+        (pose, motions): (&S::Posed, &Motions<S>),
         area: [Range; 2],
         searching: &mut Searching,
     ) {
         let lines = searching.collector.lines;
-        let signs = |block: [Range; 2]| {
-            [0, 1].map(|side| match (&self.sides[side], &posed[side]) {
-                (Side::Beyond(true), _) => [Sign::Negative; 2],
-                (Side::Moving(_), Some(posed)) => shell.signs(&limits[side], [posed; 2], block, 0.0),
-                _ => [Sign::Positive; 2],
-            })
-        };
         let excluded = |block: [Range; 2]| {
-            let [before, after] = signs(block);
+            let [before, after] = [0, 1].map(|side| match (&self.sides[side], &motions[side]) {
+                (_, Some((posed, limits))) => shell.signs(limits, [posed; 2], block, 0.0),
+                (Side::Beyond(true), _) => [Sign::Negative; 2],
+                _ => [Sign::Positive; 2],
+            });
             (0..2).all(|sheet| {
                 let pair = [before[sheet], after[sheet]];
                 pair.contains(&Sign::Absent) || pair[0] == pair[1] && pair[0] != Sign::Unknown
             })
         };
         blocks(lines, area, excluded, |place, line| {
-            self.shell(shell, (pose, posed), doubt, place, line, searching);
+            self.shell(shell, (pose, motions), (place, line), searching);
         });
-    }
-
-    fn speeds(&self, reach: f64) -> [f64; 2] {
-        [0, 1].map(|n| match &self.sides[n] {
-            Side::Moving(moment) => moment.velocity.norm() + moment.rate.norm() * reach,
-            Side::Beyond(_) => 0.0,
-        })
     }
 
     fn moving(&self) -> [Option<&Moment>; 2] {
@@ -128,14 +110,15 @@ impl Resting<'_> {
     }
 
     pub fn ball(&self, ball: &Ball, searching: &mut Searching) {
-        let posed = self.moving().map(|side| side.map(|moment| ball.at(moment)));
+        let motions = self.moving().map(|side| {
+            side.map(|moment| {
+                let centre = ball.at(moment);
+                (centre, ball.at_rest(&centre, searching.slack))
+            })
+        });
         let pose = ball.at(&self.pose);
-        let doubt = self
-            .speeds(ball.centre.abs())
-            .map(|speed| 32.0 * searching.slack * ball.radius * speed);
-        let limits = doubt.map(|doubt| Ball::at_rest(doubt, searching.slack));
         let area = around(&[pose.level()], ball.radius + searching.slack);
-        self.lines(ball, (&pose, posed), (&limits, doubt), area, searching);
+        self.lines(ball, (&pose, &motions), area, searching);
     }
 
     /// `false` if it is left to charts.
@@ -148,18 +131,14 @@ impl Resting<'_> {
         let Some(pose) = Lean::new(&self.pose).filter(|_| lean > UPRIGHT) else {
             return false;
         };
-        let posed = self.moving().map(|side| side.map(|moment| cylinder.at(moment)));
-        let reach = cylinder.radius + cylinder.ends.map(f64::abs).into_iter().fold(0.0, f64::max);
-        let doubt = self.moving().map(|side| {
-            side.map_or(0.0, |moment| {
-                let (speed, rate) = (moment.velocity.norm(), moment.rate.norm());
-                let height = reach + cylinder.radius / lean;
-                cylinder.doubt([moment.across() + rate * height, speed, rate], lean, searching.slack)
+        let motions = self.moving().map(|side| {
+            side.map(|moment| {
+                let posed = cylinder.at(moment);
+                (posed, cylinder.at_rest((moment, &posed), searching.slack))
             })
         });
-        let limits = doubt.map(|doubt| cylinder.at_rest(&pose, doubt, searching.slack));
         let area = around(&pose.corners(cylinder.radius, cylinder.ends), searching.slack);
-        self.lines(cylinder, (&pose, posed), (&limits, doubt), area, searching);
+        self.lines(cylinder, (&pose, &motions), area, searching);
         true
     }
 
