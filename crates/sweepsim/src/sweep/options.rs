@@ -9,11 +9,11 @@ use thiserror::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Method {
-    /// One subdivision for all lines: boxes on which the envelope system is injective. The moves of tools of revolution that do not turn are solved in closed
-    /// form instead, as far as there is one.
+    /// One subdivision for all lines: boxes on which the envelope system is injective. The moves of tools of revolution are solved in closed form instead, as far as
+    /// there is one, if they do not turn, and line by line if they do.
     #[default]
     Charts,
-    /// Charts for all moves: the reference for closed forms.
+    /// Charts for all moves: the reference for the others.
     General,
     /// The system of every line, each root with its own certificate: the paper's Algorithm 4. Lines share the subdivision.
     Lines,

@@ -160,3 +160,43 @@ impl Bounds {
         0.125 * bow * self.length * self.length
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use sweepsim_motion::Pose;
+
+    proptest! {
+        /// Derivatives are those of differences, and within their bounds.
+        #[test]
+        fn bounds_hold(from in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], to in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], ends in [0.0..1.0_f64, 0.0..1.0]) {
+            let poses = [Pose::new([1.0, -2.0, 0.5], from).unwrap(), Pose::new([4.0, 1.0, 0.0], to).unwrap()];
+            let Some(course) = Course::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
+            let [a, b] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            let bounds = course.bounds([&course.at(a), &course.at(b)]);
+            let within = |value: f64, [low, high]: [f64; 2]| value >= low - 1e-12 && value <= high + 1e-12;
+            for n in 0..=50 {
+                let t = a + (b - a) * f64::from(n) / 50.0;
+                let (moment, h) = (course.at(t), 1e-5);
+                let [low, high] = [course.at(t - h), course.at(t + h)];
+                prop_assert!((moment.rate - (high.axis - low.axis) / (2.0 * h)).norm() < 1e-8);
+                prop_assert!((moment.bend - (high.rate - low.rate) / (2.0 * h)).norm() < 1e-8);
+                prop_assert!(moment.rate.norm() <= bounds.rate * (1.0 + 1e-12) && moment.bend.norm() <= bounds.bend * (1.0 + 1e-12));
+                prop_assert!(within(moment.lean(), bounds.lean) && within(moment.axis.z, bounds.rise));
+                if moment.rate.norm() > 1e-3 {
+                    let along = moment.rate.normalize();
+                    let aside = moment.axis.cross(&along);
+                    prop_assert!(moment.bend.dot(&along).abs() <= bounds.across + 1e-12);
+                    prop_assert!(moment.bend.dot(&aside).abs() <= bounds.askew + 1e-12);
+                }
+                if bounds.lean[0] > 0.0 {
+                    let swing = |m: &Moment| (m.axis.x * m.rate.y - m.axis.y * m.rate.x) / m.lean().powi(2);
+                    prop_assert!(swing(&moment).abs() <= bounds.swing[0] * (1.0 + 1e-12) + 1e-12);
+                    let change = (swing(&high) - swing(&low)) / (2.0 * h);
+                    prop_assert!(change.abs() <= bounds.swing[1] * (1.0 + 1e-6) + 1e-6, "{change} {bounds:?}");
+                }
+            }
+        }
+    }
+}

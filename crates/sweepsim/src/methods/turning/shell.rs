@@ -313,3 +313,6 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests;

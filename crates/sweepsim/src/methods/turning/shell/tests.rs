@@ -1,0 +1,100 @@
+//! What is said to be certain of a line during a span, and slopes, against samples.
+
+use super::super::ball::Ball;
+use super::super::cylinder::Cylinder;
+use super::*;
+use proptest::prelude::*;
+use proptest::test_runner::TestCaseResult;
+use sweepsim_motion::{Pose, Segment};
+
+/// What is said of a line during a span, against samples of the span.
+fn agrees<S: Shell>(
+    shell: &S,
+    limits: &S::Limits,
+    course: &Course,
+    [a, b]: [f64; 2],
+    line: [f64; 2],
+) -> TestCaseResult {
+    let view = |t: f64| {
+        let posed = shell.at(&course.at(t));
+        (t, posed, shell.meet(&posed, line))
+    };
+    let ([from, to], length) = ([view(a), view(b)], b - a);
+    let samples: Vec<_> = (0..=200).map(|n| view(a + length * f64::from(n) / 200.0)).collect();
+    let inside: Vec<bool> = samples.iter().map(|(_, _, meeting)| meeting.room > 0.0).collect();
+    let passage = shell.passage(limits, [&from.2, &to.2], length);
+    let changes = inside.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    match passage {
+        Passage::Beside => prop_assert!(!inside.contains(&true)),
+        Passage::Inside => prop_assert!(!inside.contains(&false)),
+        Passage::Enters => prop_assert!(!inside[0] && inside[200] && changes == 1),
+        Passage::Leaves => prop_assert!(inside[0] && !inside[200] && changes == 1),
+        Passage::Through | Passage::Unknown => {}
+    }
+    let signs = shell.signs(limits, [&from.1, &to.1], line.map(|at| [at; 2]), length);
+    for sheet in 0..2 {
+        let falls = shell.falls(limits, [(&from.1, &from.2), (&to.1, &to.2)], length, sheet);
+        let mut before: Option<f64> = None;
+        for (t, posed, meeting) in &samples {
+            if meeting.room <= 0.0 {
+                before = None;
+                continue;
+            }
+            let g = meeting.g[sheet];
+            let spot = shell.spot(posed, meeting, sheet, 1e-14);
+            let held = shell.ends().hold(spot.along, 1e-9);
+            if held == Some(true) {
+                prop_assert!(signs[sheet] != Sign::Absent && falls != Falls::Beyond);
+                prop_assert!(signs[sheet] != Sign::Positive || g > 0.0);
+                prop_assert!(signs[sheet] != Sign::Negative || g < 0.0);
+            }
+            if passage == Passage::Inside && falls == Falls::Always {
+                prop_assert!(!before.is_some_and(|before| before < 0.0 && g > 0.0), "rises at {t}");
+            }
+            before = Some(g);
+            // The slope along the line, of `g` and of the height.
+            let h = 1e-6;
+            let [low, high] = [view(t - h), view(t + h)];
+            if low.2.half > 0.5 && high.2.half > 0.5 {
+                let [slope, rise] = shell.slope(posed, meeting, sheet);
+                let difference = (high.2.g[sheet] - low.2.g[sheet]) / (2.0 * h);
+                prop_assert!(
+                    (slope - difference).abs() <= 1e-4 * (1.0 + slope.abs()),
+                    "{slope} {difference}"
+                );
+                let height = |(_, posed, meeting): &View<S::Posed>| shell.spot(posed, meeting, sheet, 1e-14).height;
+                let difference = (height(&high) - height(&low)) / (2.0 * h);
+                prop_assert!(
+                    (rise - difference).abs() <= 1e-4 * (1.0 + rise.abs()),
+                    "{rise} {difference}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn what_is_certain_is_so(tips in [[-4.0..4.0_f64, -4.0..4.0, -4.0..4.0], [-4.0..4.0, -4.0..4.0, -4.0..4.0]],
+        axes in [[-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], [-1.0..1.0, -1.0..1.0, 0.1..1.0]],
+        near in 0.01..1.0_f64, ends in [0.0..1.0_f64, 0.0..1.0], lines in prop::collection::vec([-5.0..5.0_f64, -5.0..5.0], 1..8)) {
+        let axis = |n: usize| [0, 1, 2].map(|k| axes[0][k] + near * n as f64 * (axes[1][k] - axes[0][k]));
+        let [from, to] = [0, 1].map(|n| Pose::new(tips[n], axis(n)).unwrap());
+        let segment = &Segment::between(&from, &to)[0];
+        let Some(course) = Course::new(segment) else { return Ok(()) };
+        let span = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        let moments = span.map(|t| course.at(t));
+        let bounds = course.bounds([&moments[0], &moments[1]]);
+        let ball = Ball { centre: 2.0, radius: 2.0, ends: [f64::NEG_INFINITY, 0.3] };
+        let cylinder = Cylinder { radius: 1.5, ends: [1.0, 9.0] };
+        for line in lines {
+            if let Some(limits) = ball.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
+                agrees(&ball, &limits, &course, span, line)?;
+            }
+            if let Some(limits) = cylinder.limits([&moments[0], &moments[1]], &bounds, 1e-14) {
+                agrees(&cylinder, &limits, &course, span, line)?;
+            }
+        }
+    }
+}
