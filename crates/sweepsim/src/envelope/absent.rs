@@ -5,11 +5,15 @@
 //! that is so along a whole surface in `(u, v, t)`. But the bottom is *flat*: with a normal `n` of the face, fixed in the tool, `⟨n, F⟩` is the same all over it, and a
 //! point at the height `z` of the line `(x, y)` is there at time `t` only if
 //!
-//!     ⟨n, F⟩ = ⟨A n, D⟩,        D = (x, y, z) − b(t),
+//! ```text
+//! ⟨n, F⟩ = ⟨A n, D⟩,        D = (x, y, z) − b(t),
+//! ```
 //!
 //! where the height, however uncertain, counts no more than the face leans away from it. The same point moves by
 //!
-//!     g = ⟨N, Ω × AᵀD + Aᵀb′⟩.
+//! ```text
+//! g = ⟨N, Ω × AᵀD + Aᵀb′⟩.
+//! ```
 //!
 //! On curved faces, too, the first is of second order in the sides of the cell, where `X` and `Y` are of first.
 //!
