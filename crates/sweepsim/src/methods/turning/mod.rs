@@ -33,6 +33,9 @@ use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
 
+/// Moves with more crossings than this are left to charts, which are shared by the more lines, the more there are.
+const MANY: f64 = 40_000.0;
+
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Element {
@@ -141,6 +144,9 @@ pub(crate) fn envelope(
     let Some(course) = Course::new(segment) else {
         return rests;
     };
+    if crossings(outline, &course, searching) > MANY {
+        return rests;
+    }
     for piece in &outline.pieces {
         let element = Element::Patches(piece.patches.clone());
         match Kind::of(piece) {
@@ -166,6 +172,17 @@ pub(crate) fn envelope(
     rests
 }
 
+/// About how many crossings a move adds: the lines that it passes.
+fn crossings(outline: &Outline, course: &Course, searching: &Searching) -> f64 {
+    let ends = outline.pieces.iter().flat_map(|piece| [piece.from, piece.to]);
+    let [width, height] = ends.fold([0.0_f64; 2], |[width, height], [radius, zeta]| {
+        [width.max(radius), height.max(zeta.abs())]
+    });
+    let [dx, dy] = searching.collector.lines.grid.spacing();
+    let start = course.at(0.0);
+    2.0 * width * (start.velocity.xy().norm() + height * start.rate.norm()) / (dx * dy)
+}
+
 /// How far lines may be from where a straight way has them: fewer spans for more, fewer lines that need another look for less.
 fn most_sag(searching: &Searching, radius: f64) -> f64 {
     (0.5 * searching.collector.lines.spacing()).min(0.05 * radius)
@@ -186,13 +203,7 @@ fn ball_along(
         };
         let [a, b] = ends.map(|moment| ball.at(moment).level());
         let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
-        let mut search = ShellSearch {
-            shell: ball,
-            course,
-            limits: &limits,
-            source,
-            rest,
-        };
+        let mut search = ShellSearch::new((ball, &limits), course, source, rest);
         search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack));
         Verdict::Settled
     });
@@ -219,13 +230,7 @@ fn cylinder_along(
         }
         let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
         let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
-        let mut search = ShellSearch {
-            shell: cylinder,
-            course,
-            limits: &limits,
-            source,
-            rest,
-        };
+        let mut search = ShellSearch::new((cylinder, &limits), course, source, rest);
         search.lines(searching, span, around(&[a, b].concat(), wider));
         Verdict::Settled
     });

@@ -14,8 +14,10 @@ use crate::methods::harvest::unit;
 use nalgebra::Vector3;
 use sweepsim_dexel::Source;
 
-/// A span of one line is halved this many times at most.
+/// A span of one line is halved this many times at most, one half after the other,
 const DEEPEST: u32 = 12;
+/// and in all: where a tool turns about a point of its axis, no half tells more than the whole.
+const HALVINGS: u32 = 40;
 
 /// Where a line meets the surface at a time. The rest is 0 if it does not.
 #[derive(Clone, Copy, Debug, Default)]
@@ -150,6 +152,8 @@ pub(super) struct ShellSearch<'a, S: Shell, F> {
     pub source: F,
     /// Lines that are left to charts.
     pub rest: &'a mut Rest,
+    /// How often the span of the line may still be halved.
+    halvings: u32,
 }
 
 /// What is not decided about a line.
@@ -161,7 +165,18 @@ pub(super) enum Undecided {
     Intricate,
 }
 
-impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
+impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
+    pub fn new((shell, limits): (&'a S, &'a S::Limits), course: &'a Course, source: F, rest: &'a mut Rest) -> Self {
+        Self {
+            shell,
+            course,
+            limits,
+            source,
+            rest,
+            halvings: HALVINGS,
+        }
+    }
+
     /// The crossings of the lines of a box in a span.
     pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) {
         let (shell, limits) = (self.shell, self.limits);
@@ -186,6 +201,7 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
     #[inline]
     fn line(&mut self, searching: &mut Searching, (i, j): (usize, usize), line: [f64; 2], ends: [&View<S::Posed>; 2]) {
         let mark = searching.collector.mark();
+        self.halvings = HALVINGS;
         if let Err(undecided) = self.between(searching, (i, j), line, ends, 0) {
             searching.collector.forget(mark);
             if !searching.collector.lines.asks(i, j) {
@@ -218,9 +234,10 @@ impl<S: Shell, F: Fn(f64) -> Source> ShellSearch<'_, S, F> {
             }
         };
         if sheets.contains(&Falls::Unknown) {
-            if depth == DEEPEST {
+            if depth == DEEPEST || self.halvings == 0 {
                 return Err(Undecided::Intricate);
             }
+            self.halvings -= 1;
             let share = match passage {
                 Passage::Through => self.shell.nearest([&from.2, &to.2]),
                 _ => 0.5,
