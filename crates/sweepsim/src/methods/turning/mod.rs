@@ -204,8 +204,7 @@ fn ball_along(
         let [a, b] = ends.map(|moment| ball.at(moment).level());
         let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
         let mut search = ShellSearch::new((ball, &limits), course, source, rest);
-        search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack));
-        Verdict::Settled
+        search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack))
     });
 }
 
@@ -225,14 +224,13 @@ fn cylinder_along(
         };
         let bow = cylinder.bow(&span.bounds);
         let sag = span.bounds.sag(bow);
-        if sag > most && !span.last {
+        if sag > most {
             return Verdict::Long;
         }
         let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
         let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
         let mut search = ShellSearch::new((cylinder, &limits), course, source, rest);
-        search.lines(searching, span, around(&[a, b].concat(), wider));
-        Verdict::Settled
+        search.lines(searching, span, around(&[a, b].concat(), wider))
     });
 }
 

@@ -7,17 +7,20 @@
 use super::blocks::blocks;
 use super::course::{Course, Moment};
 use super::intervals::{Range, Sign};
-use super::spans::Span;
+use super::spans::{Span, Verdict};
 use super::zero::{Sample, Turn, zero};
 use super::{Rest, Searching};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
+use std::cell::Cell;
 use sweepsim_dexel::Source;
 
 /// A span of one line is halved this many times at most, one half after the other,
 const DEEPEST: u32 = 12;
 /// and in all: where a tool turns about a point of its axis, no half tells more than the whole.
 const HALVINGS: u32 = 40;
+/// So many lines of a span may be left to charts in any case.
+const FEW: usize = 12;
 
 /// Where a line meets the surface at a time. The rest is 0 if it does not.
 #[derive(Clone, Copy, Debug, Default)]
@@ -178,23 +181,38 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
     }
 
     /// The crossings of the lines of a box in a span.
-    pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) {
+    pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
         let (shell, limits) = (self.shell, self.limits);
         let [a, b] = [&span.from, &span.to].map(|moment| shell.at(moment));
         let lines = searching.collector.lines;
-        let length = span.bounds.length;
+        let (length, mark) = (span.bounds.length, searching.collector.mark());
+        // If most lines are intricate, charts may as well have all of them.
+        let hopeless = Cell::new(false);
+        let mut visited = 0;
         blocks(
             lines,
             area,
-            |block| !shell.signs(limits, [&a, &b], block, length).contains(&Sign::Unknown),
+            |block| hopeless.get() || !shell.signs(limits, [&a, &b], block, length).contains(&Sign::Unknown),
             |place, line| {
+                if hopeless.get() {
+                    return;
+                }
                 let views = [
                     (span.from.t, a, shell.meet(&a, line)),
                     (span.to.t, b, shell.meet(&b, line)),
                 ];
                 self.line(searching, place, line, [&views[0], &views[1]]);
+                visited += 1;
+                let left = self.rest.lines.len();
+                hopeless.set(left > FEW && 2 * left > visited);
             },
         );
+        if hopeless.get() {
+            searching.collector.forget(mark);
+            self.rest.lines.clear();
+            return Verdict::Intricate;
+        }
+        Verdict::Settled
     }
 
     /// The crossings of a line between two times.

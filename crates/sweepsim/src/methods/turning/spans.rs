@@ -22,6 +22,8 @@ pub(super) enum Verdict {
     Settled,
     /// It is too long, or charts have to solve it.
     Long,
+    /// Charts have to solve it, and its halves, too.
+    Intricate,
 }
 
 /// Settles a course span by span. What remains is left to charts for all lines.
@@ -49,7 +51,7 @@ pub(super) fn settle(
                 spans.push((middle, to, depth + 1));
                 spans.push((from, middle, depth + 1));
             }
-            Verdict::Long => match rests.last_mut() {
+            Verdict::Long | Verdict::Intricate => match rests.last_mut() {
                 Some(before) if before.follows(&rest) => before.times[1] = to.t,
                 _ => rests.push(Rest { all: true, ..rest }),
             },
