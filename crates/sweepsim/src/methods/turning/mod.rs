@@ -33,8 +33,8 @@ use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
 
-/// Moves with more crossings than this are left to charts, which are shared by the more lines, the more there are.
-const MANY: f64 = 40_000.0;
+/// Moves with more crossings than this are left to charts, which serve the more lines, the more there are. Found by trial.
+const MANY: f64 = 15_000.0;
 
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
