@@ -37,6 +37,21 @@ fn agree_along(number: usize, path: &Path, grid: &Grid) -> Result<[Statistics; 2
     Ok([own, other])
 }
 
+/// Along a path of short moves, hardly a box is needed for what is solved line by line: what remains are edges near the height that the tool turns about.
+#[test]
+fn few_boxes() {
+    let pose = |k: u32| {
+        let t = f64::from(k) / 59.0;
+        let tip = [-8.0 + 16.0 * t, 3.0 * (6.0 * t).sin(), 0.5 * (9.0 * t).cos()];
+        (tip, [0.4 * (5.0 * t).sin(), 0.5 * (4.0 * t).cos(), 1.0])
+    };
+    let path = path(&(0..60).map(pose).collect::<Vec<_>>()).expect("a path");
+    for number in [0, 1, 9] {
+        let [own, other] = agree_along(number, &path, &grid(60)).expect("the same dexels");
+        assert!(10 * own.boxes <= other.boxes, "{own:?} {other:?}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
@@ -56,10 +71,7 @@ proptest! {
             poses.push(([0, 1, 2].map(|k| tip[k] + step[k]), [axis[0] + turn[0], axis[1] + turn[1], axis[2]]));
         }
         let Some(path) = path(&poses) else { return Ok(()) };
-        let [own, other] = agree_along(number, &path, &grid(41))?;
-        if number < 2 {
-            prop_assert!(4 * own.boxes <= other.boxes + 400, "{own:?} {other:?}");
-        }
+        agree_along(number, &path, &grid(41))?;
     }
 
     /// An axis that always passes one point, within the tool or beside it: there the tool hardly moves across its axis.
