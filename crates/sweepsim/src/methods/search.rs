@@ -11,7 +11,7 @@ use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::placement::sides;
 use crate::methods::translation::{self, Ceiling, Collector, Heading, Neighbour};
-use crate::methods::turning::{self, Element, Rest, Searching};
+use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
 use crate::time::path_parts::PathPart;
@@ -48,18 +48,18 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let mark = harvest.crossings.len();
         space.solvers.limit(self.lines.len());
         space.done.clear();
-        let mut rests = Vec::new();
+        let mut leftovers = Vec::new();
         if let Some(outline) = self.outline {
             self.envelope_in_closed_form(at, outline, space, harvest);
-            rests = self.envelope_line_by_line(at, outline, space, harvest);
+            leftovers = self.envelope_line_by_line(at, outline, space, harvest);
         }
         let done = space.done.patches.iter().chain(&space.done.edges);
-        if !(done.into_iter().all(|done| *done) && rests.is_empty()) {
+        if !(done.into_iter().all(|done| *done) && leftovers.is_empty()) {
             let mut times = Times::new(segment);
             self.patches(at, &mut times, space, harvest);
             self.edges(at, &mut times, space, harvest);
-            for rest in rests {
-                self.rest(at, &rest, &mut times, space, harvest);
+            for leftover in leftovers {
+                self.leftover(at, &leftover, &mut times, space, harvest);
             }
         }
         self.placed(at, SegmentEnd::Start, space, harvest);
@@ -107,7 +107,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         outline: &Outline,
         space: &mut Workspace,
         harvest: &mut Harvest,
-    ) -> Vec<Rest> {
+    ) -> Vec<Leftover> {
         let mut collector = Collector {
             lines: self.lines,
             harvest,
@@ -127,17 +127,24 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// What was not certain line by line, by charts.
-    fn rest(&self, at: usize, rest: &Rest, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
-        let mask = (!rest.all).then(|| LineMask::new(self.lines.grid, rest.lines.iter().copied()));
+    fn leftover(
+        &self,
+        at: usize,
+        leftover: &Leftover,
+        times: &mut Times,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        let mask = (!leftover.all).then(|| LineMask::new(self.lines.grid, leftover.lines.iter().copied()));
         let lines = match &mask {
             None => self.lines.clone(),
             Some(Some(mask)) => self.lines.clone().masked(Some(mask)),
             Some(None) => return,
         };
         let mark = times.mark();
-        let piece = times.place(rest.times[0], rest.times[1]);
+        let piece = times.place(leftover.times[0], leftover.times[1]);
         let monitor = &CancelOnly(self.monitor);
-        match &rest.element {
+        match &leftover.element {
             Element::Patches(patches) => {
                 for number in patches.clone() {
                     let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);

@@ -14,7 +14,7 @@ use super::intervals::Range;
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Sample, Turn, zero};
-use super::{Rest, Searching};
+use super::{Leftover, Searching};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
 use sweepsim_dexel::Source;
@@ -80,7 +80,7 @@ impl Disc {
         (course, span): (&Course, &Span),
         searching: &mut Searching,
         source: &impl Fn(f64) -> Source,
-        rest: &mut Rest,
+        left: &mut Leftover,
     ) -> Verdict {
         let Span { from, to, bounds, .. } = span;
         if self.keeps_its_sign([from, to], bounds, searching.slack) {
@@ -122,7 +122,7 @@ impl Disc {
             };
             match found {
                 Err(Undecided::Close) => searching.collector.open(number),
-                Err(Undecided::Intricate) => rest.lines.push(number as u32),
+                Err(Undecided::Intricate) => left.lines.push(number as u32),
                 Ok(None) => {}
                 Ok(Some(Turn { t, height, normal })) => {
                     // From `g > 0` to `g < 0` if `F` falls on the upper side, or rises on the lower one.

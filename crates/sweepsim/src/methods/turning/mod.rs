@@ -12,7 +12,7 @@ mod cylinder;
 mod disc;
 mod intervals;
 mod lean;
-mod rest;
+mod resting;
 mod rim;
 mod shell;
 mod spans;
@@ -25,7 +25,7 @@ use blocks::around;
 use course::{Course, Moment};
 use cylinder::Cylinder;
 use disc::Disc;
-use rest::{Resting, Side};
+use resting::{Resting, Side};
 use rim::RimSearch;
 use shell::{Shell, ShellSearch};
 use spans::{Verdict, settle};
@@ -45,7 +45,7 @@ pub(crate) enum Element {
 
 /// What is left to charts.
 #[derive(Clone, Debug)]
-pub(crate) struct Rest {
+pub(crate) struct Leftover {
     pub element: Element,
     /// From the first time, up to the second.
     pub times: [f64; 2],
@@ -54,7 +54,7 @@ pub(crate) struct Rest {
     pub lines: Vec<u32>,
 }
 
-impl Rest {
+impl Leftover {
     fn new(element: &Element, times: [f64; 2]) -> Self {
         Self {
             element: element.clone(),
@@ -139,23 +139,23 @@ pub(crate) fn envelope(
     searching: &mut Searching,
     source: impl Fn(f64) -> Source,
     [patches, edges]: [&mut [bool]; 2],
-) -> Vec<Rest> {
-    let mut rests = Vec::new();
+) -> Vec<Leftover> {
+    let mut leftovers = Vec::new();
     let Some(course) = Course::new(segment) else {
-        return rests;
+        return leftovers;
     };
     if crossings(outline, &course, searching) > MANY {
-        return rests;
+        return leftovers;
     }
     for piece in &outline.pieces {
         let element = Element::Patches(piece.patches.clone());
         match Kind::of(piece) {
-            Some(Kind::Ball(ball)) => ball_along(&ball, &course, &element, &mut rests, searching, &source),
+            Some(Kind::Ball(ball)) => ball_along(&ball, &course, &element, &mut leftovers, searching, &source),
             Some(Kind::Cylinder(cylinder)) => {
-                cylinder_along(&cylinder, &course, &element, &mut rests, searching, &source);
+                cylinder_along(&cylinder, &course, &element, &mut leftovers, searching, &source);
             }
-            Some(Kind::Disc(disc)) => settle(&course, &element, &mut rests, |span, rest| {
-                disc.settle((&course, span), searching, &source, rest)
+            Some(Kind::Disc(disc)) => settle(&course, &element, &mut leftovers, |span, left| {
+                disc.settle((&course, span), searching, &source, left)
             }),
             None => continue,
         }
@@ -164,12 +164,12 @@ pub(crate) fn envelope(
     for rim in &outline.rims {
         let element = Element::Edges(rim.edges.clone());
         let search = RimSearch { rim, course: &course };
-        settle(&course, &element, &mut rests, |span, rest| {
-            search.settle(span, searching, &source, rest)
+        settle(&course, &element, &mut leftovers, |span, left| {
+            search.settle(span, searching, &source, left)
         });
         edges[rim.edges.clone()].fill(true);
     }
-    rests
+    leftovers
 }
 
 /// About how many crossings a move adds: the lines that it passes.
@@ -192,18 +192,18 @@ fn ball_along(
     ball: &Ball,
     course: &Course,
     element: &Element,
-    rests: &mut Vec<Rest>,
+    leftovers: &mut Vec<Leftover>,
     searching: &mut Searching,
     source: &impl Fn(f64) -> Source,
 ) {
-    settle(course, element, rests, |span, rest| {
+    settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
         let Some(limits) = ball.limits(ends, &span.bounds, searching.slack) else {
             return Verdict::Long;
         };
         let [a, b] = ends.map(|moment| ball.at(moment).level());
         let sag = span.bounds.sag(ball.centre.abs() * span.bounds.bend);
-        let mut search = ShellSearch::new((ball, &limits), course, source, rest);
+        let mut search = ShellSearch::new((ball, &limits), course, source, left);
         search.lines(searching, span, around(&[a, b], ball.radius + sag + searching.slack))
     });
 }
@@ -212,12 +212,12 @@ fn cylinder_along(
     cylinder: &Cylinder,
     course: &Course,
     element: &Element,
-    rests: &mut Vec<Rest>,
+    leftovers: &mut Vec<Leftover>,
     searching: &mut Searching,
     source: &impl Fn(f64) -> Source,
 ) {
     let most = most_sag(searching, cylinder.radius);
-    settle(course, element, rests, |span, rest| {
+    settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
         let Some(limits) = cylinder.limits(ends, &span.bounds, searching.slack) else {
             return Verdict::Long;
@@ -229,7 +229,7 @@ fn cylinder_along(
         }
         let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
         let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;
-        let mut search = ShellSearch::new((cylinder, &limits), course, source, rest);
+        let mut search = ShellSearch::new((cylinder, &limits), course, source, left);
         search.lines(searching, span, around(&[a, b].concat(), wider))
     });
 }

@@ -16,7 +16,7 @@ use super::intervals::Range;
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
 use super::zero::{Sample, zero};
-use super::{Rest, Searching};
+use super::{Leftover, Searching};
 use crate::cutter::outline::Rim;
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
@@ -48,7 +48,7 @@ impl RimSearch<'_> {
         span: &Span,
         searching: &mut Searching,
         source: &impl Fn(f64) -> Source,
-        rest: &mut Rest,
+        left: &mut Leftover,
     ) -> Verdict {
         let Span { from, to, bounds, .. } = span;
         if (bounds.rise[0] < STEEP && bounds.rise[1] > -STEEP) || !self.is_convex([from, to], bounds) {
@@ -85,7 +85,7 @@ impl RimSearch<'_> {
                 let number = lines.line(i, j);
                 match undecided {
                     Undecided::Close => searching.collector.open(number),
-                    Undecided::Intricate => rest.lines.push(number as u32),
+                    Undecided::Intricate => left.lines.push(number as u32),
                 }
             }
         });

@@ -9,7 +9,7 @@ use super::course::{Course, Moment};
 use super::intervals::{Range, Sign};
 use super::spans::{Span, Verdict};
 use super::zero::{Sample, Turn, zero};
-use super::{Rest, Searching};
+use super::{Leftover, Searching};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
 use std::cell::Cell;
@@ -154,7 +154,7 @@ pub(super) struct ShellSearch<'a, S: Shell, F> {
     pub limits: &'a S::Limits,
     pub source: F,
     /// Lines that are left to charts.
-    pub rest: &'a mut Rest,
+    pub left: &'a mut Leftover,
     /// How often the span of the line may still be halved.
     halvings: u32,
 }
@@ -169,13 +169,13 @@ pub(super) enum Undecided {
 }
 
 impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
-    pub fn new((shell, limits): (&'a S, &'a S::Limits), course: &'a Course, source: F, rest: &'a mut Rest) -> Self {
+    pub fn new((shell, limits): (&'a S, &'a S::Limits), course: &'a Course, source: F, left: &'a mut Leftover) -> Self {
         Self {
             shell,
             course,
             limits,
             source,
-            rest,
+            left,
             halvings: HALVINGS,
         }
     }
@@ -203,13 +203,13 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 ];
                 self.line(searching, place, line, [&views[0], &views[1]]);
                 visited += 1;
-                let left = self.rest.lines.len();
+                let left = self.left.lines.len();
                 hopeless.set(left > FEW && 2 * left > visited);
             },
         );
         if hopeless.get() {
             searching.collector.forget(mark);
-            self.rest.lines.clear();
+            self.left.lines.clear();
             return Verdict::Intricate;
         }
         Verdict::Settled
@@ -228,7 +228,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             let number = searching.collector.lines.line(i, j);
             match undecided {
                 Undecided::Close => searching.collector.open(number),
-                Undecided::Intricate => self.rest.lines.push(number as u32),
+                Undecided::Intricate => self.left.lines.push(number as u32),
             }
         }
     }

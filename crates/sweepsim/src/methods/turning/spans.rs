@@ -1,7 +1,7 @@
 //! A course is divided into spans of time that are short enough for what has to be certain.
 
 use super::course::{Bounds, Course, Moment};
-use super::{Element, Rest};
+use super::{Element, Leftover};
 
 /// Spans are halved this many times at most.
 const DEEPEST: u32 = 6;
@@ -30,8 +30,8 @@ pub(super) enum Verdict {
 pub(super) fn settle(
     course: &Course,
     element: &Element,
-    rests: &mut Vec<Rest>,
-    mut settle: impl FnMut(&Span, &mut Rest) -> Verdict,
+    leftovers: &mut Vec<Leftover>,
+    mut settle: impl FnMut(&Span, &mut Leftover) -> Verdict,
 ) {
     // In the order of time: halves are put back, the later one first.
     let mut spans = vec![(course.at(0.0), course.at(1.0), 0)];
@@ -42,18 +42,18 @@ pub(super) fn settle(
             bounds: course.bounds([&from, &to]),
             last: depth == DEEPEST,
         };
-        let mut rest = Rest::new(element, [from.t, to.t]);
-        match settle(&span, &mut rest) {
-            Verdict::Settled if rest.lines.is_empty() => {}
-            Verdict::Settled => rests.push(rest),
+        let mut left = Leftover::new(element, [from.t, to.t]);
+        match settle(&span, &mut left) {
+            Verdict::Settled if left.lines.is_empty() => {}
+            Verdict::Settled => leftovers.push(left),
             Verdict::Long if !span.last => {
                 let middle = course.at(0.5 * (from.t + to.t));
                 spans.push((middle, to, depth + 1));
                 spans.push((from, middle, depth + 1));
             }
-            Verdict::Long | Verdict::Intricate => match rests.last_mut() {
-                Some(before) if before.follows(&rest) => before.times[1] = to.t,
-                _ => rests.push(Rest { all: true, ..rest }),
+            Verdict::Long | Verdict::Intricate => match leftovers.last_mut() {
+                Some(before) if before.follows(&left) => before.times[1] = to.t,
+                _ => leftovers.push(Leftover { all: true, ..left }),
             },
         }
     }

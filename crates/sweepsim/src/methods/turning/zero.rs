@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 
 /// Steps of Newton's method, or halvings of a bracket.
 const STEPS: usize = 60;
-/// The last step is no longer than this part of the motion.
-const LAST: f64 = 1e-4;
+/// The last step is no longer than this part of the motion: normals turn with it.
+const LAST: f64 = 1e-5;
 
 /// A function at one time.
 pub(super) struct Sample<T> {
