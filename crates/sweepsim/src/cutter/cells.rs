@@ -78,12 +78,14 @@ impl Cells {
         cells
     }
 
-    /// Drops cells if there are many.
-    pub fn trim(&mut self) {
-        if self.nodes.len() > KEPT {
+    /// Drops cells if there are many, and returns whether it does.
+    pub fn trim(&mut self) -> bool {
+        let many = self.nodes.len() > KEPT;
+        if many {
             self.nodes.truncate(1);
             self.nodes[0].parts = [NONE; 2];
         }
+        many
     }
 
     /// A separate cell over any box, kept until it is [released](Self::release).

@@ -1,10 +1,19 @@
 //! The tool at rest between two motions: at a kink of the path, or at an end of it.
 
-use crate::envelope::{Side, Twist};
+use crate::cutter::outline::Outline;
+use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Twist};
+use crate::methods::harvest::{Harvest, unit};
+use crate::methods::method::CrossingMethod;
+use crate::methods::search::Search;
+use crate::methods::translation::{self, Collector, Neighbour};
+use crate::methods::turning;
+use crate::methods::workspace::Workspace;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::back_size;
 use nalgebra::Matrix3;
+use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd, turned_back};
+use sweepsim_solve::Preimage;
 
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
@@ -27,4 +36,105 @@ pub(super) fn sides(parts: &[PathPart], at: usize, end: SegmentEnd) -> [Side; 2]
         twist(&parts[k].segment, SegmentEnd::Finish, &turn)
     });
     [before, twist(segment, SegmentEnd::Start, &turn)]
+}
+
+impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
+    /// Settles what it can of the placement of a tool between two moves without rotation, or arcs with which it turns.
+    fn placed_in_closed_form(
+        &self,
+        (at, end): (usize, SegmentEnd),
+        outline: &Outline,
+        source: Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        space.done.placed.fill(false);
+        let Some(own) = Neighbour::of(&self.parts[at], end) else {
+            return;
+        };
+        let [tip, last] = self.parts[at].segment.tips();
+        let before = match at.checked_sub(1) {
+            None => Some(Neighbour::Beyond(false)),
+            Some(k) => Neighbour::of(&self.parts[k], SegmentEnd::Finish),
+        };
+        let (tip, sides) = match (end, before) {
+            (SegmentEnd::Finish, _) => (last, [own, Neighbour::Beyond(true)]),
+            (SegmentEnd::Start, Some(before)) => (tip, [before, own]),
+            (SegmentEnd::Start, None) => return,
+        };
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let slack = translation::slack(self.size.slack);
+        let done = &mut space.done.placed;
+        let part = &self.parts[at];
+        if translation::stands(part) {
+            let collector = (&mut collector, self.ceiling);
+            translation::placements(outline, (tip, slack), sides, collector, source, done);
+        } else {
+            let place = (&part.segment.start(), tip, slack);
+            translation::leaning(outline, place, sides, &mut collector, source, done);
+        }
+    }
+
+    /// Settles what it can of the placement of a tool between two moves of which one turns.
+    fn placed_line_by_line(
+        &self,
+        (at, end): (usize, SegmentEnd),
+        outline: &Outline,
+        source: Source,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
+        let own = Some(&self.parts[at].segment);
+        let sides = match end {
+            SegmentEnd::Start => [at.checked_sub(1).map(|k| &self.parts[k].segment), own],
+            SegmentEnd::Finish => [own, None],
+        };
+        let mut collector = Collector {
+            lines: self.lines,
+            harvest,
+        };
+        let mut searching = self.searching(&mut collector);
+        turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
+    }
+
+    /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
+    pub fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
+        let segment = &self.parts[at].segment;
+        let (pose, source) = match end {
+            SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
+            SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
+        };
+        if let Some(outline) = self.outline {
+            self.placed_in_closed_form((at, end), outline, source, space, harvest);
+            if !space.done.placed.iter().any(|done| *done) {
+                self.placed_line_by_line((at, end), outline, source, space, harvest);
+            }
+            if space.done.placed.iter().all(|done| *done) {
+                return;
+            }
+        }
+        let sides = sides(self.parts, at, end);
+        for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
+            if space.done.placed[number] {
+                continue;
+            }
+            let mut map = PlacedMap::new(element, cells, pose, sides, self.size);
+            let mut sink = harvest.reaper(|found: &Preimage<2, OnPlaced>| {
+                let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
+                let change = negative(found.seen.after) - negative(found.seen.before);
+                (change != 0).then(|| Crossing {
+                    z: found.seen.height.at(&found.x, &found.from),
+                    jump: -found.orientation * change,
+                    normal: unit(found.seen.normal),
+                    source,
+                })
+            });
+            let query = self.query(at, number);
+            self.method
+                .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
+        }
+    }
 }

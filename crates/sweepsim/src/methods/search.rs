@@ -4,13 +4,12 @@
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::cutter::outline::Outline;
-use crate::envelope::{EdgeMap, Near, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT, Size};
+use crate::envelope::{EdgeMap, OnEdge, OnPatch, PatchMap, ROOT, Size};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::lattice::Lattice;
 use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query};
-use crate::methods::placement::sides;
-use crate::methods::translation::{self, Ceiling, Collector, Heading, Neighbour};
+use crate::methods::translation::{self, Ceiling, Collector, Grazed, Heading};
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
@@ -27,6 +26,8 @@ pub(crate) struct Search<'a, M> {
     pub parts: &'a [PathPart],
     pub lines: &'a Lattice<'a>,
     pub size: Size,
+    /// Whether moves without rotation are to be solved by curves, of any tool.
+    pub closed: bool,
     /// The tool's meridian, if moves without rotation are to be solved in closed form.
     pub outline: Option<&'a Outline>,
     /// A height above which crossings are not wanted.
@@ -53,6 +54,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             self.envelope_in_closed_form(at, outline, space, harvest);
             leftovers = self.envelope_line_by_line(at, outline, space, harvest);
         }
+        if self.closed {
+            self.envelope_by_curves(at, space, harvest);
+        }
         let done = space.done.patches.iter().chain(&space.done.edges);
         if !(done.into_iter().all(|done| *done) && leftovers.is_empty()) {
             let mut times = Times::new(segment);
@@ -70,8 +74,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             harvest.keep_below(mark, ceiling.z, self.near);
         }
         harvest.count(&space.solvers.take_statistics());
-        for cells in space.patches.iter_mut().chain(&mut space.edges) {
+        for cells in &mut space.edges {
             cells.trim();
+        }
+        for cells in &mut space.patches {
+            if cells.trim() {
+                space.grazing.clear();
+            }
         }
     }
 
@@ -100,6 +109,27 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
+    /// Settles the patches that have no closed form along a move without rotation.
+    fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
+        let PathPart { segment, .. } = &self.parts[at];
+        let mut grazed = Grazed {
+            segment,
+            collector: &mut Collector {
+                lines: self.lines,
+                harvest,
+            },
+            ceiling: self.ceiling,
+            slack: self.size.slack,
+            near: self.near,
+            last: space.solvers.moving.options.accept,
+        };
+        let tool = (&self.cutter.patches[..], &mut space.patches[..]);
+        let source = |t: f64| self.source(at, t);
+        space
+            .grazing
+            .settle(tool, &mut grazed, &source, &mut space.done.patches);
+    }
+
     /// Settles what it can of a move that turns, line by line.
     fn envelope_line_by_line(
         &self,
@@ -118,7 +148,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         turning::envelope(outline, &self.parts[at].segment, &mut searching, source, settled)
     }
 
-    fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {
+    pub(super) fn searching<'b, 'c>(&self, collector: &'c mut Collector<'b>) -> Searching<'c, 'b> {
         Searching {
             collector,
             slack: translation::slack(self.size.slack),
@@ -171,67 +201,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         times.release(mark);
     }
 
-    /// Settles what it can of the placement of a tool between two moves without rotation, or arcs with which it turns.
-    fn placed_in_closed_form(
-        &self,
-        (at, end): (usize, SegmentEnd),
-        outline: &Outline,
-        source: Source,
-        space: &mut Workspace,
-        harvest: &mut Harvest,
-    ) {
-        space.done.placed.fill(false);
-        let Some(own) = Neighbour::of(&self.parts[at], end) else {
-            return;
-        };
-        let [tip, last] = self.parts[at].segment.tips();
-        let before = match at.checked_sub(1) {
-            None => Some(Neighbour::Beyond(false)),
-            Some(k) => Neighbour::of(&self.parts[k], SegmentEnd::Finish),
-        };
-        let (tip, sides) = match (end, before) {
-            (SegmentEnd::Finish, _) => (last, [own, Neighbour::Beyond(true)]),
-            (SegmentEnd::Start, Some(before)) => (tip, [before, own]),
-            (SegmentEnd::Start, None) => return,
-        };
-        let mut collector = Collector {
-            lines: self.lines,
-            harvest,
-        };
-        let slack = translation::slack(self.size.slack);
-        let done = &mut space.done.placed;
-        let part = &self.parts[at];
-        if translation::stands(part) {
-            let collector = (&mut collector, self.ceiling);
-            translation::placements(outline, (tip, slack), sides, collector, source, done);
-        } else {
-            let place = (&part.segment.start(), tip, slack);
-            translation::leaning(outline, place, sides, &mut collector, source, done);
-        }
-    }
-
-    /// Settles what it can of the placement of a tool between two moves of which one turns.
-    fn placed_line_by_line(
-        &self,
-        (at, end): (usize, SegmentEnd),
-        outline: &Outline,
-        source: Source,
-        space: &mut Workspace,
-        harvest: &mut Harvest,
-    ) {
-        let own = Some(&self.parts[at].segment);
-        let sides = match end {
-            SegmentEnd::Start => [at.checked_sub(1).map(|k| &self.parts[k].segment), own],
-            SegmentEnd::Finish => [own, None],
-        };
-        let mut collector = Collector {
-            lines: self.lines,
-            harvest,
-        };
-        let mut searching = self.searching(&mut collector);
-        turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
-    }
-
     /// Whether any line passes near the segment.
     fn reaches(&self, segment: &Segment) -> bool {
         let (points, weights) = segment.points();
@@ -250,7 +219,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         })
     }
 
-    fn query(&self, part: usize, number: usize) -> Query<'_> {
+    pub(super) fn query(&self, part: usize, number: usize) -> Query<'_> {
         Query {
             part,
             number,
@@ -260,7 +229,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// The source of a crossing at time `t` of a part.
-    fn source(&self, at: usize, t: f64) -> Source {
+    pub(super) fn source(&self, at: usize, t: f64) -> Source {
         self.source_after(at, self.parts[at].segment.time(t))
     }
 
@@ -356,43 +325,5 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             })
         });
         (map, sink)
-    }
-
-    /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
-    fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
-        let segment = &self.parts[at].segment;
-        let (pose, source) = match end {
-            SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
-            SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
-        };
-        if let Some(outline) = self.outline {
-            self.placed_in_closed_form((at, end), outline, source, space, harvest);
-            if !space.done.placed.iter().any(|done| *done) {
-                self.placed_line_by_line((at, end), outline, source, space, harvest);
-            }
-            if space.done.placed.iter().all(|done| *done) {
-                return;
-            }
-        }
-        let sides = sides(self.parts, at, end);
-        for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
-            if space.done.placed[number] {
-                continue;
-            }
-            let mut map = PlacedMap::new(element, cells, pose, sides, self.size);
-            let mut sink = harvest.reaper(|found: &Preimage<2, OnPlaced>| {
-                let negative = |side: Near<2>| i8::from(side.at(&found.x, &found.from) < 0.0);
-                let change = negative(found.seen.after) - negative(found.seen.before);
-                (change != 0).then(|| Crossing {
-                    z: found.seen.height.at(&found.x, &found.from),
-                    jump: -found.orientation * change,
-                    normal: unit(found.seen.normal),
-                    source,
-                })
-            });
-            let query = self.query(at, number);
-            self.method
-                .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
-        }
     }
 }

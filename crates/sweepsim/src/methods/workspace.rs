@@ -3,6 +3,7 @@
 use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::methods::planes::slicer::Slicer;
+use crate::methods::translation::Grazing;
 use sweepsim_solve::{BundleSolver, ChartOptions, ChartSolver, ChartStatistics};
 
 /// The cells of a tool, and solvers.
@@ -10,6 +11,7 @@ pub(crate) struct Workspace {
     pub patches: Vec<Cells>,
     pub edges: Vec<Cells>,
     pub solvers: Solvers,
+    pub grazing: Grazing,
     pub done: Done,
 }
 
@@ -49,6 +51,7 @@ impl Workspace {
         Self {
             patches: cutter.patches.iter().map(Cells::new).collect(),
             edges: cutter.edges.iter().map(Cells::new).collect(),
+            grazing: Grazing::default(),
             done: Done {
                 patches: vec![false; cutter.patches.len()],
                 edges: vec![false; cutter.edges.len()],

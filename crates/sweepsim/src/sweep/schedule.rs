@@ -138,6 +138,7 @@ impl SweepJob<'_> {
             parts,
             lines,
             size: self.size,
+            closed: false,
             outline: None,
             ceiling: None,
             near: self.tolerances.same_height(),
@@ -157,6 +158,7 @@ impl SweepJob<'_> {
                     return Harvest::default();
                 }
                 let search = Search {
+                    closed: self.method == Method::Charts,
                     outline: self.outline(),
                     ceiling: self.ceiling.as_ref(),
                     ..self.search(&method, chunk, &lines)
@@ -208,6 +210,7 @@ impl SweepJob<'_> {
     ) {
         let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
         let search = Search {
+            closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
             outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
             ..self.search(&Charts, chunk, &lines)
         };

@@ -6,6 +6,7 @@ mod faces;
 mod far_and_fine;
 mod frames;
 mod freeform;
+mod grazing_curves;
 mod joints;
 mod long_paths;
 mod loops;

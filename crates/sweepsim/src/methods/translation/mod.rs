@@ -10,22 +10,18 @@
 
 mod bend;
 mod ceiling;
-mod cones;
 mod curves;
 mod discs;
-mod leaning;
-mod lunes;
-mod placed;
-mod radial;
+mod grazing;
+mod rest;
 mod rows;
 mod strip;
-mod wedges;
 
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
-pub(crate) use leaning::leaning;
-pub(crate) use placed::{Neighbour, placements};
+pub(crate) use grazing::{Grazed, Grazing};
+pub(crate) use rest::{Neighbour, leaning, placements};
 pub(crate) use rows::numbers;
 pub(crate) use strip::envelope;
 

@@ -75,7 +75,23 @@ pub(crate) fn numbers(lines: &Lattice, axis: usize, [low, high]: [f64; 2]) -> Op
 }
 
 /// Visits all lines with `p` and `q` in these ranges, and a few others.
-pub(super) fn rows(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row)) {
+pub(super) fn rows(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2], mut visit: impl FnMut(Row)) {
+    search(lines, floor, ranges, |row| {
+        visit(row);
+        false
+    });
+}
+
+/// Whether lines that are asked for have `p` and `q` in these ranges, or almost.
+pub(super) fn meets(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2]) -> bool {
+    search(lines, floor, ranges, |Row { i, j, .. }| {
+        (j[0]..=j[1]).any(|j| lines.asks(i, j))
+    })
+}
+
+/// Visits rows until `visit` returns true.
+#[inline]
+fn search(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row) -> bool) -> bool {
     let margin = 2.0 * floor.slack;
     let [p, q] = [p, q].map(|[low, high]| [low - margin, high + margin]);
     let [ux, uy] = floor.ahead;
@@ -86,17 +102,20 @@ pub(super) fn rows(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut vi
     let (by_q, by_p) = (spread(ux, q), spread(-uy, p));
     let xs = [floor.tip[0] + by_q[0] + by_p[0], floor.tip[0] + by_q[1] + by_p[1]];
     let Some([first, last]) = numbers(lines, 0, xs) else {
-        return;
+        return false;
     };
     let (across, along) = (Band::new(p, ux), Band::new(q, uy));
     for i in first..=last {
         let x = lines.coordinate(0, i) - floor.tip[0];
         let (a, b) = (across.within(-uy * x), along.within(ux * x));
         let ys = [floor.tip[1] + a[0].max(b[0]), floor.tip[1] + a[1].min(b[1])];
-        if let Some(j) = numbers(lines, 1, ys) {
-            visit(Row { i, j, x });
+        if let Some(j) = numbers(lines, 1, ys)
+            && visit(Row { i, j, x })
+        {
+            return true;
         }
     }
+    false
 }
 
 /// The part of a ring about a centre between two directions.

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
 /// Horizontal travel shorter than this many roundings has no reliable direction.
-const SHORTEST: f64 = 8.0;
+pub(crate) const SHORTEST: f64 = 8.0;
 
 /// A move without rotation, as closed forms need it.
 #[derive(Clone, Copy, Debug)]

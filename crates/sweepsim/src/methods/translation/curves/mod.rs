@@ -11,7 +11,7 @@ pub(crate) mod torus;
 mod torus_about;
 
 pub(crate) use graph::{Graph, Point};
-pub(crate) use heading::{Heading, slack, stands};
+pub(crate) use heading::{Heading, SHORTEST, slack, stands};
 pub(crate) use parabola::Parabola;
 
 /// A vector in the coordinates `(q, p, z)` of a move.

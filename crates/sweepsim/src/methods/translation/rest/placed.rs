@@ -1,11 +1,11 @@
 //! The tool at rest between two moves, standing along the dexels: over a line there is one point of each stretch of the meridian, at the line's
 //! distance from the axis.
 
-use super::curves::stands;
+use super::super::curves::stands;
+use super::super::rows::numbers;
+use super::super::{Ceiling, Collector};
 use super::lunes::Lune;
 use super::radial::{Hypot, Radial, Spot, Stretch};
-use super::rows::numbers;
-use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use crate::time::path_parts::PathPart;

@@ -1,0 +1,198 @@
+//! Grazing curves of any patch: see `docs/algorithms/translations.md`.
+//!
+//! `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
+//! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it.
+
+mod chart;
+mod course;
+mod face;
+mod knot;
+mod lines;
+mod tree;
+
+use super::rows::meets;
+use super::{Ceiling, Collector};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use course::{Course, Directions, Key};
+use face::Face;
+use lines::{Lines, Target};
+use sweepsim_dexel::Source;
+use sweepsim_motion::Segment;
+use tree::{Known, Tree};
+
+/// The number of families of directions that are kept.
+const FAMILIES: usize = 64;
+/// The number of cells of all of them.
+const CELLS: usize = 100_000;
+/// A patch that takes more looks at cells along one move is left to charts.
+const MOST: u64 = 20_000;
+
+/// The grazing curves of a tool that are kept from one move to the next.
+#[derive(Debug, Default)]
+pub(crate) struct Grazing {
+    /// The latest one comes last.
+    families: Vec<Family>,
+    targets: Vec<Target>,
+}
+
+/// The cells of all patches, for directions that are almost the same.
+#[derive(Debug)]
+struct Family {
+    key: Key,
+    directions: Directions,
+    trees: Vec<Option<Tree>>,
+}
+
+/// A search of lines along one move.
+pub(crate) struct Grazed<'a, 'b> {
+    pub segment: &'a Segment,
+    pub collector: &'a mut Collector<'b>,
+    pub ceiling: Option<&'a Ceiling>,
+    /// The rounding error of coordinates.
+    pub slack: f64,
+    /// Heights this close are the same.
+    pub near: f64,
+    /// The longest last step of Newton's method.
+    pub last: f64,
+}
+
+/// There are too many cells.
+struct TooMany;
+
+impl Grazing {
+    /// Forgets everything: to be called when cells of the tool are dropped.
+    pub fn clear(&mut self) {
+        self.families.clear();
+    }
+
+    /// The number of the family of a course, which is the last one then.
+    fn family(&mut self, course: &Course, segment: &Segment, patches: usize) -> Option<&mut Family> {
+        let (key, directions) = course.family(segment)?;
+        if let Some(known) = self.families.iter().position(|family| family.key == key) {
+            let family = self.families.remove(known);
+            self.families.push(family);
+        } else {
+            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten());
+            if trees.map(Tree::len).sum::<usize>() > CELLS {
+                self.families.clear();
+            }
+            if self.families.len() == FAMILIES {
+                self.families.remove(0);
+            }
+            self.families.push(Family {
+                key,
+                directions,
+                trees: vec![None; patches],
+            });
+        }
+        self.families.last_mut()
+    }
+
+    /// Settles the patches that are not done along a move without rotation, as far as that is possible.
+    pub fn settle(
+        &mut self,
+        (elements, cells): (&[PatchForms], &mut [Cells]),
+        grazed: &mut Grazed,
+        source: &impl Fn(f64) -> Source,
+        done: &mut [bool],
+    ) {
+        if done.iter().all(|done| *done) {
+            return;
+        }
+        let Some(course) = Course::new(grazed.segment, grazed.slack) else {
+            return;
+        };
+        let mut targets = std::mem::take(&mut self.targets);
+        let Some(family) = self.family(&course, grazed.segment, elements.len()) else {
+            return;
+        };
+        let spacing = grazed.collector.lines.spacing();
+        let lowest = course.from[2].min(course.from[2] + course.way[2]);
+        let highest = grazed
+            .ceiling
+            .map_or(f64::INFINITY, |ceiling| ceiling.above(lowest, spacing));
+        for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
+            if done[number] {
+                continue;
+            }
+            let mark = grazed.collector.mark();
+            let face = Face::new(element, &course.own);
+            let mut walk = Walk {
+                element,
+                cells,
+                course: &course,
+                highest,
+                looks: 0,
+                visits: 0,
+                lines: Lines {
+                    face: &face,
+                    course: &course,
+                    collector: &mut *grazed.collector,
+                    source,
+                    near: grazed.near,
+                    last: grazed.last,
+                    evaluations: 0,
+                    targets,
+                },
+            };
+            let tree = family.trees[number]
+                .get_or_insert_with(|| Tree::new(element, walk.cells, 0, &family.directions, course.slack));
+            let outcome = walk.tree(tree, &family.directions);
+            let Walk { lines, looks, .. } = walk;
+            let evaluations = lines.evaluations;
+            targets = lines.targets;
+            let statistics = &mut grazed.collector.harvest.statistics;
+            statistics.boxes += looks;
+            statistics.evaluations += evaluations;
+            match outcome {
+                Ok(()) => done[number] = true,
+                Err(TooMany) => grazed.collector.forget(mark),
+            }
+        }
+        self.targets = targets;
+    }
+}
+
+/// The walk through the cells of one patch.
+struct Walk<'a, 'b, S> {
+    element: &'a PatchForms,
+    cells: &'a mut Cells,
+    course: &'a Course,
+    /// Cells that are all this high above the tip are above the ceiling.
+    highest: f64,
+    looks: u64,
+    visits: u64,
+    lines: Lines<'a, 'b, S>,
+}
+
+impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
+    fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
+        let slack = self.course.slack;
+        let mut stack = vec![0];
+        while let Some(number) = stack.pop() {
+            let node = tree.node(number);
+            let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
+            self.visits += 1;
+            if node.lowest > self.highest || !meets(self.lines.collector.lines, &self.lines.floor(), window) {
+                continue;
+            }
+            if self.visits > 4 * MOST || self.looks > MOST {
+                return Err(TooMany);
+            }
+            let of = (self.element, &mut *self.cells);
+            match tree.known(number, of, (directions, slack), &mut self.looks) {
+                Known::Empty => {}
+                Known::Chart(chart) => self.lines.chart(chart, window),
+                Known::Parts([low, high]) => stack.extend([high, low]),
+                Known::Mixed => {
+                    let own = &self.course.own;
+                    let mut tree = Tree::new(self.element, self.cells, cell, own, slack);
+                    self.tree(&mut tree, own)?;
+                }
+                Known::Least => self.lines.leave(window),
+            }
+        }
+        Ok(())
+    }
+}

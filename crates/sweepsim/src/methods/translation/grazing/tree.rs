@@ -1,0 +1,270 @@
+//! The cells of a patch along the grazing curves of a family of directions, divided as far as lines have asked for.
+
+use super::chart::{Chart, Range, Rough, magnitude};
+use super::course::Directions;
+use crate::algebra::ranges::{ROUNDING, Triples, products};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+
+/// Cells with sides smaller than this are not divided.
+const SMALLEST: f64 = 1e-14;
+/// Nor are those over which `p` changes by fewer roundings than this.
+const FLAT: f64 = 8.0;
+
+/// A cell, and where it is in the coordinates `(q, p, z)` from the tip.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub cell: u32,
+    depth: u32,
+    pub p: Range,
+    pub q: Range,
+    pub lowest: f64,
+    state: State,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum State {
+    Fresh,
+    Empty,
+    /// Number of the chart.
+    Chart(u32),
+    /// Number of the first part.
+    Parts(u32),
+    /// Not the same for all directions.
+    Mixed,
+    /// As small as rounding allows.
+    Least,
+}
+
+/// What is known of a cell.
+pub(super) enum Known<'a> {
+    Empty,
+    Chart(&'a Chart),
+    /// The numbers of its parts.
+    Parts([u32; 2]),
+    /// Each direction has to tell by itself.
+    Mixed,
+    /// The curve may be anywhere in it.
+    Least,
+}
+
+/// The cells of a patch that were examined for a family of directions.
+#[derive(Clone, Debug)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    charts: Vec<Chart>,
+    blur: Blur,
+}
+
+/// How much the values may differ over the directions of a family.
+#[derive(Clone, Debug, Default)]
+struct Blur {
+    place: f64,
+    /// Of derivatives of the place, and of those of `g`, in each variable.
+    slopes: [f64; 2],
+    g: f64,
+    g_slopes: [f64; 2],
+}
+
+/// The sizes of vectors, component by component.
+fn sizes(list: &Triples) -> [f64; 3] {
+    let most = |list: &[f64]| {
+        // NaN stays.
+        let larger = |most: f64, x: &f64| {
+            if most.is_nan() || x.abs() <= most {
+                most
+            } else {
+                x.abs()
+            }
+        };
+        list.iter().fold(0.0, larger)
+    };
+    [most(list.x), most(list.y), most(list.z)]
+}
+
+/// `Σ |aₖ| bₖ`.
+fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (0..3).map(|k| a[k].abs() * b[k]).sum()
+}
+
+fn widened((lo, hi): Range, by: f64) -> Range {
+    (lo - by, hi + by)
+}
+
+impl Blur {
+    fn new((element, cells): (&PatchForms, &Cells), cell: u32, spread: f64) -> Self {
+        if spread == 0.0 {
+            return Self::default();
+        }
+        let one = [spread; 3];
+        let missing = cells.missing(cell);
+        let [_, largest] = element.largest;
+        Self {
+            place: total(&one, &sizes(&cells.position(element, cell))),
+            slopes: [0, 1].map(|axis| total(&one, &sizes(&cells.slope(element, cell, axis)))),
+            g: total(&one, &largest),
+            g_slopes: [0, 1].map(|axis| {
+                let [normals, _] = cells.field_slope(cell, 0, axis);
+                total(&one, &sizes(&normals)) + total(&one, &missing.slopes[axis][1])
+            }),
+        }
+    }
+}
+
+/// The bound of the rounding error of `g`.
+pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
+    ROUNDING * total(&directions.way, &element.rounding[1])
+}
+
+impl Tree {
+    /// Of all of a cell.
+    pub fn new(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
+        let blur = Blur::new((element, cells), cell, directions.spread);
+        let mut tree = Self {
+            nodes: Vec::new(),
+            charts: Vec::new(),
+            blur,
+        };
+        tree.put((element, cells), (cell, 0), directions, slack);
+        tree
+    }
+
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn node(&self, number: u32) -> &Node {
+        &self.nodes[number as usize]
+    }
+
+    fn put(
+        &mut self,
+        (element, cells): (&PatchForms, &Cells),
+        (cell, depth): (u32, u32),
+        directions: &Directions,
+        slack: f64,
+    ) {
+        let position = cells.position(element, cell);
+        let range = |k: usize| widened(products(&[directions.rows[k]], &position), self.blur.place + slack);
+        let node = Node {
+            cell,
+            depth,
+            q: range(0),
+            p: range(1),
+            lowest: range(2).0,
+            state: State::Fresh,
+        };
+        self.nodes.push(node);
+    }
+
+    /// What is known of a cell, after a look at it if there was none; `looks` counts these.
+    pub fn known(
+        &mut self,
+        number: u32,
+        (element, cells): (&PatchForms, &mut Cells),
+        (directions, slack): (&Directions, f64),
+        looks: &mut u64,
+    ) -> Known<'_> {
+        if let State::Fresh = self.nodes[number as usize].state {
+            *looks += 1;
+            let state = self.examined(number, (element, cells), directions, slack);
+            self.nodes[number as usize].state = state;
+        }
+        match self.nodes[number as usize].state {
+            State::Fresh | State::Least => Known::Least,
+            State::Empty => Known::Empty,
+            State::Chart(chart) => Known::Chart(&self.charts[chart as usize]),
+            State::Parts(first) => Known::Parts([first, first + 1]),
+            State::Mixed => Known::Mixed,
+        }
+    }
+
+    fn examined(
+        &mut self,
+        number: u32,
+        (element, cells): (&PatchForms, &mut Cells),
+        directions: &Directions,
+        slack: f64,
+    ) -> State {
+        let Node { cell, depth, p, .. } = self.nodes[number as usize];
+        let (way, missing) = (&directions.way, cells.missing(cell));
+        let [normals, _] = cells.field(element, cell, 0);
+        let g = products(&[*way], &normals);
+        let (lo, hi) = widened(g, total(way, &missing.value[1]));
+        let error = error(element, directions);
+        let within = error + self.blur.g;
+        // Where g is exactly 0, it counts as not negative.
+        let zero = lo == 0.0 && hi == 0.0;
+        if lo > within || hi < -within || (zero && directions.spread == 0.0) {
+            return State::Empty;
+        }
+        if lo > error || hi < -error || zero {
+            return State::Mixed;
+        }
+        let Blur { slopes, g_slopes, .. } = &self.blur;
+        let of_place = |k: usize, axis: usize| {
+            widened(
+                products(&[directions.rows[k]], &cells.slope(element, cell, axis)),
+                slopes[axis],
+            )
+        };
+        let of_g = [0, 1].map(|axis| {
+            let [normals, _] = cells.field_slope(cell, 0, axis);
+            let range = products(&[*way], &normals);
+            widened(range, total(way, &missing.slopes[axis][1]) + g_slopes[axis])
+        });
+        let jacobian = [[of_place(1, 0), of_place(1, 1)], of_g];
+        let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
+        let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
+        let blur = [*slopes, *g_slopes];
+        let ahead = [of_place(0, 0), of_place(0, 1)];
+        let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], ahead) {
+            Ok(chart) => {
+                self.charts.push(chart);
+                return State::Chart(self.charts.len() as u32 - 1);
+            }
+            Err(rough) => rough,
+        };
+        let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
+        let small = sides.iter().all(|side| *side < SMALLEST);
+        if directions.spread > 0.0 && (rough.blurred || small) {
+            return State::Mixed;
+        }
+        if small || p.1 - p.0 - 2.0 * slack < FLAT * slack {
+            return State::Least;
+        }
+        let axis = divided(&jacobian, sides, depth, &rough);
+        let parts = cells.split(element, cell, axis);
+        let first = self.nodes.len() as u32;
+        for part in parts {
+            self.put((element, cells), (part, depth + 1), directions, slack);
+        }
+        State::Parts(first)
+    }
+}
+
+/// The direction in which a cell is divided: as in `charts/`, the one that contributes most to `R`, every third time the one in which the values change most; but not the one in which it has
+/// almost no length.
+fn divided(jacobian: &[[Range; 2]; 2], sides: [f64; 2], depth: u32, rough: &Rough) -> usize {
+    let larger = |[a, b]: [f64; 2]| usize::from(b > a);
+    let sizes = jacobian.map(|row| [0, 1].map(|j: usize| magnitude(row[j]) * sides[j]));
+    let share = |row: [f64; 2], j: usize| {
+        let most = row[0].max(row[1]);
+        if most > 0.0 { row[j] / most } else { 0.0 }
+    };
+    let widest = larger([0, 1].map(|j| share(sizes[0], j) + share(sizes[1], j)));
+    let collapses = |axis: usize| {
+        (0..2).all(|i| {
+            let most = sizes[i][0].max(sizes[i][1]);
+            let least = jacobian[i][axis].0.max(-jacobian[i][axis].1).max(0.0) * sides[axis];
+            sizes[i][axis] < 0.25 * most && least < 1e-3 * most
+        })
+    };
+    let wanted = match rough.smear {
+        Some(smear) if depth % 3 != 2 => larger(smear),
+        _ => widest,
+    };
+    let axis = if collapses(wanted) { 1 - wanted } else { wanted };
+    // One side may be as short as it can be.
+    if sides[axis] < SMALLEST { 1 - axis } else { axis }
+}
