@@ -2,6 +2,7 @@
 
 use super::records::ratio;
 use super::{on, programs, table1, three_axis};
+use crate::others::peers::Work;
 use crate::workspace;
 use std::collections::BTreeMap;
 use std::fs;
@@ -11,6 +12,8 @@ use sweepsim_formats::Job;
 
 /// Fixture jobs that are counted; the others take long under valgrind.
 const JOBS: [&str; 2] = ["quickstart", "motions"];
+/// Ends of the tools that mill in five axes.
+const ENDS: [&str; 2] = ["flat", "ball"];
 /// Cells of Table 1 that are counted.
 const CELLS: usize = 200;
 const METHODS: [Method; 4] = [Method::General, Method::Planes, Method::Lines, Method::Surface];
@@ -63,6 +66,7 @@ fn names() -> Vec<String> {
         }
     }
     names.extend(three_axis::TOOLS.map(|tool| format!("three-axis-{tool}")));
+    names.extend(ENDS.map(|end| format!("five-axis-{end}")));
     names.extend(JOBS.map(String::from));
     names
 }
@@ -94,6 +98,10 @@ fn here(name: &str) -> Result<(), String> {
     }
     if let Some(tool) = name.strip_prefix("three-axis-") {
         return three_axis::once(tool, CELLS, Method::default()).map(drop);
+    }
+    if let Some(end) = name.strip_prefix("five-axis-") {
+        let work = Work::five_axis(end == "ball")?;
+        return work.simulate(work.stock()?).map(drop);
     }
     if JOBS.contains(&name) {
         let file = workspace::fixtures().join("jobs").join(name).with_extension("ron");

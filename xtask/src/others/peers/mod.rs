@@ -8,7 +8,8 @@ use crate::workspace;
 use std::fs;
 use std::path::{Path as FilePath, PathBuf};
 use std::process::Command;
-use work::{Answer, Work, errors};
+pub use work::Work;
+use work::{Answer, errors};
 
 const MANIFOLD3D: [&str; 2] = ["manifold3d==3.5.4", "numpy"];
 
