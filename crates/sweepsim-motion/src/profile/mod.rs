@@ -1,5 +1,6 @@
 //! The half outline of a tool of revolution: lines, arcs and splines in the `(ρ, ζ)` half-plane.
 
+mod below;
 mod bezier;
 mod error;
 mod offset;

@@ -9,6 +9,7 @@ mod ray;
 mod report;
 mod run;
 mod schedule;
+mod short_tools;
 mod simulation;
 
 pub(crate) use audit::SweptLines;

@@ -2,7 +2,9 @@
 
 use crate::cutter::Cutter;
 use crate::error::SweepError;
+use crate::methods::translation::GAP;
 use crate::sweep::options::Options;
+use crate::sweep::short_tools::ShortTools;
 use crate::time::path_parts::{self, PathPart};
 use crate::tolerances::Tolerances;
 use std::ops::Range;
@@ -15,6 +17,8 @@ const ALIKE: f64 = 1e-5;
 /// A tool and a path, prepared for any lines.
 pub(crate) struct Plan {
     pub cutter: Cutter,
+    /// The same tool, cut off.
+    pub short: ShortTools,
     pub parts: Vec<PathPart>,
     pub tolerances: Tolerances,
 }
@@ -60,7 +64,18 @@ impl Plan {
         Ok(Self {
             parts,
             cutter,
+            short: ShortTools::new(tool),
             tolerances,
         })
+    }
+
+    /// Lines and tips are displaced by less than this.
+    pub fn margin(&self) -> f64 {
+        self.tolerances.outside() + self.tolerances.rounding()
+    }
+
+    /// What is so far above all material is far enough.
+    pub fn gap(&self) -> f64 {
+        self.margin().max(GAP * self.cutter.reach)
     }
 }

@@ -9,6 +9,7 @@ use crate::sweep::schedule::{CHUNK, SweepJob};
 use crate::sweep::simulation::heights::{Box3, HeightMap};
 use crate::sweep::simulation::runs::Runs;
 use crate::time::path_parts::PathPart;
+use std::collections::BTreeMap;
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Path, Tool};
 use sweepsim_solve::Monitor;
@@ -55,13 +56,19 @@ pub(crate) fn sweep_near(
     options: &Options,
     monitor: &dyn Monitor,
 ) -> Result<Sweep, SweepError> {
-    let mut job = plan.job((tool, members.len()), tile, options, monitor);
+    let mut whole = plan.job((tool, members.len()), tile, options, monitor);
+    // Those of the tool cut off, by its number.
+    let mut short: BTreeMap<usize, SweepJob> = BTreeMap::new();
     let mut found = Found::new(*tile);
     let closed = options.method == Method::Charts && options.boundary == BoundaryOperator::Coverage;
     let length = chunk_length(options);
     for run in Runs::new((tool, plan), (boxes, members), (tile, material), (length, closed)) {
+        let job = match run.short {
+            None => &mut whole,
+            Some((number, tool)) => short.entry(number).or_insert_with(|| whole.with_tool(tool)),
+        };
         (job.mask, job.ceiling) = (run.mask, run.ceiling);
-        found.add(&job, &run.parts)?;
+        found.add(job, &run.parts)?;
         monitor.advance(run.done, members.len());
     }
     monitor.advance(members.len(), members.len());

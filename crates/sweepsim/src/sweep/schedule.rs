@@ -19,6 +19,7 @@ use crate::repair_budget::RepairBudget;
 use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
+use crate::sweep::short_tools::ShortTool;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
@@ -59,11 +60,14 @@ impl Plan {
             },
             spaces: Arc::default(),
             lists: Arc::default(),
-            repairs: RepairBudget::new(parts),
+            repairs: Arc::new(RepairBudget::new(parts)),
             monitor,
         }
     }
 }
+
+/// Workspaces of one tool that are not in use.
+pub(crate) type Spaces = Arc<Mutex<Vec<Workspace>>>;
 
 /// What all chunks of a sweep share.
 pub(crate) struct SweepJob<'a> {
@@ -80,12 +84,27 @@ pub(crate) struct SweepJob<'a> {
     pub ceiling: Option<Ceiling>,
     pub size: Size,
     /// What repairs may cost.
-    pub repairs: RepairBudget,
-    /// Workspaces that are not in use.
-    pub spaces: Arc<Mutex<Vec<Workspace>>>,
+    pub repairs: Arc<RepairBudget>,
+    pub spaces: Spaces,
     /// Lists of crossings that are not in use, empty.
     pub lists: Arc<Mutex<Vec<Vec<Numbered>>>>,
     pub monitor: &'a dyn Monitor,
+}
+
+impl<'a> SweepJob<'a> {
+    /// The same work with the tool cut off.
+    pub fn with_tool(&self, short: &'a ShortTool) -> Self {
+        Self {
+            tool: &short.tool,
+            cutter: short.cutter(),
+            mask: None,
+            ceiling: None,
+            spaces: Arc::clone(&short.spaces),
+            lists: Arc::clone(&self.lists),
+            repairs: Arc::clone(&self.repairs),
+            ..*self
+        }
+    }
 }
 
 impl SweepJob<'_> {

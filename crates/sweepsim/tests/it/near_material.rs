@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use sweepsim::{Cut, Method, Options, simulate, sweep};
 use sweepsim_dexel::{Dexels, Grid, Stock};
-use sweepsim_motion::{Path, Profile, ProfileSegment, Tool};
+use sweepsim_motion::{Path, Pose, Profile, ProfileSegment, Tool};
 
 fn grid() -> Grid {
     Grid::new([-10.03, -9.96], [10.04, 10.02], [41, 37]).expect("a grid")
@@ -93,6 +93,95 @@ proptest! {
         let tips: Vec<[f64; 3]> = tips.into_iter().map(|[x, y, z]| [x, y, z.max(-1.0)]).collect();
         agree(&stock(), "engraver", &tool, &path(&tips, UP))?;
     }
+}
+
+/// A tool with straight sides.
+fn polygon(corners: &[[f64; 2]]) -> Tool {
+    let segments = corners.iter().map(|to| ProfileSegment::Line { to: *to }).collect();
+    Tool::from_profile(Profile::new([0.0, 0.0], segments).expect("a profile"))
+}
+
+/// Long tools: an end mill in a holder that is wider than it, one with a neck, and simple ones.
+fn long_tools() -> Vec<Tool> {
+    let held = [
+        [1.5, 0.0],
+        [1.5, 12.0],
+        [4.0, 14.0],
+        [4.0, 25.0],
+        [7.0, 25.0],
+        [7.0, 40.0],
+        [0.0, 40.0],
+    ];
+    let necked = [
+        [2.0, 0.0],
+        [2.0, 3.0],
+        [1.0, 3.0],
+        [1.0, 16.0],
+        [3.0, 18.0],
+        [3.0, 30.0],
+        [0.0, 30.0],
+    ];
+    let end = |made: Result<Tool, _>| made.expect("a tool");
+    vec![
+        polygon(&held),
+        polygon(&necked),
+        engraver(20.0),
+        end(Tool::ball(2.0, 30.0)),
+        end(Tool::flat(2.0, 30.0)),
+        end(Tool::bull(2.5, 1.0, 30.0)),
+    ]
+}
+
+/// Tips in and above the stock, with the horizontal part of the axis.
+fn poses() -> impl Strategy<Value = Vec<([f64; 3], [f64; 2])>> {
+    let lean = prop_oneof![3 => -0.4..0.4, 1 => -1.5..1.5];
+    let axis = [lean.clone(), lean];
+    prop::collection::vec((tips().prop_map(|tips| tips[0]), axis), 2..7)
+}
+
+/// What becomes of it when the tool takes these poses.
+fn along(poses: &[([f64; 3], [f64; 2])]) -> Path {
+    let pose = |([x, y, z], [u, v]): &([f64; 3], [f64; 2])| Pose::new([*x, *y, *z], [*u, *v, 1.0]).expect("a pose");
+    Path::new(poses.iter().map(pose).collect()).expect("a path")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// Tools are cut off above all material, in any orientation.
+    #[test]
+    fn tools_that_turn(number in 0..19usize, poses in poses()) {
+        let tool = tools().into_iter().map(|(_, tool, _)| tool).chain(long_tools()).nth(number).expect("a tool");
+        agree(&stock(), &number.to_string(), &tool, &along(&poses))?;
+    }
+
+    /// The same at a fixed lean.
+    #[test]
+    fn tools_that_lean(number in 0..19usize, tips in tips(), axis in prop::array::uniform2(-0.8..0.8f64)) {
+        let tool = tools().into_iter().map(|(_, tool, _)| tool).chain(long_tools()).nth(number).expect("a tool");
+        agree(&stock(), &number.to_string(), &tool, &path(&tips, [axis[0], axis[1], 1.0]))?;
+    }
+}
+
+/// A tool of any length costs about as much as a short one.
+#[test]
+fn what_turns_above_the_stock_costs_nothing() {
+    let poses: Vec<_> = (0..40)
+        .map(|n| {
+            let (s, c) = (0.4 * f64::from(n)).sin_cos();
+            ([0.35 * f64::from(n) - 7.0, 3.0 * s, -1.0], [0.3 * c, 0.2 * s])
+        })
+        .collect();
+    let path = along(&poses);
+    let crossings = |length: f64| {
+        let tool = Tool::ball(1.5, length).expect("a tool");
+        let done = simulate(stock(), &[Cut::new(&tool, &path)], &Options::new(TOLERANCE), &()).expect("a part");
+        assert!(done.statistics.unresolved.is_empty());
+        (done.statistics.crossings, done.remaining.volume())
+    };
+    let [(long, part), (short, other)] = [200.0, 6.0].map(crossings);
+    assert!((part - other).abs() < 1e-6, "{part} {other}");
+    assert!(2 * long <= 3 * short, "{long} {short}");
 }
 
 /// An engraver of 60° and this length.

@@ -6,6 +6,7 @@ use super::heights::{Box3, HeightMap, window};
 use crate::methods::lattice::LineMask;
 use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
+use crate::sweep::short_tools::ShortTool;
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use rayon::prelude::*;
@@ -17,7 +18,7 @@ use sweepsim_motion::Tool;
 ///
 /// Parts between them meet no line of the tile. Nor does the tool at either end of a gap, where it is at rest: so the run needs no
 /// caps there, and its parts count as one motion.
-pub(crate) struct Run {
+pub(crate) struct Run<'a> {
     pub parts: Vec<PathPart>,
     /// How many parts over the tile lie before its end.
     pub done: usize,
@@ -25,23 +26,21 @@ pub(crate) struct Run {
     pub mask: Option<Cow<'static, LineMask>>,
     /// A height above all material.
     pub ceiling: Option<Ceiling>,
+    /// The tool cut off above all material, where there is no ceiling.
+    pub short: Option<(usize, &'a ShortTool)>,
 }
 
 /// Boxes around all that a tool sweeps in each part of a path.
 pub(crate) fn boxes(tool: &Tool, plan: &Plan) -> Vec<Box3> {
     let cylinder = tool.bounding_cylinder();
-    let margin = margin(plan);
+    let margin = plan.margin();
     let parts = plan.parts.par_iter();
     parts.map(|part| swept_box(&part.segment, cylinder, margin)).collect()
 }
 
-/// Lines and tips are displaced by less than this.
-fn margin(plan: &Plan) -> f64 {
-    plan.tolerances.outside() + plan.tolerances.rounding()
-}
-
 /// Divides the path into runs of at most `length` parts near material.
 pub(crate) struct Runs<'a> {
+    tool: &'a Tool,
     plan: &'a Plan,
     grid: &'a Grid,
     material: &'a HeightMap,
@@ -52,6 +51,8 @@ pub(crate) struct Runs<'a> {
     /// Whether ceilings are wanted.
     closed: bool,
     top: f64,
+    /// How far above all material is far enough.
+    gap: f64,
     /// A little above the highest material, less the height of the lowest point of the tool above its tip.
     over: f64,
     at: usize,
@@ -59,22 +60,25 @@ pub(crate) struct Runs<'a> {
 
 impl<'a> Runs<'a> {
     pub fn new(
-        (tool, plan): (&Tool, &'a Plan),
+        (tool, plan): (&'a Tool, &'a Plan),
         (boxes, members): (&'a [Box3], &'a [u32]),
         (grid, material): (&'a Grid, &'a HeightMap),
         (length, closed): (usize, bool),
     ) -> Self {
         let (cylinder, top) = (tool.bounding_cylinder(), material.top());
+        let gap = plan.gap();
         Self {
             boxes,
             members,
+            tool,
             plan,
             grid,
             material,
             length,
             closed,
             top,
-            over: top - cylinder.z[0] + margin(plan).max(GAP * plan.cutter.reach),
+            gap,
+            over: top - cylinder.z[0] + gap,
             at: 0,
         }
     }
@@ -117,7 +121,7 @@ impl<'a> Runs<'a> {
     }
 
     /// The lines with material near parts with these boxes.
-    fn run(&self, parts: Vec<PathPart>, members: &[u32]) -> Option<Run> {
+    fn run(&self, parts: Vec<PathPart>, members: &[u32]) -> Option<Run<'a>> {
         let hull = |a: Box3, b: Box3| std::array::from_fn(|k| [a[k][0].min(b[k][0]), a[k][1].max(b[k][1])]);
         let boxes = members.iter().map(|number| self.boxes[*number as usize]);
         let whole: Box3 = boxes.reduce(hull)?;
@@ -129,6 +133,10 @@ impl<'a> Runs<'a> {
         });
         let outline = self.plan.cutter.outline.as_ref().filter(|_| self.closed);
         let ceiling = outline.and_then(|outline| Ceiling::new(outline, self.plan.cutter.reach, &parts, self.top));
+        let short = match ceiling {
+            None if self.closed => self.plan.short.shortest(self.tool, &parts, self.top + self.gap),
+            _ => None,
+        };
         let all = (is.1 + 1 - is.0) * (js.1 + 1 - js.0);
         let mask = if lines.len() == all {
             None
@@ -140,14 +148,15 @@ impl<'a> Runs<'a> {
             done: self.at,
             mask,
             ceiling,
+            short,
         })
     }
 }
 
-impl Iterator for Runs<'_> {
-    type Item = Run;
+impl<'a> Iterator for Runs<'a> {
+    type Item = Run<'a>;
 
-    fn next(&mut self) -> Option<Run> {
+    fn next(&mut self) -> Option<Run<'a>> {
         loop {
             let mut parts = Vec::new();
             let mut first = self.at;
