@@ -21,7 +21,8 @@ pub use probe::{Probe, probe};
 pub use ray::{Ray, RayError};
 pub use report::{Statistics, Sweep, UnresolvedDexel, UnresolvedReason};
 pub use run::sweep;
-pub(crate) use schedule::CHUNK;
+pub(crate) use schedule::{CHUNK, Spaces};
+pub(crate) use simulation::STRETCH;
 pub(crate) use simulation::heights;
 pub use simulation::{
     Cut, Simulation, SurfaceSource, TriSimulation, simulate, simulate_tiles, simulate_tri, sweep_all,

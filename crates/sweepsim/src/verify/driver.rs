@@ -7,12 +7,12 @@ use super::solid::MovingSolid;
 use super::target::Target;
 use crate::error::SweepError;
 use crate::sweep::heights::HeightMap;
-use crate::sweep::{CHUNK, Options, UnresolvedDexel};
+use crate::sweep::{CHUNK, Options, STRETCH, UnresolvedDexel};
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use sweepsim_dexel::Dexels;
-use sweepsim_motion::{Assembly, Path};
+use sweepsim_motion::{Assembly, Path, Tool};
 use sweepsim_solve::Monitor;
 
 /// The state between two runs, on one grid or tile.
@@ -196,25 +196,33 @@ fn drive<'a>(
         }
         let Some(first) = works.first() else { return Ok(()) };
         let (monitor, count) = (first.monitor, works.len());
-        // The same for all tiles: they see the extent of the whole grid.
-        let solids = Solids::new(toolpath, toolpath.path, first)?;
         let mut runs = runs(toolpath);
         let last = options.until.filter(|(path, _)| *path == number);
         if let Some((_, last)) = last {
             runs.truncate(runs.partition_point(|run| run.start <= last).max(1));
         }
         let mut stop = ControlFlow::Continue(());
-        for batch in runs.chunks(step) {
-            let judged = AtomicUsize::new(0);
-            works.par_iter_mut().try_for_each(|work| {
-                batch.iter().try_for_each(|moves| {
-                    work.run(number, toolpath, &solids, moves.clone())?;
-                    let judged = judged.fetch_add(moves.len(), Ordering::Relaxed) + moves.len();
-                    monitor.advance(before + batch[0].start + judged / count, total);
-                    Ok(())
-                })
-            })?;
-            stop = after(works);
+        for stretch in stretches(&runs) {
+            let moves = stretch
+                .iter()
+                .fold(usize::MAX..0, |all, run| all.start.min(run.start)..run.end);
+            // The same for all tiles: they see the extent of the whole grid.
+            let solids = Solids::new(toolpath, (toolpath.path, moves), &works[0])?;
+            for batch in stretch.chunks(step) {
+                let judged = AtomicUsize::new(0);
+                works.par_iter_mut().try_for_each(|work| {
+                    batch.iter().try_for_each(|moves| {
+                        work.run(number, toolpath, &solids, moves.clone())?;
+                        let judged = judged.fetch_add(moves.len(), Ordering::Relaxed) + moves.len();
+                        monitor.advance(before + batch[0].start + judged / count, total);
+                        Ok(())
+                    })
+                })?;
+                stop = after(works);
+                if stop.is_break() {
+                    break;
+                }
+            }
             if stop.is_break() {
                 break;
             }
@@ -237,11 +245,23 @@ pub(super) struct Solids<'a> {
 }
 
 impl<'a> Solids<'a> {
-    /// Along a path, which is the toolpath's or another course of one of its moves.
-    pub(super) fn new(toolpath: &ToolPath<'a>, path: &Path, work: &Work) -> Result<Self, SweepError> {
+    /// Along some moves of a path, which is the toolpath's or another course of one of its moves.
+    pub(super) fn new(
+        toolpath: &ToolPath<'a>,
+        (path, moves): (&Path, Range<usize>),
+        work: &Work,
+    ) -> Result<Self, SweepError> {
         let mut grids = vec![work.remaining.grid().whole()];
         grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
-        let solid = |tool| MovingSolid::new(tool, path, &grids, &work.options);
+        let solid = |tool: &'a Tool| {
+            // A tool that is not of revolution carries its turn about its axis along the whole path.
+            let moves = if tool.is_revolved() {
+                moves.clone()
+            } else {
+                0..path.moves()
+            };
+            MovingSolid::new(tool, (path, moves), &grids, &work.options)
+        };
         let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
             let bodies = assembly.bodies().iter();
             Ok(Self {
@@ -288,7 +308,25 @@ fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
     runs
 }
 
+/// Runs that are prepared together: memory grows with their moves.
+fn stretches(runs: &[Range<usize>]) -> impl Iterator<Item = &[Range<usize>]> {
+    let mut first = 0;
+    std::iter::from_fn(move || {
+        let start = runs.get(first)?.start;
+        let count = runs[first..].partition_point(|run| run.end - start <= STRETCH).max(1);
+        let stretch = &runs[first..first + count];
+        first += count;
+        Some(stretch)
+    })
+}
+
 impl<'a> Work<'a> {
+    /// No material is higher.
+    pub(super) fn top(&self) -> f64 {
+        let fixtures = self.fixtures.as_ref().map(|(_, heights)| heights.top());
+        self.heights.top().max(fixtures.unwrap_or(f64::NEG_INFINITY))
+    }
+
     fn new(
         scene: Scene<'a>,
         program: &[ToolPath<'a>],

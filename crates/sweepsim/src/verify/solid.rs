@@ -2,15 +2,14 @@
 
 use crate::error::SweepError;
 use crate::methods::lattice::LineMask;
-use crate::methods::workspace::Workspace;
 use crate::sweep::heights::{Box3, HeightMap, window};
-use crate::sweep::{CHUNK, Method, Options, Plan, SweptLines};
+use crate::sweep::{CHUNK, Method, Options, Plan, Spaces, SweptLines};
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use nalgebra::{Matrix3, Vector3};
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Path, Segment, Tool};
 use sweepsim_solve::Monitor;
@@ -26,7 +25,7 @@ pub(super) struct MovingSolid<'a> {
     boxes: Vec<Box3>,
     /// One for each block of parts.
     hulls: Vec<Box3>,
-    spaces: Arc<Mutex<Vec<Workspace>>>,
+    spaces: Spaces,
 }
 
 /// A bound on how far any point of the solid moves.
@@ -53,10 +52,15 @@ fn hull(boxes: &[Box3]) -> Box3 {
 }
 
 impl<'a> MovingSolid<'a> {
-    /// `extent`: coordinates of the grids on which it will be swept; all of them in one frame.
-    pub fn new(tool: &'a Tool, path: &Path, grids: &[Grid], options: &Options) -> Result<Self, SweepError> {
+    /// Along some moves of a path: all of them if the tool is not of revolution. `grids`: those on which it will be swept; all of them in one frame.
+    pub fn new(
+        tool: &'a Tool,
+        (path, moves): (&Path, Range<usize>),
+        grids: &[Grid],
+        options: &Options,
+    ) -> Result<Self, SweepError> {
         let extent = grids.iter().flat_map(|grid| grid.min().into_iter().chain(grid.max()));
-        let plan = Plan::new(tool, path, grids[0].frame(), extent, options)?;
+        let plan = Plan::of_moves((tool, path, moves), grids[0].frame(), extent, options)?;
         let cylinder = tool.bounding_cylinder();
         // More than all displacements together.
         let margin = options.tolerance;
@@ -166,7 +170,7 @@ impl<'a> MovingSolid<'a> {
     pub fn swept_near(
         &self,
         moves: Range<usize>,
-        grid: &Grid,
+        (grid, top): (&Grid, f64),
         material: &HeightMap,
         options: &Options,
         monitor: &dyn Monitor,
@@ -176,16 +180,16 @@ impl<'a> MovingSolid<'a> {
             let Some(mask) = LineMask::new(grid, lines) else {
                 continue;
             };
-            all = all.united(self.swept(self.slice(parts), grid, &mask, options, monitor)?);
+            all = all.united(self.swept(self.slice(parts), (grid, top), &mask, options, monitor)?);
         }
         Ok(all)
     }
 
-    /// What the solid sweeps of the marked lines along these parts.
+    /// What the solid sweeps of the marked lines along these parts, up to `top`.
     pub fn swept(
         &self,
         parts: &[PathPart],
-        grid: &Grid,
+        (grid, top): (&Grid, f64),
         mask: &LineMask,
         options: &Options,
         monitor: &dyn Monitor,
@@ -199,8 +203,15 @@ impl<'a> MovingSolid<'a> {
         let mut job = self
             .plan
             .job((self.tool, self.plan.parts.len()), grid, &options, monitor);
-        job.mask = Some(Cow::Borrowed(mask));
         job.spaces = Arc::clone(&self.spaces);
+        let short = match method {
+            Method::Charts => self.plan.short.shortest(self.tool, parts, top + self.plan.gap()),
+            _ => None,
+        };
+        if let Some((_, short)) = short {
+            job = job.with_tool(short);
+        }
+        job.mask = Some(Cow::Borrowed(mask));
         let mut swept = SweptLines::default();
         for chunk in parts.chunks(CHUNK) {
             let more = job.swept_lines(chunk)?;
@@ -229,10 +240,10 @@ mod tests {
             let path = Path::with_moves(vec![at_rest, at_rest], vec![circle]).unwrap();
             let grid = Grid::new([-20.0, -20.0], [28.0, 26.0], [96, 92]).unwrap();
             let (tool, options) = (Tool::flat(6.0, 26.0).unwrap(), Options::default());
-            let solid = MovingSolid::new(&tool, &path, &[grid], &options).unwrap();
+            let solid = MovingSolid::new(&tool, (&path, 0..1), &[grid], &options).unwrap();
             let parts = solid.within(0, [at, at + 0.5_f64.powi(halvings)]);
             let mask = LineMask::new(&grid, 0..grid.len() as u32).unwrap();
-            let swept = solid.swept(&parts, &grid, &mask, &options, &()).unwrap();
+            let swept = solid.swept(&parts, (&grid, f64::INFINITY), &mask, &options, &()).unwrap();
             prop_assert_eq!(swept.unresolved.len(), 0, "{:?}", swept.unresolved.first());
             let centre = parts[0].segment.tips()[0];
             let inside = |line: &u32| {

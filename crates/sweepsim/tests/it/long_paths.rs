@@ -1,16 +1,22 @@
 //! Paths of more moves than are prepared at a time.
 
+use std::ops::ControlFlow;
 use sweepsim::dexel::Source;
 use sweepsim::prelude::*;
+use sweepsim::verify::{FindingKind, MoveState, Scene, ToolPath, VerifyOptions, verify};
+use sweepsim_motion::Assembly;
 
 /// Grooves side by side, each of so many moves.
 const MOVES: usize = 2_000;
 const GROOVES: usize = 35;
 
-/// The lines are in the middle of the grooves, of which each is a little deeper than the last; every third move of the tool is a rest.
-#[test]
-fn long_paths() {
-    let bottom = |groove: usize| 4.0 - 0.01 * groove as f64;
+/// The bottom of a groove.
+fn bottom(groove: usize) -> f64 {
+    4.0 - 0.01 * groove as f64
+}
+
+/// Each groove is a little deeper than the last; every third move of the tool is a rest.
+fn poses() -> Vec<Pose> {
     let mut poses = Vec::new();
     for groove in 0..GROOVES {
         for n in 0..=MOVES {
@@ -24,17 +30,33 @@ fn long_paths() {
         }
     }
     assert!(poses.len() > (1 << 16) + MOVES);
-    let place: Vec<usize> = poses
+    poses
+}
+
+/// The groove of each pose.
+fn grooves(poses: &[Pose]) -> Vec<usize> {
+    poses
         .iter()
         .map(|pose| (2.0 * pose.tip()[1]).round() as usize)
-        .collect();
-    let (tool, path) = (Tool::flat(0.2, 20.0).unwrap(), Path::new(poses).unwrap());
-    let grid = Grid::new([-9.5, -0.25], [9.5, 0.5 * GROOVES as f64 - 0.25], [19, GROOVES]).unwrap();
-    let stock = Stock::Block {
+        .collect()
+}
+
+/// Lines in the middle of the grooves, and a block. No line is as far from a pose as the tool's wall is.
+fn stock() -> Dexels {
+    let grid = Grid::new([-9.497, -0.25], [9.503, 0.5 * GROOVES as f64 - 0.25], [19, GROOVES]).unwrap();
+    let block = Stock::Block {
         min: [-10.0, -1.0, 0.0],
         max: [10.0, 20.0, 5.0],
     };
-    let stock = stock.dexels(&grid).unwrap();
+    block.dexels(&grid).unwrap()
+}
+
+#[test]
+fn long_paths() {
+    let poses = poses();
+    let place = grooves(&poses);
+    let (tool, path) = (Tool::flat(0.2, 20.0).unwrap(), Path::new(poses).unwrap());
+    let stock = stock();
     let options = Options::new(1e-6);
     let whole = simulate(stock.clone(), &[Cut::new(&tool, &path)], &options, &()).unwrap();
     assert_eq!(whole.statistics.moves, path.moves());
@@ -58,4 +80,43 @@ fn long_paths() {
     let cuts = [Cut::new(&tool, &second), Cut::new(&tool, &first)];
     let divided = simulate(stock, &cuts, &options, &()).unwrap();
     assert!((divided.remaining.volume() - whole.remaining.volume()).abs() < 1e-4);
+}
+
+/// The last groove, far behind the first moves that are prepared together, is cut by rapids.
+#[test]
+fn long_programs_are_verified() {
+    let poses = poses();
+    let place = grooves(&poses);
+    let (cutter, path) = (Assembly::new(Tool::flat(0.2, 20.0).unwrap()), Path::new(poses).unwrap());
+    let last = |number: &usize| place[*number] == GROOVES - 1;
+    let state = |number: usize| {
+        if last(&number) {
+            MoveState::RAPID
+        } else {
+            MoveState::FEED
+        }
+    };
+    let states: Vec<MoveState> = (0..path.moves()).map(state).collect();
+    let program = [ToolPath::new(&cutter, &path).with_states(&states)];
+    let options = VerifyOptions::default();
+    let go_on = &mut |_: &_| ControlFlow::Continue(());
+    let found = verify(Scene::new(stock()), &program, &options, go_on, &()).unwrap();
+    assert!(found.unresolved.is_empty() && found.undecided.is_empty());
+    assert!(
+        found
+            .findings
+            .iter()
+            .all(|finding| finding.kind == FindingKind::Rapid && last(&finding.number))
+    );
+    // Each line of the groove is met by one move: those that rest meet none.
+    let depth = 5.0 - bottom(GROOVES - 1);
+    assert_eq!(found.findings.len(), 19);
+    assert!(
+        found
+            .findings
+            .iter()
+            .all(|finding| (finding.depth - depth).abs() < 1e-5)
+    );
+    let simulated = simulate(stock(), &[Cut::new(cutter.cutter(), &path)], &Options::default(), &()).unwrap();
+    assert!((found.remaining.volume() - simulated.remaining.volume()).abs() < 1e-4);
 }

@@ -11,6 +11,7 @@ pub(crate) struct HeightMap {
     cells: [usize; 2],
     lines: Vec<[f64; 2]>,
     blocks: Vec<[f64; 2]>,
+    top: f64,
 }
 
 const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
@@ -33,6 +34,7 @@ impl HeightMap {
             cells,
             lines,
             blocks: vec![EMPTY; cells[0].div_ceil(BLOCK) * cells[1].div_ceil(BLOCK)],
+            top: f64::NEG_INFINITY,
         };
         for i in 0..cells[0] {
             for j in 0..cells[1] {
@@ -40,17 +42,15 @@ impl HeightMap {
                 let at = map.block(i, j);
                 let block = &mut map.blocks[at];
                 *block = [block[0].min(lower), block[1].max(upper)];
+                map.top = map.top.max(upper);
             }
         }
         map
     }
 
-    /// The highest material; −∞ without any.
+    /// The highest material there was at first, the same whatever was removed since; −∞ without any.
     pub fn top(&self) -> f64 {
-        self.blocks
-            .iter()
-            .map(|[_, upper]| *upper)
-            .fold(f64::NEG_INFINITY, f64::max)
+        self.top
     }
 
     fn block(&self, i: usize, j: usize) -> usize {

@@ -9,5 +9,6 @@ mod tri;
 
 pub use simulate::{Cut, Simulation, simulate, sweep_all};
 pub use source_at::SurfaceSource;
+pub(crate) use tiles::STRETCH;
 pub use tiles::simulate_tiles;
 pub use tri::{TriSimulation, simulate_tri};

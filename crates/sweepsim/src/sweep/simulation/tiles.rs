@@ -17,7 +17,7 @@ use sweepsim_motion::Tool;
 use sweepsim_solve::Monitor;
 
 /// So many moves of a path are prepared at a time, so that memory does not grow with the whole path: each takes 300 bytes.
-const STRETCH: usize = 1 << 16;
+pub(crate) const STRETCH: usize = 1 << 16;
 
 /// Which of many tiles a box is over.
 struct TileIndex {

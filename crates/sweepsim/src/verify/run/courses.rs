@@ -43,7 +43,7 @@ impl Work<'_> {
             },
             ..question
         };
-        let mut arena = Arena::new(&grid, &self.options, self.monitor);
+        let mut arena = Arena::new((&grid, self.top()), &self.options, self.monitor);
         let parts = larger.cutter.slice(larger.cutter.parts(moves.clone()));
         let swept = arena.swept(&larger.cutter, parts, &material)?;
         self.unresolved.extend(arena.unresolved);
@@ -93,8 +93,8 @@ impl Work<'_> {
         let Ok(path) = Path::new(vec![*start, end]) else {
             return Ok(material);
         };
-        let solid = MovingSolid::new(larger.cutter(), &path, &[whole], &self.options)?;
-        let mut arena = Arena::new(grid, &self.options, self.monitor);
+        let solid = MovingSolid::new(larger.cutter(), (&path, 0..path.moves()), &[whole], &self.options)?;
+        let mut arena = Arena::new((grid, self.top()), &self.options, self.monitor);
         let swept = arena.swept(&solid, solid.slice(solid.parts(0..1)), &material)?;
         Ok(material.without(&swept).longer_than(self.options.tolerance))
     }
@@ -113,7 +113,7 @@ impl Work<'_> {
         for course in &courses[from..to] {
             let (mut found, mut unresolved) = (Vec::new(), Vec::new());
             if self.comes_near(toolpath, course) {
-                let solids = Solids::new(toolpath, &course.path, self)?;
+                let solids = Solids::new(toolpath, (&course.path, 0..course.path.moves()), self)?;
                 for (body, probe, itself) in solids.probes() {
                     let kind = if body.is_some() {
                         FindingKind::Collision
@@ -183,9 +183,9 @@ impl Work<'_> {
     ) -> Result<Option<TileFinding>, SweepError> {
         let (grid, probe) = (*material.grid(), question.touching.probe);
         let moves = 0..course.path.moves();
-        let swept = probe.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
+        let swept = probe.swept_near(moves.clone(), (&grid, self.top()), heights, &self.options, self.monitor)?;
         let material = Lines::of(material, swept.lines.iter().map(|(line, _)| *line));
-        let mut arena = Arena::new(&grid, &self.options, self.monitor);
+        let mut arena = Arena::new((&grid, self.top()), &self.options, self.monitor);
         let met = material.common(&swept.lines, self.options.tolerance);
         let met = arena.certified(probe, probe.slice(probe.parts(moves.clone())), met)?;
         let touches = arena.touches(question.touching, moves, material.on_lines_of(&met), None)?;

@@ -132,7 +132,7 @@ impl Work<'_> {
         let material = self.near_stock(body, moves.clone());
         // Where a few lines show that the body runs through material at large, a sweep of the whole run would only tell so once more.
         let sample = material.sample(SAMPLE);
-        let mut arena = Arena::new(&grid, &self.options, self.monitor);
+        let mut arena = Arena::new((&grid, self.top()), &self.options, self.monitor);
         let met = arena.overlap(body, body.slice(body.parts(moves.clone())), &sample, true)?;
         let material = if met.is_empty() {
             let swept = self.sweep_near_stock(body, moves.clone())?;
@@ -151,7 +151,7 @@ impl Work<'_> {
     /// What a solid sweeps of the lines whose material it comes near.
     fn sweep_near_stock(&mut self, solid: &MovingSolid, moves: Range<usize>) -> Result<Swept, SweepError> {
         let grid = *self.remaining.grid();
-        let swept = solid.swept_near(moves, &grid, &self.heights, &self.options, self.monitor)?;
+        let swept = solid.swept_near(moves, (&grid, self.top()), &self.heights, &self.options, self.monitor)?;
         self.unresolved.extend(swept.unresolved);
         self.crossings += swept.crossings;
         Ok(swept.lines)
@@ -165,7 +165,7 @@ impl Work<'_> {
         let grid = *fixtures.grid();
         let mut met = Vec::new();
         for (body, probe, itself) in solids.probes() {
-            let swept = probe.swept_near(moves.clone(), &grid, heights, &self.options, self.monitor)?;
+            let swept = probe.swept_near(moves.clone(), (&grid, self.top()), heights, &self.options, self.monitor)?;
             met.push((body, probe, itself, swept));
         }
         for (body, probe, itself, swept) in met {
@@ -193,7 +193,7 @@ impl Work<'_> {
         met: Lines,
     ) -> Result<Lines, SweepError> {
         let probe = question.touching.probe;
-        let mut arena = Arena::new(grid, &self.options, self.monitor);
+        let mut arena = Arena::new((grid, self.top()), &self.options, self.monitor);
         let met = arena.certified(probe, probe.slice(probe.parts(moves)), met)?;
         self.unresolved.extend(arena.unresolved);
         Ok(met)
@@ -208,7 +208,7 @@ impl Work<'_> {
         material: Lines,
         each: Option<&[Swept]>,
     ) -> Result<(), SweepError> {
-        let mut arena = Arena::new(grid, &self.options, self.monitor);
+        let mut arena = Arena::new((grid, self.top()), &self.options, self.monitor);
         let touches = arena.touches(question.touching, moves, material, each)?;
         self.unresolved.extend(arena.unresolved);
         let undecided = arena.undecided.into_iter();

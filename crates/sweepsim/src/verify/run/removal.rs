@@ -50,9 +50,10 @@ impl Work<'_> {
         let swept = |number: usize| {
             let one = number..number + 1;
             let grid = self.remaining.grid();
-            let swept = solids
-                .cutter
-                .swept_near(one, grid, &self.heights, &self.options, self.monitor)?;
+            let swept =
+                solids
+                    .cutter
+                    .swept_near(one, (grid, self.top()), &self.heights, &self.options, self.monitor)?;
             Ok(swept.lines)
         };
         moves.into_par_iter().map(swept).collect()

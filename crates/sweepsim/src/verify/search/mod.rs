@@ -68,6 +68,8 @@ pub(super) type Swept = Vec<(u32, Vec<Interval>)>;
 /// One grid, and what is needed to sweep solids on it.
 pub(super) struct Arena<'a> {
     pub grid: &'a Grid,
+    /// No material is higher.
+    pub top: f64,
     pub options: &'a Options,
     pub monitor: &'a dyn Monitor,
     /// Dexels of sweeps that could not be certified.
@@ -77,9 +79,10 @@ pub(super) struct Arena<'a> {
 }
 
 impl<'a> Arena<'a> {
-    pub fn new(grid: &'a Grid, options: &'a Options, monitor: &'a dyn Monitor) -> Self {
+    pub fn new((grid, top): (&'a Grid, f64), options: &'a Options, monitor: &'a dyn Monitor) -> Self {
         Self {
             grid,
+            top,
             options,
             monitor,
             unresolved: Vec::new(),
@@ -92,7 +95,7 @@ impl<'a> Arena<'a> {
         let Some(mask) = LineMask::new(self.grid, material.numbers()) else {
             return Ok(Vec::new());
         };
-        let swept = solid.swept(parts, self.grid, &mask, self.options, self.monitor)?;
+        let swept = solid.swept(parts, (self.grid, self.top), &mask, self.options, self.monitor)?;
         self.unresolved.extend(swept.unresolved);
         Ok(swept.lines)
     }

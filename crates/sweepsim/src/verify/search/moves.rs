@@ -88,11 +88,11 @@ impl Arena<'_> {
         items: &[I],
         work: impl Fn(&mut Arena, &I) -> Result<T, SweepError> + Sync,
     ) -> Result<Vec<T>, SweepError> {
-        let (grid, options, monitor) = (self.grid, self.options, self.monitor);
+        let (place, options, monitor) = ((self.grid, self.top), self.options, self.monitor);
         let done: Vec<_> = items
             .par_iter()
             .map(|item| {
-                let mut arena = Arena::new(grid, options, monitor);
+                let mut arena = Arena::new(place, options, monitor);
                 let result = work(&mut arena, item)?;
                 Ok((result, arena.unresolved, arena.undecided))
             })
