@@ -203,9 +203,7 @@ fn drive<'a>(
         }
         let mut stop = ControlFlow::Continue(());
         for stretch in stretches(&runs) {
-            let moves = stretch
-                .iter()
-                .fold(usize::MAX..0, |all, run| all.start.min(run.start)..run.end);
+            let moves = stretch[0].start..stretch[stretch.len() - 1].end;
             // The same for all tiles: they see the extent of the whole grid.
             let solids = Solids::new(toolpath, (toolpath.path, moves), &works[0])?;
             for batch in stretch.chunks(step) {
@@ -308,7 +306,7 @@ fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
     runs
 }
 
-/// Runs that are prepared together: memory grows with their moves.
+/// Runs that are prepared together, at least one each time: memory grows with their moves.
 fn stretches(runs: &[Range<usize>]) -> impl Iterator<Item = &[Range<usize>]> {
     let mut first = 0;
     std::iter::from_fn(move || {

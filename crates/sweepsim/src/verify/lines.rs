@@ -168,6 +168,31 @@ impl Lines {
         })
     }
 
+    /// What is in one of both.
+    pub fn united(&self, other: &Self) -> Self {
+        let mut out = self.minus_lines(other).0;
+        for (line, more) in &other.0 {
+            let mut all: Vec<[f64; 2]> = self
+                .of_line(*line)
+                .0
+                .iter()
+                .flat_map(|(_, heights)| heights.to_vec())
+                .collect();
+            all.extend(more);
+            all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            let mut heights = Heights::new();
+            for [lower, upper] in all {
+                match heights.last_mut() {
+                    Some(last) if last[1] >= lower => last[1] = last[1].max(upper),
+                    _ => heights.push([lower, upper]),
+                }
+            }
+            out.push((*line, heights));
+        }
+        out.sort_by_key(|(line, _)| *line);
+        Self(out)
+    }
+
     /// The material that is not swept.
     pub fn without(&self, swept: &[(u32, Vec<Interval>)]) -> Self {
         self.merged(swept, true, |own, cut| {
@@ -275,13 +300,17 @@ mod tests {
         #[test]
         fn operations_hold_point_by_point(a in prop::collection::vec(0_u8..40, 0..12), b in prop::collection::vec(0_u8..40, 0..12)) {
             let (a, b) = (heights(&a), heights(&b));
+            let lines = |heights: &Heights| Lines(if heights.is_empty() { vec![] } else { vec![(3, heights.clone())] });
+            let all = lines(&a).united(&lines(&b));
+            let all = all.0.first().map_or_else(Heights::new, |(_, heights)| heights.clone());
             let (both, less) = (intersection(&a, b.iter().copied(), 0.0), difference(&a, b.iter().copied()));
             for k in 0..80 {
                 let z = f64::from(k) / 2.0 + 0.25;
                 prop_assert_eq!(inside(&both, z), inside(&a, z) && inside(&b, z));
+                prop_assert_eq!(inside(&all, z), inside(&a, z) || inside(&b, z));
                 prop_assert_eq!(inside(&less, z), inside(&a, z) && !inside(&b, z));
             }
-            prop_assert!(both.iter().chain(&less).all(|[lower, upper]| lower < upper));
+            prop_assert!(both.iter().chain(&less).chain(&all).all(|[lower, upper]| lower < upper));
         }
     }
 }

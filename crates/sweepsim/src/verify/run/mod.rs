@@ -209,7 +209,7 @@ impl Work<'_> {
         each: Option<&[Swept]>,
     ) -> Result<(), SweepError> {
         let mut arena = Arena::new((grid, self.top()), &self.options, self.monitor);
-        let touches = arena.touches(question.touching, moves, material, each)?;
+        let touches = arena.all_touches(question.touching, moves, material, each)?;
         self.unresolved.extend(arena.unresolved);
         let undecided = arena.undecided.into_iter();
         let undecided = undecided.map(|number| (question.path, number, question.body));

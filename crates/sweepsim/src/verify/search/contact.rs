@@ -51,7 +51,12 @@ impl Arena<'_> {
     }
 
     /// What is still there when the solid is moved in each of four directions.
-    fn withstood(&mut self, solid: &MovingSolid, parts: &[PathPart], mut common: Lines) -> Result<Lines, SweepError> {
+    pub(super) fn withstood(
+        &mut self,
+        solid: &MovingSolid,
+        parts: &[PathPart],
+        mut common: Lines,
+    ) -> Result<Lines, SweepError> {
         for shift in self.shifts() {
             if common.is_empty() {
                 break;

@@ -62,6 +62,16 @@ pub(super) struct Touch {
     pub all: Lines,
 }
 
+impl Touch {
+    /// Takes in what else the same move touches.
+    fn join(&mut self, more: Self) {
+        if more.time < self.time {
+            (self.time, self.first) = (more.time, more.first);
+        }
+        self.all = self.all.united(&more.all);
+    }
+}
+
 /// What a solid sweeps of some lines, sorted by line.
 pub(super) type Swept = Vec<(u32, Vec<Interval>)>;
 

@@ -20,6 +20,55 @@ pub(super) struct Suspect<'a> {
 }
 
 impl Arena<'_> {
+    /// The moves of a run that touch `material`, so that nothing is missing that the run cuts by more than contact.
+    ///
+    /// Where a line is in the wall of a cutter between two moves, the first only touches it, but takes the material with it, and the second finds none. It is
+    /// then put back for the second.
+    pub fn all_touches(
+        &mut self,
+        touching: Touching,
+        moves: Range<usize>,
+        material: Lines,
+        each: Option<&[Swept]>,
+    ) -> Result<Vec<Touch>, SweepError> {
+        let mut found = self.touches(touching, moves.clone(), material.clone(), each)?;
+        if !(touching.own && touching.strict) {
+            return Ok(found);
+        }
+        let run = touching.probe.slice(touching.probe.parts(moves.clone()));
+        let cut = material.common(&self.swept(touching.probe, run, &material)?, self.options.tolerance);
+        let left = found.iter().fold(cut, |left, touch| left.minus(&touch.all));
+        let mut left = self.withstood(touching.probe, run, left.longer_than(self.options.tolerance))?;
+        // Moves that are shorter than the tolerance do no more than touch.
+        for strict in [true, false] {
+            let touching = Touching {
+                strict,
+                eater: None,
+                ..touching
+            };
+            for number in moves.clone() {
+                let suspect = Suspect {
+                    number,
+                    material: left.near(self.grid, touching.probe.reaches(number)),
+                    eaten: Cow::Owned(Swept::new()),
+                };
+                let more = if suspect.material.is_empty() {
+                    None
+                } else {
+                    self.told_apart(touching, &suspect)?
+                };
+                let Some(more) = more else { continue };
+                left = left.minus(&more.all);
+                match found.iter_mut().find(|touch| touch.number == number) {
+                    Some(touch) => touch.join(more),
+                    None => found.push(more),
+                }
+            }
+        }
+        found.sort_by_key(|touch| touch.number);
+        Ok(found)
+    }
+
     /// The moves of a run that touch `material`, all that there is on some lines before the run, in their order.
     ///
     /// `each`: what the eater sweeps in each move of the run, if it is known for all lines.

@@ -1,5 +1,6 @@
 //! Programs with and without planted faults.
 
+mod at_joints;
 mod by_force;
 mod deviation;
 mod regions;
