@@ -7,6 +7,9 @@ use crate::{Enclosure, MAX_DEGREE};
 use sweepsim_spline::Bernstein;
 use sweepsim_spline::kernel;
 
+/// The most forms of a bundle: numerators and weight, zeros, conditions. No more than three equations have no more than four forms.
+const FORMS: usize = 6;
+
 /// Forms of the same degree, stored one after another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block<const N: usize> {
@@ -15,9 +18,8 @@ pub(super) struct Block<const N: usize> {
     pub degrees: [usize; N],
     /// Coefficients of a form.
     pub len: usize,
-    /// Error of the first coefficients, and their size.
-    noise: f64,
-    size: f64,
+    /// Number of the first form in the bundle.
+    pub first: usize,
 }
 
 impl<const N: usize> Block<N> {
@@ -46,6 +48,9 @@ pub(super) const CONDITIONS: usize = 2;
 pub(super) struct Blocks<const N: usize> {
     pub blocks: [Block<N>; 3],
     pub first: Vec<f64>,
+    /// Of each form, the error of the first coefficients, and their size.
+    noise: [f64; FORMS],
+    sizes: [f64; FORMS],
     pub len: usize,
 }
 
@@ -54,8 +59,8 @@ pub(super) struct Blocks<const N: usize> {
 pub(super) struct StackedBox<const N: usize> {
     pub lo: [f64; N],
     pub hi: [f64; N],
-    /// Error of the coefficients of each block.
-    pub noise: [f64; 3],
+    /// Error of the coefficients of each form.
+    pub noise: [f64; FORMS],
     pub depth: u32,
     /// The targets that remain, as a range in a list; `None` for all that lie in its range.
     pub lines: Option<(usize, usize)>,
@@ -72,12 +77,13 @@ impl<const N: usize> Blocks<N> {
             count: 0,
             degrees: [0; N],
             len: 0,
-            noise: 0.0,
-            size: 0.0,
+            first: 0,
         };
         let mut blocks = Self {
             blocks: [empty; 3],
             first: Vec::new(),
+            noise: [0.0; FORMS],
+            sizes: [0.0; FORMS],
             len: 0,
         };
         let count = numerators.len() + 1;
@@ -100,7 +106,6 @@ impl<const N: usize> Blocks<N> {
     /// Adds a block at the end; `before` forms precede it.
     fn put(&mut self, number: usize, forms: &[Bernstein], before: usize) -> Result<(), BundleError> {
         let mut degrees = [0; N];
-        let (mut noise, mut size) = (0.0_f64, 0.0_f64);
         for (k, form) in forms.iter().enumerate() {
             let form_number = before + k;
             if form.variables() != N {
@@ -125,10 +130,10 @@ impl<const N: usize> Blocks<N> {
             }
         }
         let start = self.first.len();
-        for form in forms {
+        for (k, form) in forms.iter().enumerate() {
             let raised = form.elevated_to(&degrees);
-            noise = noise.max(raised.error());
-            size = raised.coefficients().iter().fold(size, |m, c| m.max(c.abs()));
+            self.noise[before + k] = raised.error();
+            self.sizes[before + k] = raised.coefficients().iter().fold(0.0, |m, c| m.max(c.abs()));
             self.first.extend_from_slice(raised.coefficients());
         }
         self.blocks[number] = Block {
@@ -136,8 +141,7 @@ impl<const N: usize> Blocks<N> {
             count: forms.len(),
             degrees,
             len: degrees.iter().map(|d| d + 1).product(),
-            noise,
-            size,
+            first: before,
         };
         self.len = self.first.len();
         Ok(())
@@ -158,7 +162,7 @@ impl<const N: usize> Blocks<N> {
         StackedBox {
             lo: [0.0; N],
             hi: [1.0; N],
-            noise: self.blocks.map(|block| block.noise),
+            noise: self.noise,
             depth: 0,
             lines: None,
         }
@@ -174,7 +178,7 @@ impl<const N: usize> Blocks<N> {
         let width = frame.hi[axis] - frame.lo[axis];
         let (s, t) = ((frame.hi[axis] - at) / width, (at - frame.lo[axis]) / width);
         let mut parts = [*frame; 2];
-        for (number, block) in self.blocks.iter().enumerate().filter(|(_, block)| block.count > 0) {
+        for block in self.blocks.iter().filter(|block| block.count > 0) {
             let (degree, inner) = (block.degrees[axis], block.inner(axis));
             kernel::split(
                 &mut upper[block.range()],
@@ -186,7 +190,9 @@ impl<const N: usize> Blocks<N> {
             );
             // A pass over degree d adds 4 d ε times the largest coefficient: see `tensor.rs`.
             for part in &mut parts {
-                part.noise[number] += 4.0 * EPSILON * degree as f64 * block.size;
+                for form in block.first..block.first + block.count {
+                    part.noise[form] += 4.0 * EPSILON * degree as f64 * self.sizes[form];
+                }
             }
         }
         parts[0].lo[axis] = at;
@@ -204,7 +210,7 @@ impl<const N: usize> Blocks<N> {
         let targeted = self.targeted();
         for k in 0..zeros.count {
             let (lo, hi) = tensor::range(zeros.form(c, k));
-            let noise = frame.noise[ZEROS];
+            let noise = frame.noise[zeros.first + k];
             if lo > noise || hi < -noise {
                 return None;
             }
@@ -213,7 +219,7 @@ impl<const N: usize> Blocks<N> {
         if conditions.count == 2 {
             let negative = |k: usize| {
                 let (lo, hi) = tensor::range(conditions.form(c, k));
-                let noise = frame.noise[CONDITIONS];
+                let noise = frame.noise[conditions.first + k];
                 if hi < -noise {
                     Some(true)
                 } else if lo > noise || (lo == 0.0 && hi == 0.0) {
@@ -236,12 +242,28 @@ impl<const N: usize> Blocks<N> {
                 lo = tensor::lesser(lo, value);
                 hi = tensor::greater(hi, value);
             }
-            // Both numerator and weight may be off by the noise.
-            let size = lo.abs().max(hi.abs());
-            let pad =
-                frame.noise[POSITION] * (1.0 + size) / (least - frame.noise[POSITION]) * (1.0 + 1e-12) + EPSILON * size;
+            let pad = self.pad(frame, k, lo.abs().max(hi.abs()), least);
             values[k] = Enclosure::hull(lo - pad, hi + pad);
         }
         Some(values)
+    }
+
+    /// By how much a quotient of this size may be off: both its numerator and its weight may, by their noise.
+    fn pad(&self, frame: &StackedBox<N>, k: usize, size: f64, least: f64) -> f64 {
+        let [noise, doubt] = [frame.noise[k], frame.noise[self.targeted()]];
+        (noise + doubt * size) / (least - doubt) * (1.0 + 1e-12) + EPSILON * size
+    }
+
+    /// About how much each of the [`values`](Self::values) may be off.
+    pub fn noise(&self, frame: &StackedBox<N>, c: &[f64], values: &[Enclosure; N]) -> [f64; N] {
+        let targeted = self.targeted();
+        let (least, _) = tensor::range(self.blocks[POSITION].form(c, targeted));
+        std::array::from_fn(|k| {
+            if k < targeted {
+                self.pad(frame, k, values[k].magnitude(), least)
+            } else {
+                frame.noise[self.blocks[ZEROS].first + k - targeted]
+            }
+        })
     }
 }

@@ -115,12 +115,17 @@ pub(super) fn solve<const N: usize, M: ChartMap<N>>(
         }
         let length = step.amax();
         if length <= accept {
-            // Brouwer on a ball about s.
+            // Brouwer on a box about s. Over a ball, the Newton step leads into a smaller box, and so it does over that box, which alone must lie where the
+            // bounds hold: where values are rounded coarsely, the ball may be much larger.
             let radius = 2.0 * length + 4.0 * rounding.amax() + 1e-15;
             let ball = SVector::<f64, N>::repeat(radius);
             let about = size * self::deviation(taylor, &rest, &ball);
             let error = about * ball + rounding;
-            let exists = radius <= MARGIN && (0..N).all(|i| step[i].abs() + error[i] <= radius);
+            let within = |i: usize| {
+                let reach = step[i].abs() + error[i];
+                reach <= radius && s[i].abs() + reach <= 1.0 + MARGIN
+            };
+            let exists = (0..N).all(within);
             // On the way from this root z* to another one z, in the window, the Jacobian differs from that at s by at most
             // H (|z* − s| + |z − z*| / 2) in the mean, and |z − z*| by at most |z* − s| from what the window allows.
             let single = (0..N).all(|i| pull.row(i).sum() + 3.0 * about.row(i).sum() < SINGLE);

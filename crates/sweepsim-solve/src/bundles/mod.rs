@@ -153,7 +153,8 @@ impl BundleSolver {
     /// Finds, for every target, all solutions in `[0, 1]ᴺ`.
     ///
     /// Only [`evaluate`](ChartMap::evaluate) and [`scales`](ChartMap::scales) of the map are used; it must be the map that the bundle's forms define.
-    /// Each solution is reported to `sink` once; boxes that may hold unreported solutions are reported as unresolved.
+    /// Each solution is reported to `sink` once; boxes that may hold unreported solutions are reported as unresolved. If such a box is so small that rounding
+    /// hides what is in it, no further solutions of its target are searched for: it is open in any case.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         bundle: &Bundle<N>,
@@ -187,6 +188,7 @@ impl BundleSolver {
             scratch: &mut scratch,
             lines: Vec::new(),
             straddlers: Vec::new(),
+            open: Vec::new(),
         };
         search.run(sink);
         self.coefficients = search.coefficients;

@@ -12,6 +12,9 @@ const FEW: usize = 6;
 /// Targets are tried on a box where the bound of the single-solution test about its centre is at most this.
 const GOOD: f64 = 1.0;
 
+/// Values that differ by less than this part of the bounds of their rounding are not told apart: well above what rounding is.
+const ALIKE: f64 = 0.25;
+
 /// A root near a face between boxes, which the neighbour may have found too.
 pub(super) struct Straddler<const N: usize, S> {
     preimage: Preimage<N, S>,
@@ -32,6 +35,8 @@ pub(super) struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     /// The remaining targets of the boxes on the stack.
     pub lines: Vec<ChartTarget<N>>,
     pub straddlers: Vec<Straddler<N, M::Seen>>,
+    /// Targets that are not searched for any further, in order: rounding is larger than some box that may hold their roots.
+    pub open: Vec<usize>,
 }
 
 impl<const N: usize, M, T> Search<'_, N, M, T>
@@ -71,7 +76,10 @@ where
         let inside = |q: &[f64; N]| (0..N).all(|i| values[i].contains(q[i]));
         let holds_any = match frame.lines {
             None => self.targets.count(&values) > 0,
-            Some((from, to)) => self.lines[from..to].iter().any(|target| inside(&target.value)),
+            Some((from, to)) => {
+                let mut targets = self.lines[from..to].iter();
+                targets.any(|target| inside(&target.value) && !self.is_open(target))
+            }
         };
         if !holds_any {
             return None;
@@ -82,8 +90,16 @@ where
         let slopes = taylor.slopes();
         let small = |j: usize| frame.hi[j] - frame.lo[j] <= self.options.smallest;
         let idle = |j: usize| (0..N).all(|i| slopes[i][j].magnitude() == 0.0);
+        // Smaller boxes would tell no more about their targets, of which there would be ever more boxes.
+        let noise = self.blocks.noise(frame, c, &values);
+        let alike = |i: usize| {
+            let width = values[i].hi() - values[i].lo() - 2.0 * noise[i];
+            width <= ALIKE * (taylor.rounding[i] + noise[i])
+        };
+        let drowned = (0..N).all(alike);
         let tiny = (0..N).all(|j| small(j) || idle(j));
-        let cause = if tiny {
+        let domain = [Enclosure::UNIT; N];
+        let cause = if tiny || drowned {
             Some(Cause::Smallest)
         } else if *budget == 0 {
             Some(Cause::Boxes)
@@ -91,7 +107,11 @@ where
             self.monitor.cancelled().then_some(Cause::Cancelled)
         };
         if let Some(cause) = cause {
-            self.each(frame, &values, &mut |_, target| {
+            self.each(frame, &values, &mut |search, target| {
+                let place = search.open.binary_search(&target.number);
+                if let (true, Err(place)) = (drowned, place) {
+                    search.open.insert(place, target.number);
+                }
                 sink.unresolved(UnresolvedTarget {
                     target: target.number,
                     bounds,
@@ -102,7 +122,6 @@ where
             return None;
         }
         *budget -= 1;
-        let domain = [Enclosure::UNIT; N];
         let mut axis = widest(&bounds, &domain, &slopes, &self.map.scales());
         let mut lines = frame.lines;
         if let Some(inverse) = &taylor.inverse {
@@ -129,7 +148,11 @@ where
         Some((axis, lines))
     }
 
-    /// Calls `visit` with the box's targets until it returns `false`.
+    fn is_open(&self, target: &ChartTarget<N>) -> bool {
+        !self.open.is_empty() && self.open.binary_search(&target.number).is_ok()
+    }
+
+    /// Calls `visit` with the box's targets that are searched for until it returns `false`.
     fn each(
         &mut self,
         frame: &StackedBox<N>,
@@ -139,12 +162,15 @@ where
         match frame.lines {
             None => {
                 let targets = self.targets;
-                targets.visit(values, &all_of, &mut |target| visit(self, *target));
+                targets.visit(values, &all_of, &mut |target| {
+                    self.is_open(target) || visit(self, *target)
+                });
             }
             Some((from, to)) => {
                 for at in from..to {
                     let target = self.lines[at];
-                    if (0..N).all(|i| values[i].contains(target.value[i])) && !visit(self, target) {
+                    let wanted = (0..N).all(|i| values[i].contains(target.value[i])) && !self.is_open(&target);
+                    if wanted && !visit(self, target) {
                         return;
                     }
                 }

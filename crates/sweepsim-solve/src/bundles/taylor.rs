@@ -101,22 +101,23 @@ impl<const N: usize> Taylor<N> {
         let mut second = [Square::<N>::zeros(); N];
         let mut weight = [SVector::<f64, N>::zeros(); N];
         let position = &blocks.blocks[POSITION];
-        let noise = frame.noise[POSITION];
+        let doubtful = frame.noise[targeted];
         let (mut first_buffer, mut second_buffer) = (Vec::new(), Vec::new());
         let weights = position.form(c, targeted);
-        let least = crate::coefficients::tensor::range(weights).0 - noise;
+        let least = crate::coefficients::tensor::range(weights).0 - doubtful;
         let least = least * (1.0 - 4.0 * MARGIN * position.degrees.iter().sum::<usize>() as f64).max(0.5);
         let (weight_slopes, weight_bends) = derivatives(
             weights,
             position.degrees,
-            noise,
+            doubtful,
             [&mut first_buffer, &mut second_buffer],
         );
         for r in 0..targeted {
             let middle = sample.value[r];
             scratch.clear();
             scratch.extend(position.form(c, r).iter().zip(weights).map(|(p, w)| p - middle * w));
-            let shifted = noise * (1.0 + middle.abs()) + 4.0 * f64::EPSILON * middle.abs() * magnitude(weights);
+            let shifted =
+                frame.noise[r] + doubtful * middle.abs() + 4.0 * f64::EPSILON * middle.abs() * magnitude(weights);
             let (_, bends) = derivatives(
                 scratch,
                 position.degrees,
@@ -133,7 +134,7 @@ impl<const N: usize> Taylor<N> {
             let (_, bends) = derivatives(
                 zeros.form(c, k),
                 zeros.degrees,
-                frame.noise[ZEROS],
+                frame.noise[zeros.first + k],
                 [&mut first_buffer, &mut second_buffer],
             );
             second[targeted + k] = bends;

@@ -275,3 +275,93 @@ fn a_budget_leaves_targets_open() {
         assert!(covered || few.found.iter().any(near), "{found:?}");
     }
 }
+
+/// A map whose values are known to be rounded more coarsely than they are.
+struct Coarse<'a>(&'a Forms<2>, f64);
+
+impl ChartMap<2> for Coarse<'_> {
+    type Cell = ();
+    type Seen = ();
+
+    fn bounds(&self, (): &()) -> [Enclosure; 2] {
+        [Enclosure::UNIT; 2]
+    }
+
+    fn values(&mut self, (): &()) -> Option<[Enclosure; 2]> {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn jacobian(&mut self, (): &()) -> [[Enclosure; 2]; 2] {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn split(&mut self, (): &(), _: usize) -> [(); 2] {
+        unreachable!("bundles ask for points only")
+    }
+
+    fn evaluate(&self, x: &[f64; 2]) -> Sample<2, ()> {
+        self.0.evaluate(x)
+    }
+
+    fn scales(&self) -> [f64; 2] {
+        [1.0; 2]
+    }
+
+    fn rounding(&self) -> [f64; 2] {
+        [self.1; 2]
+    }
+}
+
+/// Pairs of roots beside a fold, planted nearer and nearer to each other, down to less than what rounding tells apart: both are found, or the target is open,
+/// and the search ends either way.
+#[test]
+fn roots_that_rounding_cannot_tell_apart_leave_their_targets_open_at_once() {
+    let fold = 0.437;
+    // X = u, Y = (v − fold)².
+    let (u, v) = (Bernstein::variable(2, 0), Bernstein::variable(2, 1));
+    let away = v.sub(&Bernstein::constant(2, fold));
+    let forms = Forms::<2> {
+        numerators: vec![u, away.mul(&away)],
+        weight: Bernstein::constant(2, 1.0),
+        zeros: vec![],
+    };
+    let (mut sure, mut open) = (0, 0);
+    for rounding in [1e-7, 1e-10, 1e-13] {
+        for exponent in 1..13 {
+            let half = 0.4 * 10.0_f64.powi(-exponent);
+            let targets = List((0..12).map(|k| [0.05 + 0.07 * f64::from(k), half * half]).collect());
+            let mut answer = Answer {
+                found: Vec::new(),
+                open: Vec::new(),
+            };
+            let mut solver = BundleSolver::new(ChartOptions::default().accept(1e-6));
+            solver.solve(&forms.bundle(), &Coarse(&forms, rounding), &targets, &mut answer, &());
+            for (number, target) in targets.0.iter().enumerate() {
+                if answer.open.iter().any(|open| open.target == number) {
+                    open += 1;
+                    assert!(
+                        half * half < 1e3 * rounding,
+                        "half a distance of {half}, rounding {rounding}"
+                    );
+                    continue;
+                }
+                for v in [fold - half, fold + half] {
+                    let near =
+                        |x: &[f64; 2]| (x[0] - target[0]).abs() < 1e-9 && (x[1] - v).abs() < 1e-9 + rounding / half;
+                    let found = answer
+                        .found
+                        .iter()
+                        .filter(|found| found.target == number && near(&found.x));
+                    assert_eq!(found.count(), 1, "{target:?}, rounding {rounding}");
+                }
+                sure += 1;
+            }
+            let each = solver.statistics.boxes / targets.0.len() as u64;
+            assert!(
+                each < 400,
+                "{each} boxes a target, half a distance of {half}, rounding {rounding}"
+            );
+        }
+    }
+    assert!(sure > 100 && open > 50, "{sure} {open}");
+}

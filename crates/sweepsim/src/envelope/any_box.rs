@@ -9,7 +9,7 @@ use sweepsim_solve::{ChartMap, Enclosure};
 /// A map that can be enclosed over any box of its domain.
 pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
     /// The cell over the whole domain.
-    fn root(&self) -> Self::Cell;
+    fn root(&mut self) -> Self::Cell;
 
     /// A cell over any box, kept until it is released.
     fn place(&mut self, bounds: &[Enclosure; N]) -> Self::Cell;
@@ -22,7 +22,7 @@ pub(crate) trait AnyBox<const N: usize>: ChartMap<N> {
 }
 
 impl AnyBox<3> for PatchMap<'_> {
-    fn root(&self) -> Self::Cell {
+    fn root(&mut self) -> Self::Cell {
         ROOT
     }
 
@@ -42,7 +42,7 @@ impl AnyBox<3> for PatchMap<'_> {
 }
 
 impl AnyBox<2> for EdgeMap<'_> {
-    fn root(&self) -> Self::Cell {
+    fn root(&mut self) -> Self::Cell {
         ROOT
     }
 
@@ -62,7 +62,7 @@ impl AnyBox<2> for EdgeMap<'_> {
 }
 
 impl AnyBox<2> for PlacedMap<'_> {
-    fn root(&self) -> Self::Cell {
+    fn root(&mut self) -> Self::Cell {
         0
     }
 

@@ -14,6 +14,7 @@ mod absent;
 mod any_box;
 mod edge_map;
 mod enclosures;
+mod in_part;
 mod patch_map;
 mod placed_map;
 mod plane;
@@ -21,6 +22,7 @@ pub mod systems;
 
 pub(crate) use any_box::AnyBox;
 pub(crate) use edge_map::{EdgeMap, OnEdge};
-pub(crate) use enclosures::{Near, ROOT, ROUNDING, Size};
+pub(crate) use enclosures::{Brick, Near, ROOT, ROUNDING, Size};
+pub(crate) use in_part::{InPart, OfPart};
 pub(crate) use patch_map::{OnPatch, PatchMap};
 pub(crate) use placed_map::{OnPlaced, PlacedMap, Side, Twist};

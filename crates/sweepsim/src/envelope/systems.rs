@@ -15,6 +15,7 @@
 //! `envelope/`; `methods/search.rs` sets up each equation once for all methods, and a unit test compares every map with its system.
 
 pub use crate::envelope::plane::{Plane, PlaneError};
+use crate::time::over::Part;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Edge, NormalField, Patch, Segment};
 use sweepsim_solve::{Enclosure, Equation, System, SystemError};
@@ -49,6 +50,21 @@ struct MotionForms {
     tips: [Bernstein; 3],
     spins: Vec<Vector3<f64>>,
     travels: Vec<Vector3<f64>>,
+    /// Whether the travel is turned back with twice the digits, as it is on a straight way without rotation. Where a face slides along itself, a tiny component of
+    /// it decides alone.
+    is_exact: bool,
+    /// The part of the motion over which the forms of this, and those made of it, are.
+    part: Part,
+}
+
+/// A form in `t`, over a part of the motion.
+fn in_part(part: &Part, coefficients: Vec<f64>, error: f64) -> Bernstein {
+    let whole = in_time(coefficients, error);
+    if part.is_whole() {
+        whole
+    } else {
+        whole.restrict(0, part.from, part.to())
+    }
 }
 
 /// A form in one variable.
@@ -58,7 +74,8 @@ fn in_time(coefficients: Vec<f64>, error: f64) -> Bernstein {
 }
 
 impl MotionForms {
-    fn new(segment: &Segment) -> Self {
+    fn new(segment: &Segment, part: Part) -> Self {
+        let in_time = |coefficients: Vec<f64>, error: f64| in_part(&part, coefficients, error);
         let own = in_time(segment.weights().to_vec(), 0.0);
         let (points, weights) = segment.points();
         let points = [0, 1, 2].map(|k| in_time(points.iter().map(|p| p[k]).collect(), 0.0));
@@ -79,6 +96,8 @@ impl MotionForms {
             tips,
             spins,
             travels,
+            is_exact: segment.is_arc() && segment.turns().len() == 1,
+            part,
         }
     }
 
@@ -86,7 +105,7 @@ impl MotionForms {
     fn place(&self, position: &[Bernstein; 3], omega: &Bernstein) -> MovingPoint {
         let numerators = [0, 1, 2].map(|r| {
             (0..3).fold(omega.tensor_product(&self.tips[r]), |sum, k| {
-                let entry = in_time(self.turns.iter().map(|m| m[(r, k)]).collect(), 0.0);
+                let entry = in_part(&self.part, self.turns.iter().map(|m| m[(r, k)]).collect(), 0.0);
                 let entry = self.factor.as_ref().map_or(entry.clone(), |factor| entry.mul(factor));
                 sum.add(&position[k].tensor_product(&entry))
             })
@@ -99,14 +118,17 @@ impl MotionForms {
 
     /// `g` of a field of normals, times a positive function of `t`.
     fn envelope(&self, field: &NormalField) -> Bernstein {
-        // Products of three terms: at most four roundings of the sum of their sizes.
-        let rounding = |list: &[Vector3<f64>]| {
-            let size = |v: &Vector3<f64>| v.iter().map(|x| x.abs()).sum::<f64>();
+        // Products of three terms: at most four roundings of the sum of their sizes, or of the component alone.
+        let rounding = |list: &[Vector3<f64>], k: usize| {
+            let all = |v: &Vector3<f64>| v.iter().map(|x| x.abs()).sum::<f64>();
+            let size = |v: &Vector3<f64>| if self.is_exact { v[k].abs() } else { all(v) };
             8.0 * f64::EPSILON * list.iter().map(size).fold(0.0, f64::max)
         };
         let along = |list: &[Vector3<f64>], forms: &[Bernstein; 3]| {
-            let error = rounding(list);
-            let term = |k: usize| forms[k].tensor_product(&in_time(list.iter().map(|v| v[k]).collect(), error));
+            let term = |k: usize| {
+                let components = list.iter().map(|v| v[k]).collect();
+                forms[k].tensor_product(&in_part(&self.part, components, rounding(list, k)))
+            };
             term(0).add(&term(1)).add(&term(2))
         };
         let travelling = along(&self.travels, field.normal());
@@ -136,7 +158,12 @@ impl PatchMotion {
     /// The forms of a patch moved by a segment.
     #[must_use]
     pub fn new(patch: &Patch, segment: &Segment) -> Self {
-        let motion = MotionForms::new(segment);
+        Self::over(patch, segment, Part::WHOLE)
+    }
+
+    /// The same over a part of the motion, as forms of its own.
+    pub(crate) fn over(patch: &Patch, segment: &Segment, part: Part) -> Self {
+        let motion = MotionForms::new(segment, part);
         Self {
             place: motion.place(patch.position(), patch.weight()),
             envelope: motion.envelope(patch.field()),
@@ -196,7 +223,12 @@ impl EdgeMotion {
     /// The forms of an edge moved by a segment.
     #[must_use]
     pub fn new(edge: &Edge, segment: &Segment) -> Self {
-        let motion = MotionForms::new(segment);
+        Self::over(edge, segment, Part::WHOLE)
+    }
+
+    /// The same over a part of the motion, as forms of its own.
+    pub(crate) fn over(edge: &Edge, segment: &Segment, part: Part) -> Self {
+        let motion = MotionForms::new(segment, part);
         Self {
             place: motion.place(edge.position(), edge.weight()),
             conditions: [motion.envelope(edge.before()), motion.envelope(edge.after())],

@@ -3,28 +3,33 @@
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT};
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
+use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::{CancelOnly, Sink};
+use sweepsim_solve::{CancelOnly, ChartMap, Sink};
 
 /// Charts need only the maps.
 pub(crate) struct Charts;
 
 impl CrossingMethod<'_> for Charts {
-    fn prepare(_: &Tool, _: &[PathPart]) -> Self {
+    fn prepare(_: &Tool, _: &[PathPart], _: &Over) -> Self {
         Self
     }
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
+        let (part, domain) = ((ROOT.0, query.times.1), map.bounds(&ROOT));
+        let monitor = &CancelOnly(query.monitor);
         solvers
             .moving
-            .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
+            .solve_part(map, part, &domain, query.lines, sink, monitor);
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
+        let (part, domain) = ((ROOT.0, query.times.1), map.bounds(&ROOT));
+        let monitor = &CancelOnly(query.monitor);
         solvers
             .moving
-            .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
+            .solve_part(map, part, &domain, query.lines, sink, monitor);
     }
 
     fn on_placed(

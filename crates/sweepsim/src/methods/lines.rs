@@ -4,11 +4,14 @@
 //! long as the box may hold a solution, and each root has its own certificate.
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
-use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side};
+use crate::envelope::{
+    AnyBox, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side,
+};
 use crate::methods::charts::Charts;
 use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
 use crate::methods::placement::sides;
 use crate::methods::workspace::Solvers;
+use crate::time::over::{Over, Part};
 use crate::time::path_parts::PathPart;
 use rayon::prelude::*;
 use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
@@ -34,15 +37,15 @@ struct PartBundles {
 
 impl PartBundles {
     /// Those of `parts[at]`.
-    fn new(tool: &Tool, parts: &[PathPart], at: usize) -> Self {
+    fn new(tool: &Tool, parts: &[PathPart], at: usize, part: Part) -> Self {
         let segment = &parts[at].segment;
         let face = |patch: &Patch| {
-            let motion = PatchMotion::new(patch, segment);
+            let motion = PatchMotion::over(patch, segment, part);
             let ([x, y, _], weight) = motion.position();
             Bundle::new(vec![x.clone(), y.clone()], weight, vec![motion.condition().clone()]).ok()
         };
         let rim = |edge| {
-            let motion = EdgeMotion::new(edge, segment);
+            let motion = EdgeMotion::over(edge, segment, part);
             let ([x, y, _], weight) = motion.position();
             let [before, after] = motion.conditions().clone();
             let bundle = Bundle::new(vec![x.clone(), y.clone()], weight, vec![]).ok()?;
@@ -78,11 +81,31 @@ impl PartBundles {
     }
 }
 
+/// Solves a bundle, over the part of the motion in which the tool is over the lines.
+fn bundled<const N: usize, M: AnyBox<N>>(
+    bundle: &Bundle<N>,
+    map: &mut M,
+    query: Query,
+    solvers: &mut Solvers,
+    sink: &mut impl Sink<N, M::Seen>,
+) {
+    let monitor = &CancelOnly(query.monitor);
+    let (part, _) = query.times;
+    if part.is_whole() {
+        solvers.bundles.solve(bundle, map, query.lines, sink, monitor);
+    } else {
+        let (map, mut sink) = (InPart::new(map, part), OfPart { sink, part });
+        solvers.bundles.solve(bundle, &map, query.lines, &mut sink, monitor);
+    }
+}
+
 impl CrossingMethod<'_> for Lines {
-    fn prepare(tool: &Tool, chunk: &[PathPart]) -> Self {
+    fn prepare(tool: &Tool, chunk: &[PathPart], over: &Over) -> Self {
         let bundles = (0..chunk.len()).into_par_iter();
         Self {
-            bundles: bundles.map(|at| PartBundles::new(tool, chunk, at)).collect(),
+            bundles: bundles
+                .map(|at| PartBundles::new(tool, chunk, at, over.part(&chunk[at].segment)))
+                .collect(),
         }
     }
 
@@ -106,18 +129,14 @@ impl CrossingMethod<'_> for Lines {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         match &self.bundles[query.part].patches[query.number] {
-            Some(bundle) => solvers
-                .bundles
-                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
+            Some(bundle) => bundled(bundle, map, query, solvers, sink),
             None => Charts.on_patch(query, map, solvers, sink),
         }
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         match &self.bundles[query.part].edges[query.number] {
-            Some(bundle) => solvers
-                .bundles
-                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
+            Some(bundle) => bundled(bundle, map, query, solvers, sink),
             None => Charts.on_edge(query, map, solvers, sink),
         }
     }

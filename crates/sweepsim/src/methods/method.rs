@@ -3,6 +3,7 @@
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
 use crate::methods::lattice::Lattice;
 use crate::methods::workspace::Solvers;
+use crate::time::over::{Over, Part};
 use crate::time::path_parts::PathPart;
 use std::ops::Range;
 use sweepsim_motion::{SegmentEnd, Tool};
@@ -16,6 +17,8 @@ pub(crate) struct Query<'a> {
     /// Number of the tool's patch or edge.
     pub number: usize,
     pub lines: &'a Lattice<'a>,
+    /// The part of the motion outside which the tool is not over the lines, and its piece.
+    pub times: (Part, u32),
     /// Tells the inner loops whether to stop.
     pub monitor: &'a dyn Monitor,
 }
@@ -30,8 +33,8 @@ pub(crate) struct WorkShare {
 
 /// A method of finding the preimages of dexel lines under the maps of the envelope: each exactly once, or the line is reported as unresolved.
 pub(crate) trait CrossingMethod<'a>: Sized + Sync {
-    /// The method's data for a chunk of the path, computed once for all its lines.
-    fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self;
+    /// The method's data for a chunk of the path, computed once for all its lines. They are of the parts of the motions in which the tool is over the lines.
+    fn prepare(tool: &'a Tool, chunk: &'a [PathPart], over: &Over) -> Self;
 
     /// Divides the work on this many parts and columns into units. Crossings come in the order of the units.
     fn shares(parts: usize, columns: usize) -> Vec<WorkShare> {

@@ -1,13 +1,14 @@
 //! The tool at rest between two motions: at a kink of the path, or at an end of it.
 
 use crate::cutter::outline::Outline;
-use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Twist};
+use crate::envelope::{Near, OnPlaced, PlacedMap, ROOT, Side, Twist};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::method::CrossingMethod;
 use crate::methods::search::Search;
 use crate::methods::translation::{self, Collector, Neighbour};
 use crate::methods::turning;
 use crate::methods::workspace::Workspace;
+use crate::time::over::Part;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::back_size;
 use nalgebra::Matrix3;
@@ -132,7 +133,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                     source,
                 })
             });
-            let query = self.query(at, number);
+            let query = self.query((at, (Part::WHOLE, ROOT.1)), number);
             self.method
                 .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
         }

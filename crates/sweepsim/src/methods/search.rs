@@ -13,6 +13,7 @@ use crate::methods::translation::{self, Ceiling, Collector, Grazed, Heading};
 use crate::methods::turning::{self, Element, Leftover, Searching};
 use crate::methods::workspace::Workspace;
 use crate::time::framed::FramedMotion;
+use crate::time::over::{Over, Part, comes_near};
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::Times;
 use sweepsim_dexel::{Crossing, Source};
@@ -24,6 +25,8 @@ pub(crate) struct Search<'a, M> {
     pub method: &'a M,
     pub cutter: &'a Cutter,
     pub parts: &'a [PathPart],
+    /// The tool and the window of all lines: of each motion, only the part in which it is over them is searched.
+    pub over: Over,
     pub lines: &'a Lattice<'a>,
     pub size: Size,
     /// Whether moves without rotation are to be solved by curves, of any tool.
@@ -60,8 +63,14 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         let done = space.done.patches.iter().chain(&space.done.edges);
         if !(done.into_iter().all(|done| *done) && leftovers.is_empty()) {
             let mut times = Times::new(segment);
-            self.patches(at, &mut times, space, harvest);
-            self.edges(at, &mut times, space, harvest);
+            let part = self.over.part(segment);
+            let piece = if part.is_whole() {
+                ROOT.1
+            } else {
+                times.place(part.from, part.to())
+            };
+            self.patches((at, (part, piece)), &mut times, space, harvest);
+            self.edges((at, (part, piece)), &mut times, space, harvest);
             for leftover in leftovers {
                 self.leftover(at, &leftover, &mut times, space, harvest);
             }
@@ -203,27 +212,17 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// Whether any line passes near the segment.
     fn reaches(&self, segment: &Segment) -> bool {
-        let (points, weights) = segment.points();
-        let place = |k: usize, n: usize| points[n][k] / weights[n];
-        let window = [self.lines.i, self.lines.j];
-        (0..2).all(|k| {
-            let grid = self.lines.grid;
-            let at = |n: usize| if k == 0 { grid.x(n) } else { grid.y(n) };
-            let margin = self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lines.shift[k].abs();
-            let coordinates = || (0..points.len()).map(|n| place(k, n));
-            let (low, high) = (
-                coordinates().fold(f64::INFINITY, f64::min),
-                coordinates().fold(f64::NEG_INFINITY, f64::max),
-            );
-            low - margin <= at(window[k][1]) && high + margin >= at(window[k][0])
-        })
+        let margin =
+            |k: usize| self.cutter.reach + self.size.spacing[k] * 1e-6 + self.size.slack + self.lines.shift[k].abs();
+        comes_near(segment, self.lines.window(), [margin(0), margin(1)])
     }
 
-    pub(super) fn query(&self, part: usize, number: usize) -> Query<'_> {
+    pub(super) fn query(&self, (part, times): (usize, (Part, u32)), number: usize) -> Query<'_> {
         Query {
             part,
             number,
             lines: self.lines,
+            times,
             monitor: self.monitor,
         }
     }
@@ -244,13 +243,19 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// Eq. 6, `X = x, Y = y, g = 0`: the jump is the sign of the Jacobian's determinant.
-    fn patches(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
+    fn patches(
+        &self,
+        (at, within): (usize, (Part, u32)),
+        times: &mut Times,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
         for number in 0..self.cutter.patches.len() {
             if space.done.patches[number] {
                 continue;
             }
             let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);
-            let query = self.query(at, number);
+            let query = self.query((at, within), number);
             self.method.on_patch(query, &mut map, &mut space.solvers, &mut sink);
         }
     }
@@ -283,13 +288,19 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     }
 
     /// Eq. 7, `X = x, Y = y`: an edge bounds the sweep where exactly one of its faces moves inwards.
-    fn edges(&self, at: usize, times: &mut Times, space: &mut Workspace, harvest: &mut Harvest) {
+    fn edges(
+        &self,
+        (at, within): (usize, (Part, u32)),
+        times: &mut Times,
+        space: &mut Workspace,
+        harvest: &mut Harvest,
+    ) {
         for number in 0..self.cutter.edges.len() {
             if space.done.edges[number] {
                 continue;
             }
             let (mut map, mut sink) = self.edge((at, number), times, &mut space.edges, harvest);
-            let query = self.query(at, number);
+            let query = self.query((at, within), number);
             self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
         }
     }

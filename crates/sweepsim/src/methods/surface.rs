@@ -5,9 +5,10 @@ use crate::envelope::{AnyBox, EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, Plac
 use crate::methods::charts::Charts;
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
+use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::{CancelOnly, ChartMap, Sink, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, ChartMap, Enclosure, Sink, SurfaceSolver};
 
 /// How flat the surface is in its boxes, relative to the parameters' ranges.
 const FLATNESS: f64 = 0.02;
@@ -21,12 +22,12 @@ pub(crate) struct Surfaces<'a> {
 }
 
 impl<'a> CrossingMethod<'a> for Surfaces<'a> {
-    fn prepare(tool: &'a Tool, chunk: &'a [PathPart]) -> Self {
+    fn prepare(tool: &'a Tool, chunk: &'a [PathPart], _: &Over) -> Self {
         Self { tool, chunk }
     }
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
-        let values = map.values(&ROOT);
+        let values = map.values(&(ROOT.0, query.times.1));
         if !values.is_some_and(|values| query.lines.meets([values[0], values[1]])) {
             return;
         }
@@ -39,13 +40,16 @@ impl<'a> CrossingMethod<'a> for Surfaces<'a> {
             .and_then(|system| solver.solve(&system, &CancelOnly(query.monitor)).ok());
         let Some(surface) = surface.filter(|surface| surface.unresolved.is_empty()) else {
             // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
-            solvers
-                .moving
-                .solve(map, ROOT, query.lines, sink, &CancelOnly(query.monitor));
+            Charts.on_patch(query, map, solvers, sink);
             return;
         };
         let domain = map.bounds(&ROOT);
-        for bounds in surface.boxes {
+        let times = Enclosure::hull(query.times.0.from, query.times.0.to());
+        for mut bounds in surface.boxes {
+            match bounds[2].intersection(times) {
+                Some(within) if within.radius() > 0.0 => bounds[2] = within,
+                _ => continue,
+            }
             let mark = map.mark();
             let part = map.place(&bounds);
             solvers

@@ -20,6 +20,7 @@ use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
+use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
 use rayon::prelude::*;
@@ -150,11 +151,26 @@ impl SweepJob<'_> {
         }
     }
 
-    fn search<'b, M>(&'b self, method: &'b M, parts: &'b [PathPart], lines: &'b Lattice<'b>) -> Search<'b, M> {
+    /// The tool, and the window of some lines.
+    fn over(&self, lines: &Lattice) -> Over {
+        Over {
+            cylinder: self.tool.bounding_cylinder(),
+            window: lines.window(),
+            margin: self.size.slack + 1e-6 * self.cutter.reach,
+        }
+    }
+
+    fn search<'b, M>(
+        &'b self,
+        method: &'b M,
+        (parts, over): (&'b [PathPart], Over),
+        lines: &'b Lattice<'b>,
+    ) -> Search<'b, M> {
         Search {
             method,
             cutter: self.cutter,
             parts,
+            over,
             lines,
             size: self.size,
             closed: false,
@@ -167,8 +183,13 @@ impl SweepJob<'_> {
     }
 
     fn by<'c, M: CrossingMethod<'c>>(&'c self, chunk: &'c [PathPart]) -> Result<Gathered, SweepError> {
-        let method = M::prepare(self.tool, chunk);
         let shift = self.tolerances.line_displacement(0);
+        let all = Lattice::all(self.grid, shift).masked(self.mask.as_deref());
+        if all.is_empty() {
+            return Ok(Gathered::default());
+        }
+        let over = self.over(&all);
+        let method = M::prepare(self.tool, chunk, &over);
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
             .map(|share| {
@@ -180,7 +201,7 @@ impl SweepJob<'_> {
                     closed: self.method == Method::Charts,
                     outline: self.outline(),
                     ceiling: self.ceiling.as_ref(),
-                    ..self.search(&method, chunk, &lines)
+                    ..self.search(&method, (chunk, over), &lines)
                 };
                 let mut harvest = Harvest {
                     crossings: self.list(),
@@ -228,10 +249,11 @@ impl SweepJob<'_> {
         harvest: &mut Harvest,
     ) {
         let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
+        let over = self.over(&lines);
         let search = Search {
             closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
             outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
-            ..self.search(&Charts, chunk, &lines)
+            ..self.search(&Charts, (chunk, over), &lines)
         };
         for at in 0..chunk.len() {
             if self.monitor.cancelled() {

@@ -8,11 +8,10 @@ use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_motion::{Dovetail, Lollipop, Path, Pose, Tool};
 use sweepsim_solve::Monitor;
 
-/// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour. For a move a million times as long as the tool is
-/// wide, the time of a crossing takes twenty halvings more.
-const THRIFTY: [(Method, f64); 2] = [(Method::General, 4.2), (Method::Surface, 4.2)];
-/// These cannot tell a wall at the least tolerance from the lines beside it, and leave them to charts.
-const OTHERS: [(Method, f64); 2] = [(Method::Planes, 50.0), (Method::Lines, 300.0)];
+/// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour.
+const THRIFTY: [(Method, f64); 2] = [(Method::General, 2.1), (Method::Surface, 2.1)];
+/// Beside the neck of a lollipop, lines of a far move cannot be certified one by one: charts repair them.
+const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.4), (Method::Lines, 3.7)];
 
 /// Ends a sweep that takes far too long, and so makes it fail.
 struct Patience(Instant);

@@ -131,6 +131,14 @@ impl<'a> Lattice<'a> {
         dx.min(dy)
     }
 
+    /// The first and the last coordinate of the lines in each direction.
+    pub fn window(&self) -> [[f64; 2]; 2] {
+        [
+            self.i.map(|i| self.coordinate(0, i)),
+            self.j.map(|j| self.coordinate(1, j)),
+        ]
+    }
+
     /// The position of a line.
     pub fn coordinate(&self, axis: usize, number: usize) -> f64 {
         self.shift[axis]

@@ -5,11 +5,12 @@ pub(crate) mod slicer;
 mod spans;
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
-use crate::envelope::{AnyBox, EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
+use crate::envelope::{AnyBox, Brick, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
 use crate::methods::lattice::Lattice;
 use crate::methods::method::{CrossingMethod, Query, WorkShare};
 use crate::methods::planes::slicer::Slicer;
 use crate::methods::workspace::Solvers;
+use crate::time::over::{Over, Part};
 use crate::time::path_parts::PathPart;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use rayon::prelude::*;
@@ -30,7 +31,7 @@ struct Forms {
 }
 
 impl Forms {
-    fn new(tool: &Tool, segment: &Segment) -> Self {
+    fn new(tool: &Tool, segment: &Segment, part: Part) -> Self {
         let [first, last] = segment.tips().map(Vector3::from);
         let at_rest = |turn: Matrix3<f64>, tip: &Vector3<f64>| {
             let patches = tool.patches().iter();
@@ -40,9 +41,13 @@ impl Forms {
             patches: tool
                 .patches()
                 .iter()
-                .map(|patch| PatchMotion::new(patch, segment))
+                .map(|patch| PatchMotion::over(patch, segment, part))
                 .collect(),
-            edges: tool.edges().iter().map(|edge| EdgeMotion::new(edge, segment)).collect(),
+            edges: tool
+                .edges()
+                .iter()
+                .map(|edge| EdgeMotion::over(edge, segment, part))
+                .collect(),
             placed: [at_rest(segment.start(), &first), at_rest(segment.end(), &last)],
         }
     }
@@ -73,9 +78,33 @@ fn slice<const N: usize, M: AnyBox<N>>(
     }
 }
 
+/// The same for a map under a motion, over the part of it in which the tool is over the lines.
+fn slice_moving<const N: usize, M: AnyBox<N, Cell = Brick>>(
+    map: &mut M,
+    system: impl FnOnce() -> Result<System, SystemError>,
+    query: Query,
+    solvers: &mut Solvers,
+    sink: &mut impl Sink<N, M::Seen>,
+) where
+    Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+{
+    let solvers = (&mut solvers.slicer, &mut solvers.moving);
+    let (part, _) = query.times;
+    if part.is_whole() {
+        slice(map, system, query, solvers, sink);
+    } else {
+        let mark = map.mark();
+        let mut sink = OfPart { sink, part };
+        slice(&mut InPart::new(map, part), system, query, solvers, &mut sink);
+        map.release(mark);
+    }
+}
+
 impl CrossingMethod<'_> for Planes {
-    fn prepare(tool: &Tool, chunk: &[PathPart]) -> Self {
-        let forms = chunk.par_iter().map(|part| Forms::new(tool, &part.segment));
+    fn prepare(tool: &Tool, chunk: &[PathPart], over: &Over) -> Self {
+        let forms = chunk
+            .par_iter()
+            .map(|part| Forms::new(tool, &part.segment, over.part(&part.segment)));
         Self { forms: forms.collect() }
     }
 
@@ -90,12 +119,12 @@ impl CrossingMethod<'_> for Planes {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         let system = || self.forms[query.part].patches[query.number].section(&plane(query.lines));
-        slice(map, system, query, (&mut solvers.slicer, &mut solvers.moving), sink);
+        slice_moving(map, system, query, solvers, sink);
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         let system = || self.forms[query.part].edges[query.number].section(&plane(query.lines));
-        slice(map, system, query, (&mut solvers.slicer, &mut solvers.moving), sink);
+        slice_moving(map, system, query, solvers, sink);
     }
 
     fn on_placed(
