@@ -117,6 +117,28 @@ impl<'a> PlacedMap<'a> {
         }
     }
 
+    /// The signs of `g` on a cell, before and after: whether it is negative, if it has one sign.
+    pub fn signs(&self, cell: u32) -> [Option<bool>; 2] {
+        let field = self.cells.field(self.element, cell, 0);
+        let missing = self.cells.missing(cell);
+        [&self.before, &self.after].map(|side| side.negative(&field, missing, self.element))
+    }
+
+    /// The ranges of `X` and `Y` over a cell, from the tip.
+    pub fn ranges(&self, cell: u32) -> [(f64, f64); 2] {
+        let position = self.cells.position(self.element, cell);
+        [0, 1].map(|r| {
+            let (lo, hi) = products(&self.row(r), &position);
+            (lo - self.size.slack, hi + self.size.slack)
+        })
+    }
+
+    /// `X` and `Y` of a point, from the tip.
+    pub fn seen_from_tip(&self, at: [f64; 2]) -> [f64; 2] {
+        let place = self.turn * self.element.face(at).0;
+        [place.x, place.y]
+    }
+
     fn row(&self, r: usize) -> [[f64; 3]; 1] {
         [[self.turn[(r, 0)], self.turn[(r, 1)], self.turn[(r, 2)]]]
     }
@@ -137,11 +159,8 @@ impl ChartMap<2> for PlacedMap<'_> {
         if before.is_some() && before == self.after.negative(&field, missing, self.element) {
             return None;
         }
-        let position = self.cells.position(self.element, *cell);
-        Some([0, 1].map(|r| {
-            let (lo, hi) = products(&self.row(r), &position);
-            Enclosure::hull(lo + self.tip[r] - self.size.slack, hi + self.tip[r] + self.size.slack)
-        }))
+        let ranges = self.ranges(*cell);
+        Some([0, 1].map(|r| Enclosure::hull(ranges[r].0 + self.tip[r], ranges[r].1 + self.tip[r])))
     }
 
     fn jacobian(&mut self, cell: &u32) -> [[Enclosure; 2]; 2] {

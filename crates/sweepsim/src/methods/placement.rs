@@ -5,7 +5,7 @@ use crate::envelope::{Near, OnPlaced, PlacedMap, ROOT, Side, Twist};
 use crate::methods::harvest::{Harvest, unit};
 use crate::methods::method::CrossingMethod;
 use crate::methods::search::Search;
-use crate::methods::translation::{self, Collector, Neighbour};
+use crate::methods::translation::{self, Collector, Neighbour, Resting};
 use crate::methods::turning;
 use crate::methods::workspace::Workspace;
 use crate::time::over::Part;
@@ -49,7 +49,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
-        space.done.placed.fill(false);
         let Some(own) = Neighbour::of(&self.parts[at], end) else {
             return;
         };
@@ -101,8 +100,16 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
     }
 
+    /// Whether the tool turns neither before nor after a placement.
+    fn is_between_translations(&self, at: usize, end: SegmentEnd) -> bool {
+        let still = |part: &PathPart| part.segment.is_arc() && part.segment.turns().len() == 1;
+        let before = (end == SegmentEnd::Start).then(|| at.checked_sub(1)).flatten();
+        still(&self.parts[at]) && before.is_none_or(|k| still(&self.parts[k]))
+    }
+
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
     pub fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
+        space.done.placed.fill(false);
         let segment = &self.parts[at].segment;
         let (pose, source) = match end {
             SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
@@ -118,6 +125,22 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             }
         }
         let sides = sides(self.parts, at, end);
+        if self.closed && self.is_between_translations(at, end) {
+            let mut resting = Resting {
+                pose,
+                sides,
+                size: self.size,
+                collector: &mut Collector {
+                    lines: self.lines,
+                    harvest,
+                },
+                last: space.solvers.placed.options.accept,
+                source,
+                monitor: self.monitor,
+            };
+            let tool = (&self.cutter.patches[..], &mut space.patches[..]);
+            space.grazing.rest(tool, &mut resting, &mut space.done.placed);
+        }
         for (number, (element, cells)) in self.cutter.patches.iter().zip(&mut space.patches).enumerate() {
             if space.done.placed[number] {
                 continue;

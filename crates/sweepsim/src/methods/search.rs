@@ -131,6 +131,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             slack: self.size.slack,
             near: self.near,
             last: space.solvers.moving.options.accept,
+            monitor: self.monitor,
         };
         let tool = (&self.cutter.patches[..], &mut space.patches[..]);
         let source = |t: f64| self.source(at, t);

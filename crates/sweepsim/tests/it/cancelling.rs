@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use sweepsim::prelude::*;
 use sweepsim::systems::Plane;
 use sweepsim::{Ray, SweepError, envelope_surfaces, probe, section};
+use sweepsim_motion::{Profile, ProfileSegment};
 
 /// Cancels from the question with this number on.
 struct Patience {
@@ -73,6 +74,26 @@ fn every_method_stops_within_a_move() {
             sweep(&tool, &path, &grid, &options, monitor).map(drop)
         });
     }
+}
+
+/// A move without rotation of a tool that has no closed forms, by its grazing curves.
+#[test]
+fn grazing_curves_stop_within_a_move() {
+    let pose = |x: f64| Pose::new([x, 0.1 * x, 0.0], [0.3, 0.1, 1.0]).unwrap();
+    let path = Path::new(vec![pose(-20.0), pose(20.0)]).unwrap();
+    let points = vec![[0.0, 0.0], [4.0, 0.0], [3.0, 9.0], [6.0, 12.0]];
+    let spline = ProfileSegment::Spline {
+        degree: 3,
+        knots: None,
+        points,
+        weights: None,
+    };
+    let top = ProfileSegment::Line { to: [0.0, 12.0] };
+    let tool = Tool::from_profile(Profile::new([0.0, 0.0], vec![spline, top]).unwrap());
+    let grid = Grid::new([-30.0, -12.0], [30.0, 12.0], [60, 24]).unwrap();
+    check("grazing curves", &|monitor| {
+        sweep(&tool, &path, &grid, &Options::new(1e-6), monitor).map(drop)
+    });
 }
 
 #[test]

@@ -20,7 +20,7 @@ mod strip;
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
-pub(crate) use grazing::{Grazed, Grazing};
+pub(crate) use grazing::{Grazed, Grazing, Resting};
 pub(crate) use rest::{Neighbour, leaning, placements};
 pub(crate) use rows::numbers;
 pub(crate) use strip::envelope;

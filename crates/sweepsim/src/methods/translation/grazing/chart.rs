@@ -39,7 +39,7 @@ pub(super) struct Rough {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Witness {
     pub at: [f64; 2],
-    /// `p` and `g`.
+    /// `p` and `g`, or `X` and `Y`.
     pub value: [f64; 2],
     pub q: f64,
 }
@@ -221,20 +221,32 @@ impl Chart {
         [0, 1].map(|j| self.centre[j] + s[j] * self.half[j])
     }
 
-    /// Where the curve passes `p`, as predicted from a witness, and how far from there that can be.
+    /// Where the map has these values, as predicted from a witness, and how far from there that can be.
     #[inline]
-    pub fn prediction(&self, witness: &Witness, p: f64) -> ([f64; 2], [f64; 2]) {
-        let step = times(&self.inverse, [p - witness.value[0], -witness.value[1]]);
+    pub fn prediction(&self, witness: &Witness, target: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        let step = times(
+            &self.inverse,
+            [target[0] - witness.value[0], target[1] - witness.value[1]],
+        );
         let spread = times(&self.spread, step.map(f64::abs));
         let place = [witness.at[0] + step[0], witness.at[1] + step[1]];
         (place, [spread[0] + self.slack[0], spread[1] + self.slack[1]])
     }
 
-    /// The same of a point in a region of the chart: not farther from the place than `R` times the largest distance from the witness.
-    pub fn reach(&self, witness: &Witness, region: &Region) -> [f64; 2] {
-        let far = [0, 1].map(|i: usize| (region.hi[i] - witness.at[i]).max(witness.at[i] - region.lo[i]));
+    /// The part of a region in which the map can have these values.
+    #[inline]
+    pub fn region(&self, witness: &Witness, target: [f64; 2], within: &Region) -> Region {
+        let (place, reach) = self.prediction(witness, target);
+        let mut region = *within;
+        region.intersect(&Region::around(place, reach));
+        // Not farther from the place than R times the largest distance from the witness.
+        let far = [0, 1].map(|i: usize| (within.hi[i] - witness.at[i]).max(witness.at[i] - within.lo[i]));
         let spread = times(&self.rest, far);
-        [spread[0] + self.slack[0], spread[1] + self.slack[1]]
+        region.intersect(&Region::around(
+            place,
+            [spread[0] + self.slack[0], spread[1] + self.slack[1]],
+        ));
+        region
     }
 
     /// The range of `q` in a region.

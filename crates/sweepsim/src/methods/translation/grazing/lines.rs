@@ -19,7 +19,7 @@ const LONGEST: f64 = 1e-3;
 /// The last step to a point between which and others the curve is interpolated.
 const POLISHED: f64 = 1e-8;
 /// So many lines or fewer are solved one by one.
-const FEW: usize = 8;
+const FEW: usize = 16;
 
 /// A line, in the coordinates of the move.
 #[derive(Clone, Copy, Debug)]
@@ -108,7 +108,7 @@ impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
         let mut targets = std::mem::take(&mut self.targets);
         targets.clear();
         self.visit(window, |_, target| {
-            let region = region(chart, &centre, target.p, &Region::WHOLE);
+            let region = chart.region(&centre, [target.p, 0.0], &Region::WHOLE);
             if !region.is_empty() && meets(chart.q(&centre, &region), target.q, length) {
                 targets.push(target);
             }
@@ -137,15 +137,6 @@ fn witness(at: [f64; 2], sight: &Sight) -> Witness {
         value: [sight.place[1], sight.g[0]],
         q: sight.place[0],
     }
-}
-
-/// Where the curve can pass `p`, within a region.
-fn region(chart: &Chart, witness: &Witness, p: f64, within: &Region) -> Region {
-    let (place, reach) = chart.prediction(witness, p);
-    let mut region = *within;
-    region.intersect(&Region::around(place, reach));
-    region.intersect(&Region::around(place, chart.reach(witness, within)));
-    region
 }
 
 /// Whether a line may be met by points with these `q`.
@@ -209,7 +200,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     fn interpolated(&mut self, n: usize, a: &Knot, b: &Knot) -> bool {
         let Target { p, q, line } = self.targets[n];
         let nearest = if p - a.p < b.p - p { a } else { b };
-        let region = region(self.chart, &nearest.witness, p, &Region::WHOLE);
+        let region = self.chart.region(&nearest.witness, [p, 0.0], &Region::WHOLE);
         if region.is_empty() {
             return true;
         }
@@ -251,10 +242,10 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         let chart = self.chart;
         let Target { p, q, line } = self.targets[n];
         let length = self.lines.course.length;
-        let mut within = region(chart, &self.centre, p, &Region::WHOLE);
+        let mut within = chart.region(&self.centre, [p, 0.0], &Region::WHOLE);
         let mut nearest: Option<&Knot> = None;
         for knot in knots.into_iter().flatten() {
-            within = region(chart, &knot.witness, p, &within);
+            within = chart.region(&knot.witness, [p, 0.0], &within);
             if nearest.is_none_or(|other| (knot.p - p).abs() < (other.p - p).abs()) {
                 nearest = Some(knot);
             }
@@ -281,7 +272,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         let mut s = match (knots, nearest) {
             ([Some(a), Some(b)], _) if a.p < b.p => Knot::position(a, b, p),
             (_, Some(knot)) => knot.along(p),
-            _ => chart.prediction(&self.centre, p).0,
+            _ => chart.prediction(&self.centre, [p, 0.0]).0,
         };
         for _ in 0..STEPS {
             s = within.clamp(s);
@@ -316,7 +307,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
                     }
                 }
             }
-            within = region(chart, &here, p, &within);
+            within = chart.region(&here, [p, 0.0], &within);
             if within.is_empty() {
                 return None;
             }
@@ -338,7 +329,10 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
                 self.lines.collector.open(line as usize);
                 return None;
             }
-            s = step.map_or_else(|| chart.prediction(&here, p).0, |step| [s[0] + step[0], s[1] + step[1]]);
+            s = step.map_or_else(
+                || chart.prediction(&here, [p, 0.0]).0,
+                |step| [s[0] + step[0], s[1] + step[1]],
+            );
         }
         self.lines.collector.open(line as usize);
         None
@@ -360,7 +354,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         normal: [f64; 3],
         p: f64,
     ) -> Verdict {
-        let (predicted, reach) = self.chart.prediction(witness, p);
+        let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
         let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
         let error = self.chart.change(off) + 4.0 * self.lines.course.slack;
         let ahead = q - place[0];

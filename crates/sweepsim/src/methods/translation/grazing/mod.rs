@@ -3,6 +3,7 @@
 //! `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
 //! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it.
 
+mod at_rest;
 mod chart;
 mod course;
 mod face;
@@ -14,25 +15,34 @@ use super::rows::meets;
 use super::{Ceiling, Collector};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
+use crate::methods::harvest::unit;
+use at_rest::{Finds, Search, Still, TooMany};
 use course::{Course, Directions, Key};
 use face::Face;
 use lines::{Lines, Target};
+use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
+use sweepsim_solve::Monitor;
 use tree::{Known, Tree};
 
 /// The number of families of directions that are kept.
 const FAMILIES: usize = 64;
+/// The number of orientations that are kept.
+const POSES: usize = 8;
 /// The number of cells of all of them.
 const CELLS: usize = 100_000;
 /// A patch that takes more looks at cells along one move is left to charts.
 const MOST: u64 = 20_000;
 
-/// The grazing curves of a tool that are kept from one move to the next.
+/// What is kept of a tool from one move to the next.
 #[derive(Debug, Default)]
 pub(crate) struct Grazing {
     /// The latest one comes last.
     families: Vec<Family>,
+    /// The same for orientations at rest.
+    poses: Vec<(Matrix3<f64>, Vec<Option<Still>>)>,
     targets: Vec<Target>,
 }
 
@@ -55,15 +65,14 @@ pub(crate) struct Grazed<'a, 'b> {
     pub near: f64,
     /// The longest last step of Newton's method.
     pub last: f64,
+    pub monitor: &'a dyn Monitor,
 }
-
-/// There are too many cells.
-struct TooMany;
 
 impl Grazing {
     /// Forgets everything: to be called when cells of the tool are dropped.
     pub fn clear(&mut self) {
         self.families.clear();
+        self.poses.clear();
     }
 
     /// The number of the family of a course, which is the last one then.
@@ -123,6 +132,7 @@ impl Grazing {
                 cells,
                 course: &course,
                 highest,
+                monitor: grazed.monitor,
                 looks: 0,
                 visits: 0,
                 lines: Lines {
@@ -154,6 +164,92 @@ impl Grazing {
     }
 }
 
+/// A search of the lines of a tool at rest.
+pub(crate) struct Resting<'a, 'b> {
+    pub pose: (Matrix3<f64>, Vector3<f64>),
+    /// The motions before and after.
+    pub sides: [Side; 2],
+    pub size: Size,
+    pub collector: &'a mut Collector<'b>,
+    /// The longest last step of Newton's method.
+    pub last: f64,
+    pub source: Source,
+    pub monitor: &'a dyn Monitor,
+}
+
+/// Puts crossings of a patch at rest.
+struct Rests<'a, 'b> {
+    collector: &'a mut Collector<'b>,
+    source: Source,
+}
+
+impl Finds for Rests<'_, '_> {
+    fn found(&mut self, line: usize, from: [f64; 2], at: [f64; 2], seen: &OnPlaced, orientation: i8) {
+        let negative = |side: Near<2>| i8::from(side.at(&at, &from) < 0.0);
+        let change = negative(seen.after) - negative(seen.before);
+        if change != 0 {
+            let z = seen.height.at(&at, &from);
+            let jump = -orientation * change;
+            self.collector.crossing(line, z, jump, unit(seen.normal), self.source);
+        }
+    }
+
+    fn open(&mut self, line: usize) {
+        self.collector.open(line);
+    }
+}
+
+impl Grazing {
+    /// Settles the patches that are not done at rest between two moves without rotation, as far as that is possible.
+    pub fn rest(&mut self, (elements, cells): (&[PatchForms], &mut [Cells]), resting: &mut Resting, done: &mut [bool]) {
+        let (turn, tip) = resting.pose;
+        if let Some(known) = self.poses.iter().position(|(other, _)| *other == turn) {
+            let pose = self.poses.remove(known);
+            self.poses.push(pose);
+        } else {
+            let trees = self.poses.iter().flat_map(|(_, trees)| trees.iter().flatten());
+            if trees.map(Still::len).sum::<usize>() > CELLS || self.poses.len() == POSES {
+                self.poses.clear();
+            }
+            self.poses.push((turn, vec![None; elements.len()]));
+        }
+        let Some((_, trees)) = self.poses.last_mut() else {
+            return;
+        };
+        for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
+            if done[number] {
+                continue;
+            }
+            let lines = resting.collector.lines;
+            let mark = resting.collector.mark();
+            let mut search = Search {
+                map: &mut PlacedMap::new(element, cells, resting.pose, resting.sides, resting.size),
+                lines,
+                tip: [tip.x, tip.y],
+                last: resting.last,
+                monitor: resting.monitor,
+                looks: 0,
+                evaluations: 0,
+            };
+            let mut rests = Rests {
+                collector: &mut *resting.collector,
+                source: resting.source,
+            };
+            let outcome = trees[number]
+                .get_or_insert_with(Still::new)
+                .walk(&mut search, &mut rests);
+            let Search { looks, evaluations, .. } = search;
+            let statistics = &mut resting.collector.harvest.statistics;
+            statistics.boxes += looks;
+            statistics.evaluations += evaluations;
+            match outcome {
+                Ok(()) => done[number] = true,
+                Err(TooMany) => resting.collector.forget(mark),
+            }
+        }
+    }
+}
+
 /// The walk through the cells of one patch.
 struct Walk<'a, 'b, S> {
     element: &'a PatchForms,
@@ -161,6 +257,7 @@ struct Walk<'a, 'b, S> {
     course: &'a Course,
     /// Cells that are all this high above the tip are above the ceiling.
     highest: f64,
+    monitor: &'a dyn Monitor,
     looks: u64,
     visits: u64,
     lines: Lines<'a, 'b, S>,
@@ -176,6 +273,9 @@ impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
             self.visits += 1;
             if node.lowest > self.highest || !meets(self.lines.collector.lines, &self.lines.floor(), window) {
                 continue;
+            }
+            if self.monitor.cancelled() {
+                return Ok(());
             }
             if self.visits > 4 * MOST || self.looks > MOST {
                 return Err(TooMany);

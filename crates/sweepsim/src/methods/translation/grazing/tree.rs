@@ -245,7 +245,7 @@ impl Tree {
 
 /// The direction in which a cell is divided: as in `charts/`, the one that contributes most to `R`, every third time the one in which the values change most; but not the one in which it has
 /// almost no length.
-fn divided(jacobian: &[[Range; 2]; 2], sides: [f64; 2], depth: u32, rough: &Rough) -> usize {
+pub(super) fn divided(jacobian: &[[Range; 2]; 2], sides: [f64; 2], depth: u32, rough: &Rough) -> usize {
     let larger = |[a, b]: [f64; 2]| usize::from(b > a);
     let sizes = jacobian.map(|row| [0, 1].map(|j: usize| magnitude(row[j]) * sides[j]));
     let share = |row: [f64; 2], j: usize| {
