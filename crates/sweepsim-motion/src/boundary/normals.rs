@@ -143,21 +143,75 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
         [0, 1, 2].map(|k| position[k].derivative(1)),
     );
     let both = cross(&pu, &pv);
+    let origin = position;
     let (normal, moment) = if polynomial {
         // F = P / w with a constant weight: the moment of F is that of P over it.
         let moment = cross(position, &both).map(|form| form.scale(1.0 / first));
         (both, moment)
     } else {
         let (wu, wv) = (weight.derivative(0), weight.derivative(1));
+        // The normals do not depend on the origin. About a pole they vanish there without rounding, however far it is.
+        let shifted = about_pole(position, weight);
+        let (position, pu, pv, both) = match &shifted {
+            None => (position, pu, pv, both),
+            Some(shifted) => {
+                let [pu, pv] = [0, 1].map(|axis| shifted.each_ref().map(|form| form.derivative(axis)));
+                let both = cross(&pu, &pv);
+                (shifted, pu, pv, both)
+            }
+        };
         let (with_u, with_v) = (cross(position, &pu), cross(position, &pv));
         let hat = [0, 1, 2].map(|k| {
             let sum = weight.mul(&both[k]).add(&wv.mul(&with_u[k]));
             sum.sub(&wu.mul(&with_v[k]))
         });
-        let moment = cross(position, &hat);
+        let moment = cross(origin, &hat);
         (hat.map(|form| weight.mul(&form)), moment)
     };
     without_sides(normal, moment)
+}
+
+/// `P − w c`, if a side of the patch has shrunk to the point `c` up to rounding; 0 on that side. `None` if there is no such side, or it is at the origin.
+fn about_pole(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernstein; 3]> {
+    /// Roundings of control points that count as one.
+    const ROUNDINGS: f64 = 8.0;
+    let degrees = [0, 1].map(|axis| {
+        let own = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0);
+        own.max(weight.degree(axis))
+    });
+    let raised = |form: &Bernstein| form.elevated_to(&degrees);
+    let (forms, weight) = (position.each_ref().map(raised), raised(weight));
+    let on_side = |axis: usize, upper: bool, index: &[usize]| index[axis] == if upper { degrees[axis] } else { 0 };
+    let sides = [(0, false), (0, true), (1, false), (1, true)];
+    sides
+        .into_iter()
+        .filter(|(axis, _)| degrees[1 - axis] > 0)
+        .find_map(|(axis, upper)| {
+            let weights: Vec<f64> = side(&weight, axis, upper).collect();
+            let points = forms
+                .each_ref()
+                .map(|form| -> Vec<f64> { side(form, axis, upper).zip(&weights).map(|(x, w)| x / w).collect() });
+            let pole = points.each_ref().map(|coordinates| coordinates[0]);
+            let size = pole.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let allowed = ROUNDINGS * f64::EPSILON * size;
+            let is_one = (0..3).all(|k| points[k].iter().all(|x| (x - pole[k]).abs() <= allowed));
+            if !is_one || size == 0.0 {
+                return None;
+            }
+            let about = |k: usize| {
+                let all = |index: &[usize]| {
+                    let at = index[0] + (degrees[0] + 1) * index[1];
+                    let (x, w) = (forms[k].coefficients()[at], weight.coefficients()[at]);
+                    if on_side(axis, upper, index) {
+                        0.0
+                    } else {
+                        x - w * pole[k]
+                    }
+                };
+                Bernstein::from_fn(&degrees, all).ok()
+            };
+            Some([about(0)?, about(1)?, about(2)?])
+        })
 }
 
 /// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.

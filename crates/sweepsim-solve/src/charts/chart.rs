@@ -10,6 +10,9 @@ const STEPS: usize = 32;
 /// If a preimage can only lie in a part of the box no larger than this, relative to half its sides (besides rounding), Newton's result decides whether there is one.
 const ON_FACE: f64 = 1e-11;
 
+/// A preimage is expected in the box if its first guess is no farther from the centre, in half sides.
+const BESIDE: f64 = 1.0;
+
 type Square<const N: usize> = SMatrix<f64, N, N>;
 
 /// A box of positions, in coordinates scaled to the box of a chart.
@@ -135,6 +138,23 @@ impl<'a, const N: usize> Chart<'a, N> {
     ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
+        let clamped = region.clamp(&s);
+        // Probably there is none, and the value alone tells.
+        let value = if s.amax() > BESIDE {
+            map.value(&linear.point(&clamped))
+        } else {
+            None
+        };
+        if let Some(value) = value {
+            let here = Witness { at: clamped, value };
+            *evaluations += 1;
+            *witness = Some(here);
+            let predicted = self.narrow(&here, q, &mut region);
+            if region.is_empty() {
+                return Outcome::Settled;
+            }
+            s = predicted;
+        }
         for _ in 0..STEPS {
             s = region.clamp(&s);
             let from = linear.point(&s);
@@ -156,10 +176,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                     return Outcome::Settled;
                 }
             }
-            let (predicted, own) = self.region(&here, q);
-            let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - s[i], s[i] - region.lo[i]));
-            region.intersect(&own);
-            region.intersect(&Region::around(&predicted, &(linear.rest * far + linear.slack)));
+            let predicted = self.narrow(&here, q, &mut region);
             if region.is_empty() {
                 return Outcome::Settled;
             }
@@ -180,6 +197,18 @@ impl<'a, const N: usize> Chart<'a, N> {
             s = next.unwrap_or(predicted);
         }
         Outcome::Unclear
+    }
+
+    /// Leaves of a region what can hold a preimage of `q`, and predicts it.
+    fn narrow(&self, here: &Witness<N>, q: &[f64; N], region: &mut Region<N>) -> SVector<f64, N> {
+        let (predicted, own) = self.region(here, q);
+        let far = SVector::from_fn(|i, _| f64::max(region.hi[i] - here.at[i], here.at[i] - region.lo[i]));
+        region.intersect(&own);
+        region.intersect(&Region::around(
+            &predicted,
+            &(self.linear.rest * far + self.linear.slack),
+        ));
+        predicted
     }
 
     /// Whether a point is in the box. Only its lower faces, and upper faces on the domain's boundary, belong to it.

@@ -125,32 +125,64 @@ impl<const N: usize> Linear<N> {
         s - self.inverse * SVector::<f64, N>::from_fn(|i, _| value[i] - q[i])
     }
 
-    /// The range of second values for which targets that agree with `q` otherwise can have a preimage in the box, predicted from the centre.
-    pub fn window(&self, value: &[f64; N], q: &[f64; N]) -> Option<Enclosure> {
-        let mut window = Enclosure::WHOLE;
+    /// Where targets can have a preimage in the box, predicted from the centre.
+    pub fn strips(&self, value: &[f64; N]) -> Strips<N> {
+        let mut strips = Strips {
+            value: *value,
+            slopes: [[0.0; N]; N],
+            widths: [f64::INFINITY; N],
+        };
         if N < 2 {
-            return Some(window);
+            return strips;
         }
         for i in 0..N {
-            // |base + factor (q₁ − Φ₁)| ≤ 1 + reach; twice the slack is for the rounding here, of numbers no larger than those of Φ.
+            // |Kᵢ (q − Φ)| ≤ 1 + reach; twice the slack is for the rounding here and for each row, of numbers no larger than those of Φ.
             let factor = self.inverse[(i, 1)];
-            let base: f64 = (0..N)
-                .filter(|k| *k != 1)
-                .map(|k| self.inverse[(i, k)] * (q[k] - value[k]))
-                .sum();
-            let limit = 1.0 + self.reach(i) + 2.0 * self.slack[i];
-            let (a, b) = ((-limit - base) / factor, (limit - base) / factor);
-            let (lo, hi) = (a.min(b), a.max(b));
-            // With a factor of 0 the ends are infinite or NaN: they narrow nothing, and targets are tested one by one.
-            if lo.is_finite() && hi.is_finite() {
-                window = window.intersection(Enclosure::hull(value[1] + lo, value[1] + hi))?;
+            let limit = (1.0 + self.reach(i) + 2.0 * self.slack[i]) * (1.0 + 8.0 * f64::EPSILON);
+            let slopes: [f64; N] = std::array::from_fn(|k| if k == 1 { 0.0 } else { -self.inverse[(i, k)] / factor });
+            let width = limit / factor.abs();
+            // With a factor of 0 the numbers are infinite or NaN: they narrow nothing.
+            if width.is_finite() && slopes.iter().all(|slope| slope.is_finite()) {
+                (strips.slopes[i], strips.widths[i]) = (slopes, width);
             }
         }
-        Some(window)
+        strips
     }
 
     pub fn point(&self, s: &SVector<f64, N>) -> [f64; N] {
         std::array::from_fn(|i| self.centre[i] + s[i] * self.half[i])
+    }
+}
+
+/// The targets that the mean value theorem leaves to a box: for each of its directions a strip, `|Kᵢ (q − Φ)| ≤ 1 + reach`.
+pub(crate) struct Strips<const N: usize> {
+    /// `Φ` at the centre.
+    value: [f64; N],
+    /// Of each strip, how the middle of its second values changes with the other values.
+    slopes: [[f64; N]; N],
+    /// Half the length of its second values.
+    widths: [f64; N],
+}
+
+impl<const N: usize> Strips<N> {
+    /// Half the length of the shortest range that they can leave in the middle of a row.
+    pub fn narrowest(&self) -> f64 {
+        self.widths.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// The range of second values for which targets that agree with `q` otherwise are in all strips.
+    #[inline]
+    pub fn window(&self, q: &[f64; N]) -> Option<Enclosure> {
+        let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (slopes, width) in self.slopes.iter().zip(&self.widths) {
+            let middle: f64 = (0..N).map(|k| slopes[k] * (q[k] - self.value[k])).sum();
+            let (start, end) = (middle - width, middle + width);
+            // NaN narrows nothing.
+            lo = if start > lo { start } else { lo };
+            hi = if end < hi { end } else { hi };
+        }
+        let at = self.value.get(1).copied().unwrap_or(0.0);
+        (lo <= hi).then(|| Enclosure::hull(at + lo, at + hi))
     }
 }
 
@@ -288,6 +320,38 @@ mod tests {
             }
             for k in 0..3 {
                 prop_assert!(found.slack[k] >= slack[k] * (1.0 - 1e-10));
+            }
+        }
+    }
+
+    proptest! {
+        /// The strips leave every target that the mean value test leaves, one by one, and few others.
+        #[test]
+        fn strips_are_the_mean_value_test(
+            entries in proptest::collection::vec(-1.0..1.0, 9), skew in -8.0..8.0, is_flat in any::<bool>(), centre in [-50.0..50.0, -50.0..50.0, -1.0..1.0],
+            places in proptest::collection::vec([-1.0..1.0, -1.0..1.0], 40),
+        ) {
+            let mut inverse = Matrix3::from_fn(|i, j| entries[3 * i + j]);
+            // Nearly singular maps, and directions that do not depend on the second value.
+            inverse.set_row(1, &(inverse.row(0) * f64::exp(skew)));
+            if is_flat {
+                inverse[(2, 1)] = 0.0;
+            }
+            let rest = Matrix3::repeat(0.2);
+            let linear = Linear { inverse, ..preconditioned(rest, Vector3::repeat(1.0), 0.6) };
+            let strips = linear.strips(&centre);
+            for [x, y] in places {
+                let size = 6.0 / inverse.row(1).amax().max(inverse.amax());
+                let q = [centre[0] + size * x, centre[1] + size * y, centre[2]];
+                let start = linear.predict(&Vector3::zeros(), &centre, &q);
+                let most = (0..3).map(|i| start[i].abs() - linear.reach(i)).fold(f64::NEG_INFINITY, f64::max);
+                let is_left = strips.window(&q).is_some_and(|window| window.contains(q[1]));
+                if most <= 1.0 {
+                    prop_assert!(is_left, "{most}");
+                }
+                if most > 1.0 + 1e-9 && !is_flat {
+                    prop_assert!(!is_left, "{most}");
+                }
             }
         }
     }

@@ -64,6 +64,11 @@ pub trait ChartMap<const N: usize> {
         None
     }
 
+    /// `Φ` at a point, if it costs much less without derivatives. As accurate as by [`evaluate`](Self::evaluate).
+    fn value(&self, _x: &[f64; N]) -> Option<[f64; N]> {
+        None
+    }
+
     /// `Φ` and `∂Φᵢ/∂xⱼ` at a point, which may lie a little outside the domain.
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, Self::Seen>;
 

@@ -136,11 +136,23 @@ impl<C: Clone> ChartSolver<C> {
             let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
             let mut planned = None;
             if let Some(linear) = linear {
-                let value = map.evaluate(&linear.centre).value;
+                let value = map.value(&linear.centre);
+                let value = value.unwrap_or_else(|| map.evaluate(&linear.centre).value);
                 self.statistics.evaluations += 1;
                 // With many targets, smaller charts pay off: each target is then settled by one evaluation.
                 let limit = if count < MANY { LIMIT } else { CLOSE };
-                let chart = linear.radius < limit && linear.radius.powi(SHARE) * (count as f64) < 1.0;
+                let most = linear.radius.powi(-SHARE);
+                let mut chart = linear.radius < limit && (count as f64) < most;
+                if !chart {
+                    // Boxes are long and lie aslant: most targets in the range of values may be beside them.
+                    let able = linear.radius < LIMIT;
+                    let enough = if able { most.min(MANY as f64) as usize } else { 1 };
+                    let left = remaining(&linear, &value, &values, targets, count, enough);
+                    if left == 0 {
+                        continue;
+                    }
+                    chart = able && left < enough;
+                }
                 let all_clear = chart.then(|| linear.contraction()).flatten().map(|contraction| {
                     let sides = map.sides(&cell).map(Sides);
                     self.chart(
@@ -166,10 +178,7 @@ impl<C: Clone> ChartSolver<C> {
                     Some(false) => {}
                     None => {
                         let singular = linear.radius >= 1.0;
-                        if count <= FEW
-                            && (all_absent(&linear, &value, &values, targets)
-                                || singular && all_beside(map, &cell, &values, targets))
-                        {
+                        if count <= FEW && singular && all_beside(map, &cell, &values, targets) {
                             continue;
                         }
                     }
@@ -240,8 +249,9 @@ impl<C: Clone> ChartSolver<C> {
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
         let mut asked = 0_usize;
+        let strips = linear.strips(value);
         let window = |q: &[f64; N]| {
-            let own = linear.window(value, q)?;
+            let own = strips.window(q)?;
             match sides {
                 Some(sides) => own.intersection(sides.window(linear, value, q)?),
                 None => Some(own),
@@ -303,21 +313,37 @@ impl<C: Clone> ChartSolver<C> {
     }
 }
 
-/// Whether the mean value test excludes each target in the range.
-fn all_absent<const N: usize, T: Targets<N> + ?Sized>(
+/// The number of targets, of `count` in the range, that the mean value test does not exclude; any number from `enough` on if there are as many.
+fn remaining<const N: usize, T: Targets<N> + ?Sized>(
     linear: &Linear<N>,
     value: &[f64; N],
     values: &[Enclosure; N],
     targets: &T,
-) -> bool {
-    let mut absent = true;
-    let origin = SVector::<f64, N>::zeros();
-    targets.visit(values, &all_of, &mut |target| {
-        let start = linear.predict(&origin, value, &target.value);
-        absent = (0..N).any(|i| start[i].abs() > 1.0 + linear.reach(i));
-        absent
+    count: usize,
+    enough: usize,
+) -> usize {
+    /// With this many times as many expected, they are not counted.
+    const CERTAIN: f64 = 4.0;
+    let mut left = 0;
+    if count <= FEW {
+        let origin = SVector::<f64, N>::zeros();
+        targets.visit(values, &all_of, &mut |target| {
+            let start = linear.predict(&origin, value, &target.value);
+            left += usize::from((0..N).all(|i| start[i].abs() <= 1.0 + linear.reach(i)));
+            left < enough
+        });
+        return left;
+    }
+    let strips = linear.strips(value);
+    let share = strips.narrowest() / values[1.min(N - 1)].radius();
+    if share * count as f64 > CERTAIN * (enough + FEW) as f64 {
+        return count.max(enough);
+    }
+    targets.visit(values, &|q| strips.window(q), &mut |_| {
+        left += 1;
+        left < enough
     });
-    absent
+    left
 }
 
 /// Whether the map excludes each target in the range.

@@ -41,6 +41,12 @@ pub(crate) fn cross(a: &Quad, b: &Quad) -> Quad {
     ]
 }
 
+/// The dot product of two vectors.
+#[inline]
+pub(crate) fn dot(a: &Quad, b: &Quad) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 /// Values and derivatives of the quadratic Bernstein polynomials.
 #[inline]
 pub(crate) fn quadratics(x: f64) -> [[f64; 3]; 2] {

@@ -1,7 +1,7 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
 use crate::algebra::ranges::{Triples, all_or_none};
-use crate::cutter::patch_forms::PatchForms;
+use crate::cutter::patch_forms::{PatchForms, Slot};
 use crate::cutter::reduced::Missing;
 use sweepsim_solve::CUT;
 use sweepsim_spline::kernel;
@@ -18,6 +18,8 @@ struct CellNode {
     c: Vec<f64>,
     /// Control points of position and slopes, in the places of their numerators in `c`; derivatives of the fields.
     points: Vec<f64>,
+    /// Whether slopes and derivatives are there: see [`Cells::prepare`].
+    prepared: bool,
     /// What reduced fields lack.
     missing: Missing,
 }
@@ -151,23 +153,40 @@ impl Cells {
                 own = reduced.on(lower, upper, forms);
             }
         }
-        points.resize(self.points, 0.0);
+        points.resize(layout.position.start + 3 * layout.position.len(), 0.0);
         for slot in &layout.fields {
             all_or_none(&mut c[slot.start..][..6 * slot.len()]);
         }
-        for slot in std::iter::once(&layout.position).chain(&layout.slopes) {
-            let len = slot.len();
-            let of = &c[slot.start..][..4 * len];
-            let out = &mut points[slot.start..][..3 * len];
-            let (x, rest) = out.split_at_mut(len);
-            let (y, z) = rest.split_at_mut(len);
-            for i in 0..len {
-                let inverse = 1.0 / of[3 * len + i];
-                x[i] = of[i] * inverse;
-                y[i] = of[len + i] * inverse;
-                z[i] = of[2 * len + i] * inverse;
-            }
-            all_or_none(&mut points[slot.start..][..3 * len]);
+        control_points(&layout.position, &c, &mut points);
+        CellNode {
+            lower,
+            upper,
+            parts: [NONE; 2],
+            c,
+            points,
+            prepared: false,
+            missing: own,
+        }
+    }
+
+    /// Computes the control points of slopes and the derivatives of fields of a cell: many cells are dropped without them.
+    pub fn prepare(&mut self, element: &PatchForms, cell: u32) {
+        let layout = &element.layout;
+        let CellNode {
+            lower,
+            upper,
+            c,
+            points,
+            prepared,
+            ..
+        } = &mut self.nodes[cell as usize];
+        if *prepared {
+            return;
+        }
+        *prepared = true;
+        points.resize(self.points, 0.0);
+        for slot in &layout.slopes {
+            control_points(slot, c, points);
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
@@ -193,14 +212,6 @@ impl Cells {
                 }
             }
         }
-        CellNode {
-            lower,
-            upper,
-            parts: [NONE; 2],
-            c,
-            points,
-            missing: own,
-        }
     }
 
     pub fn bounds(&self, cell: u32, axis: usize) -> (f64, f64) {
@@ -215,7 +226,7 @@ impl Cells {
             return [first, first + 1];
         }
         let node = &self.nodes[cell as usize];
-        let (mut lower, mut upper) = (vec![0.0; node.c.len()], vec![0.0; node.c.len()]);
+        let (mut lower, mut upper) = (node.c.clone(), node.c.clone());
         let buffers = |c| Buffers { c, points: Vec::new() };
         let layout = &element.layout;
         let rational = std::iter::once(&layout.position)
@@ -224,7 +235,6 @@ impl Cells {
         for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
             let range = slot.start..slot.start + count * slot.len();
             let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
-            high.copy_from_slice(&node.c[range]);
             let inner = if axis == 0 { 1 } else { slot.degrees[0] + 1 };
             kernel::split_at(high, low, slot.degrees[axis], inner, CUT);
         }
@@ -248,8 +258,9 @@ impl Cells {
         Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
     }
 
-    /// Control points of the derivative of the position.
+    /// Control points of the derivative of the position, in a [prepared](Self::prepare) cell.
     pub fn slope<'a>(&'a self, element: &PatchForms, cell: u32, axis: usize) -> Triples<'a> {
+        debug_assert!(self.nodes[cell as usize].prepared);
         let slot = &element.layout.slopes[axis];
         Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
     }
@@ -269,8 +280,9 @@ impl Cells {
         &self.nodes[cell as usize].missing
     }
 
-    /// Coefficients of the derivatives of `N` and `M` of a field.
+    /// Coefficients of the derivatives of `N` and `M` of a field, in a [prepared](Self::prepare) cell.
     pub fn field_slope(&self, cell: u32, field: usize, axis: usize) -> [Triples<'_>; 2] {
+        debug_assert!(self.nodes[cell as usize].prepared);
         let (start, len) = self.derivatives[field][axis];
         let points = &self.nodes[cell as usize].points;
         [
@@ -278,4 +290,20 @@ impl Cells {
             Triples::new(points, start + 3 * len, len),
         ]
     }
+}
+
+/// The control points of a slot, from its homogeneous tensors.
+fn control_points(slot: &Slot, c: &[f64], points: &mut [f64]) {
+    let len = slot.len();
+    let of = &c[slot.start..][..4 * len];
+    let out = &mut points[slot.start..][..3 * len];
+    let (x, rest) = out.split_at_mut(len);
+    let (y, z) = rest.split_at_mut(len);
+    for i in 0..len {
+        let inverse = 1.0 / of[3 * len + i];
+        x[i] = of[i] * inverse;
+        y[i] = of[len + i] * inverse;
+        z[i] = of[2 * len + i] * inverse;
+    }
+    all_or_none(&mut points[slot.start..][..3 * len]);
 }

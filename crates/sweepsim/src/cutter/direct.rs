@@ -3,9 +3,11 @@
 //! `N = s w⁴ (F_u × F_v)` and `M = F × N` with their derivatives take the second-order jet of `F`, of 16 control points for a bicubic patch, where the forms
 //! of `N` and `M` have 81 coefficients each. Both are the same function, which the forms bound over boxes.
 
-use crate::algebra::quad::{Quad, add, cross, mix, quad};
+use crate::algebra::jets::Bicubic;
+use crate::algebra::quad::{Quad, add, cross, dot, mix, quad};
 use crate::algebra::table::Table;
 use crate::time::pieces::Sizes;
+use crate::time::placement::Twisted;
 use nalgebra::Vector3;
 use sweepsim_motion::Patch;
 use sweepsim_spline::Bernstein;
@@ -14,7 +16,7 @@ use sweepsim_spline::Bernstein;
 #[derive(Clone, Debug)]
 pub(crate) struct Direct {
     /// The homogeneous position relative to `centre`, so that its derivatives are differences of small numbers.
-    places: Table,
+    places: Places,
     centre: Vector3<f64>,
     /// `s`.
     factor: f64,
@@ -26,15 +28,44 @@ pub(crate) struct Direct {
     pub rounding: Sizes,
 }
 
+/// Forms of the position, arranged for their degrees.
+#[derive(Clone, Debug)]
+enum Places {
+    Bicubic(Box<Bicubic>),
+    Any(Table),
+}
+
+impl Places {
+    /// Bounds of the rounding errors of both first derivatives, form by form; the forms have coefficients up to `sizes`.
+    fn roundings(&self, sizes: [f64; 4]) -> [[f64; 4]; 2] {
+        match self {
+            Self::Bicubic(bicubic) => [[1, 0], [0, 1]].map(|orders| {
+                let sums = bicubic.sizes(orders);
+                let unit = 0.5 * f64::EPSILON;
+                // Besides, coefficients of 64 terms, up to nine times as large, are computed with twice the digits.
+                std::array::from_fn(|k| unit * (Bicubic::ROUNDINGS * sums[k] + 1e6 * unit * sizes[k]))
+            }),
+            Self::Any(table) => table.degrees().map(|degree| {
+                let degree = degree as f64;
+                sizes.map(|size| 2.0 * degree * (2.0 * degree + 8.0) * f64::EPSILON * size)
+            }),
+        }
+    }
+}
+
 /// Nearer to a pole, normals are left to their forms: divided by the distance, the rounding errors of their products would be too large.
 const POLE: f64 = 1.0 / 16.0;
 
-/// A point relative to the tool, its derivatives, `N` and `M`, and their derivatives.
+/// A point relative to the tool, its derivatives, and `N`.
 pub(crate) struct Site {
     pub place: Quad,
     pub slopes: [Quad; 2],
-    /// `N` and `M`: values, and derivatives in `u` and in `v`.
-    pub fields: [[Quad; 2]; 3],
+    pub normal: Quad,
+    /// Derivatives in `uu`, `uv` and `vv`.
+    second: [Quad; 3],
+    /// `N` is this many times the product of the slopes, and the relative change of that factor in `u` and in `v`.
+    size: f64,
+    grown: [f64; 2],
 }
 
 fn scaled(a: &Quad, factor: f64) -> Quad {
@@ -66,10 +97,14 @@ impl Direct {
         let sides = patch.shrunk_sides();
         let divisions = sides.as_flattened().iter().filter(|side| **side).count();
         let growth = POLE.recip().powi(divisions as i32) * (1.0 + 4.0 * f64::EPSILON);
-        let rounding = rounding(&shifted, shift, weight, &centre, factor).map(|sizes| sizes.map(|size| growth * size));
+        let table = Table::new(&[x, y, z, raised(weight)], degrees);
+        let bicubic = Bicubic::new(&table).map(|bicubic| Places::Bicubic(Box::new(bicubic)));
+        let places = bicubic.unwrap_or(Places::Any(table));
+        let rounding =
+            rounding((&shifted, &places), shift, weight, &centre, factor).map(|sizes| sizes.map(|size| growth * size));
         Some(Self {
             sides,
-            places: Table::new(&[x, y, z, raised(weight)], degrees),
+            places,
             centre,
             factor,
             constant,
@@ -105,9 +140,29 @@ impl Direct {
         (product, slopes)
     }
 
+    /// The point at `(u, v)` relative to the tool, and `⟨spin, M⟩ + ⟨travel, N⟩` there, as [`at`](Self::at) computes them; `None` if it has to be used.
+    #[inline]
+    pub fn value(&self, at: [f64; 2], twist: &Twisted) -> Option<(Quad, f64)> {
+        let (Places::Bicubic(bicubic), Some(weight)) = (&self.places, self.constant) else {
+            return None;
+        };
+        let inverse = 1.0 / weight;
+        let [f, fu, fv] = bicubic.slopes(at);
+        let [f, fu, fv] = [f, fu, fv].map(|[x, y, z, _]| [x * inverse, y * inverse, z * inverse, 0.0]);
+        let mut size = self.factor * (weight * weight) * (weight * weight);
+        if self.sides != [[false; 2]; 2] {
+            size /= self.divisor(at).0;
+        }
+        let place = add(&f, &quad(&self.centre));
+        Some((place, dot(&scaled(&cross(&fu, &fv), size), &velocity(&place, twist))))
+    }
+
     /// The point at `(u, v)`, if it is [covered](Self::covers).
     pub fn at(&self, at: [f64; 2]) -> Site {
-        let jet = self.places.jet::<4>(at);
+        let jet = match &self.places {
+            Places::Bicubic(bicubic) => bicubic.jet(at),
+            Places::Any(table) => table.jet::<4>(at),
+        };
         let weights = jet.map(|form| form[3]);
         let [p, pu, pv, puu, puv, pvv] = jet.map(|[x, y, z, _]| [x, y, z, 0.0]);
         let centre = quad(&self.centre);
@@ -144,23 +199,48 @@ impl Direct {
             grown = [grown[0] - slopes[0], grown[1] - slopes[1]];
         }
         let place = add(&f, &centre);
-        let [fuu, fuv, fvv] = second;
-        let own = cross(&fu, &fv);
-        let normal = scaled(&own, size);
-        let turned = [
-            add(&cross(&fuu, &fv), &cross(&fu, &fuv)),
-            add(&cross(&fuv, &fv), &cross(&fu, &fvv)),
-        ];
-        let slopes = [fu, fv];
-        let of = |axis: usize| {
-            let n = mix(size, &turned[axis], grown[axis], &normal);
-            [n, add(&cross(&slopes[axis], &normal), &cross(&place, &n))]
-        };
         Site {
-            fields: [[normal, cross(&place, &normal)], of(0), of(1)],
             place,
-            slopes,
+            slopes: [fu, fv],
+            normal: scaled(&cross(&fu, &fv), size),
+            second,
+            size,
+            grown,
         }
+    }
+}
+
+/// `travel + spin × F`.
+#[inline]
+fn velocity(place: &Quad, twist: &Twisted) -> Quad {
+    add(&twist.travel, &cross(&twist.spin, place))
+}
+
+/// `⟨spin, M⟩ + ⟨travel, N⟩ = ⟨N, V⟩`, with the velocity `V = travel + spin × F`: the forms of `M` are needed for bounds, not for values. Rounding errors are those of
+/// `M = F × N`, in another order.
+impl Site {
+    /// `⟨spin, M⟩ + ⟨travel, N⟩`.
+    pub fn envelope(&self, twist: &Twisted) -> f64 {
+        dot(&self.normal, &velocity(&self.place, twist))
+    }
+
+    /// The same, and its derivatives in `u` and in `v`.
+    pub fn envelopes(&self, twist: &Twisted) -> [f64; 3] {
+        let velocity = velocity(&self.place, twist);
+        let [fu, fv] = &self.slopes;
+        let [fuu, fuv, fvv] = &self.second;
+        let g = dot(&self.normal, &velocity);
+        // ⟨F_uu × F_v, V⟩ = ⟨F_uu, F_v × V⟩, and so on.
+        let (with_u, with_v) = (cross(fv, &velocity), cross(&velocity, fu));
+        let turned = cross(&self.normal, &twist.spin);
+        let slope = |in_u: &Quad, in_v: &Quad, own: &Quad, grown: f64| {
+            self.size * (dot(in_u, &with_u) + dot(in_v, &with_v)) + grown * g + dot(&turned, own)
+        };
+        [
+            g,
+            slope(fuu, fuv, fu, self.grown[0]),
+            slope(fuv, fvv, fv, self.grown[1]),
+        ]
     }
 }
 
@@ -171,7 +251,7 @@ impl Direct {
 ///
 /// `shift` bounds the errors of the position's coefficients themselves.
 fn rounding(
-    position: &[Bernstein; 3],
+    (position, places): (&[Bernstein; 3], &Places),
     shift: [f64; 3],
     weight: &Bernstein,
     centre: &Vector3<f64>,
@@ -183,14 +263,15 @@ fn rounding(
     let sizes = position.each_ref().map(Bernstein::magnitude);
     let radius = sizes.map(|size| size / lightest);
     // Of each derivative, component by component: a bound, and one of its error.
+    let roundings = places.roundings([sizes[0], sizes[1], sizes[2], heaviest]);
     let [u, v] = [0, 1].map(|axis| {
         let degree = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0) as f64;
-        let roundings = 2.0 * degree * (2.0 * degree + 8.0) * epsilon;
+        let roundings = roundings[axis];
         let growth = weight.derivative(axis).magnitude();
         std::array::from_fn::<_, 3, _>(|k| {
             let bound = (position[k].derivative(axis).magnitude() + radius[k] * growth) / lightest;
             let shifted = (2.0 * degree + growth / lightest) * shift[k];
-            let error = (roundings * (sizes[k] + radius[k] * heaviest) + shifted) / lightest + 4.0 * epsilon * bound;
+            let error = (roundings[k] + radius[k] * roundings[3] + shifted) / lightest + 4.0 * epsilon * bound;
             [bound, error]
         })
     });
@@ -213,18 +294,28 @@ fn rounding(
     [moment, normal.map(|[_, error]| error)]
 }
 
-impl Site {
-    /// `N` and `M` one after the other, and their derivatives.
-    pub fn lists(&self) -> [[f64; 6]; 3] {
-        self.fields.map(|[[a, b, c, _], [d, e, f, _]]| [a, b, c, d, e, f])
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::algebra::ranges::range_of;
     use proptest::prelude::*;
+
+    /// `N` and `M` one after the other, and their derivatives: what a velocity along an axis, or a turn about it, makes of them.
+    fn lists(direct: &Direct, at: [f64; 2]) -> [[f64; 6]; 3] {
+        let site = direct.at(at);
+        let unit = |k: usize| std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+        let zero = [0.0; 4];
+        let twist = |k: usize| Twisted {
+            travel: if k < 3 { unit(k) } else { zero },
+            spin: if k < 3 { zero } else { unit(k - 3) },
+        };
+        let all: [[f64; 3]; 6] = std::array::from_fn(|k| site.envelopes(&twist(k)));
+        assert!((0..6).all(|k| site.envelope(&twist(k)) == all[k][0]));
+        if let Some((place, g)) = direct.value(at, &twist(4)) {
+            assert_eq!((place, g), (site.place, all[4][0]));
+        }
+        std::array::from_fn(|d| std::array::from_fn(|k| all[k][d]))
+    }
 
     fn form(degrees: [usize; 2], value: &dyn Fn(usize) -> f64) -> Bernstein {
         let count = (degrees[0] + 1) * (degrees[1] + 1);
@@ -258,7 +349,7 @@ mod tests {
             let forms: Vec<&Bernstein> = patch.field().normal().iter().chain(patch.field().moment()).collect();
             for (k, form) in forms.iter().enumerate() {
                 let error = direct.rounding[1 - k / 3][k % 3] + 64.0 * f64::EPSILON * form.magnitude();
-                let lists = site.lists();
+                let lists = lists(&direct, at);
                 let value = form.evaluate(&at);
                 prop_assert!((lists[0][k] - value).abs() <= error, "{k}: {} {value} {error}", lists[0][k]);
                 for axis in 0..2 {
@@ -276,20 +367,23 @@ mod tests {
         #[test]
         fn normals_near_a_pole_are_those_of_the_forms(
             upper in any::<bool>(), bumps in proptest::collection::vec(-0.08..0.08, 16), at in [0.0..=1.0, 0.0..=1.0],
+            rational in any::<bool>(), weights in proptest::collection::vec(0.9..1.1, 16), pole in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
         ) {
-            // A sector about the z axis: v is the distance from the pole, or 1 less it.
+            // A sector about a line along z: v is the distance from the pole, or 1 less it. The pole may be far from the origin.
             let far = |i: usize| (if upper { 3 - i / 4 } else { i / 4 }) as f64 / 3.0;
             let angle = |i: usize| (i % 4) as f64 / 3.0 * if upper { -1.0 } else { 1.0 };
+            let weight = |i: usize| if rational { weights[i] } else { 1.0 };
+            let pole = if rational { pole } else { [0.0; 3] };
             let position = [
-                form([3, 3], &|i| far(i) * f64::cos(angle(i))),
-                form([3, 3], &|i| far(i) * f64::sin(angle(i))),
-                form([3, 3], &|i| far(i) * (1.0 + bumps[i])),
+                form([3, 3], &|i| weight(i) * (pole[0] + far(i) * f64::cos(angle(i)))),
+                form([3, 3], &|i| weight(i) * (pole[1] + far(i) * f64::sin(angle(i)))),
+                form([3, 3], &|i| weight(i) * (pole[2] + far(i) * (1.0 + bumps[i]))),
             ];
-            let patch = Patch::new(position, form([3, 3], &|_| 1.0)).unwrap();
+            let patch = Patch::new(position, form([3, 3], &weight)).unwrap();
             prop_assert_eq!(patch.shrunk_sides(), [[false; 2], [!upper, upper]]);
             let direct = Direct::new(&patch).unwrap();
             prop_assume!(direct.covers(at));
-            let lists = direct.at(at).lists();
+            let lists = lists(&direct, at);
             let forms: Vec<&Bernstein> = patch.field().normal().iter().chain(patch.field().moment()).collect();
             for (k, form) in forms.iter().enumerate() {
                 let error = direct.rounding[1 - k / 3][k % 3] + 64.0 * f64::EPSILON * form.magnitude();

@@ -120,7 +120,7 @@ mod tests {
                 for (element, patch) in PatchForms::all(&tool).0.iter().zip(tool.patches()) {
                     let own = Placing::new(&turn, &tip, None);
                     let (spot, fields) = element.spot(&own, at);
-                    let g = fields.map(|field| Twisted::new(&spin, &travel, None).dot(&field));
+                    let g = fields.envelopes(&Twisted::new(&spin, &travel, None));
                     // A few dozen roundings of numbers of the size of the place, of the tool, and of normals of size 1 with their slopes.
                     let size = 100.0 + 10.0 * radius;
                     if let Some(revolution) = &element.revolution {

@@ -54,6 +54,7 @@ impl ChartMap<2> for EdgeMap<'_> {
     }
 
     fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 2]; 2] {
+        self.cells.prepare(self.element, cell.0);
         let slope = self.cells.slope(self.element, cell.0, 0);
         let turning = turning(self.element, self.cells, self.times, *cell);
         [0, 1].map(|r| [interval(products(self.times.rows(cell.1, r), &slope)), turning[r]])
@@ -78,6 +79,7 @@ impl ChartMap<2> for EdgeMap<'_> {
     }
 
     fn is_absent(&mut self, cell: &Brick, line: &[f64; 2]) -> bool {
+        self.cells.prepare(self.element, cell.0);
         is_absent_from_edge((self.element, self.cells), (self.times, &self.size), *cell, *line)
     }
 

@@ -86,6 +86,7 @@ impl ChartMap<3> for PatchMap<'_> {
     }
 
     fn jacobian(&mut self, cell: &Brick) -> [[Enclosure; 3]; 3] {
+        self.cells.prepare(self.element, cell.0);
         let zero = Enclosure::hull(0.0, 0.0);
         let mut jacobian = [[zero; 3]; 3];
         let missing = self.cells.missing(cell.0);
@@ -138,6 +139,15 @@ impl ChartMap<3> for PatchMap<'_> {
             })
     }
 
+    fn value(&self, x: &[f64; 3]) -> Option<[f64; 3]> {
+        if self.element.revolution.is_some() {
+            return None;
+        }
+        let instant = self.motion.at(self.times, x[2]);
+        let (place, g) = self.element.value(&instant.placing, &instant.own, [x[0], x[1]])?;
+        Some([place[0], place[1], g])
+    }
+
     fn evaluate(&self, x: &[f64; 3]) -> Sample<3, OnPatch> {
         let instant = self.motion.at(self.times, x[2]);
         let (spot, [g, g_u, g_v], g_t) = match &self.element.revolution {
@@ -148,8 +158,7 @@ impl ChartMap<3> for PatchMap<'_> {
             }
             None => {
                 let (spot, fields) = self.element.spot(&instant.placing, [x[0], x[1]]);
-                let g = fields.map(|field| instant.own.dot(&field));
-                (spot, g, instant.change.dot(&fields[0]))
+                (spot, fields.envelopes(&instant.own), fields.envelope(&instant.change))
             }
         };
         let moving = instant.moving(&spot.place);

@@ -164,6 +164,7 @@ impl ChartMap<2> for PlacedMap<'_> {
     }
 
     fn jacobian(&mut self, cell: &u32) -> [[Enclosure; 2]; 2] {
+        self.cells.prepare(self.element, *cell);
         let slopes = [0, 1].map(|axis| self.cells.slope(self.element, *cell, axis));
         [0, 1].map(|r| [0, 1].map(|axis| interval(products(&self.row(r), &slopes[axis]))))
     }
@@ -191,6 +192,7 @@ impl ChartMap<2> for PlacedMap<'_> {
     }
 
     fn combined_jacobian(&mut self, cell: &u32, matrix: &[[f64; 2]; 2]) -> Option<[[Enclosure; 2]; 2]> {
+        self.cells.prepare(self.element, *cell);
         let [[x], [y]] = [self.row(0), self.row(1)];
         Some(matrix.map(|[a, b]| {
             let row: [f64; 3] = std::array::from_fn(|i| a * x[i] + b * y[i]);
@@ -223,7 +225,7 @@ impl ChartMap<2> for PlacedMap<'_> {
             }
             None => {
                 let (spot, fields) = self.element.spot(&self.placing, *x);
-                let envelopes = |twist: &Twisted| fields.map(|field| twist.dot(&field));
+                let envelopes = |twist: &Twisted| fields.envelopes(twist);
                 (spot, self.seen.each_ref().map(|side| near(side, &envelopes)))
             }
         };

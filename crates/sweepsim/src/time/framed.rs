@@ -90,7 +90,8 @@ impl<'a> FramedMotion<'a> {
         }))
     }
 
-    /// The motion at `t`.
+    /// The motion at `t`. Callers that need only some of it do not pay for the rest.
+    #[inline]
     pub fn at(&self, times: &Times, t: f64) -> Instant {
         match self {
             Self::FramedArc(arc) => arc.at(t),
@@ -101,6 +102,7 @@ impl<'a> FramedMotion<'a> {
 }
 
 impl FramedArc {
+    #[inline]
     fn at(&self, t: f64) -> Instant {
         let pivot = mix(1.0, &self.tip, t, &self.velocity);
         if let Some(mut instant) = self.still {

@@ -19,7 +19,8 @@ const EXCEPTIONS: [(&str, f64); 6] = [
     ("line from the wall", 7.1),
     (
         "of a line from one that the tip moves along and the tool turns about",
-        5.1,
+        // 1,602 boxes, as ever; the generic neighbour takes 308, after 320.
+        5.21,
     ),
     ("tilt while the tip moves along a line that the tool turns about", 6.1),
     ("move along a line that the tool turns about", 4.7),

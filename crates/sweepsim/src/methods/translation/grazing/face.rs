@@ -42,7 +42,7 @@ impl<'a> Face<'a> {
             }
             None => {
                 let (spot, fields) = self.element.spot(&self.placing, at);
-                (spot, fields.map(|field| self.way.dot(&field)))
+                (spot, fields.envelopes(&self.way))
             }
         };
         let three = |[q, p, z, _]: [f64; 4]| [q, p, z];

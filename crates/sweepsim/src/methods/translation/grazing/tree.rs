@@ -92,10 +92,11 @@ fn widened((lo, hi): Range, by: f64) -> Range {
 }
 
 impl Blur {
-    fn new((element, cells): (&PatchForms, &Cells), cell: u32, spread: f64) -> Self {
+    fn new((element, cells): (&PatchForms, &mut Cells), cell: u32, spread: f64) -> Self {
         if spread == 0.0 {
             return Self::default();
         }
+        cells.prepare(element, cell);
         let one = [spread; 3];
         let missing = cells.missing(cell);
         let [_, largest] = element.largest;
@@ -118,7 +119,7 @@ pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
 
 impl Tree {
     /// Of all of a cell.
-    pub fn new(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
+    pub fn new(element: &PatchForms, cells: &mut Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
         let blur = Blur::new((element, cells), cell, directions.spread);
         let mut tree = Self {
             nodes: Vec::new(),
@@ -187,7 +188,7 @@ impl Tree {
         slack: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
-        let (way, missing) = (&directions.way, cells.missing(cell));
+        let (way, missing) = (&directions.way, *cells.missing(cell));
         let [normals, _] = cells.field(element, cell, 0);
         let g = products(&[*way], &normals);
         let (lo, hi) = widened(g, total(way, &missing.value[1]));
@@ -201,6 +202,7 @@ impl Tree {
         if lo > error || hi < -error || zero {
             return State::Mixed;
         }
+        cells.prepare(element, cell);
         let Blur { slopes, g_slopes, .. } = &self.blur;
         let of_place = |k: usize, axis: usize| {
             widened(
