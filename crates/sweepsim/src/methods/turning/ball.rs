@@ -206,6 +206,14 @@ impl Shell for Ball {
         [-at.rate.norm_squared() + bend + at.rate.z * rise, rise]
     }
 
+    #[inline]
+    fn gradient(&self, at: &Centre, meeting: &Meeting, sheet: usize) -> [f64; 2] {
+        let up = if sheet == 0 { -meeting.half } else { meeting.half };
+        let steep = at.rate.z / up;
+        let [x, y] = meeting.place;
+        [at.rate.x - steep * x, at.rate.y - steep * y]
+    }
+
     fn spot(&self, at: &Centre, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {
         let up = if sheet == 0 { -meeting.half } else { meeting.half };
         let normal = Vector3::new(meeting.place[0], meeting.place[1], up);

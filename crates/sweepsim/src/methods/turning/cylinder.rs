@@ -19,7 +19,7 @@ use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
 use nalgebra::Vector3;
 
 /// An axis that leans less than this is left to charts.
-const UPRIGHT: f64 = 0.02;
+const UPRIGHT: f64 = 0.006;
 
 /// The part of a cylinder between two heights.
 #[derive(Clone, Copy, Debug)]
@@ -330,6 +330,19 @@ impl Shell for Cylinder {
         let slides = -alpha * vb - delta * (rise * s - va);
         let slope = slides * around / (self.radius * self.radius) + zeta * y + x * (rise * k - 2.0 * at.travel[2] + x);
         [slope, rise]
+    }
+
+    #[inline]
+    fn gradient(&self, at: &Lean, meeting: &Meeting, sheet: usize) -> [f64; 2] {
+        let alpha = if sheet == 0 { -meeting.half } else { meeting.half };
+        let [q, delta] = meeting.place;
+        let zeta = (q + at.tilt[1] * alpha) * at.inverse;
+        // α falls by δ/α along δ, and ζ by k/s times that.
+        let (falls, x) = (delta / alpha, alpha * at.rate[0] + delta * at.rate[1]);
+        let along = x * at.inverse;
+        let aside = at.travel[1] + at.rate[1] * zeta - falls * (at.travel[0] + at.rate[0] * zeta + along * at.tilt[1]);
+        let [ux, uy] = at.ahead;
+        [ux * along - uy * aside, uy * along + ux * aside]
     }
 
     fn spot(&self, at: &Lean, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {

@@ -170,7 +170,7 @@ impl Disc {
         let slack = searching.slack;
         zero(
             [span.from.t, span.to.t],
-            ends.map(|f| Some([side * f, f64::NAN])),
+            (ends.map(|f| Some([side * f, f64::NAN])), None),
             searching.near,
             |t| {
                 let placed = Placed::new(&course.at(t), self.height);

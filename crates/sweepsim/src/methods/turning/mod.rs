@@ -34,7 +34,7 @@ use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
 
 /// Moves with more crossings than this are left to charts, which serve the more lines, the more there are. Found by trial.
-const MANY: f64 = 15_000.0;
+const MANY: f64 = 40_000.0;
 
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -163,7 +163,7 @@ pub(crate) fn envelope(
     }
     for rim in &outline.rims {
         let element = Element::Edges(rim.edges.clone());
-        let search = RimSearch { rim, course: &course };
+        let search = RimSearch::new(rim, &course);
         settle(&course, &element, &mut leftovers, |span, left| {
             search.settle(span, searching, &source, left)
         });

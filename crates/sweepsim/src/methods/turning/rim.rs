@@ -12,14 +12,15 @@
 use super::blocks::{around, blocks, distance};
 use super::course::{Bounds, Course, Moment};
 use super::disc::Placed;
-use super::intervals::Range;
+use super::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
-use super::zero::{Sample, zero};
+use super::zero::{Known, Sample, zero};
 use super::{Leftover, Searching};
 use crate::cutter::outline::Rim;
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
+use std::cell::Cell;
 use sweepsim_dexel::Source;
 
 /// A plane that is steeper than this is left to charts.
@@ -35,13 +36,64 @@ struct Value {
     half: f64,
 }
 
-/// A search of a rim along a span.
-pub(super) struct RimSearch<'a> {
-    pub rim: &'a Rim,
-    pub course: &'a Course,
+/// How the faces beside a rim move during a span, as ranges.
+struct Facing {
+    centre: [Range; 2],
+    /// `a_h/a_z`, `c′`, and `⟨V, a⟩` on the rim.
+    lean: [Range; 2],
+    travel: [Range; 3],
+    along: Range,
+    /// Of `g`.
+    error: f64,
 }
 
-impl RimSearch<'_> {
+impl Facing {
+    fn new(rim: &Rim, [a, b]: [&Placed; 2], bounds: &Bounds, slack: f64) -> Self {
+        let (length, height) = (bounds.length, rim.height.abs());
+        let bow = height * bounds.bend;
+        let speed = bounds.speed + height * bounds.rate;
+        let turning = rim.radius * bounds.rate;
+        let along = [a.along.min(b.along), a.along.max(b.along)];
+        Self {
+            centre: [0, 1].map(|k| joined([a.centre[k]; 2], [b.centre[k]; 2], bounds.sag(bow))),
+            lean: [0, 1].map(|k| divided(between(a.axis[k], b.axis[k], bounds.rate * length), bounds.rise)),
+            travel: [0, 1, 2].map(|k| between(a.travel[k], b.travel[k], bow * length)),
+            along: wider(along, turning + 0.5 * length * bounds.speed * bounds.rate),
+            error: 16.0 * (slack / STEEP * (bounds.rate + speed / rim.radius) + f64::EPSILON * speed),
+        }
+    }
+
+    /// Whether `g` has the same sign on both faces wherever a line of the block is on the rim.
+    fn alike(&self, rim: &Rim, [x, y]: [Range; 2]) -> bool {
+        let arm = [sub(x, self.centre[0]), sub(y, self.centre[1])];
+        let up = add(mul(arm[0], self.lean[0]), mul(arm[1], self.lean[1]));
+        let [u, v, w] = self.travel;
+        let out = sub(add(mul(arm[0], u), mul(arm[1], v)), mul(up, w));
+        let signs = rim.normals.map(|[n, m]| {
+            let g = add(scaled(n / rim.radius, out), scaled(m, self.along));
+            Sign::of(g, self.error)
+        });
+        signs[0] == signs[1] && signs[0] != Sign::Unknown
+    }
+}
+
+/// A search of a rim along a span.
+pub(super) struct RimSearch<'a> {
+    rim: &'a Rim,
+    course: &'a Course,
+    /// Where lines last came into the circle, and where they went out of it.
+    last: Cell<[Option<Known>; 2]>,
+}
+
+impl<'a> RimSearch<'a> {
+    pub fn new(rim: &'a Rim, course: &'a Course) -> Self {
+        Self {
+            rim,
+            course,
+            last: Cell::default(),
+        }
+    }
+
     /// Settles one span, unless it is too long.
     pub fn settle(
         &self,
@@ -55,6 +107,7 @@ impl RimSearch<'_> {
             return Verdict::Long;
         }
         let [a, b] = [from, to].map(|moment| Placed::new(moment, self.rim.height));
+        let facing = Facing::new(self.rim, [&a, &b], bounds, searching.slack);
         let sag = bounds.sag(self.rim.height.abs() * bounds.bend);
         let slack = searching.slack;
         let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
@@ -69,7 +122,7 @@ impl RimSearch<'_> {
                         .all(|y| self.value(placed, 0.0, [x, y]).square < -self.doubt(slack))
                 })
             };
-            distance(block, centres) > reach || inside(&a) && inside(&b)
+            distance(block, centres) > reach || inside(&a) && inside(&b) || facing.alike(self.rim, block)
         };
         blocks(lines, around(&centres, reach), excluded, |(i, j), line| {
             let ends = [self.value(&a, from.t, line), self.value(&b, to.t, line)];
@@ -182,9 +235,13 @@ impl RimSearch<'_> {
         source: &impl Fn(f64) -> Source,
     ) -> Result<(), Undecided> {
         let slack = searching.slack;
+        let (mut last, way) = (self.last.get(), usize::from(inwards < 0.0));
         let found = zero(
             [ends[0].t, ends[1].t],
-            ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
+            (
+                ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
+                last[way].map(|last| last.over(line)),
+            ),
             searching.near,
             |t| {
                 let placed = Placed::new(&self.course.at(t), self.rim.height);
@@ -209,10 +266,20 @@ impl RimSearch<'_> {
                 if faces.iter().any(|g| !(g.abs() > error)) {
                     return None;
                 }
-                Some((t, placed.centre.z + arm.z + sample.rise * step, (*placed, *arm, faces)))
+                let tilt = arm.z / placed.axis.z;
+                let gradient = [arm.x - tilt * placed.axis.x, arm.y - tilt * placed.axis.y];
+                let known = Known::new(line, t, gradient.map(|part| 2.0 * inwards * part), sample.slope);
+                Some((
+                    t,
+                    placed.centre.z + arm.z + sample.rise * step,
+                    (*placed, *arm, faces),
+                    known,
+                ))
             },
         )?;
-        let (t, height, (placed, arm, [a, b])) = found;
+        let (t, height, (placed, arm, [a, b]), known) = found;
+        last[way] = Some(known);
+        self.last.set(last);
         if (a < 0.0) == (b < 0.0) {
             return Ok(());
         }

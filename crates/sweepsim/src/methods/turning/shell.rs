@@ -8,7 +8,7 @@ use super::blocks::blocks;
 use super::course::{Course, Moment};
 use super::intervals::{Range, Sign};
 use super::spans::{Span, Verdict};
-use super::zero::{Sample, Turn, zero};
+use super::zero::{Known, Sample, Turn, zero};
 use super::{Leftover, Searching};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
@@ -128,6 +128,9 @@ pub(super) trait Shell {
     /// The derivative of `g`, and that of the height, along the line.
     fn slope(&self, at: &Self::Posed, meeting: &Meeting, sheet: usize) -> [f64; 2];
 
+    /// The derivatives of `g` along x and y, at one time.
+    fn gradient(&self, at: &Self::Posed, meeting: &Meeting, sheet: usize) -> [f64; 2];
+
     fn spot(&self, at: &Self::Posed, meeting: &Meeting, sheet: usize, slack: f64) -> Spot;
 
     /// How fast points of the surface move.
@@ -157,6 +160,8 @@ pub(super) struct ShellSearch<'a, S: Shell, F> {
     pub left: &'a mut Leftover,
     /// How often the span of the line may still be halved.
     halvings: u32,
+    /// Of each sheet, what was found last.
+    last: [Option<Known>; 2],
 }
 
 /// What is not decided about a line.
@@ -177,6 +182,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             source,
             left,
             halvings: HALVINGS,
+            last: [None; 2],
         }
     }
 
@@ -308,7 +314,10 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         let (ends, slack) = (shell.ends(), searching.slack);
         let found = zero(
             [from.0, to.0],
-            [known(from, there[0]), known(to, there[1])],
+            (
+                [known(from, there[0]), known(to, there[1])],
+                self.last[sheet].map(|last| last.over(line)),
+            ),
             searching.near,
             |t| {
                 let posed = shell.at(&course.at(t));
@@ -334,9 +343,12 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                     height: spot.height + 0.5 * sample.rise * step,
                     normal: spot.normal,
                 };
-                Some(inside.then_some(turn))
+                let gradient = shell.gradient(posed, meeting, sheet);
+                Some((inside.then_some(turn), Known::new(line, t, gradient, sample.slope)))
             },
         )?;
+        let (found, last) = found;
+        self.last[sheet] = Some(last);
         if let Some(Turn { t, height, normal }) = found
             && searching.collector.lines.asks(i, j)
         {

@@ -35,6 +35,32 @@ fn guess(bracket: [f64; 2], [[a, da], [b, db]]: [[f64; 2]; 2]) -> f64 {
     }
 }
 
+/// A zero that was found over a line, where the search over the next line starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    line: [f64; 2],
+    t: f64,
+    /// By how much `t` grows along x and y.
+    rates: [f64; 2],
+}
+
+impl Known {
+    /// `gradient`: of the function along x and y.
+    pub fn new(line: [f64; 2], t: f64, gradient: [f64; 2], slope: f64) -> Self {
+        Self {
+            line,
+            t,
+            rates: gradient.map(|part| -part / slope),
+        }
+    }
+
+    /// About where the zero is over another line.
+    #[inline]
+    pub fn over(&self, [x, y]: [f64; 2]) -> f64 {
+        self.t + self.rates[0] * (x - self.line[0]) + self.rates[1] * (y - self.line[1])
+    }
+}
+
 /// Where a sheet turns.
 pub(super) struct Turn {
     pub t: f64,
@@ -43,22 +69,23 @@ pub(super) struct Turn {
     pub normal: Vector3<f64>,
 }
 
-/// Newton's method in a bracket, with the values and slopes at its ends. `at` gives the function, or `None` where it does not exist: then it does not on one side of the bracket, whose value is `None`. When the
+/// Newton's method in a bracket, with the values and slopes at its ends, from `start` if that is inside. `at` gives the function, or `None` where it does not exist: then it does not on one side of the bracket, whose value is `None`. When the
 /// height changes by no more than `near` in the next step, `done(time, step, sample)` is asked for the result, which it may refuse as long as steps become smaller.
 pub(super) fn zero<T, R>(
     mut bracket: [f64; 2],
-    ends: [Option<[f64; 2]>; 2],
+    (ends, start): ([Option<[f64; 2]>; 2], Option<f64>),
     near: f64,
     mut at: impl FnMut(f64) -> Option<Sample<T>>,
     mut done: impl FnMut(f64, f64, &Sample<T>) -> Option<R>,
 ) -> Result<R, Undecided> {
-    let mut t = match ends {
+    let start = start.filter(|t| *t > bracket[0] && *t < bracket[1]);
+    let mut t = start.unwrap_or_else(|| match ends {
         [Some(a), Some(b)] => guess(bracket, [a, b]),
         // From the end where it is known.
         [Some([value, slope]), None] => bracket[0] - value / slope,
         [None, Some([value, slope])] => bracket[1] - value / slope,
         [None, None] => f64::NAN,
-    };
+    });
     if !(t > bracket[0] && t < bracket[1]) {
         t = 0.5 * (bracket[0] + bracket[1]);
     }

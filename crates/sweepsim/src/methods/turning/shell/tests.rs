@@ -1,4 +1,4 @@
-//! What is said to be certain of a line during a span, and slopes, against samples.
+//! What is said to be certain of a line during a span, and slopes and gradients, against samples.
 
 use super::super::ball::Ball;
 use super::super::cylinder::Cylinder;
@@ -62,6 +62,19 @@ fn agrees<S: Shell>(
                     (slope - difference).abs() <= 1e-4 * (1.0 + slope.abs()),
                     "{slope} {difference}"
                 );
+                let gradient = shell.gradient(posed, meeting, sheet);
+                for k in 0..2 {
+                    let aside = |h: f64| {
+                        let mut other = line;
+                        other[k] += h;
+                        shell.meet(posed, other).g[sheet]
+                    };
+                    let difference = (aside(h) - aside(-h)) / (2.0 * h);
+                    prop_assert!(
+                        (gradient[k] - difference).abs() <= 1e-4 * (1.0 + difference.abs()),
+                        "{gradient:?} {difference}"
+                    );
+                }
                 let height = |(_, posed, meeting): &View<S::Posed>| shell.spot(posed, meeting, sheet, 1e-14).height;
                 let difference = (height(&high) - height(&low)) / (2.0 * h);
                 prop_assert!(
