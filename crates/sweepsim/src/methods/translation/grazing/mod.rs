@@ -35,6 +35,8 @@ const POSES: usize = 8;
 const CELLS: usize = 100_000;
 /// A patch that takes more looks at cells along one move is left to charts.
 const MOST: u64 = 20_000;
+/// So is one that takes more looks at cells for its own direction alone, which no other move can use.
+const MOST_OWN: u64 = 400;
 
 /// What is kept of a tool from one move to the next.
 #[derive(Debug, Default)]
@@ -134,6 +136,7 @@ impl Grazing {
                 highest,
                 monitor: grazed.monitor,
                 looks: 0,
+                own_looks: 0,
                 visits: 0,
                 lines: Lines {
                     face: &face,
@@ -259,6 +262,8 @@ struct Walk<'a, 'b, S> {
     highest: f64,
     monitor: &'a dyn Monitor,
     looks: u64,
+    /// Of these, those for the direction alone.
+    own_looks: u64,
     visits: u64,
     lines: Lines<'a, 'b, S>,
 }
@@ -277,11 +282,16 @@ impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
             if self.monitor.cancelled() {
                 return Ok(());
             }
-            if self.visits > 4 * MOST || self.looks > MOST {
+            if self.visits > 4 * MOST || self.looks > MOST || self.own_looks > MOST_OWN {
                 return Err(TooMany);
             }
             let of = (self.element, &mut *self.cells);
-            match tree.known(number, of, (directions, slack), &mut self.looks) {
+            let before = self.looks;
+            let known = tree.known(number, of, (directions, slack), &mut self.looks);
+            if directions.spread == 0.0 {
+                self.own_looks += self.looks - before;
+            }
+            match known {
                 Known::Empty => {}
                 Known::Chart(chart) => self.lines.chart(chart, window),
                 Known::Parts([low, high]) => stack.extend([high, low]),
