@@ -15,6 +15,7 @@
 //! No preimage is lost: boxes too small to split further are reported as [`UnresolvedTarget`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
+mod beside;
 mod chart;
 mod linear;
 mod sides;
@@ -57,6 +58,20 @@ pub trait ChartMap<const N: usize> {
     fn is_absent(&mut self, _cell: &Self::Cell, _target: &[f64; N]) -> bool {
         false
     }
+
+    /// A part of the box that holds the preimages of all targets, kept until it is [dropped](Self::drop_part), where that is much smaller than the box. Asked for boxes
+    /// that hold few targets and where `∂Φ` may be singular, with their enclosures.
+    fn part(
+        &mut self,
+        _cell: &Self::Cell,
+        _values: &[Enclosure; N],
+        _jacobian: &[[Enclosure; N]; N],
+    ) -> Option<Self::Cell> {
+        None
+    }
+
+    /// Drops the last part asked for.
+    fn drop_part(&mut self, _part: Self::Cell) {}
 
     /// Encloses the product of `matrix` and `∂Φ` over the box, if that can be done more closely than by multiplying enclosures, because values depend on each
     /// other. Asked for boxes that hold few targets and where `∂Φ` is nearly singular. Rounding may be left out.

@@ -1,5 +1,6 @@
 //! The subdivision, and the charts on it.
 
+use super::beside::{all_beside, part_is_empty};
 use super::chart::{Chart, Outcome, Region, Witness};
 use super::linear::{Contraction, Linear};
 use super::sides::Sides;
@@ -178,7 +179,11 @@ impl<C: Clone> ChartSolver<C> {
                     Some(false) => {}
                     None => {
                         let singular = linear.radius >= 1.0;
-                        if count <= FEW && singular && all_beside(map, &cell, &values, targets) {
+                        if count <= FEW
+                            && singular
+                            && (all_beside(map, &cell, &values, targets)
+                                || part_is_empty(map, &cell, (&values, &jacobian), targets))
+                        {
                             continue;
                         }
                     }
@@ -193,7 +198,10 @@ impl<C: Clone> ChartSolver<C> {
                         planned = Some(largest(&next)).filter(|next| !collapses(&bounds, &jacobian, *next));
                     }
                 }
-            } else if count <= FEW && all_beside(map, &cell, &values, targets) {
+            } else if count <= FEW
+                && (all_beside(map, &cell, &values, targets)
+                    || part_is_empty(map, &cell, (&values, &jacobian), targets))
+            {
                 continue;
             }
             if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
@@ -344,21 +352,6 @@ fn remaining<const N: usize, T: Targets<N> + ?Sized>(
         left < enough
     });
     left
-}
-
-/// Whether the map excludes each target in the range.
-fn all_beside<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>(
-    map: &mut M,
-    cell: &M::Cell,
-    values: &[Enclosure; N],
-    targets: &T,
-) -> bool {
-    let mut absent = true;
-    targets.visit(values, &all_of, &mut |target| {
-        absent = map.is_absent(cell, &target.value);
-        absent
-    });
-    absent
 }
 
 /// Whether the direction `axis` may have almost no length in the box and adds little to the range of each value.

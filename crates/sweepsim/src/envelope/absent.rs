@@ -321,6 +321,15 @@ mod tests {
                     let [x, y, _] = map.evaluate(&[low, v, t]).value;
                     let cell = map.place(&around([low, v, t], shares, size));
                     prop_assert!(!map.is_absent(&cell, &[x, y, 0.0]), "patch");
+                    // Nor is the point beyond the part of the box where `g` can vanish.
+                    let enclosures = map.values(&cell).map(|values| (values, map.jacobian(&cell)));
+                    if let Some((values, jacobian)) = enclosures
+                        && let Some(part) = map.part(&cell, &values, &jacobian)
+                    {
+                        let bounds = map.bounds(&part);
+                        prop_assert!(bounds[0].contains(low) && bounds[1].contains(v), "{bounds:?}");
+                        map.drop_part(part);
+                    }
                 }
                 let mut cells = Cells::new(element);
                 let pose = (segment.start(), segment.tips()[0].into());

@@ -52,6 +52,19 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
         self.map.is_absent(cell, target)
     }
 
+    fn part(&mut self, cell: &M::Cell, values: &[Enclosure; N], jacobian: &[[Enclosure; N]; N]) -> Option<M::Cell> {
+        let mut own = *jacobian;
+        for row in &mut own {
+            let slope = row[N - 1];
+            row[N - 1] = Enclosure::hull(slope.lo() / self.part.length, slope.hi() / self.part.length);
+        }
+        self.map.part(cell, values, &own)
+    }
+
+    fn drop_part(&mut self, part: M::Cell) {
+        self.map.drop_part(part);
+    }
+
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, M::Seen> {
         let mut at = *x;
         at[N - 1] = self.part.time(x[N - 1]);

@@ -29,38 +29,25 @@ pub(crate) struct PatchMap<'a> {
     pub size: Size,
 }
 
-impl PatchMap<'_> {
-    /// The part of a cell outside which `g` has a sign, if it is a small one at a corner from which `g` grows, or falls, in both directions.
-    fn part_with_zeros(&mut self, brick: &Brick) -> Option<[[f64; 2]; 2]> {
-        /// Of the cell's sides.
-        const SMALL: f64 = 0.25;
-        /// Of the domain's: far below what matters, far above rounding.
-        const LEAST: f64 = 1e-13;
-        let [_, _, g] = self.values(brick)?;
-        let [_, _, slopes] = self.jacobian(brick);
-        // From the corner where g is least, then from the one where it is largest.
-        [(true, -g.lo()), (false, g.hi())]
-            .into_iter()
-            .find_map(|(least, distance)| {
-                let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
-                for axis in 0..2 {
-                    let (start, end) = self.cells.bounds(brick.0, axis);
-                    let slope = slopes[axis];
-                    let steepness = slope.lo().max(-slope.hi());
-                    let reach = f64::max(distance / steepness, LEAST);
-                    if !(steepness > 0.0 && reach < SMALL * (end - start)) {
-                        return None;
-                    }
-                    let at_start = (slope.lo() > 0.0) == least;
-                    (lower[axis], upper[axis]) = if at_start {
-                        (start, start + reach)
-                    } else {
-                        (end - reach, end)
-                    };
-                }
-                Some([lower, upper])
-            })
+/// The part of the side of a box outside which a function has a sign, if it is steep along the side: it is at least `lo` at one end and at most `hi` at the other,
+/// and changes at least as `slope` says.
+fn with_zeros((start, end): (f64, f64), values: Enclosure, slope: Enclosure) -> (f64, f64) {
+    /// Of the domain's sides: far below what matters, far above rounding.
+    const LEAST: f64 = 1e-13;
+    let steepness = slope.lo().max(-slope.hi());
+    if !(steepness > 0.0) {
+        return (start, end);
     }
+    let reach = |value: f64| value / steepness + LEAST;
+    // Where it grows, from the start it takes at most this to grow from its least value to 0, and from 0 to its largest to the end.
+    let [near, far] = if slope.lo() > 0.0 {
+        [-values.lo(), values.hi()]
+    } else {
+        [values.hi(), -values.lo()]
+    };
+    let (lower, upper) = ((end - reach(far)).max(start), (start + reach(near)).min(end));
+    // NaN, or no zero, which rounding may hide.
+    if lower < upper { (lower, upper) } else { (start, end) }
 }
 
 impl ChartMap<3> for PatchMap<'_> {
@@ -130,13 +117,23 @@ impl ChartMap<3> for PatchMap<'_> {
     fn is_absent(&mut self, cell: &Brick, line: &[f64; 3]) -> bool {
         let [x, y, _] = *line;
         is_absent((self.element, self.cells), (self.times, &self.size), *cell, [x, y])
-            || self.part_with_zeros(cell).is_some_and(|[lower, upper]| {
-                let mark = self.cells.mark();
-                let part = (self.cells.place(self.element, lower, upper), cell.1);
-                let values = self.values(&part);
-                self.cells.release(mark);
-                values.is_none_or(|values| !(values[0].contains(x) && values[1].contains(y)))
-            })
+    }
+
+    fn part(&mut self, cell: &Brick, values: &[Enclosure; 3], jacobian: &[[Enclosure; 3]; 3]) -> Option<Brick> {
+        /// Of the cell's side.
+        const SMALL: f64 = 0.25;
+        let (mut lower, mut upper) = ([0.0; 2], [0.0; 2]);
+        let mut is_small = false;
+        for axis in 0..2 {
+            let (start, end) = self.cells.bounds(cell.0, axis);
+            (lower[axis], upper[axis]) = with_zeros((start, end), values[2], jacobian[2][axis]);
+            is_small |= upper[axis] - lower[axis] < SMALL * (end - start);
+        }
+        is_small.then(|| (self.cells.place(self.element, lower, upper), cell.1))
+    }
+
+    fn drop_part(&mut self, (cell, _): Brick) {
+        self.cells.release(cell as usize);
     }
 
     fn value(&self, x: &[f64; 3]) -> Option<[f64; 3]> {
@@ -192,5 +189,59 @@ impl ChartMap<3> for PatchMap<'_> {
     fn rounding(&self) -> [f64; 3] {
         let slack = self.size.slack;
         [slack, slack, envelope_error(self.element, self.times)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::envelope::AnyBox;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Law, Path, Pose, Tool};
+
+    const SIZE: Size = Size {
+        spacing: [0.1; 2],
+        slack: 64.0 * f64::EPSILON * 50.0,
+    };
+
+    proptest! {
+        /// The part of a box where `g` can vanish, on a wall that moves sideways, shrinks with the square of the box about the ruling where it does.
+        #[test]
+        fn parts_of_walls_shrink_with_the_square_of_the_box(size in 1..5_i32, angle in 0.0..6.2, share in 0.0..1.0) {
+            let (s, c) = f64::sin_cos(angle);
+            let poses = [-2.0, 2.0].map(|at| Pose::new([at * c, at * s, 0.0], [0.0, 0.0, 1.0]).unwrap());
+            let segment = Path::with_law(poses.into(), Law::Slerp).unwrap().segments(0, 10.0, 1e-6).remove(0);
+            let width = 0.1_f64.powi(size);
+            for element in &PatchForms::all(&Tool::flat(2.0, 7.0).unwrap()).0 {
+                let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
+                let mut map = PatchMap {
+                    motion: FramedMotion::new(&times, element.frame()),
+                    element,
+                    cells: &mut cells,
+                    times: &mut times,
+                    size: SIZE,
+                };
+                let g = |map: &PatchMap, u: f64| map.evaluate(&[u, 0.5, 0.5]).value[2];
+                let (mut low, mut high) = (0.1, 0.9);
+                if g(&map, low) * g(&map, high) >= 0.0 {
+                    continue;
+                }
+                let falls = g(&map, high) < 0.0;
+                while high - low > 1e-15 {
+                    let middle = 0.5 * (low + high);
+                    *(if (g(&map, middle) < 0.0) == falls { &mut high } else { &mut low }) = middle;
+                }
+                let start = low - share * width;
+                let cell = map.place(&[Enclosure::hull(start, start + width), Enclosure::UNIT, Enclosure::UNIT]);
+                let values = map.values(&cell).unwrap();
+                let jacobian = map.jacobian(&cell);
+                let Some(part) = map.part(&cell, &values, &jacobian) else {
+                    prop_assert!(width > 0.05);
+                    continue;
+                };
+                let side = map.bounds(&part)[0];
+                prop_assert!(side.contains(low) && side.radius() < 2.0 * width * width + 1e-12, "{side:?}");
+            }
+        }
     }
 }
