@@ -254,14 +254,22 @@ impl Profile {
                 cuts.extend(crossings.filter(|s| (0.0..=1.0).contains(s)));
             }
             cuts.sort_by(f64::total_cmp);
+            // Where all of what is around a cut stays, it was none: pieces that touch meet somewhere near their joint.
+            let mut open: Option<[f64; 2]> = None;
             for pair in cuts.windows(2) {
                 let part = piece.part(pair[0], pair[1]);
                 let middle = part.at(0.5);
                 let near = || all.iter().map(|own| own.distance(middle)).fold(f64::INFINITY, f64::min);
-                if part.length() > NOTHING * size && middle.x > 0.0 && near() > distance - NOTHING * size {
-                    kept.push(part);
+                if part.length() <= NOTHING * size {
+                    continue;
+                }
+                if middle.x > 0.0 && near() > distance - NOTHING * size {
+                    open = Some([open.map_or(pair[0], |[begin, _]| begin), pair[1]]);
+                } else if let Some([begin, end]) = open.take() {
+                    kept.push(piece.part(begin, end));
                 }
             }
+            kept.extend(open.map(|[begin, end]| piece.part(begin, end)));
         }
         chain(kept, size).ok_or(ProfileError::Offset { distance })?
     }

@@ -136,3 +136,11 @@ fn offsets_in_closed_form() {
         assert!(cylinder.offset(bad).is_err());
     }
 }
+
+/// A short cylinder, found by random cases.
+#[test]
+fn offsets_of_a_short_cylinder() {
+    let cylinder = stepped(&[(6.012025297084563, 1.832925983651387)], false);
+    let wider = cylinder.offset(2.3133259374154096);
+    assert!(wider.is_ok(), "{wider:?}");
+}
