@@ -16,6 +16,9 @@ use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd, turned_back};
 use sweepsim_solve::Preimage;
 
+/// Charts of a tool at rest are made to be kept for other joints if so many parts are counted together.
+const SEVERAL: usize = 4;
+
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
     let [spin, travel] = segment.velocity(end).map(nalgebra::Vector3::from);
@@ -125,7 +128,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             }
         }
         let sides = sides(self.parts, at, end);
-        if self.closed && self.is_between_translations(at, end) {
+        if self.closed && self.parts.len() >= SEVERAL && self.is_between_translations(at, end) {
             let mut resting = Resting {
                 pose,
                 sides,
