@@ -137,10 +137,24 @@ fn offsets_in_closed_form() {
     }
 }
 
-/// A short cylinder, found by random cases.
+/// A short cylinder, found by random cases: its arcs end on its lines, with no cut beside the joint.
 #[test]
 fn offsets_of_a_short_cylinder() {
-    let cylinder = stepped(&[(6.012025297084563, 1.832925983651387)], false);
-    let wider = cylinder.offset(2.3133259374154096);
-    assert!(wider.is_ok(), "{wider:?}");
+    let (radius, height, distance) = (6.012025297084563, 1.832925983651387, 2.3133259374154096);
+    let wider = stepped(&[(radius, height)], false).offset(distance).expect("an offset");
+    let (wall, top) = (radius + distance, height + distance);
+    let wanted = [
+        [radius, -distance],
+        [wall, 0.0],
+        [wall, height],
+        [radius, top],
+        [0.0, top],
+    ];
+    assert_eq!(wider.segments().len(), wanted.len(), "{wider:?}");
+    for (segment, wanted) in wider.segments().iter().zip(wanted) {
+        let (ProfileSegment::Line { to } | ProfileSegment::Arc { to, .. }) = segment else {
+            unreachable!("no splines here")
+        };
+        assert!((0..2).all(|k| (to[k] - wanted[k]).abs() < 1e-12), "{to:?} {wanted:?}");
+    }
 }

@@ -115,7 +115,7 @@ fn pose() -> impl Strategy<Value = Pose> {
 }
 
 /// A block from `min` to `max` as six bilinear patches.
-fn block(min: [f64; 3], max: [f64; 3]) -> Tool {
+pub fn block(min: [f64; 3], max: [f64; 3]) -> Tool {
     let corner = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
     let faces = [
         [0, 2, 1, 3],

@@ -1,5 +1,6 @@
 //! Moves without rotation of tools of any shape, by their grazing curves, against charts.
 
+use crate::freeform::block;
 use crate::translations::{TOLERANCE, agree, cases, path};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -82,28 +83,12 @@ fn bud() -> Tool {
     ])
 }
 
-/// A block of six bilinear patches.
-fn block() -> Tool {
-    let (min, max) = ([-1.5, -0.5, 0.0], [1.0, 1.0, 3.0]);
-    let corner = |k: usize| [0, 1, 2].map(|a: usize| if k >> a & 1 == 0 { min[a] } else { max[a] });
-    let faces = [
-        [0, 2, 1, 3],
-        [4, 5, 6, 7],
-        [0, 1, 4, 5],
-        [2, 6, 3, 7],
-        [0, 4, 2, 6],
-        [1, 3, 5, 7],
-    ];
-    let patches = faces.map(|face| {
-        let form = |a: usize| Bernstein::new(&[1, 1], face.map(|k| corner(k)[a]).to_vec()).expect("a form");
-        let one = Bernstein::new(&[1, 1], vec![1.0; 4]).expect("a form");
-        Patch::new([form(0), form(1), form(2)], one).expect("a patch")
-    });
-    Tool::from_patches(patches.to_vec(), 1e-9).expect("a tool")
-}
-
 fn tools() -> [(&'static str, Tool); 3] {
-    [("cushion", cushion()), ("bud", bud()), ("block", block())]
+    [
+        ("cushion", cushion()),
+        ("bud", bud()),
+        ("block", block([-1.5, -0.5, 0.0], [1.0, 1.0, 3.0])),
+    ]
 }
 
 /// A tool of no symmetry in a constant orientation.
