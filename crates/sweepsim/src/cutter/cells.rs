@@ -1,8 +1,9 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
-use crate::algebra::ranges::{Triples, all_or_none};
+use crate::algebra::ranges::{Triples, all_or_none, products};
 use crate::cutter::patch_forms::{PatchForms, Slot};
 use crate::cutter::reduced::Missing;
+use crate::cutter::tangents::Tangents;
 use sweepsim_solve::CUT;
 use sweepsim_spline::kernel;
 
@@ -20,6 +21,8 @@ struct CellNode {
     points: Vec<f64>,
     /// Whether slopes and derivatives are there: see [`Cells::prepare`].
     prepared: bool,
+    /// Whether the fields are those of [`PatchForms::sample`], and no parts of them are needed.
+    sampled: bool,
     /// What reduced fields lack.
     missing: Missing,
 }
@@ -49,6 +52,9 @@ impl Cells {
     pub fn new(element: &PatchForms) -> Self {
         let layout = &element.layout;
         let mut points = layout.fields.first().map_or(layout.len, |slot| slot.start);
+        if element.tangents.is_some() {
+            points += layout.slopes.len() * 3 * Tangents::POINTS;
+        }
         let derivatives = layout
             .fields
             .iter()
@@ -95,16 +101,8 @@ impl Cells {
         let layout = &element.layout;
         let mut spare = self.spare.pop().unwrap_or_default();
         spare.c.resize(layout.len, 0.0);
-        let rational = std::iter::once(&layout.position)
-            .chain(&layout.slopes)
-            .map(|slot| (slot, 4));
-        // Reduced fields are not parts of the whole patch's.
-        let fields = if element.reduced.is_some() {
-            &[]
-        } else {
-            &layout.fields[..]
-        };
-        for (slot, count) in rational.chain(fields.iter().map(|slot| (slot, 6))) {
+        // Reduced slopes and fields are not parts of the whole patch's.
+        for (slot, count) in layout.tensors(element.tangents.is_none(), element.reduced.is_none()) {
             let range = slot.start..slot.start + count * slot.len();
             kernel::restrict_rectangle(
                 &element.whole[range.clone()],
@@ -146,14 +144,29 @@ impl Cells {
         let layout = &element.layout;
         let Buffers { mut c, mut points } = buffers;
         let mut own = missing.unwrap_or_default();
-        if let (Some(reduced), [slot]) = (&element.reduced, &layout.fields[..]) {
+        let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
+        let mut sampled = None;
+        if let Some(tangents) = &element.tangents {
+            let start = layout.slopes[0].start;
+            points.resize(start + layout.slopes.len() * 3 * Tangents::POINTS, 0.0);
+            sampled = element.sample((lower, upper), &mut c[layout.fields[0].start..], &mut points[start..]);
+            for slot in &layout.slopes {
+                all_or_none(&mut points[slot.start..][..3 * slot.len()]);
+            }
+            own = sampled.unwrap_or(own);
+            own.tangents = tangents.missing(widths);
+        } else {
+            points.resize(layout.position.start + 3 * layout.position.len(), 0.0);
+        }
+        if let (Some(reduced), [slot], None) = (&element.reduced, &layout.fields[..], sampled) {
             let forms = &mut c[slot.start..][..6 * slot.len()];
-            let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
             if missing.is_none_or(|missing| missing.is_coarse(forms, slot.degrees, widths)) {
-                own = reduced.on(lower, upper, forms);
+                own = Missing {
+                    tangents: own.tangents,
+                    ..reduced.on(lower, upper, forms)
+                };
             }
         }
-        points.resize(layout.position.start + 3 * layout.position.len(), 0.0);
         for slot in &layout.fields {
             all_or_none(&mut c[slot.start..][..6 * slot.len()]);
         }
@@ -165,6 +178,7 @@ impl Cells {
             c,
             points,
             prepared: false,
+            sampled: sampled.is_some(),
             missing: own,
         }
     }
@@ -185,8 +199,10 @@ impl Cells {
         }
         *prepared = true;
         points.resize(self.points, 0.0);
-        for slot in &layout.slopes {
-            control_points(slot, c, points);
+        if element.tangents.is_none() {
+            for slot in &layout.slopes {
+                control_points(slot, c, points);
+            }
         }
         for (slot, derivatives) in layout.fields.iter().zip(&self.derivatives) {
             for (axis, (start, len)) in derivatives.iter().enumerate().take(layout.slopes.len()) {
@@ -229,10 +245,7 @@ impl Cells {
         let (mut lower, mut upper) = (node.c.clone(), node.c.clone());
         let buffers = |c| Buffers { c, points: Vec::new() };
         let layout = &element.layout;
-        let rational = std::iter::once(&layout.position)
-            .chain(&layout.slopes)
-            .map(|slot| (slot, 4));
-        for (slot, count) in rational.chain(layout.fields.iter().map(|slot| (slot, 6))) {
+        for (slot, count) in layout.tensors(element.tangents.is_none(), !node.sampled) {
             let range = slot.start..slot.start + count * slot.len();
             let (low, high) = (&mut lower[range.clone()], &mut upper[range.clone()]);
             let inner = if axis == 0 { 1 } else { slot.degrees[0] + 1 };
@@ -258,7 +271,19 @@ impl Cells {
         Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
     }
 
-    /// Control points of the derivative of the position, in a [prepared](Self::prepare) cell.
+    /// The range of products of rows with the derivative of the position, in a [prepared](Self::prepare) cell.
+    pub fn slope_products(&self, element: &PatchForms, cell: u32, axis: usize, rows: &[[f64; 3]]) -> (f64, f64) {
+        let (lo, hi) = products(rows, &self.slope(element, cell, axis));
+        if element.tangents.is_none() {
+            return (lo, hi);
+        }
+        let lacking = self.nodes[cell as usize].missing.tangents[axis];
+        let by = |row: &[f64; 3]| row[0].abs() * lacking[0] + row[1].abs() * lacking[1] + row[2].abs() * lacking[2];
+        let error = rows.iter().map(by).fold(0.0, f64::max);
+        (lo - error, hi + error)
+    }
+
+    /// Control points of the derivative of the position, up to what [`missing`](Self::missing) tells, in a [prepared](Self::prepare) cell.
     pub fn slope<'a>(&'a self, element: &PatchForms, cell: u32, axis: usize) -> Triples<'a> {
         debug_assert!(self.nodes[cell as usize].prepared);
         let slot = &element.layout.slopes[axis];

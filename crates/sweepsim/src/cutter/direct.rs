@@ -3,9 +3,10 @@
 //! `N = s w⁴ (F_u × F_v)` and `M = F × N` with their derivatives take the second-order jet of `F`, of 16 control points for a bicubic patch, where the forms
 //! of `N` and `M` have 81 coefficients each. Both are the same function, which the forms bound over boxes.
 
-use crate::algebra::jets::Bicubic;
 use crate::algebra::quad::{Quad, add, cross, dot, mix, quad};
 use crate::algebra::table::Table;
+use crate::cutter::errors::Errors;
+use crate::cutter::places::Places;
 use crate::time::pieces::Sizes;
 use crate::time::placement::Twisted;
 use nalgebra::Vector3;
@@ -26,31 +27,8 @@ pub(crate) struct Direct {
     sides: [[bool; 2]; 2],
     /// Bounds of the rounding errors of `M` and `N`.
     pub rounding: Sizes,
-}
-
-/// Forms of the position, arranged for their degrees.
-#[derive(Clone, Debug)]
-enum Places {
-    Bicubic(Box<Bicubic>),
-    Any(Table),
-}
-
-impl Places {
-    /// Bounds of the rounding errors of both first derivatives, form by form; the forms have coefficients up to `sizes`.
-    fn roundings(&self, sizes: [f64; 4]) -> [[f64; 4]; 2] {
-        match self {
-            Self::Bicubic(bicubic) => [[1, 0], [0, 1]].map(|orders| {
-                let sums = bicubic.sizes(orders);
-                let unit = 0.5 * f64::EPSILON;
-                // Besides, coefficients of 64 terms, up to nine times as large, are computed with twice the digits.
-                std::array::from_fn(|k| unit * (Bicubic::ROUNDINGS * sums[k] + 1e6 * unit * sizes[k]))
-            }),
-            Self::Any(table) => table.degrees().map(|degree| {
-                let degree = degree as f64;
-                sizes.map(|size| 2.0 * degree * (2.0 * degree + 8.0) * f64::EPSILON * size)
-            }),
-        }
-    }
+    /// Those of `F_u` and `F_v`.
+    pub of_slopes: Sizes,
 }
 
 /// Nearer to a pole, normals are left to their forms: divided by the distance, the rounding errors of their products would be too large.
@@ -66,6 +44,17 @@ pub(crate) struct Site {
     /// `N` is this many times the product of the slopes, and the relative change of that factor in `u` and in `v`.
     size: f64,
     grown: [f64; 2],
+}
+
+/// What all evaluations of a point begin with.
+struct First {
+    /// The position about the centre.
+    f: Quad,
+    slopes: [Quad; 2],
+    /// One over the weight.
+    inverse: f64,
+    /// As in [`Site`].
+    size: f64,
 }
 
 fn scaled(a: &Quad, factor: f64) -> Quad {
@@ -98,10 +87,12 @@ impl Direct {
         let divisions = sides.as_flattened().iter().filter(|side| **side).count();
         let growth = POLE.recip().powi(divisions as i32) * (1.0 + 4.0 * f64::EPSILON);
         let table = Table::new(&[x, y, z, raised(weight)], degrees);
-        let bicubic = Bicubic::new(&table).map(|bicubic| Places::Bicubic(Box::new(bicubic)));
-        let places = bicubic.unwrap_or(Places::Any(table));
-        let rounding =
-            rounding((&shifted, &places), shift, weight, &centre, factor).map(|sizes| sizes.map(|size| growth * size));
+        let places = Places::new(table);
+        let magnitudes = [0, 1, 2, 3].map(|k| shifted.get(k).unwrap_or(weight).magnitude());
+        let errors = Errors::new((&shifted, weight), places.roundings(magnitudes), shift);
+        let rounding = errors
+            .of_fields(&centre, factor)
+            .map(|sizes| sizes.map(|size| growth * size));
         Some(Self {
             sides,
             places,
@@ -109,7 +100,12 @@ impl Direct {
             factor,
             constant,
             rounding,
+            of_slopes: errors.of_slopes(),
         })
+    }
+
+    pub fn centre(&self) -> &Vector3<f64> {
+        &self.centre
     }
 
     /// Whether `(u, v)` is not close to a pole.
@@ -140,69 +136,99 @@ impl Direct {
         (product, slopes)
     }
 
+    /// The position about the centre, both slopes, and how many times their product is `N`, from values and first derivatives of the forms.
+    #[inline(always)]
+    fn first(&self, at: [f64; 2], [p, pu, pv]: [&Quad; 3]) -> First {
+        let plain = |[x, y, z, _]: &Quad| [*x, *y, *z, 0.0];
+        let weight = self.constant.unwrap_or(p[3]);
+        let inverse = 1.0 / weight;
+        let f = scaled(&plain(p), inverse);
+        let slopes = if self.constant.is_some() {
+            [pu, pv].map(|p| scaled(&plain(p), inverse))
+        } else {
+            // The quotient rule, solved for the highest derivative.
+            [pu, pv].map(|p| scaled(&mix(1.0, &plain(p), -p[3], &f), inverse))
+        };
+        let mut size = self.factor * (weight * weight) * (weight * weight);
+        if self.has_poles() {
+            size /= self.divisor(at).0;
+        }
+        First {
+            f,
+            slopes,
+            inverse,
+            size,
+        }
+    }
+
+    fn has_poles(&self) -> bool {
+        self.sides != [[false; 2]; 2]
+    }
+
+    /// The point at `(u, v)` relative to the tool, both slopes, and `N`.
+    #[inline]
+    pub fn tangent(&self, at: [f64; 2]) -> (Quad, [Quad; 2], Quad) {
+        let [p, pu, pv] = self.places.slopes(at);
+        let First { f, slopes, size, .. } = self.first(at, [&p, &pu, &pv]);
+        let [fu, fv] = &slopes;
+        let normal = scaled(&cross(fu, fv), size);
+        (add(&f, &quad(&self.centre)), slopes, normal)
+    }
+
     /// The point at `(u, v)` relative to the tool, and `⟨spin, M⟩ + ⟨travel, N⟩` there, as [`at`](Self::at) computes them; `None` if it has to be used.
     #[inline]
     pub fn value(&self, at: [f64; 2], twist: &Twisted) -> Option<(Quad, f64)> {
-        let (Places::Bicubic(bicubic), Some(weight)) = (&self.places, self.constant) else {
+        let Places::Bicubic(_) = &self.places else {
             return None;
         };
-        let inverse = 1.0 / weight;
-        let [f, fu, fv] = bicubic.slopes(at);
-        let [f, fu, fv] = [f, fu, fv].map(|[x, y, z, _]| [x * inverse, y * inverse, z * inverse, 0.0]);
-        let mut size = self.factor * (weight * weight) * (weight * weight);
-        if self.sides != [[false; 2]; 2] {
-            size /= self.divisor(at).0;
-        }
-        let place = add(&f, &quad(&self.centre));
-        Some((place, dot(&scaled(&cross(&fu, &fv), size), &velocity(&place, twist))))
+        let (place, _, normal) = self.tangent(at);
+        Some((place, dot(&normal, &velocity(&place, twist))))
+    }
+
+    /// The place of that point alone.
+    #[inline]
+    pub fn place(&self, at: [f64; 2]) -> Option<Quad> {
+        let Places::Bicubic(_) = &self.places else {
+            return None;
+        };
+        Some(self.tangent(at).0)
     }
 
     /// The point at `(u, v)`, if it is [covered](Self::covers).
     pub fn at(&self, at: [f64; 2]) -> Site {
-        let jet = match &self.places {
-            Places::Bicubic(bicubic) => bicubic.jet(at),
-            Places::Any(table) => table.jet::<4>(at),
-        };
-        let weights = jet.map(|form| form[3]);
-        let [p, pu, pv, puu, puv, pvv] = jet.map(|[x, y, z, _]| [x, y, z, 0.0]);
-        let centre = quad(&self.centre);
-        let (f, fu, fv, second);
-        let (mut size, mut grown);
-        if let Some(weight) = self.constant {
-            let inverse = 1.0 / weight;
-            (f, fu, fv) = (scaled(&p, inverse), scaled(&pu, inverse), scaled(&pv, inverse));
-            second = [puu, puv, pvv].map(|p| scaled(&p, inverse));
-            size = self.factor * (weight * weight) * (weight * weight);
+        let jet = self.places.jet(at);
+        let [p, pu, pv, puu, puv, pvv] = &jet;
+        let First {
+            f,
+            slopes: [fu, fv],
+            inverse,
+            size,
+        } = self.first(at, [p, pu, pv]);
+        let (second, mut grown);
+        if self.constant.is_some() {
+            second = [puu, puv, pvv].map(|[x, y, z, _]| scaled(&[*x, *y, *z, 0.0], inverse));
             grown = [0.0; 2];
         } else {
-            let [w, wu, wv, wuu, wuv, wvv] = weights;
-            let inverse = 1.0 / w;
-            f = scaled(&p, inverse);
-            // The quotient rule, solved for the highest derivative.
-            let slope = |p: &Quad, w: f64| scaled(&mix(1.0, p, -w, &f), inverse);
-            (fu, fv) = (slope(&pu, wu), slope(&pv, wv));
-            let curvature = |p: &Quad, w: f64, [a, b]: [f64; 2]| {
-                let rest = mix(1.0, &mix(1.0, p, -w, &f), -1.0, &mix(a, &fv, b, &fu));
-                scaled(&rest, inverse)
+            let [wu, wv] = [pu[3], pv[3]];
+            let curvature = |p: &Quad, [a, b]: [f64; 2]| {
+                let rest = mix(1.0, &mix(1.0, p, -p[3], &f), -1.0, &mix(a, &fv, b, &fu));
+                scaled(&[rest[0], rest[1], rest[2], 0.0], inverse)
             };
             second = [
-                curvature(&puu, wuu, [0.0, 2.0 * wu]),
-                curvature(&puv, wuv, [wu, wv]),
-                curvature(&pvv, wvv, [2.0 * wv, 0.0]),
+                curvature(puu, [0.0, 2.0 * wu]),
+                curvature(puv, [wu, wv]),
+                curvature(pvv, [2.0 * wv, 0.0]),
             ];
-            size = self.factor * (w * w) * (w * w);
             grown = [4.0 * wu * inverse, 4.0 * wv * inverse];
         }
-        if self.sides != [[false; 2]; 2] {
-            let (product, slopes) = self.divisor(at);
-            size /= product;
+        if self.has_poles() {
+            let (_, slopes) = self.divisor(at);
             grown = [grown[0] - slopes[0], grown[1] - slopes[1]];
         }
-        let place = add(&f, &centre);
         Site {
-            place,
-            slopes: [fu, fv],
+            place: add(&f, &quad(&self.centre)),
             normal: scaled(&cross(&fu, &fv), size),
+            slopes: [fu, fv],
             second,
             size,
             grown,
@@ -242,56 +268,6 @@ impl Site {
             slope(fuv, fvv, fv, self.grown[1]),
         ]
     }
-}
-
-/// Bounds of the rounding errors of `M` and `N`, from the homogeneous position about `centre`.
-///
-/// A derivative of a form of degree `p` with coefficients up to `c` is a sum of products with polynomials whose absolute values add up to at most `2p`, each
-/// of which is a sum of a few rounded terms: two sums of `p + 1` products, and four more roundings of a polynomial, make `2p (2p + 8) ε c`.
-///
-/// `shift` bounds the errors of the position's coefficients themselves.
-fn rounding(
-    (position, places): (&[Bernstein; 3], &Places),
-    shift: [f64; 3],
-    weight: &Bernstein,
-    centre: &Vector3<f64>,
-    factor: f64,
-) -> Sizes {
-    let epsilon = f64::EPSILON;
-    let heaviest = weight.magnitude();
-    let lightest = weight.coefficients().iter().copied().fold(f64::INFINITY, f64::min);
-    let sizes = position.each_ref().map(Bernstein::magnitude);
-    let radius = sizes.map(|size| size / lightest);
-    // Of each derivative, component by component: a bound, and one of its error.
-    let roundings = places.roundings([sizes[0], sizes[1], sizes[2], heaviest]);
-    let [u, v] = [0, 1].map(|axis| {
-        let degree = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0) as f64;
-        let roundings = roundings[axis];
-        let growth = weight.derivative(axis).magnitude();
-        std::array::from_fn::<_, 3, _>(|k| {
-            let bound = (position[k].derivative(axis).magnitude() + radius[k] * growth) / lightest;
-            let shifted = (2.0 * degree + growth / lightest) * shift[k];
-            let error = (roundings[k] + radius[k] * roundings[3] + shifted) / lightest + 4.0 * epsilon * bound;
-            [bound, error]
-        })
-    });
-    let size = factor * heaviest.powi(4);
-    let (mut normal, mut moment) = ([[0.0; 2]; 3], [0.0; 3]);
-    let pairs = [[1, 2], [2, 0], [0, 1]];
-    for (k, [a, b]) in pairs.into_iter().enumerate() {
-        let product = |p: [f64; 2], q: [f64; 2]| [p[0] * q[0], p[0] * q[1] + p[1] * q[0]];
-        let (one, other) = (product(u[a], v[b]), product(u[b], v[a]));
-        let bound = size * (one[0] + other[0]);
-        normal[k] = [bound, size * (one[1] + other[1]) + 16.0 * epsilon * bound];
-    }
-    for (k, [a, b]) in pairs.into_iter().enumerate() {
-        let term = |p: usize, n: usize| {
-            let reach = centre[p].abs() + radius[p];
-            reach * (normal[n][1] + 24.0 * epsilon * normal[n][0]) + shift[p] / lightest * normal[n][0]
-        };
-        moment[k] = term(a, b) + term(b, a);
-    }
-    [moment, normal.map(|[_, error]| error)]
 }
 
 #[cfg(test)]

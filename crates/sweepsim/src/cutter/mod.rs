@@ -2,10 +2,13 @@
 
 pub(crate) mod cells;
 pub(crate) mod direct;
+mod errors;
 pub(crate) mod outline;
 pub(crate) mod patch_forms;
+mod places;
 pub(crate) mod reduced;
 pub(crate) mod revolution;
+mod tangents;
 
 use nalgebra::Vector3;
 use outline::Outline;

@@ -5,12 +5,13 @@
 //! coefficients of the normals `N`, their moments `M = F × N`, and the derivatives of both.
 
 use crate::algebra::bivariate::factors;
-use crate::algebra::quad::{Quad, add, quad, vector};
+use crate::algebra::quad::{Quad, add, cross, quad, vector};
 use crate::algebra::ranges::ROUNDING;
 use crate::algebra::table::{Table, position};
 use crate::cutter::direct::{Direct, Site};
-use crate::cutter::reduced::Reduced;
+use crate::cutter::reduced::{Missing, Reduced, nodes, through};
 use crate::cutter::revolution::{Revolution, Spot};
+use crate::cutter::tangents::Tangents;
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::Vector3;
@@ -38,6 +39,8 @@ pub(crate) struct PatchForms {
     pub(super) layout: Layout,
     /// The forms of which the cells hold reductions, if their degrees are high.
     pub(super) reduced: Option<Reduced>,
+    /// Bounds of what reductions of the slopes lack, if cells hold those.
+    pub(super) tangents: Option<Tangents>,
     /// The largest coefficients of each component of `M` and of `N`.
     pub largest: Sizes,
     /// The same, or more: their rounding errors are below [`ROUNDING`] times this.
@@ -54,6 +57,8 @@ pub(crate) struct PatchForms {
 }
 
 /// The tensors of a cell: position x, y, z, weight; then for each variable the same for the derivative; then for each field N, M.
+///
+/// If slopes are reduced, they are only among the control points, and the fields follow the position.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub position: Slot,
@@ -62,17 +67,32 @@ pub(super) struct Layout {
     pub len: usize,
 }
 
+impl Layout {
+    /// The position, and if asked for, the slopes and the fields, each with its number of tensors.
+    pub fn tensors(&self, slopes: bool, fields: bool) -> impl Iterator<Item = (&Slot, usize)> {
+        let slopes = self.slopes.iter().filter(move |_| slopes);
+        let fields = self.fields.iter().filter(move |_| fields);
+        let rational = std::iter::once(&self.position).chain(slopes);
+        rational.map(|slot| (slot, 4)).chain(fields.map(|slot| (slot, 6)))
+    }
+}
+
 impl PatchForms {
     pub fn all(tool: &Tool) -> (Vec<Self>, Vec<Self>) {
         (
-            tool.patches().iter().map(Self::patch).collect(),
+            Self::of_patches(tool.patches()),
             tool.edges().iter().map(Self::edge).collect(),
         )
     }
 
+    pub(super) fn of_patches(patches: &[Patch]) -> Vec<Self> {
+        patches.iter().map(Self::patch).collect()
+    }
+
     fn patch(patch: &Patch) -> Self {
-        let element = Self::new(patch.position(), patch.weight(), &[patch.field()], 2);
         let direct = Direct::new(patch);
+        let tangents = direct.as_ref().and_then(|direct| Tangents::new(patch, direct));
+        let element = Self::new(patch.position(), patch.weight(), &[patch.field()], 2, tangents);
         let mut rounding = element.largest;
         if let Some(direct) = &direct {
             let errors = direct.rounding.as_flattened();
@@ -93,10 +113,17 @@ impl PatchForms {
     }
 
     fn edge(edge: &Edge) -> Self {
-        Self::new(edge.position(), edge.weight(), &[edge.before(), edge.after()], 1)
+        Self::new(edge.position(), edge.weight(), &[edge.before(), edge.after()], 1, None)
     }
 
-    fn new(point: &[Bernstein; 3], weight: &Bernstein, fields: &[&NormalField], variables: usize) -> Self {
+    /// `tangents`: for slopes that may be reduced, if the fields are.
+    fn new(
+        point: &[Bernstein; 3],
+        weight: &Bernstein,
+        fields: &[&NormalField],
+        variables: usize,
+        tangents: Option<Tangents>,
+    ) -> Self {
         let mut whole = Vec::new();
         let mut put = |forms: &[&Bernstein]| {
             let degrees = common_degrees(forms);
@@ -108,19 +135,15 @@ impl PatchForms {
         };
         let [x, y, z] = point;
         let position = put(&[x, y, z, weight]);
+        let tangents = tangents.filter(|_| Reduced::lowers(common_degrees(&forms_of(fields))) == Some([2; 2]));
         let slopes = (0..variables)
-            .map(|axis| {
-                // With ω = ω₁(u) ω₂(v): F_u = (F̂_u ω₁ − F̂ ω₁′) / (ω₁² ω₂).
-                let (own, other) = match factors(weight) {
-                    Some([in_u, in_v]) if axis == 0 => (in_u, Some(in_v)),
-                    Some([in_u, in_v]) => (in_v, Some(in_u)),
-                    None => (weight.clone(), None),
-                };
-                let numerator = |f: &Bernstein| f.derivative(axis).mul(&own).sub(&f.mul(&own.derivative(axis)));
-                let square = own.square();
-                let denominator = other.map_or(square.clone(), |o| square.mul(&o));
-                let [x, y, z] = point.each_ref().map(numerator);
-                put(&[&x, &y, &z, &denominator])
+            .map(|axis| match &tangents {
+                Some(_) => {
+                    let degrees = [2; 2];
+                    let start = position.start + 4 * position.len() + axis * 3 * Tangents::POINTS;
+                    Slot { degrees, start }
+                }
+                None => put(&slope(point, weight, axis).each_ref()),
             })
             .collect();
         let mut largest = [[0.0_f64; 3]; 2];
@@ -129,7 +152,7 @@ impl PatchForms {
         let mut fields: Vec<Slot> = fields
             .iter()
             .map(|field| {
-                let forms: Vec<&Bernstein> = field.normal().iter().chain(field.moment()).collect();
+                let forms = forms_of(&[field]);
                 for (k, form) in forms.iter().enumerate() {
                     let largest = &mut largest[1 - k / 3][k % 3];
                     *largest = largest.max(form.magnitude());
@@ -155,6 +178,7 @@ impl PatchForms {
             whole,
             layout,
             reduced,
+            tangents,
             rounding: largest,
             largest,
             revolution: None,
@@ -203,12 +227,58 @@ impl PatchForms {
         (spot, fields)
     }
 
+    /// The place of a point of a placed patch alone; `None` if [`spot`](Self::spot) costs hardly more.
+    #[inline]
+    pub fn place(&self, placing: &Placing, at: [f64; 2]) -> Option<Quad> {
+        let place = self.direct.as_ref()?.place(at)?;
+        Some(add(&placing.turned(&vector(&place)), &placing.origin))
+    }
+
     /// The place of a point of a placed patch, and `⟨spin, M⟩ + ⟨travel, N⟩` there, without derivatives; `None` if [`spot`](Self::spot) costs hardly more.
     #[inline]
     pub fn value(&self, placing: &Placing, twist: &Twisted, at: [f64; 2]) -> Option<(Quad, f64)> {
         let direct = self.direct.as_ref().filter(|direct| direct.covers(at))?;
         let (place, g) = direct.value(at, twist)?;
         Some((add(&placing.turned(&vector(&place)), &placing.origin), g))
+    }
+
+    /// Computes the reduced field of a cell, and its reduced slopes, from values at nine points; what they lack.
+    ///
+    /// `None` if one of the points is close to a pole, where `M` and `N` are left to their own forms: only the slopes are computed.
+    pub(super) fn sample(
+        &self,
+        (lower, upper): ([f64; 2], [f64; 2]),
+        fields: &mut [f64],
+        slopes: &mut [f64],
+    ) -> Option<Missing> {
+        let (direct, reduced) = (self.direct.as_ref()?, self.reduced.as_ref()?);
+        let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
+        let [in_u, in_v] = [0, 1].map(|axis| nodes(lower[axis], widths[axis]));
+        let mut values = [[[[0.0; 4]; 3]; 3]; 4];
+        for (j, v) in in_v.into_iter().enumerate() {
+            for (i, u) in in_u.into_iter().enumerate() {
+                let (place, [fu, fv], normal) = direct.tangent([u, v]);
+                let all = [fu, fv, normal, cross(&place, &normal)];
+                for (form, value) in values.iter_mut().zip(all) {
+                    form[j][i] = value;
+                }
+            }
+        }
+        let write = |out: &mut [f64], of: &[[[Quad; 3]; 3]]| {
+            for (out, values) in out.chunks_exact_mut(3 * Tangents::POINTS).zip(of) {
+                for (at, point) in through(values).as_flattened().iter().enumerate() {
+                    for (k, x) in point[..3].iter().enumerate() {
+                        out[k * Tangents::POINTS + at] = *x;
+                    }
+                }
+            }
+        };
+        write(slopes, &values[..2]);
+        if !(direct.covers(lower) && direct.covers(upper)) {
+            return None;
+        }
+        write(fields, &values[2..]);
+        Some(reduced.missing(widths, direct.rounding, fields))
     }
 
     /// The number of coefficients of a cell's field along the first variable.
@@ -247,6 +317,27 @@ impl Fields {
             Self::Lists(lists) => lists.each_ref().map(|list| twist.dot(list)),
         }
     }
+}
+
+/// `N` and `M` of some fields.
+fn forms_of<'a>(fields: &[&'a NormalField]) -> Vec<&'a Bernstein> {
+    let forms = |field: &&'a NormalField| field.normal().iter().chain(field.moment());
+    fields.iter().flat_map(forms).collect()
+}
+
+/// The derivative of `point / weight` along an axis: three numerators, and the denominator.
+fn slope(point: &[Bernstein; 3], weight: &Bernstein, axis: usize) -> [Bernstein; 4] {
+    // With ω = ω₁(u) ω₂(v): F_u = (F̂_u ω₁ − F̂ ω₁′) / (ω₁² ω₂).
+    let (own, other) = match factors(weight) {
+        Some([in_u, in_v]) if axis == 0 => (in_u, Some(in_v)),
+        Some([in_u, in_v]) => (in_v, Some(in_u)),
+        None => (weight.clone(), None),
+    };
+    let numerator = |f: &Bernstein| f.derivative(axis).mul(&own).sub(&f.mul(&own.derivative(axis)));
+    let square = own.square();
+    let denominator = other.map_or(square.clone(), |o| square.mul(&o));
+    let [x, y, z] = point.each_ref().map(numerator);
+    [x, y, z, denominator]
 }
 
 fn triple(list: &[f64]) -> Vector3<f64> {

@@ -8,6 +8,7 @@
 //! function at most `Λ` times as large, and its derivative at most `Λ′/h`. The third derivatives are bounded by the coefficients of the whole patch.
 
 use crate::algebra::bivariate::MOST;
+use crate::algebra::quad::Quad;
 use crate::time::pieces::Sizes;
 use sweepsim_spline::kernel::basis;
 
@@ -24,13 +25,36 @@ const SLOPE: f64 = 3.0 / 32.0;
 const LEBESGUE: f64 = 5.0 / 3.0;
 const LEBESGUE_OF_SLOPES: f64 = 32.0 / 3.0;
 /// Coefficients are combinations of values at the nodes with factors that add up to at most `11/3` in each variable, the square of which is less than this.
-const COMBINED: f64 = 13.5;
+pub(super) const COMBINED: f64 = 13.5;
 
 /// Bounds of what is missing from a cell's forms of `M` and `N`, and from their derivatives.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Missing {
     pub value: Sizes,
     pub slopes: [Sizes; 2],
+    /// The same for `F_u` and `F_v`.
+    pub tangents: Sizes,
+}
+
+/// How far a function with these third derivatives is from the form of degree 2 that agrees with it at the Chebyshev nodes of a cell with these sides.
+pub(super) fn beyond(third: [f64; 2], widths: [f64; 2]) -> f64 {
+    let rests = [0, 1].map(|axis| VALUE * third[axis] * widths[axis] * widths[axis] * widths[axis]);
+    (rests[0] + LEBESGUE * rests[1]).min(rests[1] + LEBESGUE * rests[0])
+}
+
+/// The form of degree 2 with these values at the Chebyshev nodes: `values[j][i]` at the node `i` in `u` and `j` in `v`, and so are its coefficients.
+pub(super) fn through(values: &[[Quad; 3]; 3]) -> [[Quad; 3]; 3] {
+    let line = |of: [&Quad; 3]| -> [Quad; 3] {
+        INVERSE_COLUMNS.map(|[p, q, r]| std::array::from_fn(|k| p * of[0][k] + q * of[1][k] + r * of[2][k]))
+    };
+    let [a, b, c] = values.each_ref().map(|[a, b, c]| line([a, b, c]));
+    let [a, b, c] = [0, 1, 2].map(|i| line([&a[i], &b[i], &c[i]]));
+    [0, 1, 2].map(|j| [a[j], b[j], c[j]])
+}
+
+/// The Chebyshev nodes of an interval.
+pub(super) fn nodes(start: f64, width: f64) -> [f64; 3] {
+    [0.5 - OUTER, 0.5, 0.5 + OUTER].map(|node| start + node * width)
 }
 
 /// `N` and `M` of a patch, to be reduced on any cell.
@@ -47,9 +71,7 @@ impl Reduced {
     /// For six tensors of these degrees, one after the other, if that lowers a degree.
     pub fn new(forms: &[f64], degrees: [usize; 2]) -> Option<Self> {
         let [p, q] = degrees;
-        if p.max(q) <= LOW || p.max(q) >= MOST {
-            return None;
-        }
+        Self::lowers(degrees)?;
         let mut sizes = [(0.0, [0.0; 2]); 6];
         for (size, form) in sizes.iter_mut().zip(forms.chunks_exact((p + 1) * (q + 1))) {
             let third = |axis: usize| {
@@ -77,6 +99,12 @@ impl Reduced {
         })
     }
 
+    /// The degrees of reduced forms, if these are reduced.
+    pub fn lowers(degrees: [usize; 2]) -> Option<[usize; 2]> {
+        let [p, q] = degrees;
+        (p.max(q) > LOW && p.max(q) < MOST).then(|| degrees.map(|degree| degree.min(LOW)))
+    }
+
     /// The degrees of the reduced forms.
     pub fn low(&self) -> [usize; 2] {
         self.degrees.map(|degree| degree.min(LOW))
@@ -90,8 +118,7 @@ impl Reduced {
         let [in_u, in_v] = [0, 1].map(|axis| weights(self.degrees[axis], lower[axis], widths[axis]));
         let few = (a + 1) * (b + 1);
         let forms = self.forms.chunks_exact((p + 1) * (q + 1));
-        let mut missing = Missing::default();
-        for (number, (form, out)) in forms.zip(out.chunks_exact_mut(few)).enumerate() {
+        for (form, out) in forms.zip(out.chunks_exact_mut(few)) {
             let mut sums = [[0.0; ROWS]; ROWS];
             for (line, in_v) in form.chunks_exact(p + 1).zip(&in_v) {
                 let mut row = [0.0; ROWS];
@@ -109,13 +136,22 @@ impl Reduced {
             for (line, sum) in out.chunks_exact_mut(a + 1).zip(&sums) {
                 line.copy_from_slice(&sum[..=a]);
             }
-            let (rounding, third) = self.sizes[number];
+        }
+        self.missing(widths, [[0.0; 3]; 2], out)
+    }
+
+    /// What is missing from reduced tensors on a cell with these sides, if the values at its nodes have these errors.
+    ///
+    /// If that is unknown, all of `out` becomes NaN.
+    pub fn missing(&self, widths: [f64; 2], errors: Sizes, out: &mut [f64]) -> Missing {
+        let mut missing = Missing::default();
+        for (number, (rounding, third)) in self.sizes.iter().enumerate() {
             let (vector, k) = (1 - number / 3, number % 3);
+            let rounding = rounding + COMBINED * errors[vector][k];
             let cubes = [0, 1].map(|axis| third[axis] * widths[axis] * widths[axis] * widths[axis]);
-            let rests = cubes.map(|cube| VALUE * cube);
-            missing.value[vector][k] = (rests[0] + LEBESGUE * rests[1]).min(rests[1] + LEBESGUE * rests[0]) + rounding;
+            missing.value[vector][k] = beyond(*third, widths) + rounding;
             for axis in 0..2 {
-                let across = LEBESGUE_OF_SLOPES * rests[1 - axis];
+                let across = LEBESGUE_OF_SLOPES * (VALUE * cubes[1 - axis]);
                 missing.slopes[axis][vector][k] = (SLOPE * cubes[axis] + across + 4.0 * rounding) / widths[axis];
             }
         }
@@ -142,8 +178,8 @@ fn weights(degree: usize, start: f64, width: f64) -> [[f64; ROWS]; MOST] {
         }
         return weights;
     }
-    for (node, of_coefficients) in [0.5 - OUTER, 0.5, 0.5 + OUTER].into_iter().zip(INVERSE) {
-        basis(degree, start + node * width, &mut values);
+    for (node, of_coefficients) in nodes(start, width).into_iter().zip(INVERSE) {
+        basis(degree, node, &mut values);
         for (weights, value) in weights.iter_mut().zip(values).take(degree + 1) {
             for i in 0..ROWS {
                 weights[i] += of_coefficients[i] * value;
@@ -166,6 +202,12 @@ const INVERSE: [[f64; ROWS]; 3] = {
         [middle, 2.0 - middle, middle],
         [2.0 * far, -near - far, 2.0 * near],
     ]
+};
+
+/// The same for each coefficient.
+const INVERSE_COLUMNS: [[f64; 3]; ROWS] = {
+    let [p, q, r] = INVERSE;
+    [[p[0], q[0], r[0]], [p[1], q[1], r[1]], [p[2], q[2], r[2]]]
 };
 
 impl Missing {

@@ -79,9 +79,9 @@ impl ChartMap<3> for PatchMap<'_> {
         let missing = self.cells.missing(cell.0);
         let sizes = self.times.sizes();
         for axis in 0..2 {
-            let slope = self.cells.slope(self.element, cell.0, axis);
-            for r in 0..2 {
-                jacobian[r][axis] = interval(products(self.times.rows(cell.1, r), &slope));
+            for (r, row) in jacobian.iter_mut().enumerate().take(2) {
+                let rows = self.times.rows(cell.1, r);
+                row[axis] = interval(self.cells.slope_products(self.element, cell.0, axis, rows));
             }
             let slopes = self.cells.field_slope(cell.0, 0, axis);
             let (spins, travels) = self.times.twist(cell.1);

@@ -165,8 +165,7 @@ impl ChartMap<2> for PlacedMap<'_> {
 
     fn jacobian(&mut self, cell: &u32) -> [[Enclosure; 2]; 2] {
         self.cells.prepare(self.element, *cell);
-        let slopes = [0, 1].map(|axis| self.cells.slope(self.element, *cell, axis));
-        [0, 1].map(|r| [0, 1].map(|axis| interval(products(&self.row(r), &slopes[axis]))))
+        [0, 1].map(|r| [0, 1].map(|axis| interval(self.cells.slope_products(self.element, *cell, axis, &self.row(r)))))
     }
 
     fn split(&mut self, cell: &u32, axis: usize) -> [u32; 2] {
@@ -196,8 +195,16 @@ impl ChartMap<2> for PlacedMap<'_> {
         let [[x], [y]] = [self.row(0), self.row(1)];
         Some(matrix.map(|[a, b]| {
             let row: [f64; 3] = std::array::from_fn(|i| a * x[i] + b * y[i]);
-            [0, 1].map(|axis| interval(products(&[row], &self.cells.slope(self.element, *cell, axis))))
+            [0, 1].map(|axis| interval(self.cells.slope_products(self.element, *cell, axis, &[row])))
         }))
+    }
+
+    fn value(&self, x: &[f64; 2]) -> Option<[f64; 2]> {
+        if self.element.revolution.is_some() {
+            return None;
+        }
+        let place = self.element.place(&self.placing, *x)?;
+        Some([place[0], place[1]])
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnPlaced> {

@@ -102,7 +102,9 @@ impl Blur {
         let [_, largest] = element.largest;
         Self {
             place: total(&one, &sizes(&cells.position(element, cell))),
-            slopes: [0, 1].map(|axis| total(&one, &sizes(&cells.slope(element, cell, axis)))),
+            slopes: [0, 1].map(|axis| {
+                total(&one, &sizes(&cells.slope(element, cell, axis))) + total(&one, &missing.tangents[axis])
+            }),
             g: total(&one, &largest),
             g_slopes: [0, 1].map(|axis| {
                 let [normals, _] = cells.field_slope(cell, 0, axis);
@@ -206,7 +208,7 @@ impl Tree {
         let Blur { slopes, g_slopes, .. } = &self.blur;
         let of_place = |k: usize, axis: usize| {
             widened(
-                products(&[directions.rows[k]], &cells.slope(element, cell, axis)),
+                cells.slope_products(element, cell, axis, &[directions.rows[k]]),
                 slopes[axis],
             )
         };

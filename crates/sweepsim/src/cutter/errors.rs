@@ -1,0 +1,68 @@
+//! Rounding errors of slopes, normals and moments that are computed from a patch's position.
+
+use crate::time::pieces::Sizes;
+use nalgebra::Vector3;
+use sweepsim_spline::Bernstein;
+
+/// Bounds of both derivatives of `F` and of their rounding errors, from the homogeneous position about some centre.
+pub(super) struct Errors {
+    /// Component by component: a bound, and one of its error.
+    slopes: [[[f64; 2]; 3]; 2],
+    /// Bounds of the position about the centre, and of its error.
+    radius: [f64; 3],
+    shift: [f64; 3],
+    heaviest: f64,
+}
+
+impl Errors {
+    /// `roundings`: of the first derivatives of all four forms, in each variable. `shift` bounds the errors of the position's coefficients themselves.
+    pub fn new((position, weight): (&[Bernstein; 3], &Bernstein), roundings: [[f64; 4]; 2], shift: [f64; 3]) -> Self {
+        let lightest = weight.coefficients().iter().copied().fold(f64::INFINITY, f64::min);
+        let radius = position.each_ref().map(|form| form.magnitude() / lightest);
+        let slopes = [0, 1].map(|axis| {
+            let degree = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0) as f64;
+            let roundings = roundings[axis];
+            let growth = weight.derivative(axis).magnitude();
+            std::array::from_fn(|k| {
+                let bound = (position[k].derivative(axis).magnitude() + radius[k] * growth) / lightest;
+                let shifted = (2.0 * degree + growth / lightest) * shift[k];
+                let error = (roundings[k] + radius[k] * roundings[3] + shifted) / lightest + 4.0 * f64::EPSILON * bound;
+                [bound, error]
+            })
+        });
+        Self {
+            slopes,
+            radius,
+            shift: shift.map(|error| error / lightest),
+            heaviest: weight.magnitude(),
+        }
+    }
+
+    /// Of `F_u` and `F_v`.
+    pub fn of_slopes(&self) -> Sizes {
+        self.slopes.map(|slope| slope.map(|[_, error]| error))
+    }
+
+    /// Of `M` and `N = factor w⁴ (F_u × F_v)`.
+    pub fn of_fields(&self, centre: &Vector3<f64>, factor: f64) -> Sizes {
+        let epsilon = f64::EPSILON;
+        let [u, v] = self.slopes;
+        let size = factor * self.heaviest.powi(4);
+        let (mut normal, mut moment) = ([[0.0; 2]; 3], [0.0; 3]);
+        let pairs = [[1, 2], [2, 0], [0, 1]];
+        for (k, [a, b]) in pairs.into_iter().enumerate() {
+            let product = |p: [f64; 2], q: [f64; 2]| [p[0] * q[0], p[0] * q[1] + p[1] * q[0]];
+            let (one, other) = (product(u[a], v[b]), product(u[b], v[a]));
+            let bound = size * (one[0] + other[0]);
+            normal[k] = [bound, size * (one[1] + other[1]) + 16.0 * epsilon * bound];
+        }
+        for (k, [a, b]) in pairs.into_iter().enumerate() {
+            let term = |p: usize, n: usize| {
+                let reach = centre[p].abs() + self.radius[p];
+                reach * (normal[n][1] + 24.0 * epsilon * normal[n][0]) + self.shift[p] * normal[n][0]
+            };
+            moment[k] = term(a, b) + term(b, a);
+        }
+        [moment, normal.map(|[_, error]| error)]
+    }
+}
