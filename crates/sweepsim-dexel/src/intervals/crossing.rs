@@ -40,11 +40,13 @@ pub struct AuditFailure {
 /// Heights have some error, so consecutive crossings at most `same` apart form a group: the order of a coincident start and end is unknown,
 /// and a gap or a negative count between them means nothing. Intervals begin at the lowest and end at the highest crossing of a group.
 /// A chain of crossings can make a group longer than `same`; inside it the count continues from crossing to crossing, so no wall or gap
-/// thicker than `same` is lost.
+/// thicker than `same` is lost. A `same` that is negative or no number counts as 0.
 ///
 /// # Errors
 /// [`AuditFailure`]: the jumps do not add up to 0, a sum between groups is negative, or a height is not finite. `intervals` is then empty.
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
+    // Crossings at one height always form a group: no interval is without length.
+    let same = same.max(0.0);
     if cover_few(crossings, same, intervals).is_some() {
         return Ok(());
     }
@@ -259,6 +261,35 @@ mod tests {
             prop_assert_eq!(a, b);
             prop_assert_eq!(own, other);
         }
+    }
+
+    /// All lists of up to four crossings at three heights, with any `same`: what is not refused is sorted, and every interval has a length.
+    #[test]
+    fn intervals_have_a_length_whatever_is_the_same() {
+        let (heights, jumps) = ([-1.0, 0.0, 0.5], [-2_i8, -1, 1, 2]);
+        let kinds: Vec<_> = heights
+            .iter()
+            .flat_map(|z| jumps.map(|jump| crossing(*z, jump)))
+            .collect();
+        let mut intervals = Vec::new();
+        let mut counted = 0;
+        for code in 0..kinds.len().pow(4) {
+            for number in 1..=4_u32 {
+                let list: Vec<_> = (0..number)
+                    .map(|k| kinds[code / kinds.len().pow(k) % kinds.len()])
+                    .collect();
+                for same in [-1.0, -f64::INFINITY, f64::NAN, 0.0, 0.5, 1.0, f64::INFINITY] {
+                    if cover(&mut list.clone(), same, &mut intervals).is_err() {
+                        assert!(intervals.is_empty());
+                        continue;
+                    }
+                    counted += 1;
+                    let ends: Vec<f64> = intervals.iter().flat_map(|i| [i.lower.z, i.upper.z]).collect();
+                    assert!(ends.windows(2).all(|w| w[0] < w[1]), "{list:?}, same {same}: {ends:?}");
+                }
+            }
+        }
+        assert!(counted > 10_000, "{counted}");
     }
 
     #[test]
