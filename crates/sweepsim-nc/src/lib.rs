@@ -45,14 +45,14 @@ pub use machines::{
     Kinematics, LinearAxis, Machine, MachineDescription, MachineError, Position, Rapid, ReachError, RotaryAxis,
     Solutions, WorkFrame,
 };
-pub use model::accelerations::CORNER_DEVIATION;
 pub use model::event::{Coolant, Event, EventKind, Spindle};
 pub use model::names::Format;
 pub use model::poses::ProgramPoses;
+pub use model::positions::ProgramPositions;
 pub use model::program::{Call, FeedMode, Note, Program, ProgramPose, Units};
 pub use model::read_options::{AxisLaw, Controller, ReadOptions, ToolOffset};
 pub use model::stock::StockDescription;
-pub use model::times::{MoveClock, MoveTime, RAPID_SPEED, RAPID_TURN};
+pub use model::times::{CORNER_DEVIATION, MoveClock, MoveTime, RAPID_SPEED, RAPID_TURN};
 pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
 pub use read::read_file;

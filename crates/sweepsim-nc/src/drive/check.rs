@@ -99,9 +99,9 @@ impl std::fmt::Display for AxisFinding {
 #[must_use]
 pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
     let mut findings = Vec::new();
-    let mut last: Option<(Position, &ProgramPose)> = None;
-    let given = program.positions.len() == program.poses.len();
-    for (index, pose) in program.poses.iter().enumerate() {
+    let mut last: Option<(Position, ProgramPose)> = None;
+    let given = program.knows_positions();
+    for (index, (pose, position)) in program.placed().enumerate() {
         let length = machine.tool_length(pose.tool);
         let found = |findings: &mut Vec<AxisFinding>, fault| {
             findings.push(AxisFinding {
@@ -112,11 +112,12 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
                 fault,
             });
         };
-        let near = last.map_or_else(|| machine.start(length), |(position, _)| position);
-        let position = if given {
-            program.positions[index]
-        } else {
-            match machine.nearest(&pose.pose, length, &near) {
+        let near = last
+            .as_ref()
+            .map_or_else(|| machine.start(length), |(position, _)| *position);
+        let position = match position {
+            Some(position) => position,
+            None => match machine.nearest(&pose.pose, length, &near) {
                 Ok(position) => position,
                 Err(ReachError::Direction { axis, degrees }) => {
                     found(&mut findings, AxisFault::Direction { axis, degrees });
@@ -126,12 +127,13 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
                     found(&mut findings, AxisFault::Limit { letter, value, limits });
                     continue;
                 }
-            }
+            },
         };
-        let beyond = match last.filter(|_| pose.joined) {
+        let before = last.as_ref().filter(|_| pose.joined);
+        let beyond = match before {
             Some((from, before)) => {
-                let ends = (before, pose);
-                excursions(machine, length, ends, (&from, &position), given && !pose.tip_control)
+                let ends = (before, &pose);
+                excursions(machine, length, ends, (from, &position), given && !pose.tip_control)
             }
             None => machine
                 .beyond(&position, length)
@@ -159,10 +161,10 @@ pub fn check(program: &Program, machine: &Kinematics) -> Vec<AxisFinding> {
                 fault: AxisFault::Limit { letter, value, limits },
             });
         }
-        if let (true, Some((from, before))) = (pose.joined, last)
-            && let Some(minutes) = minutes(before, pose, &from, &position)
+        if let Some((from, before)) = before
+            && let Some(minutes) = minutes(before, &pose, from, &position)
         {
-            for (letter, largest, moved) in machine.speeds(&from, &position) {
+            for (letter, largest, moved) in machine.speeds(from, &position) {
                 let needed = moved / minutes;
                 if needed > largest * (1.0 + 1e-9) {
                     let fault = AxisFault::Speed {

@@ -120,10 +120,8 @@ impl Program {
     #[must_use]
     pub fn other_course(&self, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
         let Some(machine) = self.machine.kinematics.as_deref() else {
-            return self
-                .poses
-                .get(pose)?
-                .other_course_from(&self.poses.get(pose.checked_sub(1)?)?.pose);
+            let start = self.poses.at(pose.checked_sub(1)?)?;
+            return self.poses.at(pose)?.other_course_from(&start.pose);
         };
         if machine.rapid() == Rapid::Unknown {
             self.by_machine(machine, pose, tolerance)
@@ -133,25 +131,32 @@ impl Program {
     }
 
     fn by_machine(&self, machine: &Kinematics, pose: usize, tolerance: f64) -> Option<Vec<(f64, Pose)>> {
-        let end = self.poses.get(pose).filter(|end| end.rapid && end.joined)?;
         let before = pose.checked_sub(1)?;
-        let (from, to) = (self.positions.get(before)?, self.positions.get(pose)?);
-        if end.tip_control && from.abc != to.abc {
+        let [from, to] = [self.positions.at(before)?, self.positions.at(pose)?];
+        let (start, end) = (self.poses.at(before)?, self.poses.at(pose)?);
+        end.dog_leg_from(&start.pose, [&from, &to], machine, tolerance)
+    }
+}
+
+impl ProgramPose {
+    /// The course of the rapid to this pose from another, where each axis of the machine goes at its own speed from its start to its end until it is there; as of
+    /// [`Program::dog_leg`], whatever the machine says of its rapids.
+    #[must_use]
+    pub fn dog_leg_from(
+        &self,
+        start: &Pose,
+        [from, to]: [&Position; 2],
+        machine: &Kinematics,
+        tolerance: f64,
+    ) -> Option<Vec<(f64, Pose)>> {
+        if !(self.rapid && self.joined) || (self.tip_control && from.abc != to.abc) {
             return None;
         }
-        let mut points = vec![
-            RapidPoint {
-                time: 0.0,
-                position: *from,
-            },
-            RapidPoint {
-                time: 1.0,
-                position: *to,
-            },
-        ];
+        let ends = [(0.0, *from), (1.0, *to)];
+        let mut points: Vec<RapidPoint> = ends.map(|(time, position)| RapidPoint { time, position }).into();
         points.splice(1..1, machine.corners(from, to));
-        let length = machine.tool_length(end.tool);
-        let mut poses = vec![(0.0, self.poses[before].pose)];
+        let length = machine.tool_length(self.tool);
+        let mut poses = vec![(0.0, *start)];
         for pair in points.windows(2) {
             let (a, b) = (&pair[0], &pair[1]);
             let turns = a.position.abc != b.position.abc;
@@ -170,13 +175,11 @@ impl Program {
         }
         // The end is the program's own, to the last digit.
         if let Some(last) = poses.last_mut() {
-            *last = (1.0, end.pose);
+            *last = (1.0, self.pose);
         }
         (poses.len() > 2).then_some(poses)
     }
-}
 
-impl ProgramPose {
     /// The dog-leg that the rapid to this pose from another may be where no machine is known, as of [`Program::other_course`]: X, Y and Z go equally fast until they are there.
     #[must_use]
     pub fn other_course_from(&self, start: &Pose) -> Option<Vec<(f64, Pose)>> {

@@ -8,6 +8,7 @@ use super::contour::Place;
 use super::driver::{Coordinates, Driver, Sense};
 use crate::machines::{Position, WorkFrame};
 use crate::model::event::{Event, EventKind};
+use crate::model::positions::ProgramPositions;
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{NcError, NcProblem, TextPosition};
@@ -102,7 +103,7 @@ impl Track {
     pub fn finish(mut self) -> Program {
         self.program.notes = self.notes.finish();
         if self.program.positions.len() != self.program.poses.len() {
-            self.program.positions = Vec::new();
+            self.program.positions = ProgramPositions::default();
         }
         self.program
     }

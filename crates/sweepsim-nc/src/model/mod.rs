@@ -1,11 +1,10 @@
 //! What reading a program takes and gives.
 
-pub(crate) mod accelerations;
 pub(crate) mod event;
 pub(crate) mod level_arcs;
 pub(crate) mod names;
 pub(crate) mod poses;
-pub(crate) mod profile;
+pub(crate) mod positions;
 pub(crate) mod program;
 pub(crate) mod read_options;
 pub(crate) mod stock;

@@ -11,6 +11,7 @@ use crate::machines::{Machine, Position};
 use crate::model::event::Event;
 use crate::model::names::Format;
 use crate::model::poses::ProgramPoses;
+use crate::model::positions::ProgramPositions;
 use crate::model::read_options::Controller;
 use crate::model::stock::StockDescription;
 use crate::model::tool::ToolDescription;
@@ -176,7 +177,7 @@ pub struct Program {
     /// The poses in order; consecutive ones differ where they are joined.
     pub poses: ProgramPoses,
     /// The positions of the machine's axes at each pose, if its kinematics are known; else empty.
-    pub positions: Vec<Position>,
+    pub positions: ProgramPositions,
     /// The calls of subprograms, loops and cycles that made moves or events, each before those within it.
     pub calls: Vec<Call>,
     /// Everything else that the program does, in order.
@@ -195,6 +196,18 @@ impl Program {
     /// The stretches of joined poses.
     pub fn sections(&self) -> impl Iterator<Item = &[ProgramPose]> {
         self.poses.chunk_by(|_, next| next.joined)
+    }
+
+    /// The poses in order, without unpacking all of them, each with the position of the machine's axes, if that is known.
+    pub(crate) fn placed(&self) -> impl Iterator<Item = (ProgramPose, Option<Position>)> + '_ {
+        let mut positions = self.knows_positions().then(|| self.positions.in_order());
+        let poses = self.poses.in_order();
+        poses.map(move |pose| (pose, positions.as_mut().and_then(Iterator::next)))
+    }
+
+    /// Whether each pose has a position of the machine's axes.
+    pub(crate) fn knows_positions(&self) -> bool {
+        self.positions.len() == self.poses.len()
     }
 
     /// The calls that led to a pose or an event, the innermost first.

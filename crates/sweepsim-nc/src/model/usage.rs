@@ -53,11 +53,10 @@ impl Program {
         let mut events = self.events.iter().peekable();
         let mut rpm = None;
         let mut last: Option<ProgramPose> = None;
-        let mut clock = self.clock();
-        let known = self.machine.kinematics.as_ref().map(|_| self.times());
         let accelerates = self.accelerates().is_some();
-        for (index, pose) in self.poses.in_order().enumerate() {
-            let time = known.as_ref().map_or_else(|| clock.next(&pose), |times| times[index]);
+        let mut poses = self.poses.in_order().enumerate();
+        self.each_time(|time| {
+            let Some((index, pose)) = poses.next() else { return };
             let at = all.iter().position(|usage| usage.tool == pose.tool).unwrap_or_else(|| {
                 all.push(ToolUsage {
                     tool: pose.tool,
@@ -86,7 +85,7 @@ impl Program {
                 }
             }
             last = Some(pose);
-        }
+        });
         all
     }
 }

@@ -9,11 +9,13 @@ pub(super) const TURNING: f64 = 1e-3;
 pub(super) struct Step {
     /// The pose of the program at whose move's end it is, or on whose way.
     pub of: usize,
+    /// Its own number in the section.
+    pub number: usize,
     /// Its part of that move's duration, from 0 to 1.
     pub share: [f64; 2],
 }
 
-/// The findings of these steps, at their places among them.
+/// The findings of these steps, at their numbers in the section. Steps are sorted by pose; those without findings need not be among them.
 pub(super) fn at_steps(findings: &[AxisFinding], steps: &[Step]) -> Vec<AxisFinding> {
     let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
         return Vec::new();
@@ -25,12 +27,12 @@ pub(super) fn at_steps(findings: &[AxisFinding], steps: &[Step]) -> Vec<AxisFind
         .iter()
         .filter_map(|finding| {
             let near = steps.partition_point(|step| step.of < finding.pose);
-            let own = steps[near..].iter().take_while(|step| step.of == finding.pose);
-            let holds = |(_, step): &(usize, &Step)| finding.time <= step.share[1];
-            let (at, step) = own.enumerate().find(holds)?;
+            let mut own = steps[near..].iter().take_while(|step| step.of == finding.pose);
+            let holds = |step: &&Step| finding.time <= step.share[1];
+            let step = own.find(holds)?;
             let [from, to] = step.share;
             let mut moved = finding.clone();
-            moved.pose = near + at;
+            moved.pose = step.number;
             moved.time = ((finding.time - from) / (to - from)).clamp(0.0, 1.0);
             Some(moved)
         })

@@ -3,8 +3,8 @@
 use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
-use sweepsim_motion::Law;
-use sweepsim_nc::{Call, Event, EventKind, Note, Program, ProgramPose, Spindle, check};
+use sweepsim_motion::{Law, PackedRows};
+use sweepsim_nc::{Call, Event, EventKind, MoveTime, Note, Program, ProgramPose, Spindle, check};
 
 use super::section::{Known, Section, Whole, with_notes};
 use super::{Flags, JobPath};
@@ -42,16 +42,19 @@ pub(crate) fn of_program(
     let files: Arc<[PathBuf]> = std::mem::take(&mut program.files).into();
     let calls: Arc<[Call]> = std::mem::take(&mut program.calls).into();
     let has_spindle = turns_spindle(&program);
-    let kinematics = program.machine.kinematics.as_deref();
+    let machine = program.machine.kinematics.clone();
+    let kinematics = machine.as_deref();
     let beyond = kinematics.map_or_else(Vec::new, |kinematics| check(&program, kinematics));
-    let times = kinematics.map(|_| program.times());
-    // With a machine, the poses are needed as a whole; otherwise they make room for the paths as these grow.
-    let poses: Box<dyn Iterator<Item = ProgramPose>> = match &times {
-        Some(_) => program.poses.clone().into_iter(),
-        None => std::mem::take(&mut program.poses).into_iter(),
-    };
-    let mut poses = poses.enumerate().peekable();
+    let mut times = kinematics.map(|_| times(&program));
+    // Poses and positions make room for the paths as these grow.
+    let (poses, positions) = (
+        std::mem::take(&mut program.poses),
+        std::mem::take(&mut program.positions),
+    );
+    let mut positions = (positions.len() == poses.len()).then(|| positions.into_iter());
+    let mut poses = poses.into_iter().enumerate().peekable();
     let (mut clock, mut spindle) = (program.clock(), Spindles::of(&program));
+    let mut faults = beyond.iter().map(|finding| finding.pose).peekable();
     let mut has_feed = false;
     let mut paths = Vec::new();
     while let Some((_, first)) = poses.peek() {
@@ -71,12 +74,15 @@ pub(crate) fn of_program(
         let mut section = Section::default();
         while let Some((of, pose)) = poses.next() {
             has_feed |= pose.feed.is_some();
+            let time = times.as_mut().map_or_else(|| Some(clock.next(&pose)), Iterator::next);
             let known = Known {
                 of,
-                time: times.as_ref().map_or_else(|| clock.next(&pose), |times| times[of]),
+                time: time.unwrap_or_default(),
                 stopped: spindle.stopped(of),
+                position: positions.as_mut().and_then(Iterator::next),
+                at_fault: std::iter::from_fn(|| faults.next_if(|pose| *pose <= of)).count() > 0,
             };
-            section.add(&program, &pose, &known);
+            section.add(kinematics, &pose, &known);
             if !poses.peek().is_some_and(|(_, next)| next.joined) {
                 break;
             }
@@ -96,6 +102,21 @@ pub(crate) fn of_program(
         paths.iter_mut().for_each(|path| path.no_feed = Flags::default());
     }
     Ok(with_notes(paths, notes))
+}
+
+/// The times of the moves of a program, packed.
+fn times(program: &Program) -> impl Iterator<Item = MoveTime> + use<> {
+    let mut rows = PackedRows::<3>::default();
+    program.each_time(|time| {
+        let assumed = f64::from(u8::from(time.assumed));
+        rows.push([time.seconds.unwrap_or(f64::NAN), time.rest, assumed]);
+    });
+    rows.into_iter().map(|[seconds, rest, assumed]| {
+        let mut time = MoveTime::default();
+        time.seconds = Some(seconds).filter(|seconds| !seconds.is_nan());
+        (time.rest, time.assumed) = (rest, assumed > 0.0);
+        time
+    })
 }
 
 /// Whether the spindle ever turns; otherwise the program does not control it.

@@ -7,7 +7,7 @@ use super::course::{Step, TURNING, at_steps};
 use super::{Flags, JobPath, Origin, Origins, OtherCourse, Seconds};
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, Move, Path, PathBuilder, PathError, Pose};
-use sweepsim_nc::{AxisFinding, Call, MoveTime, Note, Program, ProgramPose};
+use sweepsim_nc::{AxisFinding, Call, Kinematics, MoveTime, Note, Position, ProgramPose, Rapid};
 
 /// A section of a program: poses that the tool reaches one after the other, and the corners of dog-legs between them.
 #[derive(Default)]
@@ -21,9 +21,9 @@ pub(super) struct Section {
     other_courses: Vec<OtherCourse>,
     dwell_seconds: f64,
     assumed_rapids: bool,
-    /// What each pose is, where a machine may find fault with them.
+    /// The poses at which the machine finds fault.
     steps: Vec<Step>,
-    last: Option<Pose>,
+    last: Option<(Pose, Option<Position>)>,
 }
 
 /// What is known of the move to a pose of a program.
@@ -33,30 +33,36 @@ pub(super) struct Known {
     pub time: MoveTime,
     /// Whether the spindle stands still.
     pub stopped: bool,
+    /// The position of the machine's axes at the pose.
+    pub position: Option<Position>,
+    /// Whether the machine finds fault with the move.
+    pub at_fault: bool,
 }
 
 impl Section {
-    /// Adds a pose of the program. Where no machine is known, the program need not have its poses any more.
-    pub fn add(&mut self, program: &Program, pose: &ProgramPose, known: &Known) {
-        let has_machine = program.machine.kinematics.is_some();
+    /// Adds a pose of a program for a machine, if that is known.
+    pub fn add(&mut self, machine: Option<&Kinematics>, pose: &ProgramPose, known: &Known) {
         self.dwell_seconds += known.time.rest;
-        let corners = match self.last {
-            Some(_) if has_machine => program.dog_leg(known.of, TURNING),
-            _ => None,
+        let last = self.last.replace((pose.pose, known.position));
+        let course_on = |machine: &Kinematics| {
+            let (start, from) = last?;
+            pose.dog_leg_from(&start, [&from?, &known.position?], machine, TURNING)
         };
+        let kind = machine.map(Kinematics::rapid);
+        let corners = machine.filter(|_| kind == Some(Rapid::DogLeg)).and_then(course_on);
         match corners {
-            None => self.step(pose, (pose.pose, pose.way()), [0.0, 1.0], known, has_machine),
+            None => self.step(pose, (pose.pose, pose.way()), [0.0, 1.0], known),
             Some(corners) => {
                 for pair in corners.windows(2) {
                     let share = [pair[0].0, pair[1].0];
-                    self.step(pose, (pair[1].1, Move::default()), share, known, has_machine);
+                    self.step(pose, (pair[1].1, Move::default()), share, known);
                 }
             }
         }
-        let other = match self.last {
-            None => None,
-            Some(_) if has_machine => program.other_course(known.of, TURNING),
-            Some(from) => pose.other_course_from(&from),
+        let other = match machine {
+            None => last.and_then(|(start, _)| pose.other_course_from(&start)),
+            Some(machine) if kind == Some(Rapid::Unknown) => course_on(machine),
+            Some(_) => None,
         };
         if let Some(course) = other {
             let (times, poses): (Vec<f64>, Vec<Pose>) = course.into_iter().unzip();
@@ -68,17 +74,9 @@ impl Section {
                 });
             }
         }
-        self.last = Some(pose.pose);
     }
 
-    fn step(
-        &mut self,
-        end: &ProgramPose,
-        (pose, way): (Pose, Move),
-        share: [f64; 2],
-        known: &Known,
-        has_machine: bool,
-    ) {
+    fn step(&mut self, end: &ProgramPose, (pose, way): (Pose, Move), share: [f64; 2], known: &Known) {
         if !self.builder.is_empty() {
             let seconds = known.time.seconds.map(|seconds| seconds * (share[1] - share[0]));
             self.seconds.push(seconds);
@@ -87,15 +85,19 @@ impl Section {
             self.no_feed.push(!end.rapid && end.feed.is_none());
             self.assumed_rapids |= known.time.assumed;
         }
+        if known.at_fault {
+            self.steps.push(Step {
+                of: known.of,
+                number: self.origins.len(),
+                share,
+            });
+        }
         self.builder.push(pose, way);
         self.origins.push(Origin {
             file: end.file,
             line: end.line,
             call: end.call,
         });
-        if has_machine {
-            self.steps.push(Step { of: known.of, share });
-        }
     }
 
     /// The path, with all that holds for the whole program; or its fault, and the line of that.

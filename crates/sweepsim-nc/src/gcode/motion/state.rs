@@ -10,6 +10,7 @@ use crate::drive::{Coordinates, Driver, Place, Sense};
 use crate::machines::{Machine, Position};
 use crate::model::event::{Event, EventKind};
 use crate::model::poses::ProgramPoses;
+use crate::model::positions::ProgramPositions;
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::NcProblem;
@@ -51,7 +52,7 @@ pub(crate) struct State {
     pub direct: Option<[f64; 3]>,
     /// As given.
     machine: Machine,
-    positions: Vec<Position>,
+    positions: ProgramPositions,
     poses: ProgramPoses,
     /// Whether the tool moves to the next pose from the last one.
     joined: bool,
@@ -83,7 +84,7 @@ impl State {
             ),
             tilted: false,
             direct: None,
-            positions: Vec::new(),
+            positions: ProgramPositions::default(),
             machine: options.machine.clone(),
             poses: ProgramPoses::default(),
             joined: false,
@@ -97,7 +98,7 @@ impl State {
             positions: if self.positions.len() == self.poses.len() {
                 self.positions
             } else {
-                Vec::new()
+                ProgramPositions::default()
             },
             poses: self.poses,
             calls: self.calls,

@@ -3,14 +3,17 @@
 //! The path of the axes has a length of its own: that of the linear axes in space, with degrees counted as millimetres, as in Grbl. Speeds and
 //! accelerations along it are bounded by those of the axes.
 
+use std::iter::Peekable;
+use std::slice::Iter;
+
 use nalgebra::{Matrix3, Vector3, Vector6};
 use sweepsim_motion::{Course, TipArc};
 
+use super::MoveTime;
+use super::profile::{Stretch, seconds};
 use crate::machines::{Kinematics, Position};
-use crate::model::event::EventKind;
-use crate::model::profile::{Stretch, seconds};
+use crate::model::event::{Event, EventKind};
 use crate::model::program::{Program, ProgramPose};
-use crate::model::times::MoveTime;
 use crate::model::usage::length;
 
 /// How tightly feed moves take their corners, in mm, where the machine does not say it: Grbl's setting `$11`.
@@ -18,42 +21,83 @@ pub const CORNER_DEVIATION: f64 = 0.01;
 
 impl Program {
     /// The machine, if the positions of its axes are known and any of them has an acceleration.
-    pub(super) fn accelerates(&self) -> Option<&Kinematics> {
+    pub(crate) fn accelerates(&self) -> Option<&Kinematics> {
         let machine = self.machine.kinematics.as_deref()?;
-        let mut linear = machine.linear().iter();
-        let any =
-            linear.any(|axis| axis.acceleration.is_some()) || machine.rotary().any(|axis| axis.acceleration.is_some());
-        (any && self.positions.len() == self.poses.len()).then_some(machine)
+        (accelerates(machine) && self.knows_positions()).then_some(machine)
+    }
+}
+
+fn accelerates(machine: &Kinematics) -> bool {
+    let mut linear = machine.linear().iter();
+    linear.any(|axis| axis.acceleration.is_some()) || machine.rotary().any(|axis| axis.acceleration.is_some())
+}
+
+/// Feed moves of axes that accelerate: those that follow one another start and end at rest together.
+pub(super) struct Accelerating<'a> {
+    axes: Dynamics<'a>,
+    chain: Chain,
+    events: Peekable<Iter<'a, Event>>,
+    /// The number of the pose that the next move leads to.
+    next: usize,
+}
+
+impl<'a> Accelerating<'a> {
+    /// `None` if no acceleration of the machine is known.
+    pub fn new(program: &'a Program, machine: &'a Kinematics) -> Option<Self> {
+        accelerates(machine).then(|| Self {
+            axes: Dynamics::new(machine),
+            chain: Chain::default(),
+            events: program.events.iter().peekable(),
+            next: 1,
+        })
     }
 
-    /// The times of feed moves, of which `all` has those at full speed. Moves that follow one another start and end at rest together.
-    pub(super) fn accelerate(&self, machine: &Kinematics, all: &mut [MoveTime]) {
-        let axes = Dynamics::new(machine);
-        let mut chain = Chain::default();
-        let mut events = self.events.iter().peekable();
-        for index in 1..self.poses.len() {
-            let [from, to] = [&self.poses[index - 1], &self.poses[index]];
-            let same_block = (from.file, from.line, from.call) == (to.file, to.line, to.call);
-            let mut rests = from.exact_stop && !same_block;
-            // The axes rest for whatever happens besides moves.
-            while let Some(event) = events.next_if(|event| event.pose <= index) {
-                rests |= !matches!(event.kind, EventKind::Message(_));
-            }
-            let full = all[index].seconds.filter(|_| to.joined && !to.rapid);
-            let way = full.and_then(|_| axes.way(from, to, [&self.positions[index - 1], &self.positions[index]]));
-            if rests || way.is_none() {
-                chain.end(all);
-            }
-            if let (Some(full), Some(way)) = (full, way) {
-                chain.push(&axes, index, full, &way);
-            }
+    /// Whether there are moves whose times are not known before a rest.
+    pub fn is_moving(&self) -> bool {
+        !self.chain.stretches.is_empty()
+    }
+
+    /// The way of the next move, which takes `full` at full speed; `None` if it is no feed move, or no axis moves. If the axes rest before it, the moves so far
+    /// get their times, which are the last ones of `kept`.
+    pub fn begin(
+        &mut self,
+        [from, to]: [&ProgramPose; 2],
+        ends: [&Position; 2],
+        full: &MoveTime,
+        kept: &mut [MoveTime],
+    ) -> Option<Way> {
+        let index = self.next;
+        self.next += 1;
+        let same_block = (from.file, from.line, from.call) == (to.file, to.line, to.call);
+        let mut rests = from.exact_stop && !same_block;
+        // The axes rest for whatever happens besides moves.
+        while let Some(event) = self.events.next_if(|event| event.pose <= index) {
+            rests |= !matches!(event.kind, EventKind::Message(_));
         }
-        chain.end(all);
+        let feeds = full.seconds.is_some() && to.joined && !to.rapid;
+        let way = feeds.then(|| self.axes.way(from, to, ends)).flatten();
+        if rests || way.is_none() {
+            self.rest(kept);
+        }
+        way
+    }
+
+    /// Takes the move that [`begin`](Self::begin) gave the way of.
+    pub fn push(&mut self, way: &Way, full: &MoveTime) {
+        if let Some(full) = full.seconds {
+            self.chain.push(&self.axes, full, way);
+        }
+    }
+
+    /// The axes rest: the moves so far get their times, which are the last ones of `kept`.
+    pub fn rest(&mut self, kept: &mut [MoveTime]) {
+        let own = kept.len() - self.chain.stretches.len();
+        self.chain.end(&mut kept[own..]);
     }
 }
 
 /// The way of the axes in a move.
-struct Way {
+pub(super) struct Way {
     length: f64,
     /// The unit tangents at its start and its end; `None` if the axes rest there.
     tangents: Option<[Vector6<f64>; 2]>,
@@ -65,19 +109,17 @@ struct Way {
 /// Feed moves that follow one another.
 #[derive(Default)]
 struct Chain {
-    moves: Vec<usize>,
     stretches: Vec<Stretch>,
     /// The tangent at the end of the last one, and its length.
     last: Option<(Vector6<f64>, f64)>,
 }
 
 impl Chain {
-    fn push(&mut self, axes: &Dynamics, index: usize, seconds: f64, way: &Way) {
+    fn push(&mut self, axes: &Dynamics, seconds: f64, way: &Way) {
         let corner = match (self.last, way.tangents) {
             (Some((last, length)), Some([first, _])) => axes.corner(last, first, 0.5 * length.min(way.length)),
             _ => 0.0,
         };
-        self.moves.push(index);
         self.stretches.push(Stretch {
             length: way.length,
             speed: way.speed.min(way.length / seconds),
@@ -88,10 +130,10 @@ impl Chain {
     }
 
     /// Its moves get their times, and the next one begins at rest.
-    fn end(&mut self, all: &mut [MoveTime]) {
-        for (index, time) in self.moves.drain(..).zip(seconds(&self.stretches)) {
+    fn end(&mut self, own: &mut [MoveTime]) {
+        for (own, time) in own.iter_mut().zip(seconds(&self.stretches)) {
             // Rounding makes no move faster than at full speed.
-            all[index].seconds = all[index].seconds.map(|full| full.max(time));
+            own.seconds = own.seconds.map(|full| full.max(time));
         }
         self.stretches.clear();
         self.last = None;

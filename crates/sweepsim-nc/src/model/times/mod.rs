@@ -1,6 +1,13 @@
 //! How long each move of a program takes.
 
-use nalgebra::{Vector3, Vector6};
+mod accelerations;
+mod joints;
+mod profile;
+
+pub use accelerations::CORNER_DEVIATION;
+
+use joints::Joints;
+use nalgebra::Vector3;
 
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{Event, EventKind, Spindle};
@@ -43,70 +50,34 @@ impl Program {
     /// ```
     #[must_use]
     pub fn times(&self) -> Vec<MoveTime> {
-        let mut clock = self.clock();
-        let mut all: Vec<MoveTime> = self.poses.in_order().map(|pose| clock.next(&pose)).collect();
-        let known = clock.machine.is_some();
-        if let Some(machine) = self.machine.kinematics.as_deref().filter(|_| known) {
-            self.join_chords(machine, &mut all);
-        }
-        if let Some(machine) = self.accelerates() {
-            self.accelerate(machine, &mut all);
-        }
+        let mut all = Vec::with_capacity(self.poses.len());
+        self.each_time(|time| all.push(time));
         all
+    }
+
+    /// Gives what [`times`](Self::times) does one after the other, and keeps only those of moves that start and end at rest together.
+    pub fn each_time(&self, each: impl FnMut(MoveTime)) {
+        let mut clock = self.clock();
+        let machine = self.machine.kinematics.as_deref().filter(|_| self.knows_positions());
+        let mut joints = Joints::new(self, machine, each);
+        for (pose, position) in self.placed() {
+            let time = clock.next(&pose);
+            joints.push(time, pose, position);
+        }
+        joints.finish();
     }
 
     /// Tells how long moves take one after the other, as [`times`](Self::times) does for programs without a machine.
     #[must_use]
     pub fn clock(&self) -> MoveClock<'_> {
-        let known = self.positions.len() == self.poses.len();
+        let machine = self.machine.kinematics.as_deref().filter(|_| self.knows_positions());
         MoveClock {
             program: self,
-            machine: self.machine.kinematics.as_deref().filter(|_| known),
+            axes: machine.map(|machine| (machine, Box::new(self.positions.in_order()) as Positions<'_>)),
             events: self.events.iter().peekable(),
             rpm: None,
             index: 0,
             before: None,
-        }
-    }
-
-    /// Rapids that are divided into chords rest at the ends of their block only: its time is shared among them by their ways.
-    fn join_chords(&self, machine: &Kinematics, all: &mut [MoveTime]) {
-        let change = |index: usize| {
-            let [from, to] = [&self.positions[index - 1], &self.positions[index]];
-            Vector6::from_fn(|k, _| {
-                if k < 3 {
-                    to.xyz[k] - from.xyz[k]
-                } else {
-                    to.abc[k - 3] - from.abc[k - 3]
-                }
-            })
-        };
-        let mut begin = 1;
-        while begin < self.poses.len() {
-            let (first, mut end) = (&self.poses[begin], begin + 1);
-            let whole = change(begin);
-            let one = |pose: &ProgramPose| {
-                pose.joined && pose.rapid && (pose.file, pose.line, pose.call) == (first.file, first.line, first.call)
-            };
-            if one(first) && whole.norm() > 0.0 {
-                while end < self.poses.len() && one(&self.poses[end]) {
-                    let next = change(end);
-                    // All axes go on in the same direction.
-                    let along = next.dot(&whole) / whole.norm();
-                    if along <= 0.0 || (next - whole * (along / whole.norm())).norm() > 1e-6 * next.norm() {
-                        break;
-                    }
-                    end += 1;
-                }
-            }
-            if end > begin + 1 {
-                let (seconds, _) = Axes::new(machine, &self.positions[begin - 1], &self.positions[end - 1]).rapid();
-                let total: f64 = (begin..end).map(|index| change(index).norm()).sum();
-                for (index, time) in all.iter_mut().enumerate().take(end).skip(begin) {
-                    time.seconds = Some(seconds * change(index).norm() / total);
-                }
-            }
-            begin = end;
         }
     }
 
@@ -125,14 +96,17 @@ impl Program {
     }
 }
 
+type Positions<'a> = Box<dyn Iterator<Item = Position> + 'a>;
+
 /// How long the moves of a program without a machine take, one after the other, in little memory.
 pub struct MoveClock<'a> {
     program: &'a Program,
-    machine: Option<&'a Kinematics>,
+    /// The machine, and the positions of its axes from the next pose on.
+    axes: Option<(&'a Kinematics, Positions<'a>)>,
     events: std::iter::Peekable<std::slice::Iter<'a, Event>>,
     rpm: Option<f64>,
     index: usize,
-    before: Option<ProgramPose>,
+    before: Option<(ProgramPose, Option<Position>)>,
 }
 
 impl MoveClock<'_> {
@@ -151,12 +125,13 @@ impl MoveClock<'_> {
                 _ => {}
             }
         }
-        let before = self.before.replace(pose.clone());
-        if let (true, Some(from)) = (pose.joined, before) {
-            let positions = &self.program.positions;
-            let axes = self
-                .machine
-                .map(|machine| Axes::new(machine, &positions[index - 1], &positions[index]));
+        let (machine, to) = match &mut self.axes {
+            Some((machine, positions)) => (Some(*machine), positions.next()),
+            None => (None, None),
+        };
+        let before = self.before.replace((pose.clone(), to));
+        if let (true, Some((from, start))) = (pose.joined, before) {
+            let axes = machine.and_then(|machine| Some(Axes::new(machine, &start?, &to?)));
             if pose.rapid {
                 let (seconds, assumed) = axes.map_or_else(|| (assumed_rapid(&from, pose), true), Axes::rapid);
                 (time.seconds, time.assumed) = (Some(seconds), assumed);
