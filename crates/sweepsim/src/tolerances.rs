@@ -7,6 +7,7 @@
 //! | what | at most | |
 //! | --- | --- | --- |
 //! | a tip of the path | 1/100 | [`tip_displacement`](Tolerances::tip_displacement) |
+//! | a tip between moves that are joined to one | 1/100 | [`joint_deviation`](Tolerances::joint_deviation), not together with the next |
 //! | a motion that has no exact rational form, from its law | 1/20 | [`law_deviation`](Tolerances::law_deviation) |
 //! | a line | 1/1000 | [`line_displacement`](Tolerances::line_displacement), attempt 0 |
 //! | a line that is solved again because its audit failed | 1/300 … 1/5 | the same, attempts 1 to 5 |
@@ -111,6 +112,11 @@ impl Tolerances {
     /// The maximum deviation of motions from their law.
     pub fn law_deviation(&self) -> f64 {
         LAW * self.tolerance
+    }
+
+    /// The maximum distance of the tips between moves that are joined to one from its straight way.
+    pub fn joint_deviation(&self) -> f64 {
+        TIP * self.tolerance
     }
 
     /// The maximum distance between the end of an arc and the circle about its centre through its start, for the arc to be taken as a circle through both.

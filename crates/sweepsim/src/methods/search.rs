@@ -235,11 +235,11 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// The source of a crossing after a share of the time of a part.
     fn source_after(&self, at: usize, share: f64) -> Source {
-        let part = &self.parts[at];
+        let (segment, t) = self.parts[at].place(share);
         Source::Cut {
             path: self.path,
-            segment: part.number,
-            t: part.start + part.share * share as f32,
+            segment,
+            t,
         }
     }
 

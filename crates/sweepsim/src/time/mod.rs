@@ -4,6 +4,7 @@
 pub(crate) mod arc;
 pub(crate) mod curve;
 pub(crate) mod framed;
+pub(crate) mod joined;
 pub(crate) mod moment;
 pub(crate) mod over;
 pub(crate) mod path_parts;

@@ -1,5 +1,6 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
+use crate::time::joined::Stretch;
 use crate::time::round::Round;
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
@@ -18,6 +19,10 @@ pub(crate) struct PathPart {
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
     pub start: f32,
     pub share: f32,
+    /// Whether it is a whole straight move without rotation along which the tip's displacement grows, so that the next one may be [joined](super::joined) to it.
+    pub joins: bool,
+    /// Those that it consists of, if they are several.
+    pub joined: Vec<Stretch>,
 }
 
 /// The motions of some moves of a path in a frame, with displaced tips. Moves of length zero are left out.
@@ -58,6 +63,7 @@ pub(crate) fn parts(
         let at = |n: usize| ends[0] + (ends[1] - ends[0]) * (n as f64 * share);
         let last = segments.len() - 1;
         let arcs = segments.iter().all(Segment::is_arc);
+        let grows = by[0].dot(&(by[1] - by[0])) >= 0.0;
         for (n, segment) in segments.into_iter().enumerate() {
             let segment = match parts.last() {
                 Some(PathPart { segment: before, .. }) if carried => segment.after(before),
@@ -70,11 +76,13 @@ pub(crate) fn parts(
                 segment.displaced([mix(n), if n == last { by[1] } else { mix(n + 1) }])
             };
             parts.push(PathPart {
+                joins: last == 0 && arcs && grows && segment.turns().len() == 1,
                 segment,
                 round: None,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
+                joined: Vec::new(),
             });
         }
     };
@@ -127,5 +135,7 @@ fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Ite
             number: number as u32,
             start: (n as f64 * share) as f32,
             share: share as f32,
+            joins: false,
+            joined: Vec::new(),
         })
 }

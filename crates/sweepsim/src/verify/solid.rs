@@ -106,6 +106,8 @@ impl<'a> MovingSolid<'a> {
                     number: part.number,
                     start: ((n as f64 + from) * share) as f32,
                     share: ((to - from) * share) as f32,
+                    joins: false,
+                    joined: Vec::new(),
                 });
             }
         }

@@ -7,6 +7,7 @@ mod far_and_fine;
 mod frames;
 mod freeform;
 mod grazing_curves;
+mod joined_moves;
 mod joints;
 mod long_paths;
 mod loops;

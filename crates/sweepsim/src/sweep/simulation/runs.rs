@@ -7,6 +7,7 @@ use crate::methods::lattice::LineMask;
 use crate::methods::translation::{Ceiling, GAP, stands};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
+use crate::time::joined::push_joined;
 use crate::time::path_parts::PathPart;
 use crate::time::swept_box::swept_box;
 use rayon::prelude::*;
@@ -116,6 +117,8 @@ impl<'a> Runs<'a> {
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],
+            joins: false,
+            joined: Vec::new(),
         };
         Some((short, [range[0] > 0.0, range[1] < 1.0]))
     }
@@ -180,7 +183,11 @@ impl<'a> Iterator for Runs<'a> {
                 if late && !parts.is_empty() {
                     break;
                 }
-                parts.push(part);
+                if self.closed {
+                    push_joined(&mut parts, part, self.plan.tolerances.joint_deviation());
+                } else {
+                    parts.push(part);
+                }
                 self.at += 1;
                 if early {
                     break;
