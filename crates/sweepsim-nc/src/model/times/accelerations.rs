@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector3, Vector6};
 use sweepsim_motion::{Course, TipArc};
 
 use super::MoveTime;
-use super::profile::{Stretch, seconds};
+use super::profile::{Profile, Stretch};
 use crate::machines::{Kinematics, Position};
 use crate::model::event::{Event, EventKind};
 use crate::model::program::{Program, ProgramPose};
@@ -54,7 +54,7 @@ impl<'a> Accelerating<'a> {
 
     /// Whether there are moves whose times are not known before a rest.
     pub fn is_moving(&self) -> bool {
-        !self.chain.stretches.is_empty()
+        self.chain.profile.len() > 0
     }
 
     /// The way of the next move, which takes `full` at full speed; `None` if it is no feed move, or no axis moves. If the axes rest before it, the moves so far
@@ -91,8 +91,18 @@ impl<'a> Accelerating<'a> {
 
     /// The axes rest: the moves so far get their times, which are the last ones of `kept`.
     pub fn rest(&mut self, kept: &mut [MoveTime]) {
-        let own = kept.len() - self.chain.stretches.len();
-        self.chain.end(&mut kept[own..]);
+        let own = kept.len() - self.chain.profile.len();
+        self.chain.last = None;
+        let mut own = kept[own..].iter_mut();
+        self.chain.profile.rest(|seconds| slow_down(&mut own, seconds));
+    }
+
+    /// Gives the first ones of `kept`, all of which are moving, their times, as far as later moves cannot change them; tells how many.
+    pub fn settle(&mut self, kept: &mut [MoveTime]) -> usize {
+        let before = self.chain.profile.len();
+        let mut own = kept.iter_mut();
+        self.chain.profile.settled(|seconds| slow_down(&mut own, seconds));
+        before - self.chain.profile.len()
     }
 }
 
@@ -109,7 +119,7 @@ pub(super) struct Way {
 /// Feed moves that follow one another.
 #[derive(Default)]
 struct Chain {
-    stretches: Vec<Stretch>,
+    profile: Profile,
     /// The tangent at the end of the last one, and its length.
     last: Option<(Vector6<f64>, f64)>,
 }
@@ -120,7 +130,7 @@ impl Chain {
             (Some((last, length)), Some([first, _])) => axes.corner(last, first, 0.5 * length.min(way.length)),
             _ => 0.0,
         };
-        self.stretches.push(Stretch {
+        self.profile.push(Stretch {
             length: way.length,
             speed: way.speed.min(way.length / seconds),
             corner,
@@ -128,15 +138,13 @@ impl Chain {
         });
         self.last = way.tangents.map(|[_, last]| (last, way.length));
     }
+}
 
-    /// Its moves get their times, and the next one begins at rest.
-    fn end(&mut self, own: &mut [MoveTime]) {
-        for (own, time) in own.iter_mut().zip(seconds(&self.stretches)) {
-            // Rounding makes no move faster than at full speed.
-            own.seconds = own.seconds.map(|full| full.max(time));
-        }
-        self.stretches.clear();
-        self.last = None;
+/// The next of these moves takes so long.
+fn slow_down<'a>(own: &mut impl Iterator<Item = &'a mut MoveTime>, seconds: f64) {
+    if let Some(time) = own.next() {
+        // Rounding makes no move faster than at full speed.
+        time.seconds = time.seconds.map(|full| full.max(seconds));
     }
 }
 

@@ -7,8 +7,8 @@ use super::{Axes, MoveTime};
 use crate::machines::{Kinematics, Position};
 use crate::model::program::{Program, ProgramPose};
 
-/// Takes the times of moves in order, as they would be from rest to rest or at full speed, and gives them as they are. It keeps those of the moves that go on
-/// without a rest.
+/// Takes the times of moves in order, as they would be from rest to rest or at full speed, and gives them as they are. It keeps those of moves without a rest
+/// that later ones may still slow down.
 pub(super) struct Joints<'a, F> {
     machine: Option<&'a Kinematics>,
     accelerating: Option<Accelerating<'a>>,
@@ -54,6 +54,8 @@ impl<'a, F: FnMut(MoveTime)> Joints<'a, F> {
         self.kept.push(time);
         if let (Some(feed), Some(way)) = (&mut self.accelerating, way) {
             feed.push(&way, &time);
+            let settled = feed.settle(&mut self.kept);
+            self.kept.drain(..settled).for_each(&mut self.each);
         } else if !goes_on {
             self.rapid = Chords::starting(&pose, [start, end]);
         }

@@ -55,7 +55,7 @@ impl Program {
         all
     }
 
-    /// Gives what [`times`](Self::times) does one after the other, and keeps only those of moves that start and end at rest together.
+    /// Gives what [`times`](Self::times) does one after the other, and keeps only those that later moves may still change.
     pub fn each_time(&self, each: impl FnMut(MoveTime)) {
         let mut clock = self.clock();
         let machine = self.machine.kinematics.as_deref().filter(|_| self.knows_positions());
