@@ -35,7 +35,7 @@ impl Plan {
         Self::of_moves((tool, path, 0..path.moves()), frame, extent, options)
     }
 
-    /// The same, of some moves only: all, if the tool is not of revolution.
+    /// The same, of some moves only.
     pub fn of_moves(
         (tool, path, moves): (&Tool, &Path, Range<usize>),
         frame: &Frame,

@@ -28,7 +28,7 @@ pub(crate) struct PathPart {
 /// The motions of some moves of a path in a frame, with displaced tips. Moves of length zero are left out.
 ///
 /// A tool that is not `symmetric` about its axis moves without turning about it, unless the poses specify how it turns.
-/// How it has turned by then follows from all moves before, so that its `moves` must be all of the path's.
+/// How it has turned by then follows from all moves before.
 /// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
 pub(crate) fn parts(
     (whole, moves): (&Path, Range<usize>),
@@ -49,8 +49,14 @@ pub(crate) fn parts(
             segment.moved(&turn, shift)
         }
     };
-    let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
+    // Either all poses have sides, or none.
     let carried = !symmetric && poses.iter().all(|pose| pose.side().is_none());
+    let before = if carried {
+        carried_to((whole, moves.start), seen, reach, tolerances)
+    } else {
+        None
+    };
+    let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
     let displaced = |k: usize| tolerances.tip_displacement(k);
     let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
     let put = |parts: &mut Vec<PathPart>,
@@ -65,8 +71,9 @@ pub(crate) fn parts(
         let arcs = segments.iter().all(Segment::is_arc);
         let grows = by[0].dot(&(by[1] - by[0])) >= 0.0;
         for (n, segment) in segments.into_iter().enumerate() {
-            let segment = match parts.last() {
-                Some(PathPart { segment: before, .. }) if carried => segment.after(before),
+            let last_one = parts.last().map(|part| &part.segment).or(before.as_ref());
+            let segment = match last_one {
+                Some(before) if carried => segment.after(before),
                 _ => segment,
             };
             let segment = if arcs {
@@ -123,6 +130,42 @@ pub(crate) fn parts(
     parts
 }
 
+/// So many moves are unpacked at a time.
+const BLOCK: usize = 1 << 12;
+
+/// The last motion before a move of a tool that goes on as it has turned.
+fn carried_to(
+    (whole, end): (&Path, usize),
+    seen: impl Fn(Segment) -> Segment,
+    reach: f64,
+    tolerances: &Tolerances,
+) -> Option<Segment> {
+    let mut last: Option<Segment> = None;
+    let mut from = 0;
+    while from < end {
+        let until = end.min(from + BLOCK);
+        let (path, first) = whole.unpacked(from..until);
+        for to in from + 1..=until {
+            if path.rests(from - first, to - first) {
+                continue;
+            }
+            for segment in path
+                .segments(to - 1 - first, reach, tolerances.law_deviation())
+                .into_iter()
+                .map(&seen)
+            {
+                last = Some(match &last {
+                    Some(before) => segment.after(before),
+                    None => segment,
+                });
+            }
+            from = to;
+        }
+        from = until;
+    }
+    last
+}
+
 /// The parts of one move, of equal duration.
 fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
@@ -138,4 +181,70 @@ fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Ite
             joins: false,
             joined: Vec::new(),
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use sweepsim_motion::Law;
+    use sweepsim_motion::{Course, Move, PathBuilder, Pose, RotaryTable, Turning};
+
+    /// A path of random turns, some of them of rotary axes, with rests.
+    fn path(moves: &[([f64; 3], bool, bool)], packed: bool) -> Path {
+        let table = RotaryTable::Bc;
+        let mut builder = PathBuilder::default();
+        let (mut angles, mut tip) = ([20.0, 30.0], [0.0; 3]);
+        builder.push(Pose::new(tip, table.axis(angles)).unwrap(), Move::default());
+        for ([b, c, x], rotary, rests) in moves {
+            let from = angles;
+            angles = if *rests { angles } else { [angles[0] + b, angles[1] + c] };
+            tip[0] += if *rests { 0.0 } else { *x };
+            let turning = if *rotary && !rests {
+                Turning::Rotary {
+                    table,
+                    from,
+                    to: angles,
+                }
+            } else {
+                Turning::Slerp
+            };
+            let course = Course::Straight;
+            builder.push(Pose::new(tip, table.axis(angles)).unwrap(), Move { course, turning });
+        }
+        let path = builder.finish(Law::Slerp).unwrap();
+        if packed {
+            path
+        } else {
+            path.unpacked(0..path.moves()).0.into_owned()
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        /// A tool without symmetry has turned alike, whether moves are prepared together or some after others.
+        #[test]
+        fn later_moves_are_as_among_all(
+            moves in proptest::collection::vec(([-30.0..30.0, -30.0..30.0, 0.1..3.0], any::<bool>(), prop::bool::weighted(0.2)), 2..30),
+            times in 1..300_usize, packed in any::<bool>(), share in 0.0..1.0, leaning in any::<bool>(),
+        ) {
+            let moves: Vec<_> = std::iter::repeat_n(&moves, times).flatten().copied().collect();
+            let path = path(&moves, packed);
+            let frame = if leaning { Frame::new([1.0, 2.0, 3.0], [0.6, 0.0, 0.8], [0.0, 1.0, 0.0]).unwrap() } else { Frame::WORLD };
+            let tolerances = Tolerances::new(1e-6, 1e4).unwrap();
+            let of = |moves| parts((&path, moves), &frame, false, 40.0, &tolerances);
+            let whole = of(0..path.moves());
+            let middle = (share * path.moves() as f64) as usize;
+            let after = |all: &[PathPart]| all.partition_point(|part| part.number as usize <= middle);
+            let later = of(middle..path.moves());
+            let [expected, found] = [&whole, &later].map(|all| &all[after(all)..]);
+            prop_assert_eq!(expected.len(), found.len());
+            for (a, b) in expected.iter().zip(found) {
+                prop_assert_eq!((a.number, a.start, a.segment.turns()), (b.number, b.start, b.segment.turns()));
+                // The tip of the first move is displaced as at the first of the poses where it rests.
+                prop_assert!(a.number == expected[0].number || a.segment == b.segment);
+            }
+        }
+    }
 }

@@ -251,15 +251,7 @@ impl<'a> Solids<'a> {
     ) -> Result<Self, SweepError> {
         let mut grids = vec![work.remaining.grid().whole()];
         grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
-        let solid = |tool: &'a Tool| {
-            // A tool that is not of revolution carries its turn about its axis along the whole path.
-            let moves = if tool.is_revolved() {
-                moves.clone()
-            } else {
-                0..path.moves()
-            };
-            MovingSolid::new(tool, (path, moves), &grids, &work.options)
-        };
+        let solid = |tool: &'a Tool| MovingSolid::new(tool, (path, moves.clone()), &grids, &work.options);
         let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
             let bodies = assembly.bodies().iter();
             Ok(Self {

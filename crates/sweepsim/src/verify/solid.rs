@@ -52,7 +52,7 @@ fn hull(boxes: &[Box3]) -> Box3 {
 }
 
 impl<'a> MovingSolid<'a> {
-    /// Along some moves of a path: all of them if the tool is not of revolution. `grids`: those on which it will be swept; all of them in one frame.
+    /// Along some moves of a path. `grids`: those on which it will be swept; all of them in one frame.
     pub fn new(
         tool: &'a Tool,
         (path, moves): (&Path, Range<usize>),

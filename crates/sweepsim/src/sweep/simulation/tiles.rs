@@ -190,13 +190,11 @@ pub fn simulate_tiles(
         .collect();
     each(cuts, options, monitor, |cut, options, share| {
         let extent = || whole.min().into_iter().chain(whole.max());
-        // A tool that is not of revolution carries its turn about its axis along the whole path.
-        let length = if cut.tool.is_revolved() { STRETCH } else { usize::MAX };
         let total = cut.path.moves();
         let mut begin = 0;
         // A path of one pose has no moves.
         while begin == 0 || begin < total {
-            let moves = begin..total.min(begin.saturating_add(length));
+            let moves = begin..total.min(begin.saturating_add(STRETCH));
             let share = Stretch {
                 monitor: share,
                 moves: moves.clone(),
