@@ -3,7 +3,7 @@
 use super::translations::{TOLERANCE, UP, path, same, tools};
 use proptest::prelude::*;
 use sweepsim::{Cut, Method, Options, Simulation, simulate};
-use sweepsim_dexel::{Dexels, Grid, Source, Stock};
+use sweepsim_dexel::{Dexels, Grid, Interval, Source, Stock};
 use sweepsim_motion::{Path, Tool};
 
 fn stock() -> Dexels {
@@ -58,7 +58,9 @@ proptest! {
         for (tips, method) in [(&tips, Method::General), (&corners, Method::Charts)] {
             let other = cut(&tool, &path(tips, axis), method);
             for line in 0..found.remaining.grid().len() {
-                let [a, b] = [&found, &other].map(|cut| cut.remaining.at(line).into_iter().collect::<Vec<_>>());
+                // Intervals shorter than the tolerance may be missing or extra.
+                let long = |interval: &Interval| interval.upper.z - interval.lower.z > 2.0 * TOLERANCE;
+                let [a, b] = [&found, &other].map(|cut| cut.remaining.at(line).into_iter().filter(long).collect::<Vec<_>>());
                 prop_assert!(same(&a, &b, 2.0 * TOLERANCE), "{} at {}: {:?} {:?}", name, line, a, b);
             }
         }
