@@ -108,3 +108,17 @@ proptest! {
         agree(name, tool, &path, &grid, TOLERANCE)?;
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases().div_ceil(4), ..ProptestConfig::default() })]
+
+    /// Many lines beside each other, each solved from the last one's zero: single moves, and pieces of a few of their lines' distances.
+    #[test]
+    fn many_lines(number in 0..13usize, from in tip(6.0), first in axis(), step in tip(8.0), turn in [-0.6..0.6_f64, -0.6..0.6], small in any::<bool>()) {
+        let share = if small { 0.05 } else { 1.0 };
+        let to = [0, 1, 2].map(|k| from[k] + share * step[k]);
+        let last = [first[0] + share * turn[0], first[1] + share * turn[1], first[2]];
+        let Some(path) = path(&[(from, first), (to, last)]) else { return Ok(()) };
+        agree_along(number, &path, &grid(150))?;
+    }
+}

@@ -46,6 +46,8 @@ pub(super) struct BallLimits {
     bow: f64,
     /// Of `|a′|`.
     turn: f64,
+    /// How fast velocities turn.
+    turning: f64,
     /// `|G|` below the first, and the second over `h`, may be rounding.
     doubt: [f64; 2],
     /// As far as rounding may move a point.
@@ -66,6 +68,7 @@ impl Ball {
         (straight && slow > 0.0 && slow * slow > 2.0 * self.radius * bow).then(|| BallLimits {
             bow,
             turn: bounds.rate,
+            turning: bounds.turning(),
             pad: 16.0 * slack,
             doubt: self.doubt(
                 [a.xy().norm().max(b.xy().norm()), a.z.abs().max(b.z.abs())].map(|speed| speed + bow * bounds.length),
@@ -86,6 +89,7 @@ impl Ball {
         BallLimits {
             bow: 0.0,
             turn: 0.0,
+            turning: 0.0,
             doubt: self.doubt(speed, slack),
             pad: 16.0 * slack,
         }
@@ -214,19 +218,26 @@ impl Shell for Ball {
         [at.rate.x - steep * x, at.rate.y - steep * y]
     }
 
-    fn spot(&self, at: &Centre, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {
-        let up = if sheet == 0 { -meeting.half } else { meeting.half };
-        let normal = Vector3::new(meeting.place[0], meeting.place[1], up);
-        Spot {
-            height: at.place.z + up,
-            normal,
-            along: normal.dot(&at.axis),
-            error: 8.0 * slack * self.radius / meeting.half,
-        }
+    #[inline]
+    fn pace(&self, limits: &BallLimits, at: &Centre, meeting: &Meeting, slope: f64) -> [f64; 2] {
+        let speed = at.rate.x.abs() + at.rate.y.abs() + at.rate.z.abs() + self.radius * limits.turn;
+        [
+            speed,
+            (speed / meeting.half + limits.turning) * (1.0 + speed * speed / slope.abs()),
+        ]
     }
 
-    fn speed(&self, at: &Centre) -> f64 {
-        at.rate.norm()
+    #[inline]
+    fn spot(&self, at: &Centre, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> Spot {
+        let up = if sheet == 0 { -meeting.half } else { meeting.half };
+        let [x, y] = meeting.place;
+        let lift = 0.5 * rise * step;
+        Spot {
+            height: at.place.z + up + lift,
+            normal: Vector3::new(x - at.rate.x * step, y - at.rate.y * step, up + lift - at.rate.z * step),
+            along: x * at.axis.x + y * at.axis.y + up * at.axis.z,
+            error: 8.0 * slack * self.radius / meeting.half,
+        }
     }
 
     fn nearest(&self, ends: [&Meeting; 2]) -> f64 {

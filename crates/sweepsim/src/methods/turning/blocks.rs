@@ -5,14 +5,14 @@ use crate::methods::lattice::Lattice;
 use crate::methods::translation::numbers;
 
 /// Blocks of so few lines are visited line by line.
-const FEW: usize = 6;
+const FEW: usize = 24;
 
-/// Visits the lines with `x` and `y` in these ranges, except for blocks that are `excluded`, given their ranges of `x` and `y`.
-pub(super) fn blocks(
+/// Visits the lines with `x` and `y` in these ranges, except for blocks of which nothing is `wanted`, given their ranges of `x` and `y`; with what is wanted of their block.
+pub(super) fn blocks<W: Copy>(
     lines: &Lattice,
     [x, y]: [Range; 2],
-    mut excluded: impl FnMut([Range; 2]) -> bool,
-    mut visit: impl FnMut((usize, usize), [f64; 2]),
+    mut wanted: impl FnMut([Range; 2]) -> Option<W>,
+    mut visit: impl FnMut((usize, usize), [f64; 2], W),
 ) {
     let (Some(i), Some(j)) = (numbers(lines, 0, x), numbers(lines, 1, y)) else {
         return;
@@ -25,18 +25,18 @@ pub(super) fn blocks(
         count -= 1;
         let (i, j) = waiting[count];
         let [wide, high] = [i, j].map(|[first, last]| last - first + 1);
+        let range =
+            |axis: usize, [first, last]: [usize; 2]| [lines.coordinate(axis, first), lines.coordinate(axis, last)];
+        let Some(what) = wanted([range(0, i), range(1, j)]) else {
+            continue;
+        };
         if wide * high <= FEW {
             for i in i[0]..=i[1] {
                 let x = lines.coordinate(0, i);
                 for j in j[0]..=j[1] {
-                    visit((i, j), [x, lines.coordinate(1, j)]);
+                    visit((i, j), [x, lines.coordinate(1, j)], what);
                 }
             }
-            continue;
-        }
-        let range =
-            |axis: usize, [first, last]: [usize; 2]| [lines.coordinate(axis, first), lines.coordinate(axis, last)];
-        if excluded([range(0, i), range(1, j)]) {
             continue;
         }
         let halves = |[first, last]: [usize; 2]| {

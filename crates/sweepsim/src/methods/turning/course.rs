@@ -63,15 +63,27 @@ impl Course {
         })
     }
 
-    pub fn at(&self, t: f64) -> Moment {
+    /// The axis, `κ k/w` and `w′/w`.
+    #[inline]
+    pub fn axis(&self, t: f64) -> (Vector3<f64>, Vector3<f64>, f64) {
         let s = 1.0 - t;
         let [u, v, w] = [s * s, 2.0 * s * t, t * t];
         let weight = u * self.weights[0] + v * self.weights[1] + w * self.weights[2];
         let inverse = weight.recip();
         let axis = (self.axis[0] * u + self.axis[1] * v + self.axis[2] * w) * inverse;
-        let spin = self.spin * inverse;
-        let rate = spin.cross(&axis);
         let slope = 2.0 * (s * (self.weights[1] - self.weights[0]) + t * (self.weights[2] - self.weights[1])) * inverse;
+        (axis, self.spin * inverse, slope)
+    }
+
+    /// The tip and its velocity.
+    #[inline]
+    pub fn tip(&self, t: f64) -> [Vector3<f64>; 2] {
+        [self.tip + self.velocity * t, self.velocity]
+    }
+
+    pub fn at(&self, t: f64) -> Moment {
+        let (axis, spin, slope) = self.axis(t);
+        let rate = spin.cross(&axis);
         Moment {
             t,
             tip: self.tip + self.velocity * t,
@@ -104,7 +116,10 @@ impl Course {
             let leans = bend + rate * rate / least_lean;
             beside(from.lean(), to.lean(), eighth * leans)
         } else {
-            [least_lean, 1.0]
+            [
+                least_lean,
+                0.5 * (from.lean() + to.lean() + rate * length) * (1.0 + 1e-9),
+            ]
         };
         let rise = beside(from.axis.z, to.axis.z, eighth * bend);
         let swing = if lean[0] > 0.0 {
@@ -155,6 +170,11 @@ impl Moment {
 }
 
 impl Bounds {
+    /// How fast `a′` turns and grows, relative to its length.
+    pub fn turning(&self) -> f64 {
+        if self.rate > 0.0 { self.bend / self.rate } else { 0.0 }
+    }
+
     /// How far a function with this bound of its second derivative may be from its chord.
     pub fn sag(&self, bow: f64) -> f64 {
         0.125 * bow * self.length * self.length

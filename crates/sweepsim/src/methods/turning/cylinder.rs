@@ -10,7 +10,7 @@
 //! with `τ = ⟨b′, a⟩` and the part `V_φ` of `V` around the axis. There `|V_φ|` is `S`, the length of the part of `b′ + ζ a′` across the axis, and `|x| = r |⟨b′, a × a′⟩|/S`: so `G` falls wherever it is 0, except
 //! for heights near the one that the tool turns about.
 
-use super::course::{Bounds, Moment};
+use super::course::{Bounds, Course, Moment};
 use super::intervals::{
     Range, Sign, add, between, divided, hull, joined, mul, scaled, square, square_root, sub, wider,
 };
@@ -42,6 +42,8 @@ pub(super) struct CylinderLimits {
     travel: f64,
     rate: f64,
     bend: f64,
+    /// How fast velocities turn.
+    turning: f64,
     lean: [f64; 2],
     rise: [f64; 2],
 }
@@ -99,6 +101,7 @@ impl Cylinder {
             travel: turn * bounds.speed,
             rate: bend + turn * bounds.rate,
             bend,
+            turning: bounds.turning(),
             lean: bounds.lean,
             rise: bounds.rise,
         })
@@ -166,7 +169,7 @@ impl Cylinder {
     }
 
     /// The ranges of `α`, `δ` and `ζ` of a sheet where lines at `q` and `δ` meet it; `None` if they do not.
-    #[inline]
+    #[inline(always)]
     fn ranges(&self, limits: &CylinderLimits, [q, delta]: [Range; 2], sheet: usize) -> Option<[Range; 3]> {
         let r = self.radius;
         if delta[0] > r + limits.pad || delta[1] < -r - limits.pad {
@@ -182,7 +185,7 @@ impl Cylinder {
     }
 
     /// The range of `G`, and the two parts of the velocity across the axis.
-    #[inline]
+    #[inline(always)]
     fn rates(
         limits: &CylinderLimits,
         poses: [&Lean; 2],
@@ -190,11 +193,12 @@ impl Cylinder {
         [alpha, delta, zeta]: [Range; 3],
     ) -> (Range, [Range; 2]) {
         let [a, b] = poses;
-        let across = [0, 1].map(|k| {
+        let across = |k: usize| {
             let travel = between(a.travel[k], b.travel[k], limits.travel * length);
             let rate = between(a.rate[k], b.rate[k], limits.rate * length);
             add(travel, mul(rate, zeta))
-        });
+        };
+        let across = [across(0), across(1)];
         (add(mul(alpha, across[0]), mul(delta, across[1])), across)
     }
 
@@ -215,6 +219,7 @@ impl Cylinder {
             travel: 0.0,
             rate: 0.0,
             bend: 0.0,
+            turning: 0.0,
             lean: [pose.tilt[0]; 2],
             rise: [pose.tilt[1]; 2],
         }
@@ -227,6 +232,11 @@ impl Shell for Cylinder {
 
     fn at(&self, moment: &Moment) -> Lean {
         Lean::of(moment)
+    }
+
+    #[inline]
+    fn pose(&self, course: &Course, t: f64) -> Lean {
+        Lean::during(course, t)
     }
 
     #[inline]
@@ -303,12 +313,13 @@ impl Shell for Cylinder {
     #[inline]
     fn signs(&self, limits: &CylinderLimits, poses: [&Lean; 2], block: [Range; 2], length: f64) -> [Sign; 2] {
         let sag = 0.125 * limits.bow * length * length;
-        let [a, b] = poses.map(|pose| pose.places(block));
+        let [a, b] = [poses[0].places(block), poses[1].places(block)];
         let place = [joined(a[0], b[0], sag), joined(a[1], b[1], sag)];
-        [0, 1].map(|sheet| match self.ranges(limits, place, sheet) {
+        let sign = |sheet: usize| match self.ranges(limits, place, sheet) {
             None => Sign::Absent,
             Some(ranges) => Sign::of(Self::rates(limits, poses, length, ranges).0, limits.doubt / self.radius),
-        })
+        };
+        [sign(0), sign(1)]
     }
 
     fn doubtful(&self, limits: &CylinderLimits, meeting: &Meeting, sheet: usize) -> bool {
@@ -345,24 +356,37 @@ impl Shell for Cylinder {
         [ux * along - uy * aside, uy * along + ux * aside]
     }
 
-    fn spot(&self, at: &Lean, meeting: &Meeting, sheet: usize, slack: f64) -> Spot {
+    #[inline]
+    fn pace(&self, limits: &CylinderLimits, at: &Lean, meeting: &Meeting, slope: f64) -> [f64; 2] {
+        let height = (meeting.place[0].abs() + meeting.half) * at.inverse;
+        let [a, b, c] = at.travel;
+        let turn = at.rate[0].abs() + at.rate[1].abs();
+        let speed = a.abs() + b.abs() + c.abs() + turn * (height + self.radius);
+        [
+            speed,
+            at.inverse * (speed / meeting.half + limits.turning) * (1.0 + speed * speed / slope.abs()),
+        ]
+    }
+
+    #[inline]
+    fn spot(&self, at: &Lean, meeting: &Meeting, (sheet, rise, step): (usize, f64, f64), slack: f64) -> Spot {
         let alpha = if sheet == 0 { -meeting.half } else { meeting.half };
         let [q, delta] = meeting.place;
         let ([s, k], [ux, uy]) = (at.tilt, at.ahead);
         let zeta = (q + k * alpha) * at.inverse;
-        let level = -k * alpha;
+        let (va, vb) = (at.travel[0] + at.rate[0] * zeta, at.travel[1] + at.rate[1] * zeta);
+        let lift = 0.5 * rise * step;
+        // The normal a step later, in the coordinates of now.
+        let out = alpha + s * lift - va * step;
+        let side = delta - vb * step;
+        let up = -(alpha * at.rate[0] + delta * at.rate[1]) * step;
+        let level = s * up - k * out;
         Spot {
-            height: at.tip[2] + s * alpha + k * zeta,
-            normal: Vector3::new(level * ux - delta * uy, level * uy + delta * ux, s * alpha),
+            height: at.tip[2] + s * alpha + k * zeta + lift,
+            normal: Vector3::new(level * ux - side * uy, level * uy + side * ux, s * out + k * up),
             along: zeta,
             error: 8.0 * slack * (1.0 + self.radius / meeting.half) * at.inverse,
         }
-    }
-
-    fn speed(&self, at: &Lean) -> f64 {
-        let [a, b, c] = at.travel;
-        let [u, v] = at.rate;
-        (a * a + b * b + c * c).sqrt() + self.reach() * (u * u + v * v).sqrt()
     }
 
     fn nearest(&self, [a, b]: [&Meeting; 2]) -> f64 {

@@ -13,7 +13,7 @@ use super::course::{Bounds, Course, Moment};
 use super::intervals::Range;
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
-use super::zero::{Sample, Turn, zero};
+use super::zero::{Known, Sample, Turn, start, zero};
 use super::{Leftover, Searching};
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
@@ -21,6 +21,8 @@ use sweepsim_dexel::Source;
 
 /// A plane that is steeper than this is left to charts.
 const STEEP: f64 = 1e-3;
+/// The last step of Newton's method may turn the normal by so much: corrected to first order, that leaves its square.
+const TURNED: f64 = 1e-3;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disc {
@@ -99,8 +101,9 @@ impl Disc {
         let lines = searching.collector.lines;
         let lines_over = around(&centres, reach + slack);
         // Blocks that the disc does not reach.
-        let beside = |block: [Range; 2]| distance(block, centres) > reach + slack;
-        blocks(lines, lines_over, beside, |(i, j), line| {
+        let over = |block: [Range; 2]| (distance(block, centres) <= reach + slack).then_some(());
+        let mut last = None;
+        blocks(lines, lines_over, over, |(i, j), line, ()| {
             let ends = [&a, &b].map(|placed| placed.along(&placed.arm(line)));
             if (ends[0] >= 0.0) == (ends[1] >= 0.0) && ends.iter().all(|f| f.abs() > doubt) {
                 return;
@@ -116,7 +119,7 @@ impl Disc {
                     .all(|placed| placed.arm(line).norm() > 2.0 * self.radii[1]);
                 if beside { Ok(None) } else { Err(Undecided::Close) }
             } else if (ends[0] > 0.0) == falls {
-                self.turn((course, span), line, ends, searching)
+                self.turn((course, span), line, (ends, &mut last), searching)
             } else {
                 Err(Undecided::Intricate)
             };
@@ -163,15 +166,20 @@ impl Disc {
         &self,
         (course, span): (&Course, &Span),
         line: [f64; 2],
-        ends: [f64; 2],
+        (ends, last): ([f64; 2], &mut Option<Known>),
         searching: &Searching,
     ) -> Result<Option<Turn>, Undecided> {
         let side = ends[0].signum();
         let slack = searching.slack;
-        zero(
-            [span.from.t, span.to.t],
-            (ends.map(|f| Some([side * f, f64::NAN])), None),
-            searching.near,
+        let turning = span.bounds.turning();
+        let bracket = [span.from.t, span.to.t];
+        let first = match last.as_ref().map(|last| last.over(line)) {
+            Some(t) if t > bracket[0] && t < bracket[1] => t,
+            _ => start(bracket, ends.map(|f| Some([side * f, f64::NAN]))),
+        };
+        let (found, known) = zero(
+            bracket,
+            ([true; 2], first),
             |t| {
                 let placed = Placed::new(&course.at(t), self.height);
                 let arm = placed.arm(line);
@@ -190,21 +198,38 @@ impl Disc {
             },
             |t, step, sample| {
                 let (placed, arm) = &sample.state;
-                let speed = placed.travel.norm() + self.radii[1] * placed.rate.norm();
-                let error = 8.0 * (slack + speed * step.abs()) * (1.0 + placed.inverse.abs());
-                let radius = arm.norm();
+                let (radius, turn, tilt) = (arm.norm(), placed.rate.norm(), 1.0 + placed.inverse.abs());
+                let speed = placed.travel.norm() + self.radii[1].max(radius) * turn;
+                let turned = tilt * (turning + turn) * (1.0 + turn * speed / sample.slope.abs()) * step.abs();
+                // So that the zero is no farther than two steps from here.
+                if !(turned < 0.25) {
+                    return None;
+                }
+                let error = 8.0 * (slack + speed * step.abs()) * tilt;
                 let [inner, outer] = self.radii;
                 let inner = if inner == 0.0 { -1.0 } else { inner };
-                if radius > outer + error || radius < inner - error {
-                    Some(None)
+                let inside = if radius > outer + error || radius < inner - error {
+                    false
                 } else if radius < outer - error && radius > inner + error {
-                    let height = placed.centre.z + arm.z + 0.5 * sample.rise * step;
-                    let normal = placed.axis * self.up;
-                    Some(Some(Turn { t, height, normal }))
+                    true
                 } else {
-                    None
+                    return None;
+                };
+                // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
+                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= searching.near) {
+                    return None;
                 }
+                let [x, y] = [0, 1].map(|k| placed.rate[k] - placed.rate.z * placed.axis[k] * placed.inverse);
+                let known = Known::new(line, t, ([-side * x, -side * y], sample.slope), last.as_ref());
+                let turn = Turn {
+                    t,
+                    height: placed.centre.z + arm.z + 0.5 * sample.rise * step,
+                    normal: (placed.axis + placed.rate * step) * self.up,
+                };
+                Some((inside.then_some(turn), known))
             },
-        )
+        )?;
+        *last = Some(known);
+        Ok(found)
     }
 }

@@ -2,8 +2,21 @@
 
 pub(super) type Range = [f64; 2];
 
+/// The smaller of two numbers, by one instruction: `f64::min` takes five for NaN. Here, NaN on one side may be dropped as well.
+#[inline]
+fn low(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two numbers.
+#[inline]
+fn high(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
 pub(super) fn hull(a: f64, b: f64) -> Range {
-    [a.min(b), a.max(b)]
+    [low(a, b), high(a, b)]
 }
 
 #[inline]
@@ -19,7 +32,7 @@ pub(super) fn sub(a: Range, b: Range) -> Range {
 #[inline]
 pub(super) fn mul(a: Range, b: Range) -> Range {
     let [p, q, r, s] = [a[0] * b[0], a[0] * b[1], a[1] * b[0], a[1] * b[1]];
-    [p.min(q).min(r.min(s)), p.max(q).max(r.max(s))]
+    [low(low(p, q), low(r, s)), high(high(p, q), high(r, s))]
 }
 
 /// By a range without 0.
@@ -35,21 +48,21 @@ pub(super) fn scaled(factor: f64, a: Range) -> Range {
 
 #[inline]
 pub(super) fn square(a: Range) -> Range {
-    let (low, high) = (a[0].abs().min(a[1].abs()), a[0].abs().max(a[1].abs()));
-    let low = if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { low };
-    [low * low, high * high]
+    let [least, most] = hull(a[0].abs(), a[1].abs());
+    let least = if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { least };
+    [least * least, most * most]
 }
 
 /// Of what is positive.
 #[inline]
 pub(super) fn square_root(a: Range) -> Range {
-    a.map(|end| end.max(0.0).sqrt())
+    [high(a[0], 0.0).sqrt(), high(a[1], 0.0).sqrt()]
 }
 
 /// The smallest range that holds both, wider by a margin.
 #[inline]
 pub(super) fn joined(a: Range, b: Range, margin: f64) -> Range {
-    [a[0].min(b[0]) - margin, a[1].max(b[1]) + margin]
+    [low(a[0], b[0]) - margin, high(a[1], b[1]) + margin]
 }
 
 #[inline]
@@ -84,6 +97,6 @@ impl Sign {
 /// The range of a function with these values at the ends of a span, that changes at most by this much over all of it.
 #[inline]
 pub(super) fn between(a: f64, b: f64, change: f64) -> Range {
-    let (middle, half) = (0.5 * (a + b), 0.5 * change.max((a - b).abs()));
+    let (middle, half) = (0.5 * (a + b), 0.5 * high(change, (a - b).abs()));
     [middle - half, middle + half]
 }

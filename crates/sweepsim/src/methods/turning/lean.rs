@@ -1,6 +1,6 @@
 //! The coordinates of a tool that leans: `α` across its axis in the vertical plane of it, `β` horizontally across both, `ζ` along it.
 
-use super::course::Moment;
+use super::course::{Course, Moment};
 use super::intervals::{Range, add, scaled, sub};
 use nalgebra::Vector3;
 
@@ -45,6 +45,31 @@ impl Lean {
         })
     }
 
+    /// At a time of a course at which the axis leans. With the angular velocity `κ k/w` in these coordinates, `a′` and `a″` are products of its components.
+    #[inline]
+    pub fn during(course: &Course, t: f64) -> Self {
+        let (axis, spin, slope) = course.axis(t);
+        let [tip, velocity] = course.tip(t);
+        let s = (axis.x * axis.x + axis.y * axis.y).sqrt();
+        let inverse = s.recip();
+        let ([ux, uy], k) = ([axis.x * inverse, axis.y * inverse], axis.z);
+        let seen = |v: &Vector3<f64>| {
+            let q = ux * v.x + uy * v.y;
+            [s * v.z - k * q, ux * v.y - uy * v.x, s * q + k * v.z]
+        };
+        let [across, aside, own] = seen(&spin);
+        let rate = [-aside, across];
+        Self {
+            tip: tip.into(),
+            tilt: [s, k],
+            inverse,
+            ahead: [ux, uy],
+            travel: seen(&velocity),
+            rate,
+            bend: [own * rate[1] - slope * rate[0], -own * rate[0] - slope * rate[1]],
+        }
+    }
+
     /// `q` and `δ` of a line.
     #[inline]
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -82,5 +107,27 @@ impl Lean {
         let (low, high) = (ends[0].min(ends[1]) - wide, ends[0].max(ends[1]) + wide);
         [(low, radius), (high, radius), (low, -radius), (high, -radius)]
             .map(|(q, p)| [self.tip[0] + ux * q - uy * p, self.tip[1] + uy * q + ux * p])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Pose, Segment};
+
+    proptest! {
+        /// Both ways to the coordinates at a time agree.
+        #[test]
+        fn both_ways(from in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], to in [-1.0..1.0_f64, -1.0..1.0, 0.1..1.0], t in 0.0..1.0_f64) {
+            let poses = [Pose::new([1.0, -2.0, 0.5], from).unwrap(), Pose::new([4.0, 1.0, 0.0], to).unwrap()];
+            let Some(course) = Course::new(&Segment::between(&poses[0], &poses[1])[0]) else { return Ok(()) };
+            let (own, moment) = (Lean::during(&course, t), course.at(t));
+            let Some(other) = Lean::new(&moment).filter(|lean| lean.tilt[0] > 1e-3) else { return Ok(()) };
+            let all = |lean: &Lean| [&lean.tip[..], &lean.tilt, &lean.ahead, &lean.travel, &lean.rate, &lean.bend].concat();
+            for (a, b) in all(&own).into_iter().zip(all(&other)) {
+                prop_assert!((a - b).abs() < 1e-13 * other.inverse * (1.0 + b.abs()), "{own:?} {other:?}");
+            }
+        }
     }
 }

@@ -33,9 +33,6 @@ use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
 
-/// Moves with more crossings than this are left to charts, which serve the more lines, the more there are. Found by trial.
-const MANY: f64 = 40_000.0;
-
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Element {
@@ -144,9 +141,6 @@ pub(crate) fn envelope(
     let Some(course) = Course::new(segment) else {
         return leftovers;
     };
-    if crossings(outline, &course, searching) > MANY {
-        return leftovers;
-    }
     for piece in &outline.pieces {
         let element = Element::Patches(piece.patches.clone());
         match Kind::of(piece) {
@@ -172,17 +166,6 @@ pub(crate) fn envelope(
     leftovers
 }
 
-/// About how many crossings a move adds: the lines that it passes.
-fn crossings(outline: &Outline, course: &Course, searching: &Searching) -> f64 {
-    let ends = outline.pieces.iter().flat_map(|piece| [piece.from, piece.to]);
-    let [width, height] = ends.fold([0.0_f64; 2], |[width, height], [radius, zeta]| {
-        [width.max(radius), height.max(zeta.abs())]
-    });
-    let [dx, dy] = searching.collector.lines.grid.spacing();
-    let start = course.at(0.0);
-    2.0 * width * (start.velocity.xy().norm() + height * start.rate.norm()) / (dx * dy)
-}
-
 /// How far lines may be from where a straight way has them: fewer spans for more, fewer lines that need another look for less.
 fn most_sag(searching: &Searching, radius: f64) -> f64 {
     (0.5 * searching.collector.lines.spacing()).min(0.05 * radius)
@@ -198,6 +181,11 @@ fn ball_along(
 ) {
     settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
+        // Ranges over a block tell little if the ball goes farther.
+        let way = span.bounds.length * (span.bounds.speed + ball.centre.abs() * span.bounds.rate);
+        if !span.last && way > ball.radius {
+            return Verdict::Long;
+        }
         let Some(limits) = ball.limits(ends, &span.bounds, searching.slack) else {
             return Verdict::Long;
         };

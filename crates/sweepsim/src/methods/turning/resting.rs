@@ -59,7 +59,7 @@ impl Resting<'_> {
             if before.1 && after.1 && before.0 == after.0 {
                 continue;
             }
-            let spot = shell.spot(pose, &own, sheet, searching.slack);
+            let spot = shell.spot(pose, &own, (sheet, 0.0, 0.0), searching.slack);
             let inside = shell.ends().hold(spot.along, spot.error);
             if inside == Some(false) || !searching.collector.lines.asks(place.0, place.1) {
                 continue;
@@ -86,18 +86,19 @@ impl Resting<'_> {
         searching: &mut Searching,
     ) {
         let lines = searching.collector.lines;
-        let excluded = |block: [Range; 2]| {
+        let wanted = |block: [Range; 2]| {
             let [before, after] = [0, 1].map(|side| match (&self.sides[side], &motions[side]) {
                 (_, Some((posed, limits))) => shell.signs(limits, [posed; 2], block, 0.0),
                 (Side::Beyond(true), _) => [Sign::Negative; 2],
                 _ => [Sign::Positive; 2],
             });
-            (0..2).all(|sheet| {
+            let excluded = (0..2).all(|sheet| {
                 let pair = [before[sheet], after[sheet]];
                 pair.contains(&Sign::Absent) || pair[0] == pair[1] && pair[0] != Sign::Unknown
-            })
+            });
+            (!excluded).then_some(())
         };
-        blocks(lines, area, excluded, |place, line| {
+        blocks(lines, area, wanted, |place, line, ()| {
             self.shell(shell, (pose, motions), (place, line), searching);
         });
     }
@@ -170,8 +171,8 @@ impl Resting<'_> {
         let normal: Vector3<f64> = placed.axis * disc.up;
         let error = 8.0 * slack * (1.0 + placed.axis.z.recip().abs());
         let reach = disc.radii[1] + slack;
-        let beside = |block: [Range; 2]| distance(block, [centre; 2]) > reach;
-        blocks(lines, around(&[centre], reach), beside, |(i, j), line| {
+        let over = |block: [Range; 2]| (distance(block, [centre; 2]) <= reach).then_some(());
+        blocks(lines, around(&[centre], reach), over, |(i, j), line, ()| {
             let arm = placed.arm(line);
             let radius = arm.norm();
             let [inner, outer] = disc.radii;

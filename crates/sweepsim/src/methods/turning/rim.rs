@@ -15,7 +15,7 @@ use super::disc::Placed;
 use super::intervals::{Range, Sign, add, between, divided, joined, mul, scaled, sub, wider};
 use super::shell::Undecided;
 use super::spans::{Span, Verdict};
-use super::zero::{Known, Sample, zero};
+use super::zero::{Known, Sample, start, zero};
 use super::{Leftover, Searching};
 use crate::cutter::outline::Rim;
 use crate::methods::harvest::unit;
@@ -25,6 +25,8 @@ use sweepsim_dexel::Source;
 
 /// A plane that is steeper than this is left to charts.
 const STEEP: f64 = 0.02;
+/// The last step of Newton's method may turn the arm by so much.
+const TURNED: f64 = 1e-3;
 /// A span of one line is halved this many times at most.
 const DEEPEST: u32 = 12;
 
@@ -81,6 +83,8 @@ impl Facing {
 pub(super) struct RimSearch<'a> {
     rim: &'a Rim,
     course: &'a Course,
+    /// How fast velocities turn.
+    turning: f64,
     /// Where lines last came into the circle, and where they went out of it.
     last: Cell<[Option<Known>; 2]>,
 }
@@ -90,6 +94,7 @@ impl<'a> RimSearch<'a> {
         Self {
             rim,
             course,
+            turning: course.bounds([&course.at(0.0), &course.at(1.0)]).turning(),
             last: Cell::default(),
         }
     }
@@ -113,7 +118,7 @@ impl<'a> RimSearch<'a> {
         let centres = [&a, &b].map(|placed| [placed.centre.x, placed.centre.y]);
         let lines = searching.collector.lines;
         let reach = self.rim.radius + sag + slack;
-        let excluded = |block: [Range; 2]| {
+        let wanted = |block: [Range; 2]| {
             // `E` is convex in space as well: all of a block is inside at both ends if its corners are.
             let inside = |placed: &Placed| {
                 let [x, y] = block;
@@ -122,9 +127,11 @@ impl<'a> RimSearch<'a> {
                         .all(|y| self.value(placed, 0.0, [x, y]).square < -self.doubt(slack))
                 })
             };
-            distance(block, centres) > reach || inside(&a) && inside(&b) || facing.alike(self.rim, block)
+            let excluded =
+                distance(block, centres) > reach || inside(&a) && inside(&b) || facing.alike(self.rim, block);
+            (!excluded).then_some(())
         };
-        blocks(lines, around(&centres, reach), excluded, |(i, j), line| {
+        blocks(lines, around(&centres, reach), wanted, |(i, j), line, ()| {
             let ends = [self.value(&a, from.t, line), self.value(&b, to.t, line)];
             if ends.iter().all(|end| end.square < -self.doubt(slack)) {
                 return;
@@ -236,13 +243,17 @@ impl<'a> RimSearch<'a> {
     ) -> Result<(), Undecided> {
         let slack = searching.slack;
         let (mut last, way) = (self.last.get(), usize::from(inwards < 0.0));
-        let found = zero(
-            [ends[0].t, ends[1].t],
-            (
+        let bracket = ends.map(|end| end.t);
+        let first = match last[way].map(|last| last.over(line)) {
+            Some(t) if t > bracket[0] && t < bracket[1] => t,
+            _ => start(
+                bracket,
                 ends.map(|end| Some([inwards * end.square, 2.0 * inwards * end.half])),
-                last[way].map(|last| last.over(line)),
             ),
-            searching.near,
+        };
+        let found = zero(
+            bracket,
+            ([true; 2], first),
             |t| {
                 let placed = Placed::new(&self.course.at(t), self.rim.height);
                 let arm = placed.arm(line);
@@ -259,6 +270,14 @@ impl<'a> RimSearch<'a> {
                 let along = placed.along(arm);
                 let out = arm.dot(&placed.travel) / self.rim.radius;
                 let speed = placed.travel.norm() + self.rim.radius * placed.rate.norm();
+                // What a step of Newton's method leaves is of second order, and what the next derivative leaves of third.
+                let inverse = placed.axis.z.recip();
+                let fast = speed * inverse;
+                let pace = 2.0 * fast * fast / sample.slope.abs() + self.turning * inverse.abs();
+                let turned = pace * step.abs();
+                if !(turned < 0.25) {
+                    return None;
+                }
                 let error =
                     16.0 * (slack / STEEP + step.abs() * speed) * (placed.rate.norm() + speed / self.rim.radius)
                         + 16.0 * f64::EPSILON * speed;
@@ -266,36 +285,52 @@ impl<'a> RimSearch<'a> {
                 if faces.iter().any(|g| !(g.abs() > error)) {
                     return None;
                 }
-                let tilt = arm.z / placed.axis.z;
+                let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
+                let rest = turned * turned * (sample.rise.abs() + fast.abs()) * step.abs();
+                if !(alike || turned <= TURNED && 2.0 * rest <= searching.near) {
+                    return None;
+                }
+                let height = self.rim.height;
+                let lift = (2.0 * placed.rate.dot(&placed.travel)
+                    - height * placed.rate.norm_squared()
+                    - arm.dot(&placed.bend)
+                    - 2.0 * placed.rate.z * sample.rise)
+                    * inverse;
+                let slides = Vector3::new(0.0, 0.0, sample.rise) - placed.travel;
+                let bend = slides.norm_squared() + arm.z * lift - height * arm.dot(&placed.bend);
+                let less = step * step * bend * inwards / sample.slope;
+                let (t, step) = (t - less, step - less);
+                // To first order, on both faces.
+                let out = out + step * (slides.dot(&placed.travel) + height * arm.dot(&placed.bend)) / self.rim.radius;
+                let along = along + step * (lift * placed.axis.z + placed.rate.z * sample.rise);
+                let (later, axis) = (arm + slides * step, placed.axis + placed.rate * step);
+                // The envelope's normal lies in the fan of the two faces, where g = 0.
+                let [a, b] = self
+                    .rim
+                    .normals
+                    .map(|[n, m]| ((n * out + m * along).abs(), later * (n / self.rim.radius) + axis * m));
+                let normal = a.1 * b.0 + b.1 * a.0;
+                let tilt = arm.z * inverse;
                 let gradient = [arm.x - tilt * placed.axis.x, arm.y - tilt * placed.axis.y];
-                let known = Known::new(line, t, gradient.map(|part| 2.0 * inwards * part), sample.slope);
+                let gradient = gradient.map(|part| 2.0 * inwards * part);
+                let known = Known::new(line, t, (gradient, sample.slope), last[way].as_ref());
                 Some((
                     t,
-                    placed.centre.z + arm.z + sample.rise * step,
-                    (*placed, *arm, faces),
+                    placed.centre.z + arm.z + step * (sample.rise + 0.5 * lift * step),
+                    (faces, normal, placed.axis.z),
                     known,
                 ))
             },
         )?;
-        let (t, height, (placed, arm, [a, b]), known) = found;
+        let (t, height, ([a, b], normal, up), known) = found;
         last[way] = Some(known);
         self.last.set(last);
         if (a < 0.0) == (b < 0.0) {
             return Ok(());
         }
         // The turn of the circle about the tool, from below to above along the meridian, is that of its disc.
-        let orientation = if (placed.axis.z > 0.0) == (inwards < 0.0) {
-            1
-        } else {
-            -1
-        };
+        let orientation = if (up > 0.0) == (inwards < 0.0) { 1 } else { -1 };
         let jump = if a < 0.0 { -orientation } else { orientation };
-        // The envelope's normal lies in the fan of the two faces, where g = 0.
-        let normals = self
-            .rim
-            .normals
-            .map(|[n, m]| arm * (n / self.rim.radius) + placed.axis * m);
-        let normal: Vector3<f64> = normals[0] * b.abs() + normals[1] * a.abs();
         let number = searching.collector.lines.line(i, j);
         searching
             .collector

@@ -5,9 +5,6 @@ use nalgebra::Vector3;
 
 /// Steps of Newton's method, or halvings of a bracket.
 const STEPS: usize = 60;
-/// The last step is no longer than this part of the motion: normals turn with it.
-const LAST: f64 = 1e-5;
-
 /// A function at one time.
 pub(super) struct Sample<T> {
     /// The function, which is positive at the start of the bracket and negative at its end, and its derivative.
@@ -42,22 +39,45 @@ pub(super) struct Known {
     t: f64,
     /// By how much `t` grows along x and y.
     rates: [f64; 2],
+    /// About by how much these grow: along x twice, along both, along y twice.
+    bends: [f64; 3],
 }
 
 impl Known {
-    /// `gradient`: of the function along x and y.
-    pub fn new(line: [f64; 2], t: f64, gradient: [f64; 2], slope: f64) -> Self {
-        Self {
-            line,
-            t,
-            rates: gradient.map(|part| -part / slope),
-        }
+    /// `gradient`: of the function along x and y. `last`: over the line before.
+    pub fn new(line: [f64; 2], t: f64, (gradient, slope): ([f64; 2], f64), last: Option<&Self>) -> Self {
+        let inverse = -slope.recip();
+        let rates = [gradient[0] * inverse, gradient[1] * inverse];
+        let bends = last.map_or([0.0; 3], |last| last.bends_towards(line, rates));
+        Self { line, t, rates, bends }
+    }
+
+    /// The symmetric form that is nearest to the last one and explains how the rates changed.
+    fn bends_towards(&self, line: [f64; 2], rates: [f64; 2]) -> [f64; 3] {
+        let [xx, xy, yy] = self.bends;
+        let [x, y] = [line[0] - self.line[0], line[1] - self.line[1]];
+        let inverse = (x * x + y * y).recip();
+        let rest = [
+            (rates[0] - self.rates[0] - (xx * x + xy * y)) * inverse,
+            (rates[1] - self.rates[1] - (xy * x + yy * y)) * inverse,
+        ];
+        let both = (rest[0] * x + rest[1] * y) * inverse;
+        let bends = [
+            xx + x * (2.0 * rest[0] - both * x),
+            xy + rest[0] * y + rest[1] * x - both * x * y,
+            yy + y * (2.0 * rest[1] - both * y),
+        ];
+        // NaN is not.
+        let finite = bends[0].abs() + bends[1].abs() + bends[2].abs() < f64::MAX;
+        if finite { bends } else { [0.0; 3] }
     }
 
     /// About where the zero is over another line.
     #[inline]
-    pub fn over(&self, [x, y]: [f64; 2]) -> f64 {
-        self.t + self.rates[0] * (x - self.line[0]) + self.rates[1] * (y - self.line[1])
+    pub fn over(&self, line: [f64; 2]) -> f64 {
+        let [x, y] = [line[0] - self.line[0], line[1] - self.line[1]];
+        let [xx, xy, yy] = self.bends;
+        self.t + x * (self.rates[0] + 0.5 * xx * x + xy * y) + y * (self.rates[1] + 0.5 * yy * y)
     }
 }
 
@@ -69,29 +89,34 @@ pub(super) struct Turn {
     pub normal: Vector3<f64>,
 }
 
-/// Newton's method in a bracket, with the values and slopes at its ends, from `start` if that is inside. `at` gives the function, or `None` where it does not exist: then it does not on one side of the bracket, whose value is `None`. When the
-/// height changes by no more than `near` in the next step, `done(time, step, sample)` is asked for the result, which it may refuse as long as steps become smaller.
-pub(super) fn zero<T, R>(
-    mut bracket: [f64; 2],
-    (ends, start): ([Option<[f64; 2]>; 2], Option<f64>),
-    near: f64,
-    mut at: impl FnMut(f64) -> Option<Sample<T>>,
-    mut done: impl FnMut(f64, f64, &Sample<T>) -> Option<R>,
-) -> Result<R, Undecided> {
-    let start = start.filter(|t| *t > bracket[0] && *t < bracket[1]);
-    let mut t = start.unwrap_or_else(|| match ends {
+/// Where to start without a zero that is known: `ends` are the values and slopes at the ends of the bracket, where the function exists.
+pub(super) fn start(bracket: [f64; 2], ends: [Option<[f64; 2]>; 2]) -> f64 {
+    match ends {
         [Some(a), Some(b)] => guess(bracket, [a, b]),
         // From the end where it is known.
         [Some([value, slope]), None] => bracket[0] - value / slope,
         [None, Some([value, slope])] => bracket[1] - value / slope,
         [None, None] => f64::NAN,
-    });
+    }
+}
+
+/// Newton's method in a bracket, from `start` if that is inside. `at` gives the function, or `None` where it does not exist: then it does not on one side of the bracket, which is not `there`.
+/// `done(time, step, sample)` is asked for the result before each step to a time, and refuses as long as steps have to become smaller.
+#[inline]
+pub(super) fn zero<T, R>(
+    mut bracket: [f64; 2],
+    (there, start): ([bool; 2], f64),
+    mut at: impl FnMut(f64) -> Option<Sample<T>>,
+    mut done: impl FnMut(f64, f64, &Sample<T>) -> Option<R>,
+) -> Result<R, Undecided> {
+    let mut t = start;
+    // NaN is outside.
     if !(t > bracket[0] && t < bracket[1]) {
         t = 0.5 * (bracket[0] + bracket[1]);
     }
     for _ in 0..STEPS {
         let Some(sample) = at(t) else {
-            bracket[usize::from(ends[0].is_some())] = t;
+            bracket[usize::from(there[0])] = t;
             t = 0.5 * (bracket[0] + bracket[1]);
             continue;
         };
@@ -107,13 +132,11 @@ pub(super) fn zero<T, R>(
             t = middle;
             continue;
         }
-        if (sample.rise * step).abs() <= near && step.abs() <= LAST {
-            if let Some(result) = done(next, step, &sample) {
-                return Ok(result);
-            }
-            if step.abs() <= f64::EPSILON || next == t {
-                return Err(Undecided::Close);
-            }
+        if let Some(result) = done(next, step, &sample) {
+            return Ok(result);
+        }
+        if step.abs() <= f64::EPSILON || next == t {
+            return Err(Undecided::Close);
         }
         t = next;
     }

@@ -41,7 +41,7 @@ fn agrees<S: Shell>(
                 continue;
             }
             let g = meeting.g[sheet];
-            let spot = shell.spot(posed, meeting, sheet, 1e-14);
+            let spot = shell.spot(posed, meeting, (sheet, 0.0, 0.0), 1e-14);
             let held = shell.ends().hold(spot.along, 1e-9);
             if held == Some(true) {
                 prop_assert!(signs[sheet] != Sign::Absent && falls != Falls::Beyond);
@@ -75,7 +75,9 @@ fn agrees<S: Shell>(
                         "{gradient:?} {difference}"
                     );
                 }
-                let height = |(_, posed, meeting): &View<S::Posed>| shell.spot(posed, meeting, sheet, 1e-14).height;
+                let height = |(_, posed, meeting): &(f64, S::Posed, Meeting)| {
+                    shell.spot(posed, meeting, (sheet, 0.0, 0.0), 1e-14).height
+                };
                 let difference = (height(&high) - height(&low)) / (2.0 * h);
                 prop_assert!(
                     (rise - difference).abs() <= 1e-4 * (1.0 + rise.abs()),

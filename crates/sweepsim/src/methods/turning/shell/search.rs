@@ -1,0 +1,270 @@
+//! The search of a shell along a span, line by line.
+
+use super::{Falls, Meeting, Passage, Shell, Undecided};
+use crate::methods::harvest::unit;
+use crate::methods::turning::blocks::blocks;
+use crate::methods::turning::course::Course;
+use crate::methods::turning::intervals::{Range, Sign};
+use crate::methods::turning::spans::{Span, Verdict};
+use crate::methods::turning::zero::{Known, Sample, Turn, start, zero};
+use crate::methods::turning::{Leftover, Searching};
+use std::cell::Cell;
+use sweepsim_dexel::Source;
+
+/// A span of one line is halved this many times at most, one half after the other,
+const DEEPEST: u32 = 12;
+/// and in all: where a tool turns about a point of its axis, no half tells more than the whole.
+const HALVINGS: u32 = 40;
+/// So many lines of a span may be left to charts in any case.
+const FEW: usize = 12;
+/// The last step of Newton's method may turn a normal by so much: corrected to first order, that leaves its square.
+const TURNED: f64 = 1e-3;
+
+/// A line at one time.
+pub(super) struct View<'p, P> {
+    pub t: f64,
+    pub at: &'p P,
+    pub meeting: Meeting,
+}
+
+/// A search of a shell along one span of a course.
+pub(in crate::methods::turning) struct ShellSearch<'a, S: Shell, F> {
+    shell: &'a S,
+    course: &'a Course,
+    limits: &'a S::Limits,
+    source: F,
+    /// Lines that are left to charts.
+    left: &'a mut Leftover,
+    /// How often the span of the line may still be halved.
+    halvings: u32,
+    /// Of each sheet, what was found last.
+    last: [Option<Known>; 2],
+}
+
+/// A line: its numbers, its place, and the sheets of it that may turn in the span.
+#[derive(Clone, Copy)]
+struct Line {
+    number: (usize, usize),
+    at: [f64; 2],
+    sheets: [bool; 2],
+}
+
+impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
+    pub fn new((shell, limits): (&'a S, &'a S::Limits), course: &'a Course, source: F, left: &'a mut Leftover) -> Self {
+        Self {
+            shell,
+            course,
+            limits,
+            source,
+            left,
+            halvings: HALVINGS,
+            last: [None; 2],
+        }
+    }
+
+    /// The crossings of the lines of a box in a span.
+    pub fn lines(&mut self, searching: &mut Searching, span: &Span, area: [Range; 2]) -> Verdict {
+        let (shell, limits) = (self.shell, self.limits);
+        let [a, b] = [&span.from, &span.to].map(|moment| shell.at(moment));
+        let lines = searching.collector.lines;
+        let (length, mark) = (span.bounds.length, searching.collector.mark());
+        // If most lines are intricate, charts may as well have all of them.
+        let hopeless = Cell::new(false);
+        let mut visited = 0;
+        blocks(
+            lines,
+            area,
+            |block| {
+                if hopeless.get() {
+                    return None;
+                }
+                let [below, above] = shell.signs(limits, [&a, &b], block, length);
+                let sheets = [below == Sign::Unknown, above == Sign::Unknown];
+                (sheets[0] || sheets[1]).then_some(sheets)
+            },
+            |number, at, sheets| {
+                if hopeless.get() {
+                    return;
+                }
+                let view = |t: f64, posed| View {
+                    t,
+                    at: posed,
+                    meeting: shell.meet(posed, at),
+                };
+                let ends = [view(span.from.t, &a), view(span.to.t, &b)];
+                self.line(searching, Line { number, at, sheets }, &ends);
+                visited += 1;
+                let left = self.left.lines.len();
+                hopeless.set(left > FEW && 2 * left > visited);
+            },
+        );
+        if hopeless.get() {
+            searching.collector.forget(mark);
+            self.left.lines.clear();
+            return Verdict::Intricate;
+        }
+        Verdict::Settled
+    }
+
+    /// The crossings of a line between two times.
+    #[inline]
+    fn line(&mut self, searching: &mut Searching, line: Line, [from, to]: &[View<S::Posed>; 2]) {
+        let mark = searching.collector.mark();
+        self.halvings = HALVINGS;
+        if let Err(undecided) = self.between(searching, line, [from, to], 0) {
+            searching.collector.forget(mark);
+            let (i, j) = line.number;
+            if !searching.collector.lines.asks(i, j) {
+                return;
+            }
+            let number = searching.collector.lines.line(i, j);
+            match undecided {
+                Undecided::Close => searching.collector.open(number),
+                Undecided::Intricate => self.left.lines.push(number as u32),
+            }
+        }
+    }
+
+    fn between(
+        &mut self,
+        searching: &mut Searching,
+        line: Line,
+        [from, to]: [&View<S::Posed>; 2],
+        depth: u32,
+    ) -> Result<(), Undecided> {
+        let length = to.t - from.t;
+        let passage = self.shell.passage(self.limits, [&from.meeting, &to.meeting], length);
+        let whole = match passage {
+            Passage::Beside => return Ok(()),
+            Passage::Through | Passage::Unknown => false,
+            Passage::Inside | Passage::Enters | Passage::Leaves => true,
+        };
+        let ends = [(from.at, &from.meeting), (to.at, &to.meeting)];
+        let mut falls = [Falls::Beyond; 2];
+        for sheet in 0..2 {
+            if line.sheets[sheet] {
+                falls[sheet] = if whole {
+                    self.shell.falls(self.limits, ends, length, sheet)
+                } else {
+                    Falls::Unknown
+                };
+            }
+        }
+        if falls.contains(&Falls::Unknown) {
+            if depth == DEEPEST || self.halvings == 0 {
+                return Err(Undecided::Intricate);
+            }
+            self.halvings -= 1;
+            let share = match passage {
+                Passage::Through => self.shell.nearest([&from.meeting, &to.meeting]),
+                _ => 0.5,
+            };
+            let t = from.t + share * length;
+            let posed = self.shell.pose(self.course, t);
+            let middle = View {
+                t,
+                at: &posed,
+                meeting: self.shell.meet(&posed, line.at),
+            };
+            self.between(searching, line, [from, &middle], depth + 1)?;
+            return self.between(searching, line, [&middle, to], depth + 1);
+        }
+        let there = [passage != Passage::Enters, passage != Passage::Leaves];
+        for sheet in (0..2).filter(|sheet| falls[*sheet] == Falls::Always) {
+            // A sheet begins with `g > 0`, and ends with `g < 0`.
+            let mut outwards = [true, false];
+            for (end, view) in [from, to].into_iter().enumerate() {
+                if there[end] {
+                    if self.shell.doubtful(self.limits, &view.meeting, sheet) {
+                        return Err(Undecided::Close);
+                    }
+                    outwards[end] = view.meeting.g[sheet] >= 0.0;
+                }
+            }
+            match outwards {
+                [true, false] => self.turn(searching, line, ([from, to], there), sheet)?,
+                [false, true] => return Err(Undecided::Intricate),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The place where a sheet turns, of which there is exactly one: Newton's method in a bracket.
+    fn turn(
+        &mut self,
+        searching: &mut Searching,
+        line: Line,
+        ([from, to], there): ([&View<S::Posed>; 2], [bool; 2]),
+        sheet: usize,
+    ) -> Result<(), Undecided> {
+        let (shell, course, limits) = (self.shell, self.course, self.limits);
+        let (ends, slack, near) = (shell.ends(), searching.slack, searching.near);
+        let last = self.last[sheet];
+        let bracket = [from.t, to.t];
+        let first = match last.map(|last| last.over(line.at)) {
+            Some(t) if t > from.t && t < to.t => t,
+            _ => {
+                if shell.misses(limits, [from.at, to.at], (line.at, to.t - from.t), sheet) {
+                    return Ok(());
+                }
+                let known = |view: &View<S::Posed>, there: bool| {
+                    there.then(|| [view.meeting.g[sheet], shell.slope(view.at, &view.meeting, sheet)[0]])
+                };
+                start(bracket, [known(from, there[0]), known(to, there[1])])
+            }
+        };
+        let (found, known) = zero(
+            bracket,
+            (there, first),
+            |t| {
+                let posed = shell.pose(course, t);
+                let meeting = shell.meet(&posed, line.at);
+                (meeting.room > 0.0).then(|| {
+                    let [slope, rise] = shell.slope(&posed, &meeting, sheet);
+                    Sample {
+                        value: meeting.g[sheet],
+                        slope,
+                        rise,
+                        state: (posed, meeting),
+                    }
+                })
+            },
+            |t, step, sample| {
+                let (posed, meeting) = &sample.state;
+                let [speed, pace] = shell.pace(limits, posed, meeting, sample.slope);
+                let turned = pace * step.abs();
+                // So that the zero is no farther than two steps from here.
+                if !(turned < 0.25) {
+                    return None;
+                }
+                let spot = shell.spot(posed, meeting, (sheet, sample.rise, step), slack);
+                let way = (speed + sample.rise.abs()) * step.abs();
+                let inside = ends.hold(spot.along, spot.error + 2.0 * way)?;
+                // The height is extreme at the zero. With the next step it is expanded to second order; the rest is of third.
+                if inside && !(turned <= TURNED && 2.0 * turned * (sample.rise * step).abs() <= near) {
+                    return None;
+                }
+                let gradient = shell.gradient(posed, meeting, sheet);
+                let known = Known::new(line.at, t, (gradient, sample.slope), last.as_ref());
+                let turn = Turn {
+                    t,
+                    height: spot.height,
+                    normal: spot.normal,
+                };
+                Some((inside.then_some(turn), known))
+            },
+        )?;
+        self.last[sheet] = Some(known);
+        let (i, j) = line.number;
+        if let Some(Turn { t, height, normal }) = found
+            && searching.collector.lines.asks(i, j)
+        {
+            let jump = if sheet == 0 { 1 } else { -1 };
+            let number = searching.collector.lines.line(i, j);
+            let source = (self.source)(t);
+            searching.collector.crossing(number, height, jump, unit(normal), source);
+        }
+        Ok(())
+    }
+}
