@@ -202,7 +202,7 @@ impl Disc {
                 let speed = placed.travel.norm() + self.radii[1].max(radius) * turn;
                 let turned = tilt * (turning + turn) * (1.0 + turn * speed / sample.slope.abs()) * step.abs();
                 // So that the zero is no farther than two steps from here.
-                if !(turned < 0.25) {
+                if !(turned < 0.125) {
                     return None;
                 }
                 let error = 8.0 * (slack + speed * step.abs()) * tilt;

@@ -275,7 +275,7 @@ impl<'a> RimSearch<'a> {
                 let fast = speed * inverse;
                 let pace = 2.0 * fast * fast / sample.slope.abs() + self.turning * inverse.abs();
                 let turned = pace * step.abs();
-                if !(turned < 0.25) {
+                if !(turned < 0.125) {
                     return None;
                 }
                 let error =

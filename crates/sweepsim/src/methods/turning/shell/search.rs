@@ -235,7 +235,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 let [speed, pace] = shell.pace(limits, posed, meeting, sample.slope);
                 let turned = pace * step.abs();
                 // So that the zero is no farther than two steps from here.
-                if !(turned < 0.25) {
+                if !(turned < 0.125) {
                     return None;
                 }
                 let spot = shell.spot(posed, meeting, (sheet, sample.rise, step), slack);
