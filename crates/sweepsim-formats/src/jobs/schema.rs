@@ -340,6 +340,7 @@ pub(crate) enum Law {
 pub(crate) enum Arcs {
     Chords,
     Level,
+    Upright,
     Exact,
 }
 

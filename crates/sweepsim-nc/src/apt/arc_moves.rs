@@ -7,7 +7,7 @@ use super::frames::{Vector, add, norm};
 use super::motion::Target;
 use super::reader::{Located, Reader, numbers};
 use super::statement::Statement;
-use crate::model::level_arcs::is_level;
+use crate::model::kept_arcs::KeptArcs;
 use crate::text::error::NcProblem;
 
 impl Reader<'_> {
@@ -137,10 +137,11 @@ impl Reader<'_> {
             };
             self.push(start, Move::default())?;
         }
-        if self.options.exact_arcs || self.options.level_arcs {
+        let kept = KeptArcs::new(self.options);
+        if !kept.none() {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
             let upright = [self.axis, target.axis].iter().all(|axis| *axis == [0.0, 0.0, 1.0]);
-            if self.options.exact_arcs || (upright && is_level(&exact, arc.start, arc.end)) {
+            if kept.keep(&exact, [arc.start, arc.end], upright) {
                 let (course, turning) = (Course::Arc(exact), Turning::Even);
                 return self.push(target, Move { course, turning });
             }

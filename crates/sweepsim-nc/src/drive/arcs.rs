@@ -6,7 +6,6 @@ use sweepsim_motion::{Course, Move, TipArc, Turning};
 use super::driver::Coordinates;
 use super::track::Track;
 use crate::machines::Position;
-use crate::model::level_arcs::is_level;
 use crate::text::error::NcProblem;
 
 /// The most chords per arc.
@@ -38,7 +37,7 @@ impl Track {
             ));
         };
         self.begin(false)?;
-        if (self.exact_arcs || self.level_arcs) && abc == self.abc {
+        if !self.kept_arcs.none() && abc == self.abc {
             let [from, to, centre, above] = self.tips([
                 start,
                 arc.end,
@@ -53,7 +52,8 @@ impl Track {
             let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
                 .map_err(|error| NcProblem::syntax(error.to_string()))?
                 .through(from, to);
-            if self.exact_arcs || (self.direction()? == [0.0, 0.0, 1.0] && is_level(&exact, from, to)) {
+            let upright = self.direction()? == [0.0, 0.0, 1.0];
+            if self.kept_arcs.keep(&exact, [from, to], upright) {
                 return self.exact_arc(arc, exact);
             }
         }

@@ -8,6 +8,7 @@ use super::contour::Place;
 use super::driver::{Coordinates, Driver, Sense};
 use crate::machines::{Position, WorkFrame};
 use crate::model::event::{Event, EventKind};
+use crate::model::kept_arcs::KeptArcs;
 use crate::model::positions::ProgramPositions;
 use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
@@ -38,8 +39,7 @@ pub(crate) struct Track {
     pub(super) joined: bool,
     pub(super) most_poses: usize,
     pub(super) arc_tolerance: f64,
-    pub(super) exact_arcs: bool,
-    pub(super) level_arcs: bool,
+    pub(super) kept_arcs: KeptArcs,
     pub(super) contour: Contour,
 }
 
@@ -71,8 +71,7 @@ impl Track {
             joined: false,
             most_poses: options.most_poses,
             arc_tolerance: options.arc_tolerance,
-            exact_arcs: options.exact_arcs,
-            level_arcs: options.level_arcs,
+            kept_arcs: KeptArcs::new(options),
             contour: Contour::default(),
         }
     }

@@ -1,7 +1,7 @@
 //! What reading a program takes and gives.
 
 pub(crate) mod event;
-pub(crate) mod level_arcs;
+pub(crate) mod kept_arcs;
 pub(crate) mod names;
 pub(crate) mod poses;
 pub(crate) mod positions;

@@ -1,4 +1,4 @@
-//! Arcs that are kept because closed forms sweep them: about z, with the tool along z.
+//! Arcs that are kept because they are cheaper than their chords: about z and in planes along z, with the tool along z.
 
 use sweepsim_motion::Course;
 use sweepsim_nc::{Program, ReadOptions, apt, gcode, heidenhain, siemens};
@@ -34,6 +34,35 @@ fn arcs_about_z_are_kept() {
     assert_eq!(courses(&siemens::read(text, &options()).unwrap()), [1, 0]);
     let text = "UNITS/MM\nGOTO/0,0,0,0,0,1\nMOVARC/0,5,0,0,0,1,5,ANGLE,180\nGOTO/0,10,0\nFINI\n";
     assert_eq!(courses(&apt::read(text, &options()).unwrap()), [1, 0]);
+}
+
+/// In planes along z, without leaving them, in any of the formats.
+#[test]
+fn arcs_in_planes_along_z_are_kept_if_asked_for() {
+    let mut upright = options();
+    upright.upright_arcs = true;
+    upright.arc_tolerance = 1e-5;
+    let head = "G21 G90 G94 F100\nG0 X0 Y0 Z0\n";
+    for (text, kept) in [
+        ("G18 G3 X10 Z0 I5 K0", true),
+        ("G19 G2 Y10 Z0 J5 K0", true),
+        ("G19 G2 Y0 Z0 J5 K3", true),
+        ("G17 G3 X0 Y10 I0 J5", true),
+        // It leaves its plane; a spiral; a radius of 138 m.
+        ("G18 G3 X10 Y1 Z0 I5 K0", false),
+        ("G18 G3 X-0.002 Z0.0005 I5 K0", false),
+        ("G18 G2 X10 Z0 R138000", false),
+    ] {
+        let program = gcode::read(&format!("{head}{text}\nM2\n"), &upright).unwrap();
+        assert_eq!(courses(&program) == [1, 0], kept, "{text}: {:?}", courses(&program));
+    }
+    let text = "UNITS/MM\nGOTO/0,0,0,0,0,1\nMOVARC/5,0,0,0,1,0,5,ANGLE,180\nGOTO/10,0,0\nFINI\n";
+    assert_eq!(courses(&apt::read(text, &upright).unwrap()), [1, 0]);
+    let text = "G90 G0 X0 Y0 Z0\nG18 G3 X10 Z0 I5 K0 F100\nM30\n";
+    assert_eq!(courses(&siemens::read(text, &upright).unwrap()), [1, 0]);
+    // Few chords are cheaper.
+    upright.arc_tolerance = 1e-3;
+    assert!(courses(&siemens::read(text, &upright).unwrap())[1] > 1);
 }
 
 #[test]

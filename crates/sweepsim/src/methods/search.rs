@@ -95,26 +95,30 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
 
     /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart { segment, round, .. } = &self.parts[at];
-        let heading = match round {
-            Some(round) => Heading::around(round, segment, self.size.slack),
-            None => Heading::new(segment, self.size.slack),
-        };
-        let Some(heading) = heading else { return };
+        let PathPart {
+            segment, round, wheel, ..
+        } = &self.parts[at];
         let mut collector = Collector {
             lines: self.lines,
             harvest,
         };
         let done = &mut space.done;
-        let source = |t: f64| self.source(at, t);
         let settled = [&mut done.patches[..], &mut done.edges[..]];
         let collector = (&mut collector, self.ceiling);
+        let by_share = |share: f64| self.source_after(at, share);
+        if let Some(wheel) = wheel {
+            let arc = (wheel, segment, translation::slack(self.size.slack), self.near);
+            translation::along(outline, arc, collector, by_share, settled);
+            return;
+        }
+        let heading = match round {
+            Some(round) => Heading::around(round, segment, self.size.slack),
+            None => Heading::new(segment, self.size.slack),
+        };
+        let Some(heading) = heading else { return };
         match round {
-            Some(round) => {
-                let source = |share: f64| self.source_after(at, share);
-                translation::around(outline, (&heading, round), collector, source, settled);
-            }
-            None => translation::envelope(outline, &heading, collector, source, settled),
+            Some(round) => translation::around(outline, (&heading, round), collector, by_share, settled),
+            None => translation::envelope(outline, &heading, collector, |t| self.source(at, t), settled),
         }
     }
 

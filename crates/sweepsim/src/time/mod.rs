@@ -12,3 +12,4 @@ pub(crate) mod pieces;
 pub(crate) mod placement;
 pub(crate) mod round;
 pub(crate) mod swept_box;
+pub(crate) mod wheel;

@@ -2,6 +2,7 @@
 
 use crate::time::joined::Stretch;
 use crate::time::round::Round;
+use crate::time::wheel::{Wheel, WheelPart};
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -14,6 +15,8 @@ pub(crate) struct PathPart {
     pub segment: Segment,
     /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
     pub round: Option<Round>,
+    /// The same as a circle in a plane along the dexels, for any tool of revolution.
+    pub wheel: Option<Wheel>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -86,6 +89,7 @@ pub(crate) fn parts(
                 joins: last == 0 && arcs && grows && segment.turns().len() == 1,
                 segment,
                 round: None,
+                wheel: None,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
@@ -108,8 +112,16 @@ pub(crate) fn parts(
             } else {
                 None
             };
+            let wheel = match round {
+                None if symmetric => Wheel::parts(path, to - 1 - first, (frame, reach), (by, limit)),
+                _ => None,
+            };
             match round {
                 Some(round) => parts.extend(with_shares(to - 1, round)),
+                None if wheel.is_some() => {
+                    let wheel = wheel.into_iter().flatten();
+                    parts.extend(wheel.map(|part| on_wheel(to - 1, part)));
+                }
                 None => {
                     let segments = segments.into_iter().map(seen).collect();
                     put(&mut parts, to - 1, segments, [tip(from), tip(to)], by);
@@ -175,12 +187,26 @@ fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Ite
         .map(move |(n, (round, segment))| PathPart {
             segment,
             round: Some(round),
+            wheel: None,
             number: number as u32,
             start: (n as f64 * share) as f32,
             share: share as f32,
             joins: false,
             joined: Vec::new(),
         })
+}
+
+fn on_wheel(number: usize, part: WheelPart) -> PathPart {
+    PathPart {
+        segment: part.segment,
+        round: None,
+        wheel: Some(part.wheel),
+        number: number as u32,
+        start: part.start as f32,
+        share: part.share as f32,
+        joins: false,
+        joined: Vec::new(),
+    }
 }
 
 #[cfg(test)]

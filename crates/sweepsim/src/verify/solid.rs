@@ -94,17 +94,22 @@ impl<'a> MovingSolid<'a> {
         let mut out = Vec::with_capacity(whole.len());
         let drift = self.plan.tolerances.standstill() / whole.len() as f64;
         for (n, part) in whole.iter().enumerate() {
-            // The stored times are rounded; the parts of a move are of equal duration.
-            let share = 1.0 / whole.len() as f64;
-            let local = window.map(|time| (time / share - n as f64).clamp(0.0, 1.0));
+            // The stored times are rounded; the parts of most moves are of equal duration.
+            let even = 1.0 / whole.len() as f64;
+            let [start, share] = match part.wheel {
+                Some(_) => [part.start, part.share].map(f64::from),
+                None => [n as f64 * even, even],
+            };
+            let local = window.map(|time| ((time - start) / share).clamp(0.0, 1.0));
             let [from, to] = local.map(|time| part.segment.at_time(time).clamp(0.0, 1.0));
             if to > from {
                 let by = [drift * out.len() as f64, drift * (out.len() + 1) as f64];
                 out.push(PathPart {
                     segment: part.segment.part(from, to).displaced(by),
                     round: None,
+                    wheel: None,
                     number: part.number,
-                    start: ((n as f64 + from) * share) as f32,
+                    start: (start + from * share) as f32,
                     share: ((to - from) * share) as f32,
                     joins: false,
                     joined: Vec::new(),

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim`, in one binary: it links once.
 
+mod arcs_along_dexels;
 mod arcs_in_closed_form;
 mod cancelling;
 mod faces;

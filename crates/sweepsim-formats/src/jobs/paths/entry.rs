@@ -182,7 +182,8 @@ impl JobReader<'_> {
                     schema::Law::Rotary(_) => AxisLaw::Rotary,
                 };
                 options.exact_arcs = matches!(raw.arcs, Some(schema::Arcs::Exact));
-                options.level_arcs = matches!(raw.arcs, None | Some(schema::Arcs::Level));
+                options.upright_arcs = matches!(raw.arcs, None | Some(schema::Arcs::Upright));
+                options.level_arcs = options.upright_arcs || matches!(raw.arcs, Some(schema::Arcs::Level));
                 let file = self.beside(name);
                 if file
                     .extension()

@@ -21,6 +21,7 @@ use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
 use crate::gcode::trace::Canonical;
+use crate::model::kept_arcs::KeptArcs;
 use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
@@ -61,8 +62,7 @@ pub(crate) struct Reader {
     /// Where the last jump backwards led.
     pub turned: Option<Spot>,
     pub arc_tolerance: f64,
-    pub exact_arcs: bool,
-    pub level_arcs: bool,
+    pub kept_arcs: KeptArcs,
     pub chord_note: String,
     pub block_delete: bool,
     pub lenient: bool,
@@ -190,8 +190,7 @@ impl Reader {
             loop_ends: BTreeMap::new(),
             turned: None,
             arc_tolerance: options.arc_tolerance,
-            exact_arcs: options.exact_arcs,
-            level_arcs: options.level_arcs,
+            kept_arcs: KeptArcs::new(options),
             chord_note: format!("arcs are divided into chords within {} mm", options.arc_tolerance),
             block_delete: options.block_delete,
             lenient: options.lenient,

@@ -31,10 +31,15 @@ pub(crate) struct Ceiling {
 impl Ceiling {
     /// The lowest one for these moves, if there is any. `top`: the highest material.
     pub fn new(outline: &Outline, reach: f64, parts: &[PathPart], top: f64) -> Option<Self> {
-        if !outline.complete || !parts.iter().all(stands) {
+        let forwards = |part: &PathPart| part.wheel.is_none_or(|wheel| wheel.goes_forwards());
+        if !outline.complete || !parts.iter().all(|part| stands(part) && forwards(part)) {
             return None;
         }
-        let tips = || parts.iter().flat_map(|part| part.segment.tips()).map(|tip| tip[2]);
+        let own = |part: &PathPart| match part.wheel {
+            Some(wheel) => wheel.heights(),
+            None => part.segment.tips().map(|tip| tip[2]),
+        };
+        let tips = || parts.iter().flat_map(own);
         let low = tips().fold(f64::INFINITY, f64::min);
         let high = tips().fold(f64::NEG_INFINITY, f64::max);
         let gap = GAP * reach;
@@ -60,9 +65,10 @@ impl Ceiling {
             let rate = (piece.to[0] - piece.from[0]) / (to - from);
             // Along an arc the disc has to be always the same.
             let round = parts.iter().filter(|part| part.round.is_some());
-            let steady = round
-                .clone()
-                .all(|part| (rate * part.segment.travel()[2]).abs() < STEADY * reach);
+            let rises = round.map(|part| part.segment.travel()[2]);
+            let wheels = parts.iter().filter_map(|part| part.wheel.map(|wheel| wheel.heights()));
+            let mut rises = rises.chain(wheels.map(|[low, high]| high - low));
+            let steady = rises.all(|rise| (rate * rise).abs() < STEADY * reach);
             if alone && steady && span[1] < to - gap && best.is_none_or(|best| z < best.z) {
                 best = Some(Self {
                     z,

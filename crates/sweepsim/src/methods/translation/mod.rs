@@ -16,6 +16,7 @@ mod grazing;
 mod rest;
 mod rows;
 mod strip;
+mod wheel;
 
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
@@ -24,6 +25,7 @@ pub(crate) use grazing::{Grazed, Grazing, Resting};
 pub(crate) use rest::{Neighbour, leaning, placements};
 pub(crate) use rows::numbers;
 pub(crate) use strip::envelope;
+pub(crate) use wheel::along;
 
 use crate::methods::harvest::Harvest;
 use crate::methods::lattice::Lattice;

@@ -93,7 +93,8 @@ impl<'a> Runs<'a> {
     /// A part without the beginning or the end during which the tool is above all material; `None` if that is all of it.
     fn trimmed(&self, at: usize) -> Option<(PathPart, [bool; 2])> {
         let part = &self.plan.parts[at];
-        let [from, to] = part.segment.tips().map(|tip| tip[2]);
+        let ends = || part.segment.tips().map(|tip| tip[2]);
+        let [from, to] = part.wheel.map_or_else(ends, |wheel| wheel.heights());
         let whole = Some((part.clone(), [false; 2]));
         if !stands(part) || (from <= self.over && to <= self.over) {
             return whole;
@@ -101,7 +102,7 @@ impl<'a> Runs<'a> {
         if from > self.over && to > self.over {
             return None;
         }
-        if part.round.is_some() {
+        if part.round.is_some() || part.wheel.is_some() {
             return whole;
         }
         let t = (self.over - from) / (to - from);
@@ -114,6 +115,7 @@ impl<'a> Runs<'a> {
         let short = PathPart {
             segment: part.segment.part(range[0], range[1]),
             round: None,
+            wheel: None,
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],

@@ -77,6 +77,7 @@ impl Arena<'_> {
         let moved = |part: &PathPart| PathPart {
             segment: part.segment.moved(&Matrix3::identity(), shift),
             round: part.round.map(|round| round.moved([shift[0], shift[1]])),
+            wheel: part.wheel.map(|wheel| wheel.moved(shift)),
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

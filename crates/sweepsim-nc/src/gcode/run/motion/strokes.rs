@@ -10,7 +10,6 @@ use crate::gcode::run::tools::ToolRow;
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
 use crate::gcode::trace::Canonical;
-use crate::model::level_arcs::is_level;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -99,10 +98,10 @@ impl Reader {
                 "expected the same scale for all axes",
             ));
         };
-        if (self.exact_arcs || self.level_arcs) && !self.state.turns_by_axes(target.abc) {
+        if !self.kept_arcs.none() && !self.state.turns_by_axes(target.abc) {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
             let upright = self.state.abc == [0.0; 3] && target.abc == [0.0; 3];
-            if self.exact_arcs || (upright && is_level(&exact, arc.start, arc.end)) {
+            if self.kept_arcs.keep(&exact, [arc.start, arc.end], upright) {
                 return self.state.arc_to(target, exact);
             }
         }

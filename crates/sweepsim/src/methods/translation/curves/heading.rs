@@ -42,12 +42,11 @@ fn is_upright(turn: &Matrix3<f64>) -> bool {
 
 /// Whether the tool stands exactly along the dexels all the time, and does not turn but with an arc.
 pub(crate) fn stands(part: &PathPart) -> bool {
-    part.round.is_some() || stands_still(&part.segment)
-}
-
-/// Whether a segment does not turn, and its tool stands exactly along the dexels.
-fn stands_still(segment: &Segment) -> bool {
-    segment.is_arc() && segment.turns().len() == 1 && is_upright(&segment.turns()[0])
+    let PathPart {
+        segment, round, wheel, ..
+    } = part;
+    let still = segment.turns().len() == 1 && is_upright(&segment.turns()[0]);
+    round.is_some() || still && (wheel.is_some() || segment.is_arc())
 }
 
 /// The rounding error of the coordinates that closed forms compute, products of a few rounded numbers, from the one that all systems allow for: a

@@ -1,0 +1,87 @@
+//! A sharp edge of an upright tool along an arc in a plane along the dexels.
+
+use super::{Directions, Place, Rolling};
+use crate::cutter::outline::Rim;
+use sweepsim_dexel::Source;
+
+impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
+    /// The lines that the circle passes.
+    pub(super) fn rim(&mut self, rim: &Rim) {
+        let [x, y, z] = self.wheel.centre;
+        let (r, big) = (self.wheel.radius, rim.radius);
+        let [low, high] = self.directions[0].map(|cosine| r * cosine);
+        let level = z + rim.height;
+        self.each(
+            [x, y, level],
+            [[-big, big], [low - big, high + big]],
+            |own, place, line| {
+                own.edge(rim, level, place, line);
+            },
+        );
+    }
+
+    #[inline]
+    fn edge(&mut self, rim: &Rim, level: f64, (i, j): (usize, usize), [q, p]: [f64; 2]) {
+        let (slack, r, big) = (self.slack, self.wheel.radius, rim.radius);
+        let room = (big - p) * (big + p);
+        let line = self.lines.lines.line(i, j);
+        let doubt = 8.0 * slack * (big + slack);
+        if room < -doubt {
+            return;
+        }
+        if !(room > 64.0 * doubt) {
+            let wide = (66.0 * doubt).sqrt() + 4.0 * slack;
+            let [low, high] = self.directions[0].map(|cosine| r * cosine);
+            if q > low - wide && q < high + wide {
+                self.lines.open(line);
+            }
+            return;
+        }
+        let half = room.sqrt();
+        let off = 2.0 * slack * (1.0 + p.abs() / half);
+        for arm in [half, -half] {
+            let cosine = (q - arm) / r;
+            let (sine, error) = match self.directions(cosine, (2.0 * slack + off) / r) {
+                Directions::None | Directions::Level(false) => continue,
+                Directions::Level(true) => {
+                    self.lines.open(line);
+                    return;
+                }
+                Directions::Pair(sine, error) => (sine, error),
+            };
+            for sine in [sine, -sine] {
+                let share = match self.place([cosine, sine], error) {
+                    Place::Outside => continue,
+                    Place::Near => {
+                        self.lines.open(line);
+                        return;
+                    }
+                    Place::Inside(share) => share,
+                };
+                let side = self.wheel.side();
+                // The direction of the motion, on the edge outwards and up.
+                let (ahead, up) = (-side * sine, side * cosine);
+                let out = arm * ahead / big;
+                let doubt = 2.0 * (off / big + error) + 16.0 * f64::EPSILON;
+                let faces = rim.normals.map(|[n, m]| n * out + m * up);
+                if faces.iter().any(|g| !(g.abs() > doubt)) {
+                    self.lines.open(line);
+                    return;
+                }
+                let [a, b] = faces;
+                if (a < 0.0) == (b < 0.0) {
+                    continue;
+                }
+                // The line comes into the circle if it is in front of its centre.
+                let orientation = if out > 0.0 { -1 } else { 1 };
+                let jump = if a < 0.0 { -orientation } else { orientation };
+                // The envelope's normal lies in the fan of the two faces, where g = 0.
+                let [n, m] = rim.normals;
+                let [radial, along] = [0, 1].map(|k| n[k] * b.abs() + m[k] * a.abs());
+                let normal = self.in_space([radial * arm / big, radial * p / big, along]);
+                let source = (self.source)(share);
+                self.lines.crossing(line, level + r * sine, jump, normal, source);
+            }
+        }
+    }
+}

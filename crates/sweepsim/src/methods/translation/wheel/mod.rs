@@ -1,0 +1,256 @@
+//! Arcs of the tip in a plane along the dexels, of a tool that does not turn.
+//!
+//! The line and the arc's plane are parallel, so that only the section of the tool at the distance `p` of the line from that plane matters, and how it is moved along a circle. In the
+//! plane, with `q` ahead of the arc's centre, `z` up, and the arc at `r (cos α, sin α)`:
+//!
+//! - the section of a ball of radius `R` is a circle of radius `ρ`, `ρ² = R² − p²`, which sweeps the circles of radii `s = r ± ρ` about the ball's centre at the centre of the arc:
+//!   a line meets them where `cos α = q/s`;
+//! - a sharp edge of an upright tool is met at `±ρ` from its centre, and so where `r cos α = q ∓ ρ`;
+//! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never.
+//!
+//! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
+
+mod ball;
+mod edge;
+
+use super::rows::{Floor, Row, rows};
+use super::{Ceiling, Collector};
+use crate::cutter::outline::{Outline, Piece, Shape};
+use crate::methods::harvest::unit;
+use crate::time::wheel::Wheel;
+use ball::{Ball, ball};
+use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_2;
+use sweepsim_dexel::Source;
+use sweepsim_motion::{Segment, SegmentEnd};
+
+/// Angles of the arc are cut off at places that are exact to a few roundings.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A sweep of a tool along an arc. `source` gives the source at a share of its time.
+pub(crate) fn along(
+    outline: &Outline,
+    (wheel, segment, slack, near): (&Wheel, &Segment, f64, f64),
+    (lines, ceiling): (&mut Collector, Option<&Ceiling>),
+    source: impl Fn(f64) -> Source,
+    done: [&mut [bool]; 2],
+) {
+    let [patches, edges] = done;
+    // The centre of a wide arc has fewer digits than the tool.
+    let far = wheel.centre.iter().fold(wheel.radius, |far, c| far.max(c.abs()));
+    let slack = slack.max(16.0 * f64::EPSILON * far);
+    if !(slack < 0.25 * near) {
+        return;
+    }
+    let turn = segment.start();
+    let axis: Vector3<f64> = turn.column(2).into_owned();
+    let [ux, uy] = wheel.ahead;
+    let mut rolling = Rolling {
+        wheel,
+        slack,
+        axis: [ux * axis.x + uy * axis.y, ux * axis.y - uy * axis.x, axis.z],
+        directions: wheel.directions(),
+        rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| segment.velocity(end)[1][2]),
+        highest: ceiling.map_or(f64::INFINITY, |ceiling| {
+            ceiling.above(wheel.heights()[0], lines.lines.spacing())
+        }),
+        lines,
+        source,
+    };
+    let upright = axis == Vector3::z();
+    for piece in &outline.pieces {
+        if rolling.piece(piece, upright) {
+            patches[piece.patches.clone()].fill(true);
+        }
+    }
+    for rim in &outline.rims {
+        if upright {
+            if rim.height <= rolling.highest {
+                rolling.rim(rim);
+            }
+            edges[rim.edges.clone()].fill(true);
+        }
+    }
+}
+
+/// The search along one arc.
+struct Rolling<'a, 'b, S> {
+    wheel: &'a Wheel,
+    /// The rounding error of coordinates.
+    slack: f64,
+    /// The tool's axis, `(q, p, z)`.
+    axis: [f64; 3],
+    /// The ranges of `cos α` and `sin α`.
+    directions: [[f64; 2]; 2],
+    /// The velocity along the dexels at the ends, but for positive factors.
+    rates: [f64; 2],
+    /// What is this high above the tip is above the ceiling at all times.
+    highest: f64,
+    lines: &'a mut Collector<'b>,
+    source: S,
+}
+
+/// What the ends of an arc say of a direction.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Outside,
+    Near,
+    /// With the share of the way.
+    Inside(f64),
+}
+
+/// The directions with a given cosine.
+#[derive(Clone, Copy, Debug)]
+enum Directions {
+    None,
+    /// It is too close to 1 or −1: whether one of them may be on the arc.
+    Level(bool),
+    /// The sine, of both signs, and the error of the angles.
+    Pair(f64, f64),
+}
+
+impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
+    /// Whether it is settled.
+    fn piece(&mut self, piece: &Piece, upright: bool) -> bool {
+        if upright && piece.heights()[0] > self.highest {
+            return true;
+        }
+        match piece.shape {
+            // No line meets an upright wall.
+            Shape::Line { normal: [1.0, _] } if upright => true,
+            Shape::Line { normal: [0.0, up] } if upright => {
+                let radii = [piece.from[0].min(piece.to[0]), piece.from[0].max(piece.to[0])];
+                self.disc(piece.from[1], radii, up);
+                true
+            }
+            Shape::Arc {
+                centre: [0.0, centre],
+                radius,
+                out: 1.0,
+                ..
+            } => {
+                let [low, high] = if piece.from[1] < piece.to[1] {
+                    [piece.from, piece.to]
+                } else {
+                    [piece.to, piece.from]
+                };
+                // Poles are no ends.
+                let from = if low[0] == 0.0 {
+                    f64::NEG_INFINITY
+                } else {
+                    low[1] - centre
+                };
+                let to = if high[0] == 0.0 {
+                    f64::INFINITY
+                } else {
+                    high[1] - centre
+                };
+                let own = Ball {
+                    centre,
+                    radius,
+                    ends: [from, to],
+                };
+                ball(self, &own);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The lines in ranges of `p` and `q` from a point, with their `q` and `p`.
+    fn each(
+        &mut self,
+        tip: [f64; 3],
+        ranges: [[f64; 2]; 2],
+        mut visit: impl FnMut(&mut Self, (usize, usize), [f64; 2]),
+    ) {
+        let ahead = self.wheel.ahead;
+        let floor = Floor {
+            tip,
+            ahead,
+            slack: self.slack,
+        };
+        let lattice = self.lines.lines;
+        rows(lattice, &floor, ranges, |Row { i, j, x }| {
+            for j in j[0]..=j[1] {
+                let y = lattice.coordinate(1, j) - tip[1];
+                if lattice.asks(i, j) {
+                    visit(self, (i, j), [ahead[0] * x + ahead[1] * y, ahead[0] * y - ahead[1] * x]);
+                }
+            }
+        });
+    }
+
+    /// A disc or ring with this normal along the axis: all of it where the tool is highest or lowest.
+    fn disc(&mut self, height: f64, [inner, outer]: [f64; 2], up: f64) {
+        let [before, after] = self.rates.map(|rate| up * rate < 0.0);
+        if before == after {
+            return;
+        }
+        let top = if self.rates[0] > self.rates[1] { 1.0 } else { -1.0 };
+        let share = match self.place([0.0, top], 0.0) {
+            Place::Inside(share) => share,
+            // At an end but for rounding.
+            _ if (self.rates[0].abs()) < self.rates[1].abs() => 0.0,
+            _ => 1.0,
+        };
+        let change = i8::from(after) - i8::from(before);
+        let jump = if up > 0.0 { -change } else { change };
+        let [x, y, z] = self.wheel.centre;
+        let z = z + height + top * self.wheel.radius;
+        let (error, source) = (4.0 * self.slack, (self.source)(share));
+        let inner = if inner == 0.0 { f64::NEG_INFINITY } else { inner };
+        self.each([x, y, z], [[-outer, outer]; 2], |own, (i, j), [q, p]| {
+            let (rho, line) = ((q * q + p * p).sqrt(), own.lines.lines.line(i, j));
+            if rho > inner + error && rho < outer - error {
+                own.lines.crossing(line, z, jump, [0.0, 0.0, up as f32], source);
+            } else if rho > inner - error && rho < outer + error {
+                own.lines.open(line);
+            }
+        });
+    }
+
+    /// Where a direction is on the arc, whose angle is known up to an error.
+    fn place(&self, [c, s]: [f64; 2], error: f64) -> Place {
+        let wheel = self.wheel;
+        let ([x, y], side) = (wheel.from, wheel.side());
+        // The turn from the start, as a complex number, and seen from the end.
+        let (cosine, sine) = (c * x + s * y, side * (s * x - c * y));
+        let (end_sine, end_cosine) = wheel.angle.abs().sin_cos();
+        let end = sine * end_cosine - cosine * end_sine;
+        let error = error + ROUNDING;
+        if sine < -error || end > error {
+            Place::Outside
+        } else if sine > error && end < -error {
+            Place::Inside(sine.atan2(cosine) / wheel.angle.abs())
+        } else {
+            Place::Near
+        }
+    }
+
+    /// The directions with a cosine that is known up to an error.
+    fn directions(&self, cosine: f64, error: f64) -> Directions {
+        let [[low, high], _] = self.directions;
+        let error = error + ROUNDING;
+        if cosine > high + error || cosine < low - error {
+            return Directions::None;
+        }
+        let square = (1.0 - cosine) * (1.0 + cosine);
+        // The angle is off by the error over the sine, to first order.
+        if !(square > 64.0 * error) {
+            let extreme = 1.0_f64.copysign(cosine);
+            // The cosine is this far from the extreme at most, and the angle the root of twice that.
+            let wide = (2.0 * (66.0 * error)).sqrt() + ROUNDING;
+            let place = self.place([extreme, 0.0], wide.min(FRAC_PI_2));
+            return Directions::Level(!matches!(place, Place::Outside));
+        }
+        let sine = square.sqrt();
+        Directions::Pair(sine, 1.25 * error / sine)
+    }
+
+    /// A direction `(q, p, z)` in space.
+    fn in_space(&self, [q, p, z]: [f64; 3]) -> [f32; 3] {
+        let [x, y] = self.wheel.ahead;
+        unit(Vector3::new(x * q - y * p, y * q + x * p, z))
+    }
+}
