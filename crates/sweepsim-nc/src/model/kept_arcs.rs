@@ -5,6 +5,8 @@ use sweepsim_motion::TipArc;
 
 /// The largest radius of an arc that is kept, in millimetres: coordinates as large as that of its centre have fewer decimals.
 const LARGEST: f64 = 1e4;
+/// The same in tolerances of chords, by default ten times that of the dexels: finer dexels than these coordinates have decimals for would be refused.
+const LARGEST_IN_CHORDS: f64 = 5e8;
 /// The largest difference of the distances of its ends from its centre, and of their places along the normal of a plane along z.
 const SPIRAL: f64 = 1e-9;
 /// An arc in a plane along z is cheaper than this many chords, whatever the tool and the direction of the dexels. Found by trial.
@@ -56,6 +58,9 @@ impl KeptArcs {
         let half = 2.0 * (self.tolerance / (2.0 * a[0])).sqrt().min(0.7).asin();
         let worth = level || arc.angle().abs() >= WORTH * 2.0 * half;
         let flat = level || (a[1] - b[1]).abs() <= SPIRAL;
-        worth && flat && (a[0] - b[0]).abs() <= SPIRAL && a[0].max(b[0]) <= LARGEST
+        worth
+            && flat
+            && (a[0] - b[0]).abs() <= SPIRAL
+            && a[0].max(b[0]) <= LARGEST.min(LARGEST_IN_CHORDS * self.tolerance)
     }
 }

@@ -78,6 +78,18 @@ fn others_are_divided() {
     }
 }
 
+/// Coordinates of wide arcs have fewer decimals than chords within so little need.
+#[test]
+fn wide_arcs_are_divided_finely() {
+    let text = "G21 G90 G94 F100\nG0 X0 Y0 Z0\nG17 G2 X10 Y0 R8000\nM2\n";
+    for (arc_tolerance, kept) in [(1e-4, true), (1e-5, false)] {
+        let mut options = options();
+        options.arc_tolerance = arc_tolerance;
+        let program = gcode::read(text, &options).unwrap();
+        assert_eq!(courses(&program) == [1, 0], kept, "{arc_tolerance}");
+    }
+}
+
 /// With three decimals, the ends of an arc are never equally far from its centre.
 #[test]
 fn rounded_arcs_are_kept_as_circles() {
