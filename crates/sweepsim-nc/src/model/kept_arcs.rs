@@ -9,7 +9,7 @@ const LARGEST: f64 = 1e4;
 const LARGEST_IN_CHORDS: f64 = 5e8;
 /// The largest difference of the distances of its ends from its centre, and of their places along the normal of a plane along z.
 const SPIRAL: f64 = 1e-9;
-/// An arc in a plane along z is cheaper than this many chords, whatever the tool and the direction of the dexels. Found by trial.
+/// An arc in a plane along z is mostly cheaper than this many chords: of balls and flat ends it always is along z, of tools that are left to charts from about here on. Found by trial.
 const WORTH: f64 = 128.0;
 
 /// The kinds of arcs that are kept.
