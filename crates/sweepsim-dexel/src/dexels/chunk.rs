@@ -15,6 +15,9 @@ use crate::intervals::{Endpoint, Interval};
 /// Lines of a chunk.
 pub(crate) const LINES: usize = 64;
 
+/// The number of chunks that a thread takes at a time, at most: the work is often in a corner of the grid.
+pub(crate) const SHARE: usize = 16;
+
 /// An interval as it is stored: 32 bytes.
 pub(crate) type PackedInterval = Interval<Packed>;
 

@@ -14,7 +14,7 @@ use crate::intervals::{
     Interval, IntervalError, Run, check_lengths, check_normal, difference, intersection, normalise, union,
 };
 pub use builder::DexelsBuilder;
-use chunk::{Chunk, LINES, PackedInterval, is_normal};
+use chunk::{Chunk, LINES, PackedInterval, SHARE, is_normal};
 pub use line::{Line, LineIter};
 pub use nearest::NearestEnd;
 use packed::Packed;
@@ -127,7 +127,7 @@ impl Dexels {
     /// As [`Dexels::from_fn`], but drops intervals without a positive length.
     pub(crate) fn filled(grid: Grid, write: impl Fn(usize, &mut Vec<Interval>) + Sync) -> Self {
         let mut dexels = Self::empty(grid);
-        let chunks = dexels.chunks.par_iter_mut().enumerate();
+        let chunks = dexels.chunks.par_iter_mut().enumerate().with_max_len(SHARE);
         chunks.for_each_init(Vec::new, |scratch, (number, slot)| {
             let mut chunk = Box::new(Chunk::default());
             chunk.fill(scratch, |line, out| {
@@ -270,7 +270,7 @@ impl Dexels {
         if self.grid != other.grid {
             return Err(GridMismatch);
         }
-        let both = self.chunks.par_iter_mut().zip(&other.chunks);
+        let both = self.chunks.par_iter_mut().zip(&other.chunks).with_max_len(SHARE);
         both.for_each_init(
             <(Vec<PackedInterval>, Vec<u32>, Vec<PackedInterval>)>::default,
             |(packed, numbers, scratch), (slot, more)| {

@@ -1,6 +1,6 @@
 //! Updates of many lines at once, in parallel.
 
-use super::chunk::{LINES, PackedInterval};
+use super::chunk::{LINES, PackedInterval, SHARE};
 use super::packed::Packed;
 use super::{Dexels, GridMismatch, Operation};
 use crate::intervals::{AuditFailure, Crossing, Interval, IntervalError, check_lengths, cover, difference, normalise};
@@ -16,26 +16,25 @@ struct ByChunk<'a, T> {
     runs: Vec<Run<'a, T>>,
 }
 
-impl<'a, T> ByChunk<'a, T> {
+impl<'a, T: Sync> ByChunk<'a, T> {
     /// `lines`: their number in the grid.
     fn new(lists: &[&'a [(u32, T)]], lines: usize) -> Self {
         let chunk_of = |(line, _): &(u32, T)| ((*line as usize) < lines).then_some(*line as usize / LINES);
-        let mut ends = vec![0_usize; lines.div_ceil(LINES) + 1];
         // The lists are long, and are read once here: lines of a chunk are often next to each other.
-        let mut found: Vec<(usize, Run<T>)> = Vec::new();
-        for list in lists {
-            for run in list.chunk_by(|a, b| chunk_of(a) == chunk_of(b)) {
-                if let Some(chunk) = run.first().and_then(chunk_of) {
-                    ends[chunk + 1] += 1;
-                    found.push((chunk, run));
-                }
-            }
+        let runs_of = |list: &&'a [(u32, T)]| -> Vec<(usize, Run<'a, T>)> {
+            let runs = list.chunk_by(|a, b| chunk_of(a) == chunk_of(b));
+            runs.filter_map(|run| Some((chunk_of(run.first()?)?, run))).collect()
+        };
+        let found: Vec<_> = lists.par_iter().with_max_len(1).map(runs_of).collect();
+        let mut ends = vec![0_usize; lines.div_ceil(LINES) + 1];
+        for (chunk, _) in found.iter().flatten() {
+            ends[chunk + 1] += 1;
         }
         for k in 1..ends.len() {
             ends[k] += ends[k - 1];
         }
-        let mut runs: Vec<Run<T>> = vec![&[]; found.len()];
-        for (chunk, run) in found {
+        let mut runs: Vec<Run<T>> = vec![&[]; found.iter().map(Vec::len).sum()];
+        for (chunk, run) in found.into_iter().flatten() {
             runs[ends[chunk]] = run;
             ends[chunk] += 1;
         }
@@ -219,7 +218,7 @@ impl Dexels {
         read: impl Fn(u32, &mut [T], &mut Vec<Interval>) + Sync,
     ) {
         let by_chunk = ByChunk::new(lists, self.grid.len());
-        let chunks = self.chunks.par_iter_mut().enumerate();
+        let chunks = self.chunks.par_iter_mut().enumerate().with_max_len(SHARE);
         type Lists<T> = (Sorted<T>, Vec<Interval>, Vec<PackedInterval>, Vec<PackedInterval>);
         chunks.for_each_init(
             Lists::<T>::default,

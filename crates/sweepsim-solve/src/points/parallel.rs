@@ -66,6 +66,7 @@ impl PointSolver {
         let (done, total) = (AtomicUsize::new(0), waiting.len());
         let parts: Vec<Self> = waiting
             .into_par_iter()
+            .with_max_len(1)
             .map(|(cell, depth)| {
                 let mut part = Self::new(self.options.clone());
                 (part.deadline, part.coarsest) = (deadline, COARSE);

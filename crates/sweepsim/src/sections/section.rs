@@ -109,6 +109,7 @@ pub fn section(
         let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::once(plane.offset()), options)?;
         let found: Vec<Found> = (0..plan.parts.len())
             .into_par_iter()
+            .with_max_len(1)
             .map(|at| {
                 if monitor.cancelled() || !reaches(&plan.parts[at], plane, plan.cutter.reach) {
                     return (Vec::new(), Vec::new());

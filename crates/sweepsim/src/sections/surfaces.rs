@@ -83,6 +83,7 @@ pub fn envelope_surfaces(
         let plan = Plan::new(tool, path, &Frame::WORLD, std::iter::empty(), options)?;
         let found: Vec<EnvelopeSurfaces> = (0..plan.parts.len())
             .into_par_iter()
+            .with_max_len(1)
             .map(|at| {
                 if monitor.cancelled() {
                     return EnvelopeSurfaces::default();

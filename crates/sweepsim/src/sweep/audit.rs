@@ -154,6 +154,7 @@ impl SweepJob<'_> {
         let most = self.repairs.of_each(wrong.len());
         let repaired: Vec<(Result<Vec<Interval>, UnresolvedReason>, u64)> = wrong
             .par_iter()
+            .with_max_len(1)
             .map(|line| self.with_space(|space| self.repair(chunk, *line, (1, most), space)))
             .collect();
         let boxes = repaired.iter().map(|(_, boxes)| boxes).sum();

@@ -192,6 +192,8 @@ impl SweepJob<'_> {
         let method = M::prepare(self.tool, chunk, &over);
         let found: Vec<Harvest> = M::shares(chunk.len(), self.grid.cells()[0])
             .into_par_iter()
+            // One by one: left to itself, rayon hands out a few large pieces, and a thread that is done first waits.
+            .with_max_len(1)
             .map(|share| {
                 let lines = Lattice::columns(self.grid, share.columns, shift).masked(self.mask.as_deref());
                 if lines.is_empty() {

@@ -322,6 +322,7 @@ fn connected(material: &Lines, grid: &Grid, target: &Target, kind: DeviationKind
         .into_values()
         .collect::<Vec<_>>()
         .into_par_iter()
+        .with_max_len(1)
         .map(|group| {
             let group = Lines(group);
             let (depth, place) = greatest(&group, grid, target.distance(), side);

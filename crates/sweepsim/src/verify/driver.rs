@@ -164,7 +164,7 @@ pub fn verify_tiles(
     {
         return Err(SweepError::Tiles);
     }
-    let works = scenes.into_par_iter();
+    let works = scenes.into_par_iter().with_max_len(1);
     let works = works.map(|scene| Work::new(scene, program, options, monitor));
     let mut works = works.collect::<Result<Vec<_>, _>>()?;
     let step = if options.first { 1 } else { usize::MAX };
@@ -208,7 +208,7 @@ fn drive<'a>(
             let solids = Solids::new(toolpath, (toolpath.path, moves), &works[0])?;
             for batch in stretch.chunks(step) {
                 let judged = AtomicUsize::new(0);
-                works.par_iter_mut().try_for_each(|work| {
+                works.par_iter_mut().with_max_len(1).try_for_each(|work| {
                     batch.iter().try_for_each(|moves| {
                         work.run(number, toolpath, &solids, moves.clone())?;
                         let judged = judged.fetch_add(moves.len(), Ordering::Relaxed) + moves.len();

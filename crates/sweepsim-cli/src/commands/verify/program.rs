@@ -82,7 +82,11 @@ impl<'a> JudgedProgram<'a> {
                     Some(whole) => Ok(whole.tile(&set.tiles[*tile]).expect("a tile of the stock's grid")),
                     None => set.stock(&job.stock, *tile),
                 };
-                let stock = tiles.par_iter().map(on_tile).collect::<Result<Vec<_>, _>>();
+                let stock = tiles
+                    .par_iter()
+                    .with_max_len(1)
+                    .map(on_tile)
+                    .collect::<Result<Vec<_>, _>>();
                 let stock = stock.map_err(|error| failure(failed("stock")(&error)))?;
                 let targets = self.targets(set, tiles, target)?;
                 let scenes = stock.into_iter().zip(&targets);
@@ -104,7 +108,7 @@ impl<'a> JudgedProgram<'a> {
                     let deviation = target.map(differs).transpose()?;
                     Ok((done, deviation))
                 };
-                let tiles = tiles.par_iter().zip(&targets).zip(done);
+                let tiles = tiles.par_iter().zip(&targets).zip(done).with_max_len(1);
                 let done = tiles.map(compared).collect::<Result<_, StockError>>();
                 done.map_err(|error| failure(failed("stock")(&error)))
             }

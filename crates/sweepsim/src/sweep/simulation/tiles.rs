@@ -138,7 +138,7 @@ fn stretch(
         statistics.merge(&swept.statistics);
         Ok(())
     };
-    parts.par_iter_mut().zip(&members).map(one).collect()
+    parts.par_iter_mut().zip(&members).with_max_len(1).map(one).collect()
 }
 
 /// Removes the volumes that the cuts sweep from the stock on some [tiles](Grid::tile) of a grid, each by itself: as [`simulate`](fn@crate::simulate) does on

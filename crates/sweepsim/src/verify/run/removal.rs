@@ -56,7 +56,7 @@ impl Work<'_> {
                     .swept_near(one, (grid, self.top()), &self.heights, &self.options, self.monitor)?;
             Ok(swept.lines)
         };
-        moves.into_par_iter().map(swept).collect()
+        moves.into_par_iter().with_max_len(1).map(swept).collect()
     }
 
     /// Removes what a run has swept.

@@ -140,6 +140,7 @@ impl Arena<'_> {
         let (place, options, monitor) = ((self.grid, self.top), self.options, self.monitor);
         let done: Vec<_> = items
             .par_iter()
+            .with_max_len(1)
             .map(|item| {
                 let mut arena = Arena::new(place, options, monitor);
                 let result = work(&mut arena, item)?;
