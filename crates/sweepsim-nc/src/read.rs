@@ -87,11 +87,11 @@ fn read_bytes(bytes: Vec<u8>, file: &Path, extension: Option<&str>, options: &Re
         ))
     };
     let read_siemens = || {
-        siemens::read_with(&text, options, &|name| {
+        siemens::read_kept(&text, options, &|name| {
             beside(file, name, &["SPF", "spf", "MPF", "mpf"])
         })
     };
-    let read_heidenhain = || heidenhain::read_with(&text, options, &|name| beside(file, name, &["H", "h"]));
+    let read_heidenhain = || heidenhain::read_kept(&text, options, &|name| beside(file, name, &["H", "h"]));
     match options.controller {
         Some(Controller::Siemens) => return read_siemens(),
         Some(Controller::Heidenhain) => return read_heidenhain(),

@@ -1,4 +1,5 @@
 //! Languages of controls that are more than dialects of G-code.
 
 pub mod heidenhain;
+mod recent;
 pub mod siemens;

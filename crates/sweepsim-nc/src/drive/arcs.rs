@@ -7,6 +7,7 @@ use super::driver::Coordinates;
 use super::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
+use crate::text::numbers::rounded;
 
 /// The most chords per arc.
 const MOST_CHORDS: f64 = 1e6;
@@ -74,7 +75,10 @@ impl Track {
                 self.arc_tolerance
             )));
         }
-        self.note(format!("arcs are divided into chords within {} mm", self.arc_tolerance));
+        self.note(format!(
+            "arcs are divided into chords within {} mm",
+            rounded(self.arc_tolerance)
+        ));
         let axis = Unit::new_normalize(normal);
         let height = |point: [f64; 3]| normal.dot(&(Vector3::from(point) - centre));
         let (low, high) = (height(start), height(arc.end));

@@ -1,6 +1,7 @@
-//! Problems with their place in a text, and numbers as text.
+//! Problems with their place in a text, its lines, and numbers as text.
 
 pub(crate) mod error;
+pub(crate) mod kept;
 pub(crate) mod lines;
 pub(crate) mod numbers;
 pub(crate) mod whole;

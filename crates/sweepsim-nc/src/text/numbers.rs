@@ -16,9 +16,27 @@ pub fn shortest(value: f64) -> String {
     }
 }
 
+/// For notes: six significant digits, so that ten times a millionth is `0.00001` and not `0.000009999999999999999`.
+pub(crate) fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::shortest;
+    use super::{rounded, shortest};
+
+    #[test]
+    fn notes_are_rounded() {
+        for (value, near) in [
+            (10.0 * 1e-6, 1e-5),
+            (1e-3, 1e-3),
+            (0.1 + 0.2, 0.3),
+            (1.0 / 3.0, 0.333_333),
+        ] {
+            assert_eq!(rounded(value), near);
+        }
+        assert!(rounded(f64::NAN).is_nan());
+    }
 
     #[test]
     fn is_short_and_exact() {

@@ -137,3 +137,12 @@ fn bad_cycles() {
         assert!(found.starts_with(expected), "{found}");
     }
 }
+
+#[test]
+fn long_repeats_run_as_if_written_out() {
+    let block = |k: usize| format!("L X+{} Y+{} Z-1 F500 ; {k}\n", k % 7, k % 11);
+    let blocks: String = (0..1500).map(block).collect();
+    let repeated = read(&format!("LBL 1\n{blocks}CALL LBL 1 REP 2\n"));
+    assert_eq!(moves(&repeated).len(), 4500);
+    assert_eq!(moves(&repeated), moves(&read(&blocks.repeat(3))));
+}

@@ -303,3 +303,27 @@ fn bad_programs_say_where_and_what() {
         }
     }
 }
+
+#[test]
+fn long_loops_and_archives_run_as_if_written_out() {
+    let block = |k: usize, z: usize| format!("G1 X{}.5 Y{} Z{z}\n", k % 7, k % 11);
+    let blocks = |z: usize| (0..1500).map(|k| block(k, z)).collect::<String>();
+    let written_out: String = (1..4).map(blocks).collect();
+    let numbered: String = (0..1500)
+        .map(|k| format!("N{k} {}", block(k, 0).replace("Z0", "Z=R1")))
+        .collect();
+    let looped = format!("FOR R1=1 TO 3\n{numbered}ENDFOR\n");
+    let jumped = format!("R1=1\nN0010 R2=0\n{numbered}R1=R1+1\nIF R1<4 GOTOB N0010\n");
+    let archive = format!(
+        "%_N_MAIN_MPF\n;$PATH=/_N_MPF_DIR\nG0 X0 Y0 Z0\nPART(1)\nPART(2)\nPART(3)\nM30\n%_N_PART_SPF\nPROC PART(REAL DEPTH)\n{}M17\n",
+        numbered.replace("R1", "DEPTH").replace("N", "N00")
+    );
+    let start = "G0 X0 Y0 Z0\n";
+    let expected = tips(&read(&format!("{start}{written_out}")));
+    assert_eq!(expected.len(), 4501);
+    assert_eq!(tips(&read(&format!("{start}{looped}"))), expected);
+    assert_eq!(tips(&read(&format!("{start}{jumped}"))), expected);
+    assert_eq!(tips(&read(&archive)), expected);
+    let wrong = archive.replace("N00700 ", "N00700 ?");
+    assert!(error(&wrong).starts_with("710:8:"), "{}", error(&wrong));
+}

@@ -28,7 +28,7 @@ impl Reader<'_> {
         if std::mem::take(&mut self.rounded) {
             let mut next = self.following();
             // CC moves nothing.
-            if next.is_some_and(|next| next.word(0) == "CC") {
+            if next.as_ref().is_some_and(|next| next.word(0) == "CC") {
                 next = self.following_after(1);
             }
             if next.is_some_and(|next| is_contour(next.word(0))) {

@@ -1,6 +1,7 @@
 //! Calls and jumps.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use super::interpreter::{Level, LevelKind, Reader};
 use super::line::{Line, Located};
@@ -77,7 +78,7 @@ impl Reader<'_> {
                     files.push(PathBuf::new());
                 }
                 files.push(file);
-                let unit = Unit::new(files.len() - 1, &text);
+                let unit = Unit::new(files.len() - 1, Rc::new(text));
                 self.units.push(unit);
                 self.names.insert(name, self.units.len() - 1);
                 self.units.len() - 1

@@ -77,7 +77,7 @@ pub(super) struct Reader<'a> {
     pub(super) stock: [[Option<f64>; 3]; 2],
 }
 
-pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
+pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
     if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
         let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
         return Err(NcError::new(problem, None));
@@ -99,7 +99,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
         uncertain: false,
         library,
         options,
-        units: vec![Unit::new(0, text)],
+        units: vec![Unit::new(0, Rc::clone(text))],
         names: BTreeMap::new(),
         stack: vec![Level {
             unit: 0,
@@ -120,7 +120,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
     let mut blocks = 0;
     while !reader.ended && errors.len() <= MOST_FURTHER {
         let Some((unit, index)) = reader.advance() else { break };
-        let line = Rc::clone(&reader.units[unit].lines[index]);
+        let line = reader.units[unit].block(index);
         blocks += 1;
         let result = if blocks > most_blocks {
             reader.ended = true;
@@ -168,7 +168,7 @@ impl Reader<'_> {
 
     fn located(&self, unit: usize, index: usize, problem: NcProblem, span: std::ops::Range<usize>) -> NcError {
         let unit = &self.units[unit];
-        let text = &unit.texts[index];
+        let text = unit.text(index);
         let floor = |mut byte: usize| {
             byte = byte.min(text.len());
             while !text.is_char_boundary(byte) {
@@ -201,7 +201,7 @@ impl Reader<'_> {
                     continue;
                 }
             }
-            if level.next >= self.units[level.unit].lines.len() {
+            if level.next >= self.units[level.unit].len() {
                 self.back();
                 continue;
             }
@@ -210,7 +210,7 @@ impl Reader<'_> {
             let unit = level.unit;
             self.track.place.file = self.units[unit].file;
             self.track.place.line = index + 1;
-            if !self.units[unit].lines[index].tokens.is_empty() {
+            if !self.units[unit].block(index).tokens.is_empty() {
                 return Some((unit, index));
             }
         }
@@ -226,20 +226,20 @@ impl Reader<'_> {
     }
 
     /// The block after this one, without empty ones.
-    pub(super) fn following(&self) -> Option<&Line> {
+    pub(super) fn following(&self) -> Option<Rc<Line>> {
         self.following_after(0)
     }
 
     /// A further block, without empty ones.
-    pub(super) fn following_after(&self, skipped: usize) -> Option<&Line> {
-        self.following_lines().nth(skipped).map(|(_, line)| line.as_ref())
+    pub(super) fn following_after(&self, skipped: usize) -> Option<Rc<Line>> {
+        self.following_lines().nth(skipped).map(|(_, line)| line)
     }
 
     /// The block after this one, and where it is.
     pub(super) fn following_with_place(&self) -> Option<(Rc<Line>, Place)> {
         let (line, found) = self.following_lines().next()?;
         Some((
-            Rc::clone(found),
+            found,
             Place {
                 line,
                 ..self.track.place
@@ -247,15 +247,13 @@ impl Reader<'_> {
         ))
     }
 
-    fn following_lines(&self) -> impl Iterator<Item = (usize, &Rc<Line>)> {
+    fn following_lines(&self) -> impl Iterator<Item = (usize, Rc<Line>)> {
         let level = self.stack.last();
-        let lines = level.and_then(|level| Some((level.next, self.units[level.unit].lines.get(level.next..)?)));
-        let (first, lines) = lines.unwrap_or((0, &[]));
-        let numbered = lines
-            .iter()
-            .enumerate()
-            .map(move |(index, line)| (first + index + 1, line));
-        numbered.filter(|(_, line)| !line.tokens.is_empty())
+        let lines = level.map(|level| (&self.units[level.unit], level.next));
+        lines.into_iter().flat_map(|(unit, next)| {
+            let blocks = (next..unit.len()).map(|index| (index + 1, unit.block(index)));
+            blocks.filter(|(_, block)| !block.tokens.is_empty())
+        })
     }
 
     /// Millimetres per unit of length.
@@ -278,7 +276,7 @@ impl Reader<'_> {
                     self.track.program.title = line
                         .tokens
                         .get(2)
-                        .map(|token| self.units[unit].texts[index][token.span.clone()].to_owned());
+                        .map(|token| self.units[unit].text(index)[token.span.clone()].to_owned());
                 }
             }
             "END" if line.word(1) == "PGM" => self.back(),

@@ -21,6 +21,9 @@ mod unit;
 mod values;
 
 pub use interpreter::Library;
+pub(crate) use interpreter::read as read_kept;
+
+use std::rc::Rc;
 
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
@@ -42,7 +45,7 @@ use crate::text::error::NcError;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    interpreter::read(text, options, &|_| None)
+    read_with(text, options, &|_| None)
 }
 
 /// Reads a program; `library` finds those that it calls by their names in capitals, without `.H`.
@@ -50,5 +53,5 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
 /// # Errors
 /// As [`read`].
 pub fn read_with(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
-    interpreter::read(text, options, library)
+    read_kept(&Rc::new(text.to_owned()), options, library)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use super::frames::Frames;
 use super::language::block::{Item, Statement};
@@ -15,6 +16,7 @@ use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::kept::KeptText;
 use crate::tools::comments;
 
 /// The most problems after the first one.
@@ -61,7 +63,7 @@ pub(super) struct Reader<'a> {
     pub pending: Option<(String, Vec<Value>, usize)>,
 }
 
-pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
+pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
     if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
         let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
         return Err(NcError::new(problem, None));
@@ -80,7 +82,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
         ended: false,
         pending: None,
     };
-    reader.add(text, 0);
+    reader.add(Rc::clone(text), 0);
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
     let mut errors: Vec<NcError> = Vec::new();
     let mut messages = BTreeSet::new();
@@ -98,7 +100,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
                 format!("over {most_blocks}"),
                 "smaller: it may never end",
             );
-            Err((problem, 0..reader.units[unit].texts[index].len()))
+            Err((problem, reader.whole(unit, index)))
         } else {
             reader.line(unit, index)
         };
@@ -127,7 +129,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, library: Library) -> Resul
 }
 
 fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<usize>, files: &[PathBuf]) -> NcError {
-    let text = &unit.texts[index];
+    let text = unit.text(index);
     let floor = |mut byte: usize| {
         byte = byte.min(text.len());
         while !text.is_char_boundary(byte) {
@@ -137,7 +139,12 @@ fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<
     };
     let (start, end) = (floor(span.start), floor(span.end.max(span.start)));
     let column = 1 + text[..start].chars().count();
-    let position = TextPosition::in_line(unit.first_line + index, text, column, text[start..end].chars().count());
+    let position = TextPosition::in_line(
+        unit.first_line() + index,
+        text,
+        column,
+        text[start..end].chars().count(),
+    );
     let error = NcError::new(problem, Some(position));
     match files.get(unit.file).filter(|_| unit.file > 0) {
         Some(file) => error.in_file(file),
@@ -159,10 +166,11 @@ impl Level {
 
 impl Reader<'_> {
     /// Adds the programs of a text. The first is the main one.
-    pub(super) fn add(&mut self, text: &str, file: usize) {
-        for (name, first_line, lines) in parts(text) {
+    pub(super) fn add(&mut self, text: Rc<String>, file: usize) {
+        let text = Rc::new(KeptText::new(text));
+        for (name, lines) in parts(&text) {
             self.names.entry(name).or_insert(self.units.len());
-            self.units.push(Unit::new(file, first_line, lines));
+            self.units.push(Unit::new(file, Rc::clone(&text), lines));
         }
     }
 
@@ -184,14 +192,14 @@ impl Reader<'_> {
                 }
             }
             let unit = &self.units[level.unit];
-            if level.next >= unit.lines.len() {
+            if level.next >= unit.len() {
                 self.back();
                 continue;
             }
             let index = level.next;
             level.next += 1;
             self.track.place.file = unit.file;
-            self.track.place.line = unit.first_line + index;
+            self.track.place.line = unit.first_line() + index;
             return Some((level.unit, index));
         }
     }
@@ -224,8 +232,8 @@ impl Reader<'_> {
     pub fn current_text(&self) -> &str {
         let Some(level) = self.stack.last() else { return "" };
         let unit = &self.units[level.unit];
-        let index = self.track.place.line.saturating_sub(unit.first_line);
-        unit.texts.get(index).map_or("", String::as_str)
+        let index = self.track.place.line.saturating_sub(unit.first_line());
+        unit.text(index)
     }
 
     fn jump(&mut self, to: usize) {
@@ -244,9 +252,7 @@ impl Reader<'_> {
     }
 
     fn line(&mut self, unit: usize, index: usize) -> Result<(), Located> {
-        let Ok(line) = self.units[unit].lines[index].clone() else {
-            return super::language::block::line(&self.units[unit].texts[index]).map(|_| ());
-        };
+        let line = self.units[unit].line(index)?;
         if line.skipped {
             if self.options.block_delete {
                 return Ok(());
@@ -300,7 +306,7 @@ impl Reader<'_> {
             }
             Statement::EndLoop(kind) => {
                 let start = self.units[unit].partner(index, kind)?;
-                let begins = self.units[unit].lines[start].clone();
+                let begins = self.units[unit].line(start);
                 let again = match begins.as_ref().map(|line| &line.statement) {
                     Ok(Statement::For(first, last)) => {
                         let next = self.count(first)? + 1.0;
@@ -340,7 +346,7 @@ impl Reader<'_> {
                     if let Some(level) = self.stack.last_mut() {
                         if level.sections.len() > DEEPEST_CALL {
                             let problem = NcProblem::syntax("repeats within repeats: nested too deeply");
-                            return Err((problem, 0..self.units[unit].texts[index].len()));
+                            return Err((problem, self.whole(unit, index)));
                         }
                         level.sections.push(Section {
                             from: start,
@@ -373,6 +379,6 @@ impl Reader<'_> {
     }
 
     fn whole(&self, unit: usize, index: usize) -> std::ops::Range<usize> {
-        0..self.units[unit].texts[index].len()
+        0..self.units[unit].text(index).len()
     }
 }

@@ -1,9 +1,10 @@
 //! Variables, and calls of subprograms.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use super::interpreter::{Level, Reader};
-use super::language::block::{Item, Statement};
+use super::language::block::Item;
 use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Value};
 use crate::text::error::NcProblem;
@@ -109,7 +110,7 @@ impl Reader<'_> {
         files.push(file);
         let index = files.len() - 1;
         self.names.insert(name.to_owned(), self.units.len());
-        self.add(&text, index);
+        self.add(Rc::new(text), index);
         true
     }
 
@@ -122,16 +123,8 @@ impl Reader<'_> {
                 "{name} is called within itself or too deeply: expected at most {DEEPEST_CALL} levels"
             )));
         }
-        let parameters =
-            self.units[unit]
-                .lines
-                .iter()
-                .find_map(|line| match line.as_ref().map(|line| &line.statement) {
-                    Ok(Statement::Proc(parameters)) => Some(parameters.clone()),
-                    _ => None,
-                });
         let mut values = arguments.into_iter();
-        let locals = parameters.unwrap_or_default().into_iter();
+        let locals = self.units[unit].parameters.iter().cloned();
         let locals = locals
             .map(|name| (name, values.next().unwrap_or(Value::Number(0.0))))
             .collect();

@@ -4,14 +4,13 @@ use std::cell::OnceCell;
 use std::rc::Rc;
 
 use super::labels::Labels;
+use crate::text::kept::KeptText;
 
 /// A text, with its lines.
 pub(crate) struct Source {
     /// An index of the program's files.
     pub file: usize,
-    text: Rc<String>,
-    /// Where each line begins and ends.
-    lines: Vec<(u32, u32)>,
+    text: KeptText,
     labels: OnceCell<Labels>,
 }
 
@@ -20,32 +19,20 @@ pub(crate) const LONGEST: usize = u32::MAX as usize / 2;
 
 impl Source {
     pub(crate) fn new(file: usize, text: Rc<String>) -> Self {
-        let start = text.as_ptr() as usize;
-        let lines = text
-            .lines()
-            .map(|line| {
-                let at = line.as_ptr() as usize - start;
-                (at as u32, (at + line.len()) as u32)
-            })
-            .collect();
         Self {
             file,
-            text,
-            lines,
+            text: KeptText::new(text),
             labels: OnceCell::new(),
         }
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.lines.len()
+        self.text.len()
     }
 
     /// A line, counted from 0; empty beyond the end.
     pub(crate) fn line(&self, index: usize) -> &str {
-        match self.lines.get(index) {
-            Some(&(start, end)) => &self.text[start as usize..end as usize],
-            None => "",
-        }
+        self.text.line(index)
     }
 
     /// Where its programs, subroutines, loops and block numbers are; found when first asked for.

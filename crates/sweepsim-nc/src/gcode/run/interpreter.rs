@@ -26,6 +26,7 @@ use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::numbers::rounded;
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
@@ -191,7 +192,10 @@ impl Reader {
             turned: None,
             arc_tolerance: options.arc_tolerance,
             kept_arcs: KeptArcs::new(options),
-            chord_note: format!("arcs are divided into chords within {} mm", options.arc_tolerance),
+            chord_note: format!(
+                "arcs are divided into chords within {} mm",
+                rounded(options.arc_tolerance)
+            ),
             block_delete: options.block_delete,
             lenient: options.lenient,
             machine_known: !options.variables.is_empty(),

@@ -3,5 +3,6 @@
 pub(crate) mod block;
 pub(crate) mod cursor;
 pub(crate) mod expression;
+mod labels;
 mod structures;
 pub(crate) mod unit;

@@ -1,96 +1,151 @@
 //! Programs and subprograms as lines, with the partners of control structures.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::rc::Rc;
 
 use super::block::{self, Line, Search, Statement};
 use super::cursor::Located;
+use super::labels::Labels;
+use crate::controls::recent::Recent;
 use crate::text::error::NcProblem;
+use crate::text::kept::KeptText;
 
 /// A program or subprogram.
 pub(crate) struct Unit {
     /// An index of the program's files.
     pub file: usize,
-    /// The text line of each entry of `lines`, from 1.
-    pub first_line: usize,
-    pub texts: Vec<String>,
-    pub lines: Vec<Result<Rc<Line>, ()>>,
+    text: Rc<KeptText>,
+    /// Its lines in the text, from 0.
+    lines: Range<usize>,
+    recent: Recent<Line>,
+    /// The parameters of its head, if it has one.
+    pub parameters: Vec<String>,
     /// For IF its ELSE or ENDIF, for ELSE its ENDIF, for a loop its end, for an end its beginning.
     partners: BTreeMap<usize, usize>,
-    labels: BTreeMap<String, Vec<usize>>,
+    labels: Labels,
 }
 
-/// The parts of a text by their headers `%_N_NAME_MPF` or `%_N_NAME_SPF`, each with its first line; without headers one part without a name.
-pub(crate) fn parts(text: &str) -> Vec<(String, usize, Vec<String>)> {
-    let mut parts: Vec<(String, usize, Vec<String>)> = vec![(String::new(), 1, Vec::new())];
-    for (index, line) in text.lines().enumerate() {
-        let trimmed = line.trim().trim_start_matches('\u{feff}').to_ascii_uppercase();
-        if let Some(name) = trimmed.strip_prefix("%_N_") {
+/// The parts of a text by their headers `%_N_NAME_MPF` or `%_N_NAME_SPF`, each with its lines; without headers one part without a name.
+pub(crate) fn parts(text: &KeptText) -> Vec<(String, Range<usize>)> {
+    let mut parts: Vec<(String, Range<usize>)> = vec![(String::new(), 0..0)];
+    for index in 0..text.len() {
+        let line = text.line(index).trim().trim_start_matches('\u{feff}');
+        let header = line
+            .get(..HEADER.len())
+            .is_some_and(|head| head.eq_ignore_ascii_case(HEADER));
+        if header {
+            let name = line[HEADER.len()..].to_ascii_uppercase();
             let name = name.trim_end_matches("_MPF").trim_end_matches("_SPF");
-            parts.push((name.to_owned(), index + 2, Vec::new()));
-        } else if let Some(part) = parts.last_mut() {
-            // A tape's `%`, with or without a title, and paths of the archive: as if empty.
-            let foreign = trimmed.starts_with('%') || trimmed.starts_with(";$PATH=");
-            part.2.push(if foreign { String::new() } else { line.to_owned() });
+            parts.push((name.to_owned(), index + 1..index + 1));
+        } else if let Some((_, lines)) = parts.last_mut() {
+            lines.end = index + 1;
         }
     }
-    if parts.len() > 1 && parts[0].2.iter().all(|line| line.trim().is_empty()) {
+    let blank = |lines: &Range<usize>| lines.clone().all(|index| own(text.line(index)).trim().is_empty());
+    if parts.len() > 1 && blank(&parts[0].1) {
         parts.remove(0);
     }
     parts
 }
 
+/// What begins a program in an archive, before its name.
+const HEADER: &str = "%_N_";
+
+/// What a line says to the control: a tape's `%`, with or without a title, and paths of the archive are as if empty.
+fn own(line: &str) -> &str {
+    const PATH: &str = ";$PATH=";
+    let trimmed = line.trim().trim_start_matches('\u{feff}');
+    let path = trimmed
+        .get(..PATH.len())
+        .is_some_and(|head| head.eq_ignore_ascii_case(PATH));
+    if trimmed.starts_with('%') || path { "" } else { line }
+}
+
 impl Unit {
-    pub fn new(file: usize, first_line: usize, texts: Vec<String>) -> Self {
-        let mut lines = Vec::with_capacity(texts.len());
-        let mut partners = BTreeMap::new();
-        let mut labels: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-        let mut open: Vec<(usize, &'static str)> = Vec::new();
-        for (index, text) in texts.iter().enumerate() {
-            let line = block::line(text);
-            if let Ok(line) = &line {
-                for label in &line.labels {
-                    labels.entry(label.clone()).or_default().push(index);
-                }
-                let mut pair = |kinds: &[&str]| {
-                    if open.last().is_some_and(|(_, kind)| kinds.contains(kind)) {
-                        let (start, _) = open.pop().unwrap_or((index, ""));
-                        partners.insert(start, index);
-                        partners.insert(index, start);
-                    }
-                };
-                match &line.statement {
-                    Statement::If(_) => open.push((index, "IF")),
-                    Statement::Else => {
-                        pair(&["IF"]);
-                        open.push((index, "ELSE"));
-                    }
-                    Statement::EndIf => pair(&["IF", "ELSE"]),
-                    Statement::While(_) => open.push((index, "WHILE")),
-                    Statement::For(..) => open.push((index, "FOR")),
-                    Statement::Loop => open.push((index, "LOOP")),
-                    Statement::Repeat => open.push((index, "REPEAT")),
-                    Statement::Until(_) => pair(&["REPEAT"]),
-                    Statement::EndLoop(kind) => pair(&[kind]),
-                    _ => {}
-                }
-            }
-            // A problem is reported where the program comes by: parsed again there, with its place.
-            lines.push(line.map(Rc::new).map_err(|_| ()));
-        }
-        Self {
+    /// Some lines of a text. Lines are read here for their labels and structures, and again when they run: kept as read, they would take twenty times
+    /// their text.
+    pub fn new(file: usize, text: Rc<KeptText>, lines: Range<usize>) -> Self {
+        let mut unit = Self {
             file,
-            first_line,
-            texts,
+            text,
             lines,
-            partners,
-            labels,
+            recent: Recent::default(),
+            parameters: Vec::new(),
+            partners: BTreeMap::new(),
+            labels: Labels::default(),
+        };
+        let mut head = None;
+        let mut open: Vec<(usize, &'static str)> = Vec::new();
+        for index in 0..unit.len() {
+            // A problem is reported where the program comes by.
+            let Ok(line) = block::line(unit.text(index)) else {
+                continue;
+            };
+            for label in line.labels {
+                unit.labels.add(label, index);
+            }
+            let partners = &mut unit.partners;
+            let mut pair = |kinds: &[&str]| {
+                if let Some((start, _)) = open.pop_if(|(_, kind)| kinds.contains(kind)) {
+                    partners.insert(start, index);
+                    partners.insert(index, start);
+                }
+            };
+            match line.statement {
+                Statement::If(_) => open.push((index, "IF")),
+                Statement::Else => {
+                    pair(&["IF"]);
+                    open.push((index, "ELSE"));
+                }
+                Statement::EndIf => pair(&["IF", "ELSE"]),
+                Statement::While(_) => open.push((index, "WHILE")),
+                Statement::For(..) => open.push((index, "FOR")),
+                Statement::Loop => open.push((index, "LOOP")),
+                Statement::Repeat => open.push((index, "REPEAT")),
+                Statement::Until(_) => pair(&["REPEAT"]),
+                Statement::EndLoop(kind) => pair(&[kind]),
+                Statement::Proc(parameters) => {
+                    head.get_or_insert(parameters);
+                }
+                _ => {}
+            }
         }
+        unit.parameters = head.unwrap_or_default();
+        unit.labels.finish();
+        unit
+    }
+
+    /// The number of lines.
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// The number that the text gives the first line, from 1.
+    pub fn first_line(&self) -> usize {
+        self.lines.start + 1
+    }
+
+    /// The text of a line; empty beyond the end.
+    pub fn text(&self, index: usize) -> &str {
+        if index < self.len() {
+            own(self.text.line(self.lines.start + index))
+        } else {
+            ""
+        }
+    }
+
+    /// A line as read.
+    ///
+    /// # Errors
+    /// What it says is not understood.
+    pub fn line(&self, index: usize) -> Result<Rc<Line>, Located> {
+        self.recent.get(index, || block::line(self.text(index)))
     }
 
     /// The partner of a control structure.
     pub fn partner(&self, index: usize, expected: &str) -> Result<usize, Located> {
-        let span = 0..self.texts.get(index).map_or(0, String::len);
+        let span = 0..self.text(index).len();
         self.partners.get(&index).copied().ok_or_else(|| {
             (
                 NcProblem::syntax(format!("a control structure that is not closed: expected {expected}")),
@@ -101,9 +156,8 @@ impl Unit {
 
     /// The line of a label.
     pub fn find(&self, label: &str, from: usize, search: Search) -> Result<usize, Located> {
-        let places = self.labels.get(label).map_or(&[][..], Vec::as_slice);
-        let forward = places.iter().copied().find(|&place| place > from);
-        let backward = places.iter().rev().copied().find(|&place| place <= from);
+        let forward = self.labels.of(label).find(|&place| place > from);
+        let backward = self.labels.of(label).rev().find(|&place| place <= from);
         let found = match search {
             Search::Forward => forward,
             Search::Backward => backward,
@@ -115,7 +169,7 @@ impl Unit {
                 Search::Backward => "before this block",
                 Search::Anywhere => "in this program",
             };
-            let span = 0..self.texts.get(from).map_or(0, String::len);
+            let span = 0..self.text(from).len();
             (NcProblem::syntax(format!("there is no label {label} {way}")), span)
         })
     }
