@@ -61,13 +61,22 @@ pub fn instructions(filter: Option<&str>, store: bool) -> Result<(), String> {
     Ok(())
 }
 
+/// Those of Table 1, and one of rational patches.
+fn cutters() -> impl Iterator<Item = &'static str> {
+    table1::CUTTERS.into_iter().chain(["rational"])
+}
+
 fn names() -> Vec<String> {
     let mut names = Vec::new();
-    for cutter in table1::CUTTERS {
+    for cutter in cutters() {
         for sweep in 1..=2 {
             let name = |method| format!("{cutter}-sweep{sweep}-{method}");
-            // The form tool by charts: the others take minutes.
-            let methods = if cutter == "form" { &METHODS[..2] } else { &METHODS };
+            // Tools of patches by charts: the others take minutes.
+            let methods = match cutter {
+                "form" => &METHODS[..2],
+                "rational" => &METHODS[1..2],
+                _ => &METHODS,
+            };
             names.extend(methods.iter().map(name));
         }
     }
@@ -114,7 +123,7 @@ fn here(name: &str) -> Result<(), String> {
         let job = Job::read(&file).map_err(|error| error.to_string())?;
         return programs::once(&job).map(drop);
     }
-    for cutter in table1::CUTTERS {
+    for cutter in cutters() {
         for which in 0..2 {
             for method in METHODS {
                 if name == format!("{cutter}-sweep{}-{method}", which + 1) {

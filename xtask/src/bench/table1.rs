@@ -2,6 +2,7 @@
 
 use super::records::{Records, heading};
 use super::{on, shortest};
+use crate::generate::router;
 use crate::workspace;
 use sweepsim::{Method, Options, sweep};
 use sweepsim_dexel::Grid;
@@ -73,12 +74,16 @@ impl Entry<'_> {
 /// Ball end, flat end, and a form tool.
 pub const CUTTERS: [&str; 3] = ["ball", "flat", "form"];
 
-/// The tool with this name.
+/// The tool with this name, or `rational`: the form tool with weights.
 pub fn cutter(name: &str) -> Result<Cutter, String> {
     let radius = 5.0;
     let (radius, tool) = match name {
         "ball" => (radius, Tool::ball(radius, LENGTH).map_err(|error| error.to_string())?),
         "flat" => (radius, Tool::flat(radius, LENGTH).map_err(|error| error.to_string())?),
+        "rational" => {
+            let tool = router::rational()?;
+            (reach(&tool), tool)
+        }
         _ => {
             let job = Job::read(&workspace::root().join("fixtures/jobs/railing.ron"));
             let tools = job.map_err(|error| error.to_string())?.tools;

@@ -5,7 +5,7 @@ mod bracket;
 mod cavity;
 mod impeller;
 mod railing;
-mod router;
+pub mod router;
 mod teapot;
 mod toolpath;
 

@@ -1,7 +1,10 @@
 //! `fixtures/tools/router-bit.ron`, after the form tool of the paper (Figure 10): one bicubic B-spline surface of 13 × 14 control points, with a
 //! concave and a convex part.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
+use sweepsim_motion::Tool;
+use sweepsim_spline::{KnotVector, RationalSpline};
 
 /// Control points round about: the last three repeat the first, so that the surface closes smoothly.
 const AROUND: usize = 13;
@@ -23,11 +26,46 @@ const PROFILE: [[f64; 2]; 14] = [
     [0.0, 24.0],
 ];
 
-fn tool() -> String {
-    let distinct = AROUND - 3;
-    let angle = |k: usize| std::f64::consts::TAU * (k % distinct) as f64 / distinct as f64;
+/// How many of them differ.
+const DISTINCT: usize = AROUND - 3;
+
+/// The control points at each height of the profile.
+fn points() -> impl Iterator<Item = [[f64; 3]; AROUND]> {
+    let angle = |k: usize| TAU * (k % DISTINCT) as f64 / DISTINCT as f64;
     // The middle of three neighbouring control points of a uniform cubic has weights 1, 4, 1 over 6: this makes its radius that of the profile.
     let wider = 3.0 / (2.0 + libm::cos(angle(1)));
+    PROFILE.into_iter().map(move |[radius, height]| {
+        std::array::from_fn(|k| {
+            let across = [libm::cos(angle(k)), libm::sin(angle(k))].map(|part| rounded(part * radius * wider));
+            [across[0], across[1], height]
+        })
+    })
+}
+
+/// The knots around the tool and along its profile.
+fn knots() -> [Vec<i32>; 2] {
+    let last = PROFILE.len() as i32 - 3;
+    let up = (-3..=last + 3).map(|k| k.clamp(0, last)).collect();
+    [(-3..=AROUND as i32).collect(), up]
+}
+
+/// The bit with weights that change irregularly from one control point to the next, by up to 5 %: a tool of rational patches, for measurements.
+pub fn rational() -> Result<Tool, String> {
+    let weight = |row: usize, k: usize| 1.0 + 0.05 * libm::sin((37 * row + 101 * (k % DISTINCT)).pow(2) as f64);
+    let weights: Vec<f64> = (0..PROFILE.len() * AROUND)
+        .map(|at| weight(at / AROUND, at % AROUND))
+        .collect();
+    let points: Vec<f64> = points().flatten().flatten().collect();
+    let knots = knots().map(|knots| KnotVector::new(3, knots.into_iter().map(f64::from).collect()));
+    let knots = knots
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|error| error.to_string())?;
+    let surface = RationalSpline::new(knots, 3, &points, &weights).map_err(|error| error.to_string())?;
+    Tool::from_surfaces(&[surface], 1e-6).map_err(|error| error.to_string())
+}
+
+fn tool() -> String {
     let mut text = String::from(
         "// A router bit as one bicubic B-spline surface of 13 × 14 control points.\n\
          // Made by `cargo xtask generate` (xtask/src/generate/router.rs).\n\
@@ -37,25 +75,15 @@ fn tool() -> String {
         let words: Vec<String> = knots.iter().map(i32::to_string).collect();
         format!("[{}]", words.join(", "))
     };
-    let around = list((-3..=AROUND as i32).collect());
-    let last = PROFILE.len() as i32 - 3;
-    let up = list((-3..=last + 3).map(|k| k.clamp(0, last)).collect());
+    let [around, up] = knots().map(list);
     // A String takes all that is written to it.
     let _ = write!(
         text,
         "            knots: (\n                {around},\n                {up},\n            ),\n            points: [\n"
     );
-    for [radius, height] in PROFILE {
-        text.push_str("                [");
-        for k in 0..AROUND {
-            let (x, y) = (
-                libm::cos(angle(k)) * radius * wider,
-                libm::sin(angle(k)) * radius * wider,
-            );
-            let comma = if k + 1 < AROUND { ", " } else { "" };
-            let _ = write!(text, "({}, {}, {height}){comma}", rounded(x), rounded(y));
-        }
-        text.push_str("],\n");
+    for row in points() {
+        let words: Vec<String> = row.iter().map(|[x, y, z]| format!("({x}, {y}, {z})")).collect();
+        let _ = writeln!(text, "                [{}],", words.join(", "));
     }
     text.push_str("            ],\n        ),\n    ],\n)\n");
     text
