@@ -89,7 +89,16 @@ impl SegmentTable {
         }
     }
 
+    #[inline]
     pub(super) fn number(&mut self, wanted: CutSegment) -> u32 {
+        // Neighbouring lines are often cut by one move.
+        if self.moves.last() == Some(&wanted) {
+            return self.moves.len() as u32 - 1;
+        }
+        self.search(wanted)
+    }
+
+    fn search(&mut self, wanted: CutSegment) -> u32 {
         let first = self.moves.len().saturating_sub(LOOK);
         let found = self.moves[first..].iter().rposition(|m| *m == wanted);
         let number = found.map_or(self.moves.len(), |k| first + k);

@@ -47,10 +47,29 @@ pub struct AuditFailure {
 pub fn cover(crossings: &mut [Crossing], same: f64, intervals: &mut Vec<Interval>) -> Result<(), AuditFailure> {
     // Crossings at one height always form a group: no interval is without length.
     let same = same.max(0.0);
+    if let [a, b] = crossings
+        && let Some(interval) = between(a, b, same)
+    {
+        intervals.clear();
+        intervals.push(interval);
+        return Ok(());
+    }
     if cover_few(crossings, same, intervals).is_some() {
         return Ok(());
     }
     cover_any(crossings, same, intervals)
+}
+
+/// What two crossings cover, as most lines have two; `None` if they are close or do not add up.
+fn between(a: &Crossing, b: &Crossing, same: f64) -> Option<Interval> {
+    let (lower, upper) = if a.z < b.z { (a, b) } else { (b, a) };
+    let height = upper.z - lower.z;
+    let counted = lower.jump > 0 && i32::from(lower.jump) + i32::from(upper.jump) == 0;
+    // NaN is close.
+    (counted && height > same && height.is_finite()).then(|| Interval {
+        lower: end(lower),
+        upper: end(upper),
+    })
 }
 
 /// The most crossings that are sorted by insertion.
@@ -279,7 +298,12 @@ mod tests {
                     .map(|k| kinds[code / kinds.len().pow(k) % kinds.len()])
                     .collect();
                 for same in [-1.0, -f64::INFINITY, f64::NAN, 0.0, 0.5, 1.0, f64::INFINITY] {
-                    if cover(&mut list.clone(), same, &mut intervals).is_err() {
+                    let found = cover(&mut list.clone(), same, &mut intervals);
+                    // By the path for any number of crossings, too.
+                    let mut other = Vec::new();
+                    let any = cover_any(&mut list.clone(), same.max(0.0), &mut other);
+                    assert_eq!((found, &intervals), (any, &other), "{list:?}, same {same}");
+                    if found.is_err() {
                         assert!(intervals.is_empty());
                         continue;
                     }

@@ -110,6 +110,25 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// An axis that passes the vertical, exactly or nearly, on the way or at an end, or hardly leaves it; turned over, too.
+    #[test]
+    fn almost_upright(number in 0..13usize, from in tip(5.0), step in tip(5.0), lean in [-1.0..1.0_f64, -1.0..1.0], aside in [-1.0..1.0_f64, -1.0..1.0],
+        exponents in [-5..1i32, -9..0i32, -2..1i32], share in prop::sample::select(vec![-1.0_f64, -0.3, 0.0, 0.5]), exact in any::<bool>(), over in any::<bool>()) {
+        let [size, off, way] = exponents.map(|exponent| 10f64.powi(exponent));
+        let off = if exact { 0.0 } else { off };
+        let up = if over { -1.0 } else { 1.0 };
+        let first = [0, 1].map(|k| size * lean[k] + off * aside[k]);
+        let last = [0, 1].map(|k| share * size * lean[k] + off * aside[k]);
+        let to = [0, 1, 2].map(|k| from[k] + way * step[k]);
+        let Some(path) = path(&[(from, [first[0], first[1], up]), (to, [last[0], last[1], up])]) else { return Ok(()) };
+        let (name, tool, _) = &tools()[number];
+        agree(name, tool, &path, &grid(41), TOLERANCE)?;
+    }
+}
+
+proptest! {
     #![proptest_config(ProptestConfig { cases: cases().div_ceil(4), ..ProptestConfig::default() })]
 
     /// Many lines beside each other, each solved from the last one's zero: single moves, and pieces of a few of their lines' distances.

@@ -109,6 +109,7 @@ impl Shell for Ball {
     type Posed = Centre;
     type Limits = BallLimits;
 
+    #[inline]
     fn at(&self, moment: &Moment) -> Centre {
         Centre {
             place: moment.tip + moment.axis * self.centre,

@@ -81,6 +81,7 @@ impl Course {
         [self.tip + self.velocity * t, self.velocity]
     }
 
+    #[inline]
     pub fn at(&self, t: f64) -> Moment {
         let (axis, spin, slope) = self.axis(t);
         let rate = spin.cross(&axis);

@@ -10,16 +10,18 @@
 //! with `τ = ⟨b′, a⟩` and the part `V_φ` of `V` around the axis. There `|V_φ|` is `S`, the length of the part of `b′ + ζ a′` across the axis, and `|x| = r |⟨b′, a × a′⟩|/S`: so `G` falls wherever it is 0, except
 //! for heights near the one that the tool turns about.
 
+mod pivot;
+mod standing;
+
+pub(super) use standing::standing;
+
 use super::course::{Bounds, Course, Moment};
 use super::intervals::{
-    Range, Sign, add, between, divided, hull, joined, mul, scaled, square, square_root, sub, wider,
+    Range, Sign, add, between, divided, hull, joined, mul, scaled, shared, square, square_root, sub, wider,
 };
 use super::lean::Lean;
 use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
 use nalgebra::Vector3;
-
-/// An axis that leans less than this is left to charts.
-const UPRIGHT: f64 = 0.006;
 
 /// The part of a cylinder between two heights.
 #[derive(Clone, Copy, Debug)]
@@ -84,7 +86,7 @@ impl Cylinder {
 
     /// What is certain over a span; `None` if the axis may be upright.
     pub fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<CylinderLimits> {
-        if !(bounds.lean[0] > UPRIGHT) {
+        if !(bounds.lean[0] > 0.0) {
             return None;
         }
         let height = self.height(bounds);
@@ -107,67 +109,6 @@ impl Cylinder {
         })
     }
 
-    /// Heights at which `G` may rise. With `S` as above and `c = ⟨b′, a × a′⟩/|a′|`,
-    ///
-    /// ```text
-    /// −r G′ ≥ S² − r |c| (|ζ| |a″_e| + 2 |a′ τ|)/S − r² |a′|² c²/S² − r |ζ| |a″_f|,    S ≥ |c|,
-    /// ```
-    ///
-    /// where `a″_e` and `a″_f` are the parts of `a″` along `a′` and along `a × a′`.
-    fn pivot(&self, [from, to]: [&Moment; 2], bounds: &Bounds, height: f64) -> Option<[f64; 2]> {
-        let (r, rate, half) = (self.radius, bounds.rate, 0.5 * bounds.length);
-        let everywhere = Some([f64::NEG_INFINITY, f64::INFINITY]);
-        let least = [from, to]
-            .map(|m| m.rate.norm())
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
-            - (bounds.across + bounds.askew) * half;
-        if !(least > 0.5 * rate) {
-            return everywhere;
-        }
-        let seen = [from, to].map(|m| {
-            let e = m.rate.normalize();
-            [m.axis, e, m.axis.cross(&e)].map(|v| m.velocity.dot(&v))
-        });
-        // |e′| ≤ |a″|/|a′|; of it, `a × e` turns with the part across both.
-        let wander = [rate, bounds.bend / least, bounds.askew / least].map(|w| w * bounds.speed * half);
-        let largest = |n: usize| seen[0][n].abs().max(seen[1][n].abs()) + wander[n];
-        let (tau, side) = (largest(0), largest(2));
-        let smallest = if seen[0][2] * seen[1][2] > 0.0 {
-            (seen[0][2].abs().min(seen[1][2].abs()) - wander[2]).max(0.0)
-        } else {
-            0.0
-        };
-        let ahead = [
-            seen[0][1].min(seen[1][1]) - wander[1],
-            seen[0][1].max(seen[1][1]) + wander[1],
-        ];
-        let first = r * side * (height * bounds.across + 2.0 * rate * tau);
-        let second = r * r * rate * rate * side * side;
-        let third = r * height * bounds.askew;
-        // The least `S` for which it is certain, with a margin for rounding.
-        let enough = |s: f64| s * s * s * s > 1.01 * (first * s + second + third * s * s);
-        let (mut low, mut high) = (
-            0.0,
-            (4.0 * first).cbrt() + (4.0 * second).sqrt().sqrt() + (4.0 * third).sqrt(),
-        );
-        for _ in 0..16 {
-            let middle = 0.5 * (low + high);
-            if enough(middle) {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
-        if smallest > high {
-            return None;
-        }
-        let reach = (high * high - smallest * smallest).max(0.0).sqrt() * (1.0 + 1e-9);
-        // Where `|ahead + ζ |a′|| ≤ reach`.
-        let heights = [least, rate].map(|rate| [(-ahead[1] - reach) / rate, (-ahead[0] + reach) / rate]);
-        Some([heights[0][0].min(heights[1][0]), heights[0][1].max(heights[1][1])])
-    }
-
     /// The ranges of `α`, `δ` and `ζ` of a sheet where lines at `q` and `δ` meet it; `None` if they do not.
     #[inline(always)]
     fn ranges(&self, limits: &CylinderLimits, [q, delta]: [Range; 2], sheet: usize) -> Option<[Range; 3]> {
@@ -175,7 +116,7 @@ impl Cylinder {
         if delta[0] > r + limits.pad || delta[1] < -r - limits.pad {
             return None;
         }
-        let delta = [delta[0].max(-r), delta[1].min(r)];
+        let delta = shared(delta, [-r, r]);
         // As far as rounding may move a root.
         let room = wider(sub([r * r; 2], square(delta)), r * limits.pad);
         let half = square_root(room);
@@ -287,8 +228,8 @@ impl Shell for Cylinder {
     ) -> Falls {
         let Some(zone) = limits.pivot else { return Falls::Always };
         let sag = 0.125 * limits.bow * length * length;
-        let place = [0, 1].map(|k| wider(hull(a.place[k], b.place[k]), sag));
-        let Some([alpha, delta, zeta]) = self.ranges(limits, place, sheet) else {
+        let place = |k: usize| wider(hull(a.place[k], b.place[k]), sag);
+        let Some([alpha, delta, zeta]) = self.ranges(limits, [place(0), place(1)], sheet) else {
             return Falls::Beyond;
         };
         if zeta[1] < zone[0] || zeta[0] > zone[1] {
@@ -299,10 +240,10 @@ impl Shell for Cylinder {
         if Sign::of(g, limits.doubt / self.radius) != Sign::Unknown {
             return Falls::Always;
         }
-        let rate = [0, 1].map(|k| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length));
+        let rate = |k: usize| between(poses[0].rate[k], poses[1].rate[k], limits.rate * length);
         let tau = between(poses[0].travel[2], poses[1].travel[2], limits.travel * length);
         let around = sub(mul(alpha, across[1]), mul(delta, across[0]));
-        let x = add(mul(alpha, rate[0]), mul(delta, rate[1]));
+        let x = add(mul(alpha, rate(0)), mul(delta, rate(1)));
         let y = scaled(self.radius * limits.bend, [-1.0, 1.0]);
         let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
         let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
@@ -317,7 +258,12 @@ impl Shell for Cylinder {
         let place = [joined(a[0], b[0], sag), joined(a[1], b[1], sag)];
         let sign = |sheet: usize| match self.ranges(limits, place, sheet) {
             None => Sign::Absent,
-            Some(ranges) => Sign::of(Self::rates(limits, poses, length, ranges).0, limits.doubt / self.radius),
+            Some([alpha, delta, zeta]) => {
+                // Only on the piece.
+                let zeta = shared(zeta, wider(self.ends, limits.pad));
+                let (g, _) = Self::rates(limits, poses, length, [alpha, delta, zeta]);
+                Sign::of(g, limits.doubt / self.radius)
+            }
         };
         [sign(0), sign(1)]
     }

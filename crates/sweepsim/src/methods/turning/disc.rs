@@ -48,6 +48,7 @@ pub(super) struct Placed {
 }
 
 impl Placed {
+    #[inline]
     pub fn new(moment: &Moment, height: f64) -> Self {
         let travel = moment.velocity + moment.rate * height;
         Self {
@@ -104,7 +105,7 @@ impl Disc {
         let over = |block: [Range; 2]| (distance(block, centres) <= reach + slack).then_some(());
         let mut last = None;
         blocks(lines, lines_over, over, |(i, j), line, ()| {
-            let ends = [&a, &b].map(|placed| placed.along(&placed.arm(line)));
+            let ends = [a.along(&a.arm(line)), b.along(&b.arm(line))];
             if (ends[0] >= 0.0) == (ends[1] >= 0.0) && ends.iter().all(|f| f.abs() > doubt) {
                 return;
             }

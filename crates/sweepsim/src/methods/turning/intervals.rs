@@ -59,6 +59,12 @@ pub(super) fn square_root(a: Range) -> Range {
     [high(a[0], 0.0).sqrt(), high(a[1], 0.0).sqrt()]
 }
 
+/// What two ranges share, if they do.
+#[inline]
+pub(super) fn shared(a: Range, b: Range) -> Range {
+    [high(a[0], b[0]), low(a[1], b[1])]
+}
+
 /// The smallest range that holds both, wider by a margin.
 #[inline]
 pub(super) fn joined(a: Range, b: Range, margin: f64) -> Range {

@@ -81,7 +81,10 @@ impl Lean {
     /// The ranges of `q` and `δ` of a block of lines.
     #[inline]
     pub fn places(&self, [x, y]: [Range; 2]) -> [Range; 2] {
-        let [x, y] = [x.map(|x| x - self.tip[0]), y.map(|y| y - self.tip[1])];
+        let [x, y] = [
+            [x[0] - self.tip[0], x[1] - self.tip[0]],
+            [y[0] - self.tip[1], y[1] - self.tip[1]],
+        ];
         let [ux, uy] = self.ahead;
         [add(scaled(ux, x), scaled(uy, y)), sub(scaled(ux, y), scaled(uy, x))]
     }

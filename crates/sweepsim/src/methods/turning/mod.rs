@@ -23,15 +23,20 @@ use crate::methods::translation::Collector;
 use ball::Ball;
 use blocks::around;
 use course::{Course, Moment};
-use cylinder::Cylinder;
+use cylinder::{Cylinder, standing};
 use disc::Disc;
 use resting::{Resting, Side};
 use rim::RimSearch;
 use shell::{Shell, ShellSearch};
-use spans::{Verdict, settle};
+use spans::{Span, Verdict, settle};
 use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
+
+/// An axis that leans less than this is taken as upright by cylinders, or less than what rounding allows,
+const UPRIGHT: f64 = 2.5e-5;
+/// up to this.
+const STEEP: f64 = 0.006;
 
 /// The patches or edges of a piece.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -171,6 +176,11 @@ fn most_sag(searching: &Searching, radius: f64) -> f64 {
     (0.5 * searching.collector.lines.spacing()).min(0.05 * radius)
 }
 
+/// Whether a point at this height goes so far that ranges over a block of lines tell little.
+fn is_far(span: &Span, height: f64, radius: f64) -> bool {
+    span.bounds.length * (span.bounds.speed + height * span.bounds.rate) > radius
+}
+
 fn ball_along(
     ball: &Ball,
     course: &Course,
@@ -181,9 +191,7 @@ fn ball_along(
 ) {
     settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
-        // Ranges over a block tell little if the ball goes farther.
-        let way = span.bounds.length * (span.bounds.speed + ball.centre.abs() * span.bounds.rate);
-        if !span.last && way > ball.radius {
+        if !span.last && is_far(span, ball.centre.abs(), ball.radius) {
             return Verdict::Long;
         }
         let Some(limits) = ball.limits(ends, &span.bounds, searching.slack) else {
@@ -205,15 +213,32 @@ fn cylinder_along(
     source: &impl Fn(f64) -> Source,
 ) {
     let most = most_sag(searching, cylinder.radius);
+    // Heights of points are off by the rounding error over the lean.
+    let least = (searching.slack / searching.near).clamp(UPRIGHT, STEEP);
     settle(course, element, leftovers, |span, left| {
         let ends = [&span.from, &span.to];
-        let Some(limits) = cylinder.limits(ends, &span.bounds, searching.slack) else {
-            return Verdict::Long;
+        let lean = span.bounds.lean;
+        if lean[1] <= 4.0 * least {
+            return standing(cylinder, span, searching, left);
+        }
+        let Some(limits) = cylinder
+            .limits(ends, &span.bounds, searching.slack)
+            .filter(|_| lean[0] > least)
+        else {
+            return Verdict::Upright;
         };
+        let reach = cylinder.ends[0].abs().max(cylinder.ends[1].abs());
+        if !span.last && is_far(span, 0.5 * reach, cylinder.radius) {
+            return Verdict::Long;
+        }
         let bow = cylinder.bow(&span.bounds);
         let sag = span.bounds.sag(bow);
         if sag > most {
-            return Verdict::Long;
+            return if lean[0] < STEEP {
+                Verdict::Upright
+            } else {
+                Verdict::Long
+            };
         }
         let [a, b] = ends.map(|moment| cylinder.at(moment).corners(cylinder.radius, cylinder.ends));
         let wider = span.bounds.sag(cylinder.shadow_bow(&span.bounds)) + searching.slack;

@@ -49,13 +49,19 @@ impl Resting<'_> {
         if own.room <= 0.0 {
             return;
         }
-        let views = [0, 1].map(|side| motions[side].as_ref().map(|(posed, _)| shell.meet(posed, line)));
+        // The sign of `g` seen from a side, and whether it is certain.
+        let view = |side: usize| match (&motions[side], &self.sides[side]) {
+            (Some((posed, limits)), _) => {
+                let meeting = shell.meet(posed, line);
+                let sign = |sheet: usize| (meeting.g[sheet] < 0.0, !shell.doubtful(limits, &meeting, sheet));
+                [sign(0), sign(1)]
+            }
+            (None, Side::Beyond(negative)) => [(*negative, true); 2],
+            (None, Side::Moving(_)) => [(false, false); 2],
+        };
+        let views = [view(0), view(1)];
         for sheet in 0..2 {
-            let [before, after] = [0, 1].map(|side| match (&self.sides[side], &motions[side], &views[side]) {
-                (_, Some((_, limits)), Some(view)) => (view.g[sheet] < 0.0, !shell.doubtful(limits, view, sheet)),
-                (Side::Beyond(negative), ..) => (*negative, true),
-                _ => (false, false),
-            });
+            let (before, after) = (views[0][sheet], views[1][sheet]);
             if before.1 && after.1 && before.0 == after.0 {
                 continue;
             }
@@ -87,11 +93,12 @@ impl Resting<'_> {
     ) {
         let lines = searching.collector.lines;
         let wanted = |block: [Range; 2]| {
-            let [before, after] = [0, 1].map(|side| match (&self.sides[side], &motions[side]) {
+            let signs = |side: usize| match (&self.sides[side], &motions[side]) {
                 (_, Some((posed, limits))) => shell.signs(limits, [posed; 2], block, 0.0),
                 (Side::Beyond(true), _) => [Sign::Negative; 2],
                 _ => [Sign::Positive; 2],
-            });
+            };
+            let (before, after) = (signs(0), signs(1));
             let excluded = (0..2).all(|sheet| {
                 let pair = [before[sheet], after[sheet]];
                 pair.contains(&Sign::Absent) || pair[0] == pair[1] && pair[0] != Sign::Unknown
@@ -180,7 +187,7 @@ impl Resting<'_> {
             if radius > outer + error || radius < inner - error {
                 return;
             }
-            let signs = [0, 1].map(|n| match (&self.sides[n], &posed[n]) {
+            let sign = |n: usize| match (&self.sides[n], &posed[n]) {
                 (Side::Moving(_), Some(side)) => {
                     let f = side.along(&arm);
                     // Without a turn it is a product.
@@ -194,7 +201,8 @@ impl Resting<'_> {
                 }
                 (Side::Beyond(negative), _) => (*negative, true),
                 _ => (false, false),
-            });
+            };
+            let signs = [sign(0), sign(1)];
             if signs[0].1 && signs[1].1 && signs[0].0 == signs[1].0 {
                 return;
             }

@@ -71,11 +71,12 @@ impl Facing {
         let up = add(mul(arm[0], self.lean[0]), mul(arm[1], self.lean[1]));
         let [u, v, w] = self.travel;
         let out = sub(add(mul(arm[0], u), mul(arm[1], v)), mul(up, w));
-        let signs = rim.normals.map(|[n, m]| {
+        let sign = |[n, m]: [f64; 2]| {
             let g = add(scaled(n / rim.radius, out), scaled(m, self.along));
             Sign::of(g, self.error)
-        });
-        signs[0] == signs[1] && signs[0] != Sign::Unknown
+        };
+        let first = sign(rim.normals[0]);
+        first != Sign::Unknown && sign(rim.normals[1]) == first
     }
 }
 
@@ -86,7 +87,7 @@ pub(super) struct RimSearch<'a> {
     /// How fast velocities turn.
     turning: f64,
     /// Where lines last came into the circle, and where they went out of it.
-    last: Cell<[Option<Known>; 2]>,
+    last: [Cell<Option<Known>>; 2],
 }
 
 impl<'a> RimSearch<'a> {
@@ -95,7 +96,7 @@ impl<'a> RimSearch<'a> {
             rim,
             course,
             turning: course.bounds([&course.at(0.0), &course.at(1.0)]).turning(),
-            last: Cell::default(),
+            last: Default::default(),
         }
     }
 
@@ -242,9 +243,10 @@ impl<'a> RimSearch<'a> {
         source: &impl Fn(f64) -> Source,
     ) -> Result<(), Undecided> {
         let slack = searching.slack;
-        let (mut last, way) = (self.last.get(), usize::from(inwards < 0.0));
+        let before = &self.last[usize::from(inwards < 0.0)];
+        let last = before.get();
         let bracket = ends.map(|end| end.t);
-        let first = match last[way].map(|last| last.over(line)) {
+        let first = match last.map(|last| last.over(line)) {
             Some(t) if t > bracket[0] && t < bracket[1] => t,
             _ => start(
                 bracket,
@@ -281,8 +283,10 @@ impl<'a> RimSearch<'a> {
                 let error =
                     16.0 * (slack / STEEP + step.abs() * speed) * (placed.rate.norm() + speed / self.rim.radius)
                         + 16.0 * f64::EPSILON * speed;
-                let faces = self.rim.normals.map(|[n, m]| n * out + m * along);
-                if faces.iter().any(|g| !(g.abs() > error)) {
+                let [[n, m], [p, q]] = self.rim.normals;
+                let faces = [n * out + m * along, p * out + q * along];
+                // NaN is not certain.
+                if !(faces[0].abs() > error && faces[1].abs() > error) {
                     return None;
                 }
                 let alike = (faces[0] < 0.0) == (faces[1] < 0.0);
@@ -305,15 +309,14 @@ impl<'a> RimSearch<'a> {
                 let along = along + step * (lift * placed.axis.z + placed.rate.z * sample.rise);
                 let (later, axis) = (arm + slides * step, placed.axis + placed.rate * step);
                 // The envelope's normal lies in the fan of the two faces, where g = 0.
-                let [a, b] = self
-                    .rim
-                    .normals
-                    .map(|[n, m]| ((n * out + m * along).abs(), later * (n / self.rim.radius) + axis * m));
-                let normal = a.1 * b.0 + b.1 * a.0;
+                let (first, second) = ((n * out + m * along).abs(), (p * out + q * along).abs());
+                let normal = later * ((n * second + p * first) / self.rim.radius) + axis * (m * second + q * first);
                 let tilt = arm.z * inverse;
-                let gradient = [arm.x - tilt * placed.axis.x, arm.y - tilt * placed.axis.y];
-                let gradient = gradient.map(|part| 2.0 * inwards * part);
-                let known = Known::new(line, t, (gradient, sample.slope), last[way].as_ref());
+                let gradient = [
+                    2.0 * inwards * (arm.x - tilt * placed.axis.x),
+                    2.0 * inwards * (arm.y - tilt * placed.axis.y),
+                ];
+                let known = Known::new(line, t, (gradient, sample.slope), last.as_ref());
                 Some((
                     t,
                     placed.centre.z + arm.z + step * (sample.rise + 0.5 * lift * step),
@@ -323,8 +326,7 @@ impl<'a> RimSearch<'a> {
             },
         )?;
         let (t, height, ([a, b], normal, up), known) = found;
-        last[way] = Some(known);
-        self.last.set(last);
+        before.set(Some(known));
         if (a < 0.0) == (b < 0.0) {
             return Ok(());
         }

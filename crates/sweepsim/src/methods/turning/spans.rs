@@ -3,8 +3,10 @@
 use super::course::{Bounds, Course, Moment};
 use super::{Element, Leftover};
 
-/// Spans are halved this many times at most.
+/// Spans are halved this many times at most,
 const DEEPEST: u32 = 6;
+/// and so many times where the axis is almost upright on the way.
+const DEEPEST_UPRIGHT: u32 = 16;
 
 /// A span between two moments.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +24,8 @@ pub(super) enum Verdict {
     Settled,
     /// It is too long, or charts have to solve it.
     Long,
+    /// It is too long, since the axis is almost upright on the way: halves lean half as much, or their axis turns about the vertical half as much.
+    Upright,
     /// Charts have to solve it, and its halves, too.
     Intricate,
 }
@@ -40,18 +44,24 @@ pub(super) fn settle(
             from,
             to,
             bounds: course.bounds([&from, &to]),
-            last: depth == DEEPEST,
+            last: depth >= DEEPEST,
         };
         let mut left = Leftover::new(element, [from.t, to.t]);
-        match settle(&span, &mut left) {
+        let verdict = settle(&span, &mut left);
+        let deepest = if verdict == Verdict::Upright {
+            DEEPEST_UPRIGHT
+        } else {
+            DEEPEST
+        };
+        match verdict {
             Verdict::Settled if left.lines.is_empty() => {}
             Verdict::Settled => leftovers.push(left),
-            Verdict::Long if !span.last => {
+            Verdict::Long | Verdict::Upright if depth < deepest => {
                 let middle = course.at(0.5 * (from.t + to.t));
                 spans.push((middle, to, depth + 1));
                 spans.push((from, middle, depth + 1));
             }
-            Verdict::Long | Verdict::Intricate => match leftovers.last_mut() {
+            Verdict::Long | Verdict::Upright | Verdict::Intricate => match leftovers.last_mut() {
                 Some(before) if before.follows(&left) => before.times[1] = to.t,
                 _ => leftovers.push(Leftover { all: true, ..left }),
             },

@@ -200,7 +200,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
     ) -> Result<(), Undecided> {
         let (shell, course, limits) = (self.shell, self.course, self.limits);
         let (ends, slack, near) = (shell.ends(), searching.slack, searching.near);
-        let last = self.last[sheet];
+        let last = self.last[sheet].as_ref();
         let bracket = [from.t, to.t];
         let first = match last.map(|last| last.over(line.at)) {
             Some(t) if t > from.t && t < to.t => t,
@@ -246,7 +246,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                     return None;
                 }
                 let gradient = shell.gradient(posed, meeting, sheet);
-                let known = Known::new(line.at, t, (gradient, sample.slope), last.as_ref());
+                let known = Known::new(line.at, t, (gradient, sample.slope), last);
                 let turn = Turn {
                     t,
                     height: spot.height,
