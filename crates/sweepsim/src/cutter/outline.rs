@@ -34,6 +34,16 @@ pub(crate) struct Piece {
     pub patches: Range<usize>,
 }
 
+/// The part of a ball between two heights on the tool's axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ball {
+    /// The height of its centre.
+    pub centre: f64,
+    pub radius: f64,
+    /// The range of heights from the centre; infinite beyond a pole.
+    pub ends: [f64; 2],
+}
+
 /// A sharp edge: a circle about the axis.
 #[derive(Clone, Debug)]
 pub(crate) struct Rim {
@@ -96,6 +106,31 @@ impl Piece {
         } else {
             [cut(self.to, self.from), self.to]
         }
+    }
+
+    /// The ball that it is a part of, if its normal points away from a centre on the axis.
+    pub(crate) fn ball(&self) -> Option<Ball> {
+        let Shape::Arc {
+            centre: [0.0, centre],
+            radius,
+            out: 1.0,
+            ..
+        } = self.shape
+        else {
+            return None;
+        };
+        let [low, high] = if self.from[1] < self.to[1] {
+            [self.from, self.to]
+        } else {
+            [self.to, self.from]
+        };
+        // Poles are no ends.
+        let end = |[rho, zeta]: [f64; 2], pole: f64| if rho == 0.0 { pole } else { zeta - centre };
+        Some(Ball {
+            centre,
+            radius,
+            ends: [end(low, f64::NEG_INFINITY), end(high, f64::INFINITY)],
+        })
     }
 
     /// The range of `ζ`.

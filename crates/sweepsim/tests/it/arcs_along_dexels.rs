@@ -1,12 +1,11 @@
 //! Arcs in planes along the dexels in closed form, against charts: the same crossings from other systems, bounds and certificates.
 
-use crate::translations::{TOLERANCE, UP, agree, same, tools};
+use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, small};
+use crate::translations::{TOLERANCE, UP, agree, tools};
 use proptest::prelude::*;
-use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI};
-use sweepsim::{Cut, Method, Options, Sweep, simulate, sweep};
-use sweepsim_dexel::{Grid, Stock};
-use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{Move, Path, Pose, TipArc};
 
 /// An arc of the path: radius, the direction of its plane, angle of its start from that direction upwards, angle.
 type Arc = [f64; 4];
@@ -32,30 +31,6 @@ fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3], axis: [f64; 3]) -> Path {
         }
     }
     Path::with_moves(poses, moves).unwrap()
-}
-
-fn grid(cells: [usize; 2]) -> Grid {
-    Grid::new([-9.97, -10.03], [10.06, 9.94], cells).expect("a grid")
-}
-
-/// Compares both methods, and returns what they found.
-fn check(number: usize, path: &Path) -> Result<[Sweep; 2], TestCaseError> {
-    let (name, tool, _) = &tools()[number];
-    agree(name, tool, path, &grid([23, 21]), TOLERANCE)
-}
-
-fn check_in_general(number: usize, path: &Path) -> TestCaseResult {
-    let (name, ..) = &tools()[number];
-    let [closed, charts] = check(number, path)?;
-    let [own, other] = [&closed.statistics, &charts.statistics];
-    prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
-    let off = own.crossings.abs_diff(other.crossings);
-    prop_assert!(off <= 6 + other.crossings / 50, "{name}: {own:?} {other:?}");
-    Ok(())
-}
-
-fn small(range: f64) -> impl Strategy<Value = [f64; 3]> {
-    [-range..range, -range..range, -range..range]
 }
 
 /// Planes of programs, and others.
@@ -102,7 +77,7 @@ proptest! {
 
     /// Tiny and wide arcs.
     #[test]
-    fn sizes(number in 0_usize..3, start in small(3.0), plane in planes(), from in starts(), size in -4.0..3.5_f64, part in 0.05..1.0_f64, left in any::<bool>()) {
+    fn sizes(number in 0_usize..13, start in small(3.0), plane in planes(), from in starts(), size in -4.0..3.5_f64, part in 0.05..1.0_f64, left in any::<bool>()) {
         let radius = 10.0_f64.powf(size);
         let angle = (part * 6.0).min(8.0 * part / radius);
         let arc = [radius, plane, from, if left { angle } else { -angle }];
@@ -112,7 +87,7 @@ proptest! {
     /// Over dexel lines, or along rows of them that are as far from the plane as the tool is wide, with the radius of the tool, full circles, each twice. Not both: where a tool
     /// that dives along a line turns away from it, a line in its wall ends at a height that grows with the fourth root of how far the line is displaced.
     #[test]
-    fn degenerate(number in 0_usize..3, which in 0_usize..4, quarter in 0..4_i32, turns in 1..5_i32, left in any::<bool>(), across in any::<bool>(), aside in any::<bool>()) {
+    fn degenerate(number in 0_usize..13, which in 0_usize..4, quarter in 0..4_i32, turns in 1..5_i32, left in any::<bool>(), across in any::<bool>(), aside in any::<bool>()) {
         let lines = Grid::new([-11.5, -10.5], [11.5, 10.5], [23, 21]).expect("a grid");
         let radius = [3.0, 1.0, 4.5, 2.0][which];
         let side = if left { 1.0 } else { -1.0 };
@@ -126,27 +101,12 @@ proptest! {
     /// Only what comes near material is computed, and what is above it is counted: the part is the same.
     #[test]
     fn near_material(number in 0_usize..13, start in small(3.0), way in small(2.0), arcs in arcs(3, 0.3..6.0)) {
-        let lines = grid([31, 29]);
-        let block = Stock::Block { min: [-9.0, -9.0, -6.0], max: [9.0, 9.0, 1.7] }.dexels(&lines).unwrap();
-        let (name, tool, _) = &tools()[number];
         let path = path([start[0], start[1], start[2].abs() - 1.0], &arcs, [way[0], way[1], 0.0], UP);
-        let cut = [Cut::new(tool, &path)];
-        let part = simulate(block.clone(), &cut, &Options::new(TOLERANCE), &()).unwrap();
-        prop_assert!(part.statistics.unresolved.is_empty(), "{name}: {:?}", part.statistics);
-        let mut expected = block;
-        let whole = sweep(tool, &path, &lines, &Options::new(TOLERANCE).method(Method::General), &()).unwrap();
-        expected.remove_all(&whole.volume, TOLERANCE).unwrap();
-        let (mut area, mut off) = (0, 0);
-        for index in 0..lines.len() {
-            let [a, b] = [&part.remaining, &expected].map(|dexels| dexels.at(index).to_vec());
-            area += 1;
-            off += usize::from(!same(&a, &b, TOLERANCE));
-        }
-        prop_assert!(off * 300 <= area, "{name}: {off} of {area} lines differ");
+        check_near_material(number, &path)?;
     }
 }
 
-/// Arcs of ball and flat ends are solved without charts.
+/// Arcs of upright tools are solved without charts.
 #[test]
 fn hardly_a_box() {
     // The last two are narrower than the tools.
@@ -161,15 +121,6 @@ fn hardly_a_box() {
         [0.5, 0.2, 0.1],
         UP,
     );
-    for tool in [Tool::flat(3.0, 10.0), Tool::ball(3.0, 10.0)] {
-        let tool = tool.unwrap();
-        let boxes = |method| {
-            let options = Options::new(TOLERANCE).method(method);
-            let swept = sweep(&tool, &path, &grid([60, 60]), &options, &()).unwrap();
-            assert!(swept.statistics.unresolved.is_empty());
-            swept.statistics.boxes
-        };
-        let [closed, charts] = [Method::Charts, Method::General].map(boxes);
-        assert!(50 * closed < charts, "{closed} of {charts}");
-    }
+    let whole = tools().into_iter().filter(|(_, _, whole)| *whole);
+    check_boxes(whole.map(|(_, tool, _)| tool), &path);
 }

@@ -1,6 +1,6 @@
 //! Level arcs and helices in closed form, against charts: the same crossings from other systems, bounds and certificates.
 
-use crate::translations::{TOLERANCE, UP, agree, tools};
+use crate::translations::{TOLERANCE, UP, agree, same, tools};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
@@ -33,17 +33,17 @@ fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3]) -> Path {
     Path::with_moves(poses, moves).unwrap()
 }
 
-fn grid(cells: [usize; 2]) -> Grid {
+pub fn grid(cells: [usize; 2]) -> Grid {
     Grid::new([-9.97, -10.03], [10.06, 9.94], cells).expect("a grid")
 }
 
 /// Compares both methods, and returns what they found.
-fn check(number: usize, path: &Path) -> Result<[Sweep; 2], TestCaseError> {
+pub fn check(number: usize, path: &Path) -> Result<[Sweep; 2], TestCaseError> {
     let (name, tool, _) = &tools()[number];
     agree(name, tool, path, &grid([23, 21]), TOLERANCE)
 }
 
-fn check_in_general(number: usize, path: &Path) -> TestCaseResult {
+pub fn check_in_general(number: usize, path: &Path) -> TestCaseResult {
     let (name, ..) = &tools()[number];
     let [closed, charts] = check(number, path)?;
     let [own, other] = [&closed.statistics, &charts.statistics];
@@ -53,7 +53,54 @@ fn check_in_general(number: usize, path: &Path) -> TestCaseResult {
     Ok(())
 }
 
-fn small(range: f64) -> impl Strategy<Value = [f64; 3]> {
+/// Compares a block after the path with one from which all of the path's volume, by the general method, is removed.
+pub fn check_near_material(number: usize, path: &Path) -> TestCaseResult {
+    let lines = grid([31, 29]);
+    let block = Stock::Block {
+        min: [-9.0, -9.0, -6.0],
+        max: [9.0, 9.0, 1.7],
+    }
+    .dexels(&lines)
+    .unwrap();
+    let (name, tool, _) = &tools()[number];
+    let cut = [Cut::new(tool, path)];
+    let part = simulate(block.clone(), &cut, &Options::new(TOLERANCE), &()).unwrap();
+    prop_assert!(part.statistics.unresolved.is_empty(), "{name}: {:?}", part.statistics);
+    let mut expected = block;
+    let whole = sweep(
+        tool,
+        path,
+        &lines,
+        &Options::new(TOLERANCE).method(Method::General),
+        &(),
+    )
+    .unwrap();
+    expected.remove_all(&whole.volume, TOLERANCE).unwrap();
+    let (mut area, mut off) = (0, 0);
+    for index in 0..lines.len() {
+        let [a, b] = [&part.remaining, &expected].map(|dexels| dexels.at(index).to_vec());
+        area += 1;
+        off += usize::from(!same(&a, &b, TOLERANCE));
+    }
+    prop_assert!(off * 300 <= area, "{name}: {off} of {area} lines differ");
+    Ok(())
+}
+
+/// Needs hardly any boxes along the path.
+pub fn check_boxes(tools: impl IntoIterator<Item = Tool>, path: &Path) {
+    for tool in tools {
+        let boxes = |method| {
+            let options = Options::new(TOLERANCE).method(method);
+            let swept = sweep(&tool, path, &grid([60, 60]), &options, &()).unwrap();
+            assert!(swept.statistics.unresolved.is_empty());
+            swept.statistics.boxes
+        };
+        let [closed, charts] = [Method::Charts, Method::General].map(boxes);
+        assert!(50 * closed < charts, "{closed} of {charts}");
+    }
+}
+
+pub fn small(range: f64) -> impl Strategy<Value = [f64; 3]> {
     [-range..range, -range..range, -range..range]
 }
 
@@ -99,23 +146,8 @@ proptest! {
         arcs in prop::collection::vec([0.3..6.0_f64, -PI..PI, -4.0..4.0_f64, -0.4..0.4_f64], 1..4)) {
         prop_assume!(arcs.iter().all(|arc| arc[2].abs() > 0.1));
         let arcs: Vec<Arc> = arcs.iter().enumerate().map(|(n, arc)| if n % 2 == 0 { [arc[0], arc[1], arc[2], 0.0] } else { *arc }).collect();
-        let lines = grid([31, 29]);
-        let block = Stock::Block { min: [-9.0, -9.0, -6.0], max: [9.0, 9.0, 1.7] }.dexels(&lines).unwrap();
-        let (name, tool, _) = &tools()[number];
         let path = path([start[0], start[1], start[2].abs() - 1.0], &arcs, [way[0], way[1], 0.0]);
-        let cut = [Cut::new(tool, &path)];
-        let part = simulate(block.clone(), &cut, &Options::new(TOLERANCE), &()).unwrap();
-        prop_assert!(part.statistics.unresolved.is_empty(), "{name}: {:?}", part.statistics);
-        let mut expected = block;
-        let whole = sweep(tool, &path, &lines, &Options::new(TOLERANCE).method(Method::General), &()).unwrap();
-        expected.remove_all(&whole.volume, TOLERANCE).unwrap();
-        let (mut area, mut off) = (0, 0);
-        for index in 0..lines.len() {
-            let [a, b] = [&part.remaining, &expected].map(|dexels| dexels.at(index).to_vec());
-            area += 1;
-            off += usize::from(!crate::translations::same(&a, &b, TOLERANCE));
-        }
-        prop_assert!(off * 300 <= area, "{name}: {off} of {area} lines differ");
+        check_near_material(number, &path)?;
     }
 }
 
@@ -133,17 +165,8 @@ fn hardly_a_box() {
         ],
         [0.5, 0.2, 0.1],
     );
-    for tool in [Tool::flat(3.0, 10.0), Tool::ball(3.0, 10.0), Tool::bull(3.0, 0.8, 10.0)] {
-        let tool = tool.unwrap();
-        let boxes = |method| {
-            let options = Options::new(TOLERANCE).method(method);
-            let swept = sweep(&tool, &path, &grid([60, 60]), &options, &()).unwrap();
-            assert!(swept.statistics.unresolved.is_empty());
-            swept.statistics.boxes
-        };
-        let [closed, charts] = [Method::Charts, Method::General].map(boxes);
-        assert!(50 * closed < charts, "{closed} of {charts}");
-    }
+    let tools = [Tool::flat(3.0, 10.0), Tool::ball(3.0, 10.0), Tool::bull(3.0, 0.8, 10.0)];
+    check_boxes(tools.map(|tool| tool.unwrap()), &path);
 }
 
 /// The line at the centre of an arc is as near to it as it is displaced, and is certified at once.

@@ -11,17 +11,8 @@
 use super::course::{Bounds, Moment};
 use super::intervals::{Range, Sign, add, between, joined, mul, square, square_root, sub, wider};
 use super::shell::{Ends, Falls, Meeting, Passage, Shell, Spot};
+use crate::cutter::outline::Ball;
 use nalgebra::{Vector2, Vector3};
-
-/// The part of a ball between two heights on the tool's axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
-    /// `ζ_c`, `R`.
-    pub centre: f64,
-    pub radius: f64,
-    /// The range of `ζ − ζ_c`; infinite beyond a pole.
-    pub ends: [f64; 2],
-}
 
 /// A ball at one time.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +47,7 @@ pub(super) struct BallLimits {
 
 impl Ball {
     /// What is certain over a span; `None` if the centre's curve is curved too much there, seen in space or along the dexels.
-    pub fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<BallLimits> {
+    pub(super) fn limits(&self, [from, to]: [&Moment; 2], bounds: &Bounds, slack: f64) -> Option<BallLimits> {
         let bow = self.centre.abs() * bounds.bend;
         let [a, b] = [from, to].map(|moment| self.at(moment).rate);
         // The slowest on the way: the velocity changes by `bow` per time.
@@ -84,7 +75,7 @@ impl Ball {
     }
 
     /// What a pose at rest has of limits.
-    pub fn at_rest(&self, centre: &Centre, slack: f64) -> BallLimits {
+    pub(super) fn at_rest(&self, centre: &Centre, slack: f64) -> BallLimits {
         let speed = [centre.rate.xy().norm(), centre.rate.z.abs()];
         BallLimits {
             bow: 0.0,

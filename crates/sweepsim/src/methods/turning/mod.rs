@@ -18,9 +18,8 @@ mod shell;
 mod spans;
 mod zero;
 
-use crate::cutter::outline::{Outline, Piece, Shape};
+use crate::cutter::outline::{Ball, Outline, Piece, Shape};
 use crate::methods::translation::Collector;
-use ball::Ball;
 use blocks::around;
 use course::{Course, Moment};
 use cylinder::{Cylinder, standing};
@@ -101,35 +100,8 @@ impl Kind {
                 radius: piece.from[0],
                 ends: heights,
             })),
-            Shape::Arc {
-                centre: [0.0, centre],
-                radius,
-                out: 1.0,
-                ..
-            } => {
-                let [low, high] = if piece.from[1] < piece.to[1] {
-                    [piece.from, piece.to]
-                } else {
-                    [piece.to, piece.from]
-                };
-                Some(Self::Ball(Ball {
-                    centre,
-                    radius,
-                    ends: [
-                        if low[0] == 0.0 {
-                            f64::NEG_INFINITY
-                        } else {
-                            low[1] - centre
-                        },
-                        if high[0] == 0.0 {
-                            f64::INFINITY
-                        } else {
-                            high[1] - centre
-                        },
-                    ],
-                }))
-            }
-            _ => None,
+            Shape::Arc { .. } => piece.ball().map(Self::Ball),
+            Shape::Line { .. } => None,
         }
     }
 }

@@ -1,7 +1,6 @@
 //! The tool at rest between two motions, of which one turns: where a line meets it, and the signs of `g` before and after.
 
 use super::Searching;
-use super::ball::Ball;
 use super::blocks::{around, blocks, distance};
 use super::course::Moment;
 use super::cylinder::Cylinder;
@@ -9,6 +8,7 @@ use super::disc::{Disc, Placed};
 use super::intervals::{Range, Sign};
 use super::lean::Lean;
 use super::shell::Shell;
+use crate::cutter::outline::Ball;
 use crate::methods::harvest::unit;
 use nalgebra::Vector3;
 use sweepsim_dexel::Source;

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 /// Steps of Newton's method, or halvings of a bracket.
 const STEPS: usize = 60;
+
 /// A function at one time.
 pub(super) struct Sample<T> {
     /// The function, which is positive at the start of the bracket and negative at its end, and its derivative.

@@ -1,16 +1,8 @@
 //! A ball along an arc in a plane along the dexels: two circles in the section of each line.
 
 use super::{Directions, Place, Rolling};
+use crate::cutter::outline::Ball;
 use sweepsim_dexel::Source;
-
-/// The part of a ball between two heights on the tool's axis.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
-    pub centre: f64,
-    pub radius: f64,
-    /// The range of heights from the centre; infinite beyond a pole.
-    pub ends: [f64; 2],
-}
 
 /// The products of two ranges.
 fn products(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

@@ -6,20 +6,24 @@
 //! - the section of a ball of radius `R` is a circle of radius `ρ`, `ρ² = R² − p²`, which sweeps the circles of radii `s = r ± ρ` about the ball's centre at the centre of the arc:
 //!   a line meets them where `cos α = q/s`;
 //! - a sharp edge of an upright tool is met at `±ρ` from its centre, and so where `r cos α = q ∓ ρ`;
-//! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never.
+//! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never;
+//! - the section of a cone or a torus of an upright tool sweeps the curves that are parallel to it at the distance `r`: one equation in one unknown for each line.
 //!
 //! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
 
 mod ball;
 mod edge;
+mod parallel;
+mod sheet;
 
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
 use crate::time::wheel::Wheel;
-use ball::{Ball, ball};
+use ball::ball;
 use nalgebra::Vector3;
+use sheet::Sheet;
 use std::f64::consts::FRAC_PI_2;
 use sweepsim_dexel::Source;
 use sweepsim_motion::{Segment, SegmentEnd};
@@ -115,6 +119,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         if upright && piece.heights()[0] > self.highest {
             return true;
         }
+        if let Some(part) = piece.ball() {
+            ball(self, &part);
+            return true;
+        }
         match piece.shape {
             // No line meets an upright wall.
             Shape::Line { normal: [1.0, _] } if upright => true,
@@ -123,35 +131,12 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
                 self.disc(piece.from[1], radii, up);
                 true
             }
-            Shape::Arc {
-                centre: [0.0, centre],
-                radius,
-                out: 1.0,
-                ..
-            } => {
-                let [low, high] = if piece.from[1] < piece.to[1] {
-                    [piece.from, piece.to]
-                } else {
-                    [piece.to, piece.from]
-                };
-                // Poles are no ends.
-                let from = if low[0] == 0.0 {
-                    f64::NEG_INFINITY
-                } else {
-                    low[1] - centre
-                };
-                let to = if high[0] == 0.0 {
-                    f64::INFINITY
-                } else {
-                    high[1] - centre
-                };
-                let own = Ball {
-                    centre,
-                    radius,
-                    ends: [from, to],
-                };
-                ball(self, &own);
-                true
+            _ if upright => {
+                let sheets = Sheet::all(piece, self.slack);
+                for sheet in sheets.iter().flatten() {
+                    self.sheet(sheet);
+                }
+                sheets.is_some()
             }
             _ => false,
         }

@@ -1,8 +1,8 @@
 //! What is said to be certain of a line during a span, and slopes and gradients, against samples.
 
-use super::super::ball::Ball;
 use super::super::cylinder::Cylinder;
 use super::*;
+use crate::cutter::outline::Ball;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use sweepsim_motion::{Pose, Segment};
