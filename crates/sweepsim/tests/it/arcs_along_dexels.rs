@@ -1,11 +1,12 @@
 //! Arcs in planes along the dexels in closed form, against charts: the same crossings from other systems, bounds and certificates.
 
-use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, small};
+use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
 use crate::translations::{TOLERANCE, UP, agree, tools};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
+use sweepsim::{Options, sweep};
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Move, Path, Pose, TipArc};
+use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
 
 /// An arc of the path: radius, the direction of its plane, angle of its start from that direction upwards, angle.
 type Arc = [f64; 4];
@@ -123,4 +124,80 @@ fn hardly_a_box() {
     );
     let whole = tools().into_iter().filter(|(_, _, whole)| *whole);
     check_boxes(whole.map(|(_, tool, _)| tool), &path);
+}
+
+/// A tool with a round corner, or one with a tip, and its radius.
+fn tool(pointed: bool) -> (Tool, f64) {
+    if !pointed {
+        return (Tool::bull(3.0, 0.8, 10.0).unwrap(), 3.0);
+    }
+    let corners = [[2.5, 1.5], [2.5, 8.0], [0.0, 8.0]].map(|to| ProfileSegment::Line { to });
+    let profile = Profile::new([0.0, 0.0], corners.to_vec()).unwrap();
+    (Tool::from_profile(profile), 2.5)
+}
+
+/// The height of its lowest point at a radius.
+fn bottom(pointed: bool, rho: f64) -> f64 {
+    let out = (rho - 2.2).max(0.0);
+    if pointed {
+        0.6 * rho
+    } else {
+        0.8 - (0.64 - out * out).max(0.0).sqrt()
+    }
+}
+
+/// The least value of a function on [0, 1] that has one least value in the neighbourhood of the least of its samples.
+fn least(function: impl Fn(f64) -> f64) -> f64 {
+    const SAMPLES: i32 = 1000;
+    let share = |n: i32| f64::from(n.clamp(0, SAMPLES)) / f64::from(SAMPLES);
+    let best = (0..=SAMPLES).min_by(|a, b| function(share(*a)).total_cmp(&function(share(*b))));
+    let best = best.unwrap();
+    let [mut low, mut high] = [share(best - 1), share(best + 1)];
+    let mut found = function(share(best));
+    for _ in 0..60 {
+        let [a, b] = [low + 0.382 * (high - low), low + 0.618 * (high - low)];
+        let [at_a, at_b] = [a, b].map(&function);
+        found = found.min(at_a).min(at_b);
+        if at_a < at_b { high = b } else { low = a }
+    }
+    found
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    /// The lowest point over each line is that of the tool, sampled in time.
+    #[test]
+    fn lowest_points(pointed in any::<bool>(), start in small(3.0), arcs in arcs(1, 0.3..9.0)) {
+        let (tool, outer) = tool(pointed);
+        let [radius, plane, from, angle] = arcs[0];
+        let (lines, path) = (grid([23, 21]), path(start, &arcs, [0.0; 3], UP));
+        let found = sweep(&tool, &path, &lines, &Options::new(TOLERANCE), &()).unwrap();
+        prop_assert!(found.statistics.unresolved.is_empty(), "{:?}", found.statistics);
+        for index in 0..lines.len() {
+            let (i, j) = lines.place(index);
+            let tip = |share: f64| {
+                let at = from + angle * share;
+                let ahead = radius * (at.cos() - from.cos());
+                let place = [start[0] + ahead * plane.cos(), start[1] + ahead * plane.sin()];
+                let rho = (lines.x(i) - place[0]).hypot(lines.y(j) - place[1]);
+                (rho, start[2] + radius * (at.sin() - from.sin()))
+            };
+            let nearest = least(|share| tip(share).0);
+            let lowest = least(|share| match tip(share) {
+                (rho, z) if rho <= outer => z + bottom(pointed, rho),
+                _ => f64::INFINITY,
+            });
+            let own = found.volume.at(index).to_vec();
+            let Some(first) = own.first() else {
+                prop_assert!(nearest > outer - 1e-6, "{:?} {nearest}", (i, j));
+                continue;
+            };
+            prop_assert!(nearest < outer + 1e-6, "{:?} {nearest}", (i, j));
+            let steep = f64::from(first.lower.normal[2]).abs().max(1e-3);
+            // The tool has to be seen in its narrow time over a line, too.
+            let seen = nearest < outer - 1e-3;
+            prop_assert!(!seen || (first.lower.z - lowest).abs() <= 2.0 * TOLERANCE / steep, "{:?}: {first:?} {lowest}", (i, j));
+        }
+    }
 }
