@@ -1,7 +1,12 @@
-//! Targets that a map itself excludes from a box, where the mean value theorem does not.
+//! The targets of a box: those that the mean value theorem leaves, and those that the map itself excludes.
 
+use super::linear::Linear;
 use super::{ChartMap, Targets, all_of};
 use crate::Enclosure;
+use nalgebra::SVector;
+
+/// If a box has at most this many targets, each is tested before a split.
+pub(super) const FEW: usize = 4;
 
 /// Whether the part of the box that holds all preimages certainly holds none of the targets'.
 pub(super) fn part_is_empty<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>(
@@ -34,4 +39,53 @@ pub(super) fn all_beside<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>
         absent
     });
     absent
+}
+
+/// The least box that holds all targets in a range.
+pub(super) fn hull<const N: usize, T: Targets<N> + ?Sized>(
+    targets: &T,
+    values: &[Enclosure; N],
+) -> Option<[Enclosure; N]> {
+    let mut hull: Option<[Enclosure; N]> = None;
+    targets.visit(values, &all_of, &mut |target| {
+        let own = target.value.map(|q| Enclosure::hull(q, q));
+        hull = Some(hull.map_or(own, |hull| {
+            std::array::from_fn(|k| Enclosure::hull(hull[k].lo().min(own[k].lo()), hull[k].hi().max(own[k].hi())))
+        }));
+        true
+    });
+    hull
+}
+
+/// The number of targets, of `count` in the range, that the mean value test does not exclude; any number from `enough` on if there are as many.
+pub(super) fn remaining<const N: usize, T: Targets<N> + ?Sized>(
+    linear: &Linear<N>,
+    value: &[f64; N],
+    values: &[Enclosure; N],
+    targets: &T,
+    count: usize,
+    enough: usize,
+) -> usize {
+    /// With this many times as many expected, they are not counted.
+    const CERTAIN: f64 = 4.0;
+    let mut left = 0;
+    if count <= FEW {
+        let origin = SVector::<f64, N>::zeros();
+        targets.visit(values, &all_of, &mut |target| {
+            let start = linear.predict(&origin, value, &target.value);
+            left += usize::from((0..N).all(|i| start[i].abs() <= 1.0 + linear.reach(i)));
+            left < enough
+        });
+        return left;
+    }
+    let strips = linear.strips(value);
+    let share = strips.narrowest() / values[1.min(N - 1)].radius();
+    if share * count as f64 > CERTAIN * (enough + FEW) as f64 {
+        return count.max(enough);
+    }
+    targets.visit(values, &|q| strips.window(q), &mut |_| {
+        left += 1;
+        left < enough
+    });
+    left
 }

@@ -189,7 +189,7 @@ impl<const N: usize> Strips<N> {
 /// Positive weights `w`, the largest 1, and `max (R w)ᵢ/wᵢ`, a bound of the spectral radius of the nonnegative matrix `R` (Collatz, Wielandt): the norm
 /// of `R` if lengths in direction `i` are measured in `wᵢ`. A few steps of the power method make it small where the directions have
 /// different curvatures; with equal weights it would be the largest row sum.
-fn spectral<const N: usize>(rest: &Square<N>) -> (SVector<f64, N>, f64) {
+pub(super) fn spectral<const N: usize>(rest: &Square<N>) -> (SVector<f64, N>, f64) {
     /// Row sums from which no weights make charts in practice.
     const HOPELESS: f64 = 8.0;
     const STEPS: usize = 4;
@@ -227,12 +227,17 @@ pub(crate) struct Contraction<const N: usize> {
 impl<const N: usize> Linear<N> {
     /// For a spectral radius below 1.
     pub fn contraction(&self) -> Option<Contraction<N>> {
+        Contraction::new(&self.rest, &self.slack, &self.weights, self.radius)
+    }
+}
+
+impl<const N: usize> Contraction<N> {
+    /// For `R` and `e`, with positive weights of the directions and a bound of the maximum norm of `R` with these weights that is below 1.
+    pub fn new(rest: &Square<N>, slack: &SVector<f64, N>, weights: &SVector<f64, N>, norm: f64) -> Option<Self> {
         // (I − R)⁻¹ = (I + R)(I + R²)(I + R⁴)…, of nonnegative terms. After k factors the omitted rest is, row by row,
         // at most ‖R‖^(2ᵏ)/(1 − ‖R‖) times as large, in the norm with the weights.
-        let norm = self.radius;
-        let weights = &self.weights;
-        let rest = Square::<N>::from_fn(|i, j| self.rest[(i, j)] * weights[j] / weights[i]);
-        let slack = self.slack.component_div(weights);
+        let rest = Square::<N>::from_fn(|i, j| rest[(i, j)] * weights[j] / weights[i]);
+        let slack = slack.component_div(weights);
         let (mut sum, mut power, mut left) = (Square::<N>::identity() + rest, rest, norm * norm);
         while left > 1e-3 * (1.0 - norm) {
             power *= power;
@@ -245,7 +250,7 @@ impl<const N: usize> Linear<N> {
         let most = |m: &Square<N>| (0..N).map(|i| m.row(i).iter().sum::<f64>()).fold(0.0, f64::max);
         let (own, of_slack) = (remainder * most(&spread), remainder * most(&sum));
         let largest = slack.amax();
-        let contraction = Contraction {
+        let contraction = Self {
             rest: Square::<N>::from_fn(|i, j| (spread[(i, j)] + own) * weights[i] / weights[j]),
             slack: (sum * slack).map(|x| x + of_slack * largest).component_mul(weights),
         };

@@ -18,14 +18,19 @@
 mod beside;
 mod chart;
 mod linear;
+mod narrow;
+#[cfg(test)]
+mod narrow_test;
 mod sides;
 mod solver;
+mod split;
 mod trail;
 
 use crate::{Cause, Enclosure};
 pub use sides::Affine;
+pub(crate) use solver::BETWEEN;
 pub use solver::ChartSolver;
-pub(crate) use solver::{BETWEEN, collapses, largest, widest};
+pub(crate) use split::{collapses, largest, widest};
 pub(crate) use trail::Trail;
 
 /// A map `R^N → R^N` with enclosures over boxes.
@@ -72,6 +77,15 @@ pub trait ChartMap<const N: usize> {
 
     /// Drops the last part asked for.
     fn drop_part(&mut self, _part: Self::Cell) {}
+
+    /// A separate cell over a part of the box, kept until it is [dropped](Self::drop_narrowed), if the map has such cells. Asked for boxes that hold few targets and where
+    /// `∂Φ` may be singular, and for parts that hold all their preimages.
+    fn narrowed(&mut self, _cell: &Self::Cell, _part: &[Enclosure; N]) -> Option<Self::Cell> {
+        None
+    }
+
+    /// Drops the last of these cells, and the parts that it was split into.
+    fn drop_narrowed(&mut self, _cell: Self::Cell) {}
 
     /// Encloses the product of `matrix` and `∂Φ` over the box, if that can be done more closely than by multiplying enclosures, because values depend on each
     /// other. Asked for boxes that hold few targets and where `∂Φ` is nearly singular. Rounding may be left out.

@@ -6,6 +6,7 @@ use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::absent::is_absent_from_edge;
+use crate::envelope::any_box::AnyBox;
 use crate::envelope::enclosures::{Brick, Near, Size, envelope_error, interval, negative, plane_values, turning};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
@@ -81,6 +82,14 @@ impl ChartMap<2> for EdgeMap<'_> {
     fn is_absent(&mut self, cell: &Brick, line: &[f64; 2]) -> bool {
         self.cells.prepare(self.element, cell.0);
         is_absent_from_edge((self.element, self.cells), (self.times, &self.size), *cell, *line)
+    }
+
+    fn narrowed(&mut self, _: &Brick, part: &[Enclosure; 2]) -> Option<Brick> {
+        Some(self.place(part))
+    }
+
+    fn drop_narrowed(&mut self, (cell, piece): Brick) {
+        self.release([cell as usize, piece as usize]);
     }
 
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnEdge> {

@@ -5,6 +5,7 @@ use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::absent::is_absent;
+use crate::envelope::any_box::AnyBox;
 use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_size, interval, largest, plane_values, product_size, turning, widened,
 };
@@ -136,6 +137,14 @@ impl ChartMap<3> for PatchMap<'_> {
         self.cells.release(cell as usize);
     }
 
+    fn narrowed(&mut self, _: &Brick, part: &[Enclosure; 3]) -> Option<Brick> {
+        Some(self.place(part))
+    }
+
+    fn drop_narrowed(&mut self, (cell, piece): Brick) {
+        self.release([cell as usize, piece as usize]);
+    }
+
     fn value(&self, x: &[f64; 3]) -> Option<[f64; 3]> {
         if self.element.revolution.is_some() {
             return None;
@@ -195,7 +204,6 @@ impl ChartMap<3> for PatchMap<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::envelope::AnyBox;
     use proptest::prelude::*;
     use sweepsim_motion::{Law, Path, Pose, Tool};
 

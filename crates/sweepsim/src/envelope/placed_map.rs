@@ -6,6 +6,7 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::cutter::reduced::Missing;
 use crate::envelope::absent::is_separate;
+use crate::envelope::any_box::AnyBox;
 use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, widened};
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
@@ -197,6 +198,14 @@ impl ChartMap<2> for PlacedMap<'_> {
             let row: [f64; 3] = std::array::from_fn(|i| a * x[i] + b * y[i]);
             [0, 1].map(|axis| interval(self.cells.slope_products(self.element, *cell, axis, &[row])))
         }))
+    }
+
+    fn narrowed(&mut self, _: &u32, part: &[Enclosure; 2]) -> Option<u32> {
+        Some(self.place(part))
+    }
+
+    fn drop_narrowed(&mut self, cell: u32) {
+        self.release([cell as usize, 0]);
     }
 
     fn value(&self, x: &[f64; 2]) -> Option<[f64; 2]> {

@@ -14,12 +14,7 @@ const DISTANCES: [f64; 11] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e
 const GENERIC: f64 = 0.23;
 const MOST: f64 = 3.0;
 /// Where it is more, as it is now: the cost grows with the logarithm of the distance, and the generic neighbour's is small.
-const EXCEPTIONS: [(&str, f64); 4] = [
-    ("tilt on an arc about a line", 3.1),
-    ("line from the wall", 4.5),
-    ("move along a line that the tool turns about", 4.6),
-    ("tool's radius from that of the arc", 5.2),
-];
+const EXCEPTIONS: [(&str, f64); 1] = [("move along a line that the tool turns about", 3.8)];
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
