@@ -63,11 +63,10 @@ pub(crate) trait CrossingMethod<'a>: Sized + Sync {
     );
 }
 
-/// The number of parts of a path that a worker takes at a time, if there are enough.
+/// The number of parts of a path that a worker takes at a time: charts of a tool at rest, which it keeps, serve them all.
 const BLOCK: usize = 4;
 
-/// Parts in blocks of a few; one by one if there are few.
+/// Parts in blocks of a few.
 pub(crate) fn in_blocks(parts: usize) -> impl Iterator<Item = Range<usize>> {
-    let block = if parts < 16 * BLOCK { 1 } else { BLOCK };
-    (0..parts.div_ceil(block)).map(move |number| number * block..((number + 1) * block).min(parts))
+    (0..parts.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(parts))
 }
