@@ -248,7 +248,13 @@ impl Shell for Cylinder {
         let rest = add(mul(x, sub(x, scaled(2.0, tau))), mul(zeta, y));
         let slope = sub(rest, scaled((self.radius * self.radius).recip(), square(around)));
         // NaN is unknown.
-        if slope[1] < 0.0 { Falls::Always } else { Falls::Unknown }
+        if slope[1] < 0.0 {
+            Falls::Always
+        } else if slope[0] > 0.0 {
+            Falls::Never
+        } else {
+            Falls::Unknown
+        }
     }
 
     #[inline]

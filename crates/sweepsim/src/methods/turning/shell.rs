@@ -51,6 +51,8 @@ pub(super) enum Passage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Falls {
     Always,
+    /// It rises instead.
+    Never,
     /// The sheet is beyond the ends of the piece.
     Beyond,
     Unknown,

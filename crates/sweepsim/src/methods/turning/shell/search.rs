@@ -170,7 +170,12 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
             return self.between(searching, line, [&middle, to], depth + 1);
         }
         let there = [passage != Passage::Enters, passage != Passage::Leaves];
-        for sheet in (0..2).filter(|sheet| falls[*sheet] == Falls::Always) {
+        for sheet in 0..2 {
+            let falling = match falls[sheet] {
+                Falls::Always => true,
+                Falls::Never => false,
+                Falls::Beyond | Falls::Unknown => continue,
+            };
             // A sheet begins with `g > 0`, and ends with `g < 0`.
             let mut outwards = [true, false];
             for (end, view) in [from, to].into_iter().enumerate() {
@@ -181,27 +186,30 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                     outwards[end] = view.meeting.g[sheet] >= 0.0;
                 }
             }
-            match outwards {
-                [true, false] => self.turn(searching, line, ([from, to], there), sheet)?,
-                [false, true] => return Err(Undecided::Intricate),
-                _ => {}
+            if outwards[0] != outwards[1] {
+                if outwards[0] != falling {
+                    return Err(Undecided::Intricate);
+                }
+                self.turn(searching, line, ([from, to], there), (sheet, falling))?;
             }
         }
         Ok(())
     }
 
-    /// The place where a sheet turns, of which there is exactly one: Newton's method in a bracket.
+    /// The place where a sheet turns, of which there is exactly one, where `g` falls or rises: Newton's method in a bracket.
     fn turn(
         &mut self,
         searching: &mut Searching,
         line: Line,
         ([from, to], there): ([&View<S::Posed>; 2], [bool; 2]),
-        sheet: usize,
+        (sheet, falling): (usize, bool),
     ) -> Result<(), Undecided> {
         let (shell, course, limits) = (self.shell, self.course, self.limits);
         let (ends, slack, near) = (shell.ends(), searching.slack, searching.near);
         let last = self.last[sheet].as_ref();
         let bracket = [from.t, to.t];
+        // So that the function falls.
+        let side = if falling { 1.0 } else { -1.0 };
         let first = match last.map(|last| last.over(line.at)) {
             Some(t) if t > from.t && t < to.t => t,
             _ => {
@@ -209,7 +217,12 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                     return Ok(());
                 }
                 let known = |view: &View<S::Posed>, there: bool| {
-                    there.then(|| [view.meeting.g[sheet], shell.slope(view.at, &view.meeting, sheet)[0]])
+                    there.then(|| {
+                        [
+                            side * view.meeting.g[sheet],
+                            side * shell.slope(view.at, &view.meeting, sheet)[0],
+                        ]
+                    })
                 };
                 start(bracket, [known(from, there[0]), known(to, there[1])])
             }
@@ -223,8 +236,8 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                 (meeting.room > 0.0).then(|| {
                     let [slope, rise] = shell.slope(&posed, &meeting, sheet);
                     Sample {
-                        value: meeting.g[sheet],
-                        slope,
+                        value: side * meeting.g[sheet],
+                        slope: side * slope,
                         rise,
                         state: (posed, meeting),
                     }
@@ -246,7 +259,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
                     return None;
                 }
                 let gradient = shell.gradient(posed, meeting, sheet);
-                let known = Known::new(line.at, t, (gradient, sample.slope), last);
+                let known = Known::new(line.at, t, (gradient, side * sample.slope), last);
                 let turn = Turn {
                     t,
                     height: spot.height,
@@ -260,7 +273,7 @@ impl<'a, S: Shell, F: Fn(f64) -> Source> ShellSearch<'a, S, F> {
         if let Some(Turn { t, height, normal }) = found
             && searching.collector.lines.asks(i, j)
         {
-            let jump = if sheet == 0 { 1 } else { -1 };
+            let jump = if (sheet == 0) == falling { 1 } else { -1 };
             let number = searching.collector.lines.line(i, j);
             let source = (self.source)(t);
             searching.collector.crossing(number, height, jump, unit(normal), source);

@@ -51,6 +51,9 @@ fn agrees<S: Shell>(
             if passage == Passage::Inside && falls == Falls::Always {
                 prop_assert!(!before.is_some_and(|before| before < 0.0 && g > 0.0), "rises at {t}");
             }
+            if passage == Passage::Inside && falls == Falls::Never {
+                prop_assert!(!before.is_some_and(|before| before > 0.0 && g < 0.0), "falls at {t}");
+            }
             before = Some(g);
             // The slope along the line, of `g` and of the height.
             let h = 1e-6;
