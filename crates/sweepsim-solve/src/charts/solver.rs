@@ -43,7 +43,7 @@ const SHARE: i32 = 12;
 /// With a spectral radius beyond this, the two parts of a box are not charts, either: they are split without a look at their derivatives.
 const FAR: f64 = 3.0;
 /// After this many boxes, one in the other, in which `∂Φ` is nearly singular and the targets are few, boxes are [narrowed]: before, splitting them is cheaper. Found by
-/// trial: with 2 a third of a percent fewer boxes, but one percent more instructions.
+/// trial.
 const STUCK: u32 = 3;
 /// A direction along which `K ∂Φ` changes by less than this part of the radius is not split for its length alone.
 const STRAIGHT: f64 = 1e-3;
