@@ -201,3 +201,20 @@ proptest! {
         }
     }
 }
+
+/// A concave corner on circles of its own radius: its torus sweeps a point in the middle plane.
+#[test]
+fn circles_of_the_radius_of_a_concave_corner() {
+    let (_, tool, _) = &tools()[11];
+    for plane in [0.0, FRAC_PI_2, 0.7] {
+        let path = path(
+            [0.0; 3],
+            &[[2.0, plane, 0.0, 2.0 * PI], [2.0, plane, 0.0, -2.0 * PI]],
+            [0.0; 3],
+            UP,
+        );
+        let grid = Grid::new([-11.5, -10.5], [11.5, 10.5], [23, 21]).unwrap();
+        let swept = sweep(tool, &path, &grid, &Options::new(TOLERANCE), &()).unwrap();
+        assert_eq!(swept.statistics.unresolved, [], "{:?}", swept.statistics);
+    }
+}
