@@ -146,19 +146,26 @@ fn bottom(pointed: bool, rho: f64) -> f64 {
     }
 }
 
-/// The least value of a function on [0, 1] that has one least value in the neighbourhood of the least of its samples.
+/// The least value of a function on [0, 1], if it has one least value in the neighbourhood of each sample that is not above the next ones: on a full circle, two samples
+/// are at one place.
 fn least(function: impl Fn(f64) -> f64) -> f64 {
-    const SAMPLES: i32 = 1000;
-    let share = |n: i32| f64::from(n.clamp(0, SAMPLES)) / f64::from(SAMPLES);
-    let best = (0..=SAMPLES).min_by(|a, b| function(share(*a)).total_cmp(&function(share(*b))));
-    let best = best.unwrap();
-    let [mut low, mut high] = [share(best - 1), share(best + 1)];
-    let mut found = function(share(best));
-    for _ in 0..60 {
-        let [a, b] = [low + 0.382 * (high - low), low + 0.618 * (high - low)];
-        let [at_a, at_b] = [a, b].map(&function);
-        found = found.min(at_a).min(at_b);
-        if at_a < at_b { high = b } else { low = a }
+    const SAMPLES: usize = 1000;
+    let share = |n: usize| n.min(SAMPLES) as f64 / SAMPLES as f64;
+    let samples: Vec<f64> = (0..=SAMPLES).map(|n| function(share(n))).collect();
+    let mut found = f64::INFINITY;
+    for n in 0..=SAMPLES {
+        let beside = [n.saturating_sub(1), (n + 1).min(SAMPLES)];
+        if !(samples[n] < f64::INFINITY && beside.iter().all(|other| samples[n] <= samples[*other])) {
+            continue;
+        }
+        found = found.min(samples[n]);
+        let [mut low, mut high] = beside.map(share);
+        for _ in 0..60 {
+            let [a, b] = [low + 0.382 * (high - low), low + 0.618 * (high - low)];
+            let [at_a, at_b] = [a, b].map(&function);
+            found = found.min(at_a).min(at_b);
+            if at_a < at_b { high = b } else { low = a }
+        }
     }
     found
 }
