@@ -65,11 +65,11 @@ impl<'a> Stretch<'a> {
                 ([e, half * f], f)
             }
         };
-        let [(g, sure), (h, certain)] = [0, 1].map(|n| {
-            let ([dx, dy, dz], error) = &ways[n];
+        let sign = |([dx, dy, dz], error): &([f64; 3], f64)| {
             let g = weight * (out * (x * dx + y * dy) + up * dz * rho);
             (g, g.abs() > *error)
-        });
+        };
+        let [(g, sure), (h, certain)] = [sign(&ways[0]), sign(&ways[1])];
         sure & certain & ((g < 0.0) == (h < 0.0))
     }
 
