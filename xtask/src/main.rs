@@ -125,6 +125,8 @@ enum Command {
 enum Table {
     /// The paper's Table 1: ball and flat end, two motions, two grids, one thread.
     Table1,
+    /// How near the sweeps of Table 1 are to one evaluation of the equations per crossing.
+    Share,
     /// The fixture jobs, on one thread and on all.
     Programs,
     /// A three-axis program of short moves, by closed forms and by charts.
@@ -158,6 +160,7 @@ fn in_release() -> Result<bool, String> {
 fn measure(table: Table, filter: Option<&str>, store: bool) -> Result<(), String> {
     match table {
         Table::Table1 => bench::table1(),
+        Table::Share => bench::share(),
         Table::Programs => bench::programs(),
         Table::ThreeAxis => bench::three_axis(),
         Table::Systems => bench::systems(filter),
@@ -169,6 +172,7 @@ fn measure(table: Table, filter: Option<&str>, store: bool) -> Result<(), String
         Table::All => {
             let tables = [
                 Table::Table1,
+                Table::Share,
                 Table::Programs,
                 Table::ThreeAxis,
                 Table::NearDegenerate,

@@ -20,7 +20,7 @@ pub use near_degenerate::near_degenerate;
 pub use programs::programs;
 pub use scaling::scaling;
 pub use systems::systems;
-pub use table1::{Cutter, cutter, table1};
+pub use table1::{Cutter, cutter, share, table1};
 pub use threads::threads;
 pub use three_axis::three_axis;
 

@@ -1,5 +1,9 @@
 //! The paper's Table 1.
 
+mod share;
+
+pub use share::share;
+
 use super::records::{Records, heading};
 use super::{on, shortest};
 use crate::generate::router;
