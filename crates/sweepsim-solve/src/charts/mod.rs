@@ -78,6 +78,12 @@ pub trait ChartMap<const N: usize> {
     /// Drops the last part asked for.
     fn drop_part(&mut self, _part: Self::Cell) {}
 
+    /// A part of the box that holds the preimages of all targets in the range, by a bound that is better than that of derivatives where `∂Φ` is singular. A face of the
+    /// part is one of the box, or farther from all preimages than rounding can tell. Asked for boxes that hold few targets and where `∂Φ` may be singular.
+    fn clipped(&mut self, _cell: &Self::Cell, _range: &[Enclosure; N]) -> Option<[Enclosure; N]> {
+        None
+    }
+
     /// A separate cell over a part of the box, kept until it is [dropped](Self::drop_narrowed), if the map has such cells. Asked for boxes that hold few targets and where
     /// `∂Φ` may be singular, and for parts that hold all their preimages.
     fn narrowed(&mut self, _cell: &Self::Cell, _part: &[Enclosure; N]) -> Option<Self::Cell> {

@@ -60,6 +60,18 @@ where
         .find_map(|partial| partial.narrowed(map, cell, range, evaluations))
 }
 
+/// The part of a box that the map itself leaves to the targets in a range, if it is much smaller than the box.
+pub(super) fn clipped<const N: usize, M: ChartMap<N>>(
+    map: &mut M,
+    cell: &M::Cell,
+    bounds: &[Enclosure; N],
+    range: &[Enclosure; N],
+) -> Option<Narrowed<N>> {
+    let part = map.clipped(cell, range)?;
+    let share = (0..N).map(|j| part[j].radius() / bounds[j].radius()).product::<f64>();
+    (share < WORTH).then_some(Narrowed::To(part))
+}
+
 /// A left inverse of the columns of some variables, in coordinates scaled to the box.
 struct Partial<'a, const N: usize> {
     bounds: &'a [Enclosure; N],

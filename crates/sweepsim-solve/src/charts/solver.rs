@@ -3,7 +3,7 @@
 use super::beside::{FEW, all_beside, hull, part_is_empty, remaining};
 use super::chart::{Chart, Outcome, Region, Witness};
 use super::linear::{Contraction, Linear};
-use super::narrow::{Narrowed, narrowed};
+use super::narrow::{Narrowed, clipped, narrowed};
 use super::sides::Sides;
 use super::split::{change, collapses, largest, widest};
 use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail, UnresolvedTarget, all_of};
@@ -242,13 +242,9 @@ impl<C: Clone> ChartSolver<C> {
             if is_stuck {
                 let range = hull(targets, &values);
                 let found = range.and_then(|range| {
-                    narrowed(
-                        map,
-                        &cell,
-                        (&bounds, &jacobian),
-                        &range,
-                        &mut self.statistics.evaluations,
-                    )
+                    let evaluations = &mut self.statistics.evaluations;
+                    narrowed(map, &cell, (&bounds, &jacobian), &range, evaluations)
+                        .or_else(|| clipped(map, &cell, &bounds, &range))
                 });
                 match found {
                     Some(Narrowed::Empty) => continue,

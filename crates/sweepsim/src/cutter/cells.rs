@@ -271,6 +271,14 @@ impl Cells {
         Triples::new(&self.nodes[cell as usize].points, slot.start, slot.len())
     }
 
+    /// The weights of these points, and their degrees.
+    pub fn weights(&self, element: &PatchForms, cell: u32) -> (&[f64], [usize; 2]) {
+        let slot = &element.layout.position;
+        let len = slot.len();
+        let c = &self.nodes[cell as usize].c;
+        (&c[slot.start + 3 * len..][..len], slot.degrees)
+    }
+
     /// The range of products of rows with the derivative of the position, in a [prepared](Self::prepare) cell.
     pub fn slope_products(&self, element: &PatchForms, cell: u32, axis: usize, rows: &[[f64; 3]]) -> (f64, f64) {
         let (lo, hi) = products(rows, &self.slope(element, cell, axis));

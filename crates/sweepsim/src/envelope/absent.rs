@@ -28,7 +28,7 @@ use crate::time::pieces::Times;
 use nalgebra::{Vector2, Vector3};
 use smallvec::SmallVec;
 
-type Range = (f64, f64);
+pub(super) type Range = (f64, f64);
 
 /// Whether none of the points of a cell of a patch in a piece of time is on the line `(x, y)` and has `g = 0`.
 pub(super) fn is_absent(
@@ -41,7 +41,12 @@ pub(super) fn is_absent(
         return true;
     }
     let (cell, piece) = brick;
-    let arm = arm(&cells.position(element, cell), (times, size), piece, line);
+    let arm = arm(
+        &cells.position(element, cell),
+        (times, size),
+        piece,
+        line.map(|x| (x, x)),
+    );
     middle_normal(element, cells, cell).is_some_and(|normal| is_off(of, (times, size), brick, &arm, &normal))
         || moves_across(of, times, brick, &arm)
 }
@@ -62,7 +67,12 @@ pub(super) fn is_absent_from_edge(
     let along = middle(&cells.slope(element, cell, 0));
     let across = along.cross(&Vector3::from(upright[upright.len() / 2]));
     across.try_normalize(0.0).is_some_and(|normal| {
-        let arm = arm(&cells.position(element, cell), (times, size), piece, line);
+        let arm = arm(
+            &cells.position(element, cell),
+            (times, size),
+            piece,
+            line.map(|x| (x, x)),
+        );
         is_off(of, (times, size), brick, &arm, &normal.into())
     })
 }
@@ -123,11 +133,11 @@ pub(super) fn is_separate(rows: [&[[f64; 3]]; 2], points: &Triples, from: [f64; 
         })
 }
 
-/// The vector from the tip to any point of the line that is as high as some point of the cell.
-fn arm(position: &Triples, (times, size): (&Times, &Size), piece: u32, line: [f64; 2]) -> [Range; 3] {
+/// The vector from the tip to any point of the lines, whose coordinates have these ranges, that is as high as some point of the cell.
+pub(super) fn arm(position: &Triples, (times, size): (&Times, &Size), piece: u32, lines: [Range; 2]) -> [Range; 3] {
     let from_tip = |r: usize| {
         let (lo, hi) = times.tip(piece, r);
-        (line[r] - hi - size.slack, line[r] - lo + size.slack)
+        (lines[r].0 - hi - size.slack, lines[r].1 - lo + size.slack)
     };
     let (lo, hi) = products(times.rows(piece, 2), position);
     [from_tip(0), from_tip(1), (lo - size.slack, hi + size.slack)]
@@ -141,12 +151,17 @@ fn is_off(
     arm: &[Range; 3],
     direction: &[f64; 3],
 ) -> bool {
-    let rows = [0, 1, 2].map(|r| times.rows(piece, r));
-    // Convex combinations of what the control rows give, as products of such combinations are.
-    let seen = hull((0..rows[0].len()).map(|k| reach(arm, &[0, 1, 2].map(|r| dot(&rows[r][k], direction)))));
+    let seen = seen(times, piece, arm, direction);
     let own = products(&[*direction], &cells.position(element, cell));
     let error = 2.0 * size.slack;
     seen.0 > own.1 + error || seen.1 < own.0 - error
+}
+
+/// The range of the end of the arm in a direction that is fixed in the tool.
+pub(super) fn seen(times: &Times, piece: u32, arm: &[Range; 3], direction: &[f64; 3]) -> Range {
+    let rows = [0, 1, 2].map(|r| times.rows(piece, r));
+    // Convex combinations of what the control rows give, as products of such combinations are.
+    hull((0..rows[0].len()).map(|k| reach(arm, &[0, 1, 2].map(|r| dot(&rows[r][k], direction)))))
 }
 
 /// Whether `g` has the same sign at all points of the cell to which the arm from the tip reaches.
@@ -193,7 +208,7 @@ fn moves_across(
 }
 
 /// A unit vector along the mean of a cell's normals.
-fn middle_normal(element: &PatchForms, cells: &Cells, cell: u32) -> Option<[f64; 3]> {
+pub(super) fn middle_normal(element: &PatchForms, cells: &Cells, cell: u32) -> Option<[f64; 3]> {
     let [normals, _] = cells.field(element, cell, 0);
     let normal = middle(&normals).try_normalize(0.0)?;
     normal.iter().all(|x| x.is_finite()).then(|| normal.into())
@@ -321,6 +336,10 @@ mod tests {
                     let [x, y, _] = map.evaluate(&[low, v, t]).value;
                     let cell = map.place(&around([low, v, t], shares, size));
                     prop_assert!(!map.is_absent(&cell, &[x, y, 0.0]), "patch");
+                    let line = [x, y, 0.0].map(|q| Enclosure::hull(q, q));
+                    if let Some([in_u, in_v, _]) = map.clipped(&cell, &line) {
+                        prop_assert!(in_u.contains(low) && in_v.contains(v), "{in_u:?} {in_v:?}");
+                    }
                     // Nor is the point beyond the part of the box where `g` can vanish.
                     let enclosures = map.values(&cell).map(|values| (values, map.jacobian(&cell)));
                     if let Some((values, jacobian)) = enclosures

@@ -12,6 +12,7 @@
 
 mod absent;
 mod any_box;
+mod clipped;
 mod edge_map;
 mod enclosures;
 mod in_part;

@@ -6,6 +6,7 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::absent::is_absent;
 use crate::envelope::any_box::AnyBox;
+use crate::envelope::clipped::clipped;
 use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_size, interval, largest, plane_values, product_size, turning, widened,
 };
@@ -135,6 +136,12 @@ impl ChartMap<3> for PatchMap<'_> {
 
     fn drop_part(&mut self, (cell, _): Brick) {
         self.cells.release(cell as usize);
+    }
+
+    fn clipped(&mut self, cell: &Brick, range: &[Enclosure; 3]) -> Option<[Enclosure; 3]> {
+        let lines = [0, 1].map(|k| (range[k].lo(), range[k].hi()));
+        let [u, v] = clipped((self.element, self.cells), (self.times, &self.size), *cell, lines)?.map(interval);
+        Some([u, v, interval(self.times.bounds(cell.1))])
     }
 
     fn narrowed(&mut self, _: &Brick, part: &[Enclosure; 3]) -> Option<Brick> {
