@@ -58,7 +58,7 @@ const FINEST: f64 = 4.0 * ROUNDING / LINE;
 const LARGEST: f64 = 1e90;
 
 /// A tolerance, and the limits derived from it for coordinates of some size.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tolerances {
     tolerance: f64,
     size: f64,

@@ -4,6 +4,7 @@ use crate::cutter::Cutter;
 use crate::cutter::cells::Cells;
 use crate::methods::planes::slicer::Slicer;
 use crate::methods::translation::Grazing;
+use crate::tolerances::Tolerances;
 use sweepsim_solve::{BundleSolver, ChartOptions, ChartSolver, ChartStatistics};
 
 /// The cells of a tool, and solvers.
@@ -13,6 +14,8 @@ pub(crate) struct Workspace {
     pub solvers: Solvers,
     pub grazing: Grazing,
     pub done: Done,
+    /// What all of this is for.
+    pub tolerances: Tolerances,
 }
 
 /// The patches and edges of a tool that closed forms have settled for one part of a path.
@@ -45,9 +48,8 @@ pub(crate) struct Solvers {
 }
 
 impl Workspace {
-    /// `accept`: see [`ChartOptions`].
-    pub fn new(cutter: &Cutter, accept: f64) -> Self {
-        let options = ChartOptions::default().accept(accept);
+    pub fn new(cutter: &Cutter, tolerances: Tolerances) -> Self {
+        let options = ChartOptions::default().accept(tolerances.last_step());
         Self {
             patches: cutter.patches.iter().map(Cells::new).collect(),
             edges: cutter.edges.iter().map(Cells::new).collect(),
@@ -63,6 +65,7 @@ impl Workspace {
                 slicer: Slicer::new(),
                 bundles: BundleSolver::new(options),
             },
+            tolerances,
         }
     }
 }

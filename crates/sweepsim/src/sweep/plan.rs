@@ -8,6 +8,7 @@ use crate::sweep::short_tools::ShortTools;
 use crate::time::path_parts::{self, PathPart};
 use crate::tolerances::Tolerances;
 use std::ops::Range;
+use std::sync::Arc;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Tool};
 
@@ -16,11 +17,13 @@ const ALIKE: f64 = 1e-5;
 
 /// A tool and a path, prepared for any lines.
 pub(crate) struct Plan {
-    pub cutter: Cutter,
+    pub cutter: Arc<Cutter>,
     /// The same tool, cut off.
-    pub short: ShortTools,
+    pub short: Arc<ShortTools>,
     pub parts: Vec<PathPart>,
     pub tolerances: Tolerances,
+    /// The largest coordinate of tool, lines and path.
+    size: f64,
 }
 
 impl Plan {
@@ -42,14 +45,33 @@ impl Plan {
         extent: impl Iterator<Item = f64>,
         options: &Options,
     ) -> Result<Self, SweepError> {
-        let cutter = Cutter::new(tool);
-        // Turned by any angle, and moved.
-        let far = if frame.is_world() {
-            path.size()
-        } else {
-            3.0_f64.sqrt() * path.size() + frame.origin().iter().map(|c| c.abs()).sum::<f64>()
+        let cutter = Arc::new(Cutter::new(tool));
+        let size = extent.map(f64::abs).fold(cutter.reach.max(far(path, frame)), f64::max);
+        let prepared = (cutter, Arc::new(ShortTools::new(tool)));
+        Self::prepared(prepared, (tool, path, moves), frame, size, options)
+    }
+
+    /// The same tool along another path, over the same lines: what is prepared of the tool serves both.
+    pub fn along(&self, (tool, path): (&Tool, &Path), frame: &Frame, options: &Options) -> Result<Self, SweepError> {
+        let far = far(path, frame);
+        // Limits follow from the size, and workspaces are kept for each: rounded up, there are few.
+        let rounded = far.log2().ceil().exp2();
+        let size = match far > self.size {
+            true if Tolerances::new(options.tolerance, rounded).is_ok() => rounded,
+            true => far,
+            false => self.size,
         };
-        let size = extent.map(f64::abs).fold(cutter.reach.max(far), f64::max);
+        let prepared = (Arc::clone(&self.cutter), Arc::clone(&self.short));
+        Self::prepared(prepared, (tool, path, 0..path.moves()), frame, size, options)
+    }
+
+    fn prepared(
+        (cutter, short): (Arc<Cutter>, Arc<ShortTools>),
+        (tool, path, moves): (&Tool, &Path, Range<usize>),
+        frame: &Frame,
+        size: f64,
+        options: &Options,
+    ) -> Result<Self, SweepError> {
         let tolerances = Tolerances::new(options.tolerance, size)?;
         let mut parts = path_parts::parts((path, moves), frame, tool.is_revolved(), cutter.reach, &tolerances);
         // About an arc as wide as a wall or an edge of the tool, lines near the centre touch it all along: squared distances have no digits for them.
@@ -64,8 +86,9 @@ impl Plan {
         Ok(Self {
             parts,
             cutter,
-            short: ShortTools::new(tool),
+            short,
             tolerances,
+            size,
         })
     }
 
@@ -77,5 +100,14 @@ impl Plan {
     /// What is so far above all material is far enough.
     pub fn gap(&self) -> f64 {
         self.margin().max(GAP * self.cutter.reach)
+    }
+}
+
+/// The largest coordinate of a path in a frame: turned by any angle, and moved.
+fn far(path: &Path, frame: &Frame) -> f64 {
+    if frame.is_world() {
+        path.size()
+    } else {
+        3.0_f64.sqrt() * path.size() + frame.origin().iter().map(|c| c.abs()).sum::<f64>()
     }
 }

@@ -104,7 +104,7 @@ pub(crate) fn probe_lines(
             .lock()
             .ok()
             .and_then(|mut spaces: std::sync::MutexGuard<Vec<Workspace>>| spaces.pop());
-        let mut own = kept.unwrap_or_else(|| Workspace::new(&plan.cutter, plan.tolerances.last_step()));
+        let mut own = kept.unwrap_or_else(|| Workspace::new(&plan.cutter, plan.tolerances));
         let mut volume = Dexels::empty(grid);
         let mut probed: Result<(), UnresolvedReason> = Ok(());
         for chunk in plan.parts.chunks(CHUNK) {

@@ -67,7 +67,7 @@ impl Plan {
     }
 }
 
-/// Workspaces of one tool that are not in use.
+/// Workspaces of one tool that are not in use, for any tolerances.
 pub(crate) type Spaces = Arc<Mutex<Vec<Workspace>>>;
 
 /// What all chunks of a sweep share.
@@ -116,8 +116,11 @@ impl SweepJob<'_> {
 
     /// Runs `work` with a workspace.
     pub fn with_space<T>(&self, work: impl FnOnce(&mut Workspace) -> T) -> T {
-        let kept = self.spaces.lock().map(|mut spaces| spaces.pop()).unwrap_or_default();
-        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter, self.tolerances.last_step()));
+        let kept = self.spaces.lock().ok().and_then(|mut spaces| {
+            let like = spaces.iter().rposition(|space| space.tolerances == self.tolerances)?;
+            Some(spaces.swap_remove(like))
+        });
+        let mut space = kept.unwrap_or_else(|| Workspace::new(self.cutter, self.tolerances));
         let result = work(&mut space);
         if let Ok(mut spaces) = self.spaces.lock() {
             spaces.push(space);

@@ -202,10 +202,10 @@ fn drive<'a>(
             runs.truncate(runs.partition_point(|run| run.start <= last).max(1));
         }
         let mut stop = ControlFlow::Continue(());
-        for stretch in stretches(&runs) {
+        for stretch in stretches(&runs, STRETCH / Solids::count(toolpath)) {
             let moves = stretch[0].start..stretch[stretch.len() - 1].end;
             // The same for all tiles: they see the extent of the whole grid.
-            let solids = Solids::new(toolpath, (toolpath.path, moves), &works[0])?;
+            let solids = Solids::new(toolpath, moves, &works[0])?;
             for batch in stretch.chunks(step) {
                 let judged = AtomicUsize::new(0);
                 works.par_iter_mut().with_max_len(1).try_for_each(|work| {
@@ -243,15 +243,11 @@ pub(super) struct Solids<'a> {
 }
 
 impl<'a> Solids<'a> {
-    /// Along some moves of a path, which is the toolpath's or another course of one of its moves.
-    pub(super) fn new(
-        toolpath: &ToolPath<'a>,
-        (path, moves): (&Path, Range<usize>),
-        work: &Work,
-    ) -> Result<Self, SweepError> {
+    /// Along some moves of a toolpath.
+    pub(super) fn new(toolpath: &ToolPath<'a>, moves: Range<usize>, work: &Work) -> Result<Self, SweepError> {
         let mut grids = vec![work.remaining.grid().whole()];
         grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
-        let solid = |tool: &'a Tool| MovingSolid::new(tool, (path, moves.clone()), &grids, &work.options);
+        let solid = |tool: &'a Tool| MovingSolid::new(tool, (toolpath.path, moves.clone()), &grids, &work.options);
         let solids = |assembly: &'a Assembly| -> Result<Self, SweepError> {
             let bodies = assembly.bodies().iter();
             Ok(Self {
@@ -264,6 +260,27 @@ impl<'a> Solids<'a> {
         Ok(Self {
             larger: larger.map(Box::new),
             ..solids(toolpath.assembly)?
+        })
+    }
+
+    /// The number of them.
+    fn count(toolpath: &ToolPath) -> usize {
+        let assemblies = std::iter::once(toolpath.assembly).chain(toolpath.larger);
+        assemblies.map(|assembly| 1 + assembly.bodies().len()).sum()
+    }
+
+    /// The same along another path.
+    pub(super) fn along(&self, path: &Path, work: &Work) -> Result<Self, SweepError> {
+        let solid = |solid: &MovingSolid<'a>| solid.along(path, work.remaining.grid(), &work.options);
+        let larger = self
+            .larger
+            .as_ref()
+            .map(|larger| larger.along(path, work))
+            .transpose()?;
+        Ok(Self {
+            cutter: solid(&self.cutter)?,
+            bodies: self.bodies.iter().map(solid).collect::<Result<_, _>>()?,
+            larger: larger.map(Box::new),
         })
     }
 
@@ -298,12 +315,12 @@ fn runs(toolpath: &ToolPath) -> Vec<Range<usize>> {
     runs
 }
 
-/// Runs that are prepared together, at least one each time: memory grows with their moves.
-fn stretches(runs: &[Range<usize>]) -> impl Iterator<Item = &[Range<usize>]> {
+/// Runs that are prepared together, of at most so many moves but at least one run: memory grows with the moves.
+fn stretches(runs: &[Range<usize>], most: usize) -> impl Iterator<Item = &[Range<usize>]> {
     let mut first = 0;
     std::iter::from_fn(move || {
         let start = runs.get(first)?.start;
-        let count = runs[first..].partition_point(|run| run.end - start <= STRETCH).max(1);
+        let count = runs[first..].partition_point(|run| run.end - start <= most).max(1);
         let stretch = &runs[first..first + count];
         first += count;
         Some(stretch)

@@ -60,7 +60,7 @@ pub struct Finding {
     /// Nothing is touched: it only comes within what the solid [is taken larger](crate::verify::ToolPath::with_larger) by. Time, place, depth and volume are
     /// those of the larger solid.
     pub near: bool,
-    /// The courses of a rapid on which this happens, if it has [another course](crate::verify::OtherCourse). Time, place, depth and volume are those of the
+    /// The courses of a rapid on which this happens, if it has [another course](sweepsim_motion::OtherCourse). Time, place, depth and volume are those of the
     /// straight one, unless nothing happens there.
     pub courses: Option<RapidCourses>,
 }

@@ -31,5 +31,5 @@ pub use deviation::{Deviation, DeviationKind, Deviations, Region, TileDeviation,
 pub use driver::{TileVerification, verify, verify_tiles};
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use record::{Judgement, TileRecord};
-pub use scene::{MoveRemoval, OtherCourse, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
+pub use scene::{MoveRemoval, PathRemoval, Scene, ToolPath, Verification, VerifyOptions};
 pub use target::{Target, TargetError, TargetRegion};

@@ -4,7 +4,7 @@ use super::finding::{Finding, MoveState};
 use super::target::Target;
 use crate::sweep::{Options, UnresolvedDexel};
 use sweepsim_dexel::Dexels;
-use sweepsim_motion::{Assembly, Path};
+use sweepsim_motion::{Assembly, OtherCourses, Path};
 
 /// A cutter with its bodies, a path, and the state of the machine in each move.
 #[derive(Clone, Copy, Debug)]
@@ -18,8 +18,8 @@ pub struct ToolPath<'a> {
     pub states: &'a [MoveState],
     /// The same cutter and bodies, each as large as what must stay clear.
     pub larger: Option<&'a Assembly>,
-    /// Other courses that moves may take, sorted by move.
-    pub other_courses: &'a [OtherCourse],
+    /// Other courses that moves may take.
+    pub other_courses: Option<&'a OtherCourses>,
     /// What nothing must touch along this path, on a grid of its own in the frame of the stock's grid: the fixtures of its set-up. `None`: those of the [`Scene`].
     pub fixtures: Option<&'a Dexels>,
 }
@@ -33,7 +33,7 @@ impl<'a> ToolPath<'a> {
             path,
             states: &[],
             larger: None,
-            other_courses: &[],
+            other_courses: None,
             fixtures: None,
         }
     }
@@ -62,34 +62,15 @@ impl<'a> ToolPath<'a> {
         Self { larger, ..self }
     }
 
-    /// Also judges moves on other courses, which may meet the stock before their run. Sorted by move.
+    /// Also judges moves on other courses, which may meet the stock before their run.
     #[must_use]
-    pub fn with_other_courses(self, other_courses: &'a [OtherCourse]) -> Self {
+    pub fn with_other_courses(self, other_courses: &'a OtherCourses) -> Self {
+        let other_courses = Some(other_courses);
         Self { other_courses, ..self }
     }
 
     pub(super) fn state(&self, number: usize) -> MoveState {
         self.states.get(number).copied().unwrap_or_default()
-    }
-}
-
-/// Another course that a move may take: a rapid on a machine that may let each axis arrive in its own time.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct OtherCourse {
-    /// The move of the path.
-    pub number: usize,
-    /// The course, from the move's start to its end.
-    pub path: Path,
-    /// When each move of the course ends, as a fraction of the whole, from 0 to 1.
-    pub times: Vec<f64>,
-}
-
-impl OtherCourse {
-    /// `times`: when each move of the course ends, as a fraction of the whole, from 0 to 1.
-    #[must_use]
-    pub fn new(number: usize, path: Path, times: Vec<f64>) -> Self {
-        Self { number, path, times }
     }
 }
 

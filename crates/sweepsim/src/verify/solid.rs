@@ -61,18 +61,28 @@ impl<'a> MovingSolid<'a> {
     ) -> Result<Self, SweepError> {
         let extent = grids.iter().flat_map(|grid| grid.min().into_iter().chain(grid.max()));
         let plan = Plan::of_moves((tool, path, moves), grids[0].frame(), extent, options)?;
+        Ok(Self::planned(tool, plan, Arc::default(), options))
+    }
+
+    /// The same solid along another path. It will be swept on the same grids, one of which is `grid`.
+    pub fn along(&self, path: &Path, grid: &Grid, options: &Options) -> Result<Self, SweepError> {
+        let plan = self.plan.along((self.tool, path), grid.frame(), options)?;
+        Ok(Self::planned(self.tool, plan, Arc::clone(&self.spaces), options))
+    }
+
+    fn planned(tool: &'a Tool, plan: Plan, spaces: Spaces, options: &Options) -> Self {
         let cylinder = tool.bounding_cylinder();
         // More than all displacements together.
         let margin = options.tolerance;
         let boxes = plan.parts.iter().map(|part| swept_box(&part.segment, cylinder, margin));
         let boxes: Vec<Box3> = boxes.collect();
-        Ok(Self {
+        Self {
             hulls: boxes.chunks(BLOCK).map(hull).collect(),
             boxes,
             tool,
             plan,
-            spaces: Arc::default(),
-        })
+            spaces,
+        }
     }
 
     /// The parts of these moves.
@@ -259,6 +269,27 @@ mod tests {
             };
             let expected = (0..grid.len() as u32).filter(inside).count();
             prop_assert_eq!(swept.lines.iter().filter(|(line, _)| inside(line)).count(), expected);
+        }
+
+        /// A solid that is prepared for one path sweeps the same along another as if it had been prepared for that alone.
+        #[test]
+        fn what_is_prepared_of_a_tool_serves_other_paths(
+            tips in prop::collection::vec(prop::array::uniform3(-12.0..12.0_f64), 2..5),
+            lean in prop_oneof![Just(0.0), -0.5..0.5_f64],
+        ) {
+            let pose = |tip: [f64; 3], lean: f64| Pose::new(tip, [lean, 0.2 * lean, 1.0]).unwrap();
+            let grid = Grid::new([-40.0, -40.0], [40.0, 40.0], [60, 60]).unwrap();
+            let (tool, options) = (Tool::bull(3.0, 1.0, 26.0).unwrap(), Options::default());
+            let first = Path::new(vec![pose([0.0; 3], 0.3), pose([5.0, 5.0, 1.0], -0.1)]).unwrap();
+            let other = Path::new(tips.iter().map(|tip| pose(*tip, lean)).collect()).unwrap();
+            let mask = LineMask::new(&grid, 0..grid.len() as u32).unwrap();
+            let lines = |solid: &MovingSolid| {
+                solid.swept(solid.slice(solid.parts(0..9)), (&grid, 10.0), &mask, &options, &()).unwrap().lines
+            };
+            let prepared = MovingSolid::new(&tool, (&first, 0..1), &[grid], &options).unwrap();
+            lines(&prepared);
+            let along = lines(&prepared.along(&other, &grid, &options).unwrap());
+            prop_assert_eq!(along, lines(&MovingSolid::new(&tool, (&other, 0..other.moves()), &[grid], &options).unwrap()));
         }
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use sweepsim::Monitor;
 use sweepsim::motion::{Assembly, Tool};
 use sweepsim::verify::{
-    MoveState, OtherCourse, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
+    MoveState, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
 };
 use sweepsim_dexel::{Dexels, StockError};
 use sweepsim_formats::{Job, JobPath, Report};
@@ -25,7 +25,6 @@ pub(super) struct JudgedProgram<'a> {
     /// As large as what must stay clear.
     larger: Option<BTreeMap<u32, Assembly>>,
     /// Of each path.
-    courses: Vec<Vec<OtherCourse>>,
     states: Vec<Vec<MoveState>>,
     options: VerifyOptions,
 }
@@ -39,7 +38,6 @@ impl<'a> JudgedProgram<'a> {
             session,
             assemblies: assemblies(session, [0.0; 2])?,
             larger: larger.transpose()?,
-            courses: job.paths.iter().map(other_courses).collect(),
             states: job.paths.iter().map(states).collect(),
             options: VerifyOptions::new(sweeping(job, options)).first(judging.first),
         })
@@ -52,7 +50,7 @@ impl<'a> JudgedProgram<'a> {
         let toolpath = |(number, path): (usize, &'a JobPath)| {
             let toolpath = ToolPath::new(&self.assemblies[&path.tool], &path.path)
                 .with_states(&self.states[number])
-                .with_other_courses(&self.courses[number]);
+                .with_other_courses(&path.other_courses);
             let toolpath = match &self.larger {
                 Some(larger) => toolpath.with_larger(&larger[&path.tool]),
                 None => toolpath,
@@ -184,14 +182,6 @@ fn assemblies(session: &JobSession, [cutter, body]: [f64; 2]) -> Result<BTreeMap
         all.insert(*number, whole);
     }
     Ok(all)
-}
-
-/// The other courses of a path's rapids.
-fn other_courses(path: &JobPath) -> Vec<OtherCourse> {
-    let courses = path.other_courses.iter();
-    courses
-        .map(|course| OtherCourse::new(course.number, course.path.clone(), course.times.clone()))
-        .collect()
 }
 
 /// By how much cutters beside material, and bodies, are taken larger.

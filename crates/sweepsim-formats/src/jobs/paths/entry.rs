@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Law, Path, RotaryTable};
+use sweepsim_motion::{Law, OtherCourses, Path, RotaryTable};
 use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions, read_file};
 
 use super::{Flags, JobPath, Origins, PathPlace, inline, program, spline_motion};
@@ -45,10 +45,8 @@ impl JobReader<'_> {
             if !frame.is_world() {
                 let moved = path.path.moved(&turn, frame.origin());
                 path.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
-                for course in &mut path.other_courses {
-                    let moved = course.path.moved(&turn, frame.origin());
-                    course.path = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
-                }
+                let moved = path.other_courses.moved(&turn, frame.origin());
+                path.other_courses = moved.map_err(|error| self.error(Problem::Path(error), &at))?;
             }
         }
         Ok(paths)
@@ -107,7 +105,7 @@ impl JobReader<'_> {
                 assumed_rapids: rapid.count() > 0,
                 rapid,
                 seconds,
-                other_courses: Vec::new(),
+                other_courses: OtherCourses::default(),
                 spindle_stopped: Flags::default(),
                 no_feed: Flags::default(),
                 beyond: Vec::new(),

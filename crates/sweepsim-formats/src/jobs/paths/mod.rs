@@ -14,7 +14,7 @@ use std::path::{Path as FilePath, PathBuf};
 use std::sync::Arc;
 
 use sweepsim_dexel::Frame;
-use sweepsim_motion::Path;
+use sweepsim_motion::{OtherCourses, Path};
 use sweepsim_nc::{AxisFinding, Call, Note};
 
 use super::place::Step;
@@ -45,8 +45,8 @@ pub struct JobPath {
     pub source: String,
     /// Whether each move is a rapid.
     pub rapid: Flags,
-    /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, sorted by move.
-    pub other_courses: Vec<OtherCourse>,
+    /// Where it is not known how the machine makes its rapids: the dog-legs that they may be, in the coordinates of the part.
+    pub other_courses: OtherCourses,
     /// Whether the spindle stands still in each move; empty if the program never mentions the spindle.
     pub spindle_stopped: Flags,
     /// Whether each move is a feed move before the program's first feed; empty if it never gives one.
@@ -67,18 +67,6 @@ pub struct JobPath {
     pub calls: Arc<[Call]>,
     /// What was ignored or decided while reading the file; given with the first of its paths.
     pub notes: Vec<Note>,
-}
-
-/// Another course that a move of a path may take.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct OtherCourse {
-    /// The move of the path.
-    pub number: usize,
-    /// The course, in the coordinates of the part.
-    pub path: Path,
-    /// When each move of the course ends, as a fraction of the whole, from 0 to 1.
-    pub times: Vec<f64>,
 }
 
 /// Where a pose of a program comes from.

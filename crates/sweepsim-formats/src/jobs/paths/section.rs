@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::course::{Step, TURNING, at_steps};
-use super::{Flags, JobPath, Origin, Origins, OtherCourse, Seconds};
+use super::{Flags, JobPath, Origin, Origins, Seconds};
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Law, Move, Path, PathBuilder, PathError, Pose};
+use sweepsim_motion::{Law, Move, OtherCourses, PathBuilder, PathError, Pose};
 use sweepsim_nc::{AxisFinding, Call, Kinematics, MoveTime, Note, Position, ProgramPose, Rapid};
 
 /// A section of a program: poses that the tool reaches one after the other, and the corners of dog-legs between them.
@@ -18,7 +18,7 @@ pub(super) struct Section {
     stopped: Flags,
     no_feed: Flags,
     origins: Origins,
-    other_courses: Vec<OtherCourse>,
+    other_courses: OtherCourses,
     dwell_seconds: f64,
     assumed_rapids: bool,
     /// The poses at which the machine finds fault.
@@ -65,14 +65,8 @@ impl Section {
             Some(_) => None,
         };
         if let Some(course) = other {
-            let (times, poses): (Vec<f64>, Vec<Pose>) = course.into_iter().unzip();
-            if let Ok(path) = Path::new(poses) {
-                self.other_courses.push(OtherCourse {
-                    number: self.rapid.len() - 1,
-                    path,
-                    times: times[1..].to_vec(),
-                });
-            }
+            // Corners between two poses of the path have no fault that the path hasn't.
+            let _ = self.other_courses.push(self.rapid.len() - 1, course);
         }
     }
 

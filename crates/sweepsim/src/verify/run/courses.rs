@@ -3,17 +3,17 @@
 use super::Question;
 use crate::error::SweepError;
 use crate::sweep::UnresolvedDexel;
-use crate::sweep::heights::{HeightMap, window};
+use crate::sweep::heights::HeightMap;
 use crate::verify::driver::{Solids, Work};
 use crate::verify::finding::{Finding, FindingKind, RapidCourses};
 use crate::verify::lines::Lines;
 use crate::verify::record::TileFinding;
-use crate::verify::scene::{OtherCourse, ToolPath};
+use crate::verify::scene::ToolPath;
 use crate::verify::search::{Arena, Touch, Touching};
 use crate::verify::solid::MovingSolid;
 use std::ops::Range;
-use sweepsim_dexel::{Dexels, Grid};
-use sweepsim_motion::{Assembly, Path, Pose};
+use sweepsim_dexel::Dexels;
+use sweepsim_motion::{Assembly, OtherCourse, Path, Pose};
 
 impl Work<'_> {
     /// Rapids in which a cutter taken larger meets material, beside those in `seen..` in which the cutter itself does.
@@ -35,7 +35,7 @@ impl Work<'_> {
         let mut material = self.near_stock(&larger.cutter, moves.clone());
         // Out of what it has cut, along its axis.
         let start = toolpath.path.pose(moves.start);
-        material = self.without_withdrawal(assembly, &start, material)?;
+        material = self.without_withdrawal(&larger.cutter, assembly, &start, material)?;
         let question = Question {
             touching: Touching {
                 probe: &larger.cutter,
@@ -67,7 +67,13 @@ impl Work<'_> {
     }
 
     /// The material that a cutter does not meet on its way out of the stock along its axis.
-    fn without_withdrawal(&self, larger: &Assembly, start: &Pose, material: Lines) -> Result<Lines, SweepError> {
+    fn without_withdrawal(
+        &self,
+        cutter: &MovingSolid,
+        larger: &Assembly,
+        start: &Pose,
+        material: Lines,
+    ) -> Result<Lines, SweepError> {
         let grid = self.remaining.grid();
         let whole = grid.whole();
         let ends = material.0.iter().flat_map(|(_, heights)| heights.iter().flatten());
@@ -93,7 +99,7 @@ impl Work<'_> {
         let Ok(path) = Path::new(vec![*start, end]) else {
             return Ok(material);
         };
-        let solid = MovingSolid::new(larger.cutter(), (&path, 0..path.moves()), &[whole], &self.options)?;
+        let solid = cutter.along(&path, grid, &self.options)?;
         let mut arena = Arena::new((grid, self.top()), &self.options, self.monitor);
         let swept = arena.swept(&solid, solid.slice(solid.parts(0..1)), &material)?;
         Ok(material.without(&swept).longer_than(self.options.tolerance))
@@ -104,74 +110,49 @@ impl Work<'_> {
         &mut self,
         path: usize,
         toolpath: &ToolPath,
+        solids: &Solids,
         moves: Range<usize>,
         seen: usize,
     ) -> Result<(), SweepError> {
-        let courses = toolpath.other_courses;
-        let from = courses.partition_point(|course| course.number < moves.start);
-        let to = courses.partition_point(|course| course.number < moves.end);
-        for course in &courses[from..to] {
+        let courses = toolpath.other_courses.into_iter();
+        for course in courses.flat_map(|courses| courses.of(moves.clone())) {
             let (mut found, mut unresolved) = (Vec::new(), Vec::new());
-            if self.comes_near(toolpath, course) {
-                let solids = Solids::new(toolpath, (&course.path, 0..course.path.moves()), self)?;
+            let solids = solids.along(&course.path, self)?;
+            for (body, probe, itself) in solids.probes() {
+                let kind = if body.is_some() {
+                    FindingKind::Collision
+                } else {
+                    FindingKind::Rapid
+                };
+                // A cutter that is taken larger leaves what it has cut.
+                let (probe, itself) = match (body, itself) {
+                    (None, Some(itself)) => (itself, None),
+                    _ => (probe, itself),
+                };
+                let question = Question {
+                    path,
+                    kind,
+                    body,
+                    touching: Touching::still(probe, itself),
+                };
+                let place = (&self.remaining, &self.heights);
+                found.extend(self.on_course(question, &course, place, &mut unresolved)?);
+            }
+            if let Some((fixtures, heights)) = &self.fixtures {
                 for (body, probe, itself) in solids.probes() {
-                    let kind = if body.is_some() {
-                        FindingKind::Collision
-                    } else {
-                        FindingKind::Rapid
-                    };
-                    // A cutter that is taken larger leaves what it has cut.
-                    let (probe, itself) = match (body, itself) {
-                        (None, Some(itself)) => (itself, None),
-                        _ => (probe, itself),
-                    };
                     let question = Question {
                         path,
-                        kind,
+                        kind: FindingKind::Fixture,
                         body,
                         touching: Touching::still(probe, itself),
                     };
-                    let place = (&self.remaining, &self.heights);
-                    found.extend(self.on_course(question, course, place, &mut unresolved)?);
-                }
-                if let Some((fixtures, heights)) = &self.fixtures {
-                    for (body, probe, itself) in solids.probes() {
-                        let question = Question {
-                            path,
-                            kind: FindingKind::Fixture,
-                            body,
-                            touching: Touching::still(probe, itself),
-                        };
-                        found.extend(self.on_course(question, course, (fixtures, heights), &mut unresolved)?);
-                    }
+                    found.extend(self.on_course(question, &course, (fixtures, heights), &mut unresolved)?);
                 }
             }
             self.unresolved.extend(unresolved);
             self.merge(course.number, seen, found);
         }
         Ok(())
-    }
-
-    /// Whether a course comes near any material, by the tool's reach from its tip.
-    fn comes_near(&self, toolpath: &ToolPath, course: &OtherCourse) -> bool {
-        let assembly = toolpath.larger.unwrap_or(toolpath.assembly);
-        let solids = std::iter::once(assembly.cutter()).chain(assembly.bodies().iter().map(|body| &body.solid));
-        let reaches = solids.map(|solid| {
-            let bound = solid.bounding_cylinder();
-            bound.radius.hypot(bound.z[0].abs().max(bound.z[1].abs()))
-        });
-        let reach = reaches.fold(0.0, f64::max) + self.options.tolerance;
-        let near = |grid: &Grid, heights: &HeightMap| {
-            let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-            for pose in course.path.poses_in_order(0) {
-                for (range, c) in reached.iter_mut().zip(grid.frame().from_world(pose.tip())) {
-                    *range = [range[0].min(c - reach), range[1].max(c + reach)];
-                }
-            }
-            window(grid, &reached).is_some_and(|window| !heights.visit(window, reached[2], &mut |_| false))
-        };
-        let beside = |(dexels, heights): &(&Dexels, HeightMap)| near(dexels.grid(), heights);
-        near(self.remaining.grid(), &self.heights) || self.fixtures.as_ref().is_some_and(beside)
     }
 
     fn on_course(
@@ -184,6 +165,10 @@ impl Work<'_> {
         let (grid, probe) = (*material.grid(), question.touching.probe);
         let moves = 0..course.path.moves();
         let swept = probe.swept_near(moves.clone(), (&grid, self.top()), heights, &self.options, self.monitor)?;
+        if swept.lines.is_empty() {
+            unresolved.extend(swept.unresolved);
+            return Ok(None);
+        }
         let material = Lines::of(material, swept.lines.iter().map(|(line, _)| *line));
         let mut arena = Arena::new((&grid, self.top()), &self.options, self.monitor);
         let met = material.common(&swept.lines, self.options.tolerance);

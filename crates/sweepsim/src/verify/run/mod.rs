@@ -100,7 +100,7 @@ impl Work<'_> {
                 each.as_deref(),
             )?;
         }
-        self.judge_other_courses(path, toolpath, moves.clone(), seen)?;
+        self.judge_other_courses(path, toolpath, solids, moves.clone(), seen)?;
         if let Some(each) = &each
             && self.each_move
         {
