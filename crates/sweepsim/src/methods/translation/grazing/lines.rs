@@ -5,7 +5,7 @@ use super::super::rows::{Floor, Row, rows};
 use super::chart::{Chart, Region, Witness, solved};
 use super::course::Course;
 use super::face::{Face, Sight};
-use super::knot::Knot;
+use super::knot::{Knot, Quintic, Seen};
 use sweepsim_dexel::Source;
 
 /// The most steps of Newton's method, which takes two to four.
@@ -19,7 +19,7 @@ const LONGEST: f64 = 1e-3;
 /// The last step to a point between which and others the curve is interpolated.
 const POLISHED: f64 = 1e-8;
 /// So many lines or fewer are solved one by one.
-const FEW: usize = 16;
+const FEW: usize = 8;
 
 /// A line, in the coordinates of the move.
 #[derive(Clone, Copy, Debug)]
@@ -149,56 +149,63 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
     fn all(&mut self) {
         let last = self.targets.len() - 1;
         let polished = last > FEW;
-        let first = self.one(0, [None, None], polished);
-        let end = if last > 0 {
-            self.one(last, [first.as_ref(), None], polished)
-        } else {
-            None
-        };
-        self.between([1, last.max(1)], [first.as_ref(), end.as_ref()], false);
+        let first = self.one(0, [&Seen::default(); 2], polished);
+        if last > 0 {
+            let end = self.one(last, [&first, &Seen::default()], polished);
+            self.between([1, last], [&first, &end], None);
+        }
     }
 
-    /// The lines from one number to another, between knots. `smooth`: whether the curve was seen to be close to the polynomial through both.
-    fn between(&mut self, [low, high]: [usize; 2], knots: [Option<&Knot>; 2], smooth: bool) {
+    /// The lines from one number to another, between two others. `larger`: the polynomial through the knots of both and another one.
+    fn between(&mut self, [low, high]: [usize; 2], ends: [&Seen; 2], larger: Option<&Quintic>) {
         if low >= high {
-            return;
-        }
-        if smooth && let [Some(a), Some(b)] = knots {
-            for n in low..high {
-                if !self.interpolated(n, a, b) {
-                    self.one(n, knots, false);
-                }
-            }
             return;
         }
         let middle = usize::midpoint(low, high);
         let polished = high - low > FEW;
-        let found = self.one(middle, knots, polished);
-        let smooth = polished
-            && match (knots, &found) {
-                ([Some(a), Some(b)], Some(found)) => self.is_smooth(a, b, found),
-                _ => false,
-            };
-        self.between([low, middle], [knots[0], found.as_ref()], smooth);
-        self.between([middle + 1, high], [found.as_ref(), knots[1]], smooth);
+        let found = self.one(middle, ends, polished);
+        let mut through = None;
+        let parts = [
+            ([low, middle], [ends[0], &found]),
+            ([middle + 1, high], [&found, ends[1]]),
+        ];
+        if polished && let [Some(a), Some(knot), Some(b)] = [&ends[0].knot, &found.knot, &ends[1].knot] {
+            through = Quintic::through(a, knot, b);
+            if let (Some(larger), Some(own)) = (larger, &through)
+                && self.is_smooth(larger, knot)
+            {
+                for ([low, high], ends) in parts {
+                    for n in low..high {
+                        if !self.interpolated(n, ends, own) {
+                            self.one(n, ends, false);
+                        }
+                    }
+                }
+                return;
+            }
+        }
+        for (numbers, ends) in parts {
+            self.between(numbers, ends, through.as_ref());
+        }
     }
 
-    /// Whether the curve is close to the polynomials between two knots, half-way between which another one was found: over each half, they will be off by a sixteenth
-    /// of the difference there.
-    fn is_smooth(&self, a: &Knot, b: &Knot, found: &Knot) -> bool {
-        const LESS: f64 = 4.0;
-        let [[q, _], [z, _]] = Knot::between(a, b, found.p);
+    /// Whether the curve is close to a polynomial at a knot between two of its own: those through two of these three and this one are off by no more than a third of the difference,
+    /// and by a sixtieth where the knots are at equal distances.
+    fn is_smooth(&self, larger: &Quintic, found: &Knot) -> bool {
+        const LESS: f64 = 12.0;
+        let [[q, _], [z, _]] = larger.at(found.p);
         let course = self.lines.course;
         let steepness = course.way[2].abs() / course.length;
         let off = (z - found.place[1]).abs() + (1.0 + steepness) * (q - found.place[0]).abs();
-        // A knot near an end says nothing of the middle.
-        let share = (found.p - a.p) / (b.p - a.p);
-        off <= LESS * self.lines.near && (0.2..=0.8).contains(&share)
+        off <= LESS * self.lines.near
     }
 
     /// Settles a line between two knots without an evaluation, if all decisions are certain.
-    fn interpolated(&mut self, n: usize, a: &Knot, b: &Knot) -> bool {
+    fn interpolated(&mut self, n: usize, ends: [&Seen; 2], curve: &Quintic) -> bool {
         let Target { p, q, line } = self.targets[n];
+        let [Some(a), Some(b)] = ends.map(|end| end.knot.as_ref()) else {
+            return false;
+        };
         let nearest = if p - a.p < b.p - p { a } else { b };
         let region = self.chart.region(&nearest.witness, [p, 0.0], &Region::WHOLE);
         if region.is_empty() {
@@ -213,7 +220,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         if !(met && region.is_inside()) {
             return false;
         }
-        let [[own, dq], [z, dz]] = Knot::between(a, b, p);
+        let [[own, dq], [z, dz]] = curve.at(p);
         let [length, rise] = [course.length, course.way[2]];
         // Across the curve and the way.
         let normal = [-rise, rise * dq - length * dz, length];
@@ -237,26 +244,41 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         self.lines.collector.crossing(line as usize, z, jump, normal, source);
     }
 
-    /// One line; the point of the curve, if it has one in the chart.
-    fn one(&mut self, n: usize, knots: [Option<&Knot>; 2], polished: bool) -> Option<Knot> {
+    /// One line, between two others.
+    fn one(&mut self, n: usize, ends: [&Seen; 2], polished: bool) -> Seen {
+        let mut latest = None;
+        let knot = self.solve(n, ends, polished, &mut latest);
+        let p = self.targets[n].p;
+        let witness = match &knot {
+            Some(knot) => Some(knot.witness),
+            None => latest.or_else(|| Seen::nearest(ends, p)),
+        };
+        Seen { witness, knot }
+    }
+
+    /// One line; the point of the curve, if it has one in the chart. `latest`: where that was evaluated last.
+    fn solve(&mut self, n: usize, ends: [&Seen; 2], polished: bool, latest: &mut Option<Witness>) -> Option<Knot> {
         let chart = self.chart;
         let Target { p, q, line } = self.targets[n];
         let length = self.lines.course.length;
         let mut within = chart.region(&self.centre, [p, 0.0], &Region::WHOLE);
-        let mut nearest: Option<&Knot> = None;
-        for knot in knots.into_iter().flatten() {
-            within = chart.region(&knot.witness, [p, 0.0], &within);
-            if nearest.is_none_or(|other| (knot.p - p).abs() < (other.p - p).abs()) {
-                nearest = Some(knot);
-            }
+        // Where the curve has left the chart, the points that were looked at there tell.
+        for witness in ends.into_iter().filter_map(|end| end.witness.as_ref()) {
+            within = chart.region(witness, [p, 0.0], &within);
         }
         if within.is_empty() {
             return None;
         }
+        let knots = ends.map(|end| end.knot.as_ref());
+        let nearest = match knots {
+            [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
+            [a, b] => a.or(b),
+        };
         let slack = 4.0 * self.lines.course.slack;
         if let Some(knot) = nearest {
             let (lo, hi) = chart.q(&knot.witness, &within);
-            if !meets((lo - slack, hi + slack), q, length) {
+            // A knot is of use to other lines.
+            if !polished && !meets((lo - slack, hi + slack), q, length) {
                 return None;
             }
             // So near that it needs no other point.
@@ -279,6 +301,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
             let sight = self.lines.face.at(chart.point(s));
             self.lines.evaluations += 1;
             let here = witness(s, &sight);
+            *latest = Some(here);
             let scaled = |row: [f64; 2]| [row[0] * chart.half[0], row[1] * chart.half[1]];
             let [in_u, in_v] = sight.slopes;
             let jacobian = [scaled([in_u[1], in_v[1]]), scaled([sight.g[1], sight.g[2]])];
