@@ -82,10 +82,20 @@ pub(super) fn rows(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2], mut vi
     });
 }
 
-/// Whether lines that are asked for have `p` and `q` in these ranges, or almost.
+/// Whether lines that are asked for have `p` and `q` in these ranges, up to rounding. A range may be narrower than what [`numbers`] adds to it, so each line is looked at:
+/// otherwise a cell that shrinks to a point would seem to have lines over it until rounding ends that.
 pub(super) fn meets(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2]) -> bool {
-    search(lines, floor, ranges, |Row { i, j, .. }| {
-        (j[0]..=j[1]).any(|j| lines.asks(i, j))
+    let margin = 2.0 * floor.slack;
+    let [ux, uy] = floor.ahead;
+    search(lines, floor, ranges, |Row { i, j, x }| {
+        (j[0]..=j[1]).any(|j| {
+            let y = lines.coordinate(1, j) - floor.tip[1];
+            let own = [ux * y - uy * x, ux * x + uy * y];
+            let mut pairs = own.into_iter().zip(ranges);
+            // NaN is inside.
+            let outside = pairs.any(|(own, [low, high])| own < low - margin || own > high + margin);
+            !outside && lines.asks(i, j)
+        })
     })
 }
 
@@ -196,6 +206,43 @@ impl Sector {
             } else {
                 put([-half, half]);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use sweepsim_dexel::Grid;
+
+    proptest! {
+        /// A window has lines if one is in it, however narrow the window is, and however near to others.
+        #[test]
+        fn only_lines_in_a_window_count(
+            angle in 0.0..6.2, tip in [-3.0..3.0, -3.0..3.0], shift in [-0.1..0.1, -0.1..0.1], start in [-3.0..3.0, -3.0..3.0],
+            logarithm in -9.0..0.5, length in 0.0..8.0, chosen in prop::option::of((0_usize..7, 0_usize..9)),
+        ) {
+            let grid = Grid::new([-3.0, -2.0], [4.0, 3.0], [7, 9]).unwrap();
+            let lines = Lattice::all(&grid, shift);
+            let (uy, ux) = f64::sin_cos(angle);
+            let floor = Floor { tip: [tip[0], tip[1], 0.0], ahead: [ux, uy], slack: 1e-14 };
+            let place = |(i, j): (usize, usize)| {
+                let [x, y] = [lines.coordinate(0, i) - tip[0], lines.coordinate(1, j) - tip[1]];
+                [ux * y - uy * x, ux * x + uy * y]
+            };
+            let width = f64::exp(2.3 * logarithm);
+            // Beside or over one of the lines.
+            let [p, q] = chosen.map_or(start, |line| [place(line)[0] + (start[0] - 1.5) * width, place(line)[1] + start[1]]);
+            let window = [[p, p + width], [q, q + length]];
+            let all = (0..7).flat_map(|i| (0..9).map(move |j| (i, j)));
+            let off = |line: (usize, usize)| {
+                let own = place(line);
+                (0..2).map(|k| (window[k][0] - own[k]).max(own[k] - window[k][1])).fold(f64::NEG_INFINITY, f64::max)
+            };
+            let least = all.map(off).fold(f64::INFINITY, f64::min);
+            prop_assume!(least.abs() > 1e-13);
+            prop_assert_eq!(meets(&lines, &floor, window), least < 0.0);
         }
     }
 }
