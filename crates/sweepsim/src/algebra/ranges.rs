@@ -144,11 +144,33 @@ fn sum(a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
 
 /// Range of `⟨row, point⟩` over all rows and points.
 pub(crate) fn products(rows: &[[f64; 3]], points: &Triples) -> (f64, f64) {
+    if let [row] = rows {
+        return products_of_one(row, points);
+    }
     // The loop over three rows, those of an arc, is unrolled.
     match <&[[f64; 3]; 3]>::try_from(rows) {
         Ok(three) => products_of(three, points),
         Err(_) => products_of(rows, points),
     }
+}
+
+/// Of a tool that does not turn.
+fn products_of_one(row: &[f64; 3], points: &Triples) -> (f64, f64) {
+    let mut band = Band::new();
+    let (x, rest) = points.x.as_chunks::<LANES>();
+    let (y, z) = (points.y.as_chunks::<LANES>().0, points.z.as_chunks::<LANES>().0);
+    for ((x, y), z) in x.iter().zip(y).zip(z) {
+        band.take(&dots(row, [x, y, z]));
+    }
+    if !rest.is_empty()
+        && let Some(last) = points.last()
+    {
+        band.take(&dots(row, last));
+    }
+    for i in points.few() {
+        band.take_one(points.dot(row, i));
+    }
+    band.range()
 }
 
 #[inline(always)]

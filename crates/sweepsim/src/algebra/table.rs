@@ -23,6 +23,15 @@ impl Table {
         Self { degrees, c }
     }
 
+    /// Of coefficients of one form after the other.
+    pub fn of_tensors(tensors: &[f64], degrees: [usize; 2]) -> Self {
+        let count = (degrees[0] + 1) * (degrees[1] + 1);
+        let c = (0..count)
+            .flat_map(|i| tensors.chunks_exact(count).map(move |tensor| tensor[i]))
+            .collect();
+        Self { degrees, c }
+    }
+
     pub fn degrees(&self) -> [usize; 2] {
         self.degrees
     }

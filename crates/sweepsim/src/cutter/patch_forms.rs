@@ -161,6 +161,10 @@ impl PatchForms {
                 put(&forms)
             })
             .collect();
+        let normals = match &fields[..] {
+            [field] => Table::of_tensors(&whole[field.start..], field.degrees),
+            _ => table(&all),
+        };
         if let [field] = &mut fields[..]
             && let Some(own) = Reduced::new(&whole[field.start..], field.degrees)
         {
@@ -168,6 +172,7 @@ impl PatchForms {
             whole.truncate(field.start + 6 * field.len());
             reduced = Some(own);
         }
+        let places = Table::of_tensors(&whole[position.start..][..4 * position.len()], position.degrees);
         let layout = Layout {
             position,
             slopes,
@@ -184,8 +189,8 @@ impl PatchForms {
             revolution: None,
             direct: None,
             frame: None,
-            places: table(&[x, y, z, weight]),
-            normals: table(&all),
+            places,
+            normals,
         }
     }
 

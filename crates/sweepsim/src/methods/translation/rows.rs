@@ -238,7 +238,8 @@ mod tests {
             let all = (0..7).flat_map(|i| (0..9).map(move |j| (i, j)));
             let off = |line: (usize, usize)| {
                 let own = place(line);
-                (0..2).map(|k| (window[k][0] - own[k]).max(own[k] - window[k][1])).fold(f64::NEG_INFINITY, f64::max)
+                let beyond = |k: usize| f64::max(window[k][0] - own[k], own[k] - window[k][1]);
+                f64::max(beyond(0), beyond(1))
             };
             let least = all.map(off).fold(f64::INFINITY, f64::min);
             prop_assume!(least.abs() > 1e-13);
