@@ -63,7 +63,7 @@ pub(crate) trait CrossingMethod<'a>: Sized + Sync {
     );
 }
 
-/// The number of parts of a path that a worker takes at a time: charts of a tool at rest, which it keeps, serve them all.
+/// The number of parts of a path that a worker takes at a time: the charts of a tool at rest are kept for all of them.
 const BLOCK: usize = 4;
 
 /// Parts in blocks of a few.
