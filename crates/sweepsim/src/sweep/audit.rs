@@ -15,6 +15,8 @@ use sweepsim_solve::Cause;
 
 /// Lines that share the budget of repairs, at least.
 const FEW: usize = 64;
+/// Lines that are solved again by one search, at most.
+const TOGETHER: usize = 64;
 
 /// Swept intervals of some lines, sorted by line, and the lines that stayed unresolved.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +56,31 @@ impl SweptLines {
     }
 }
 
+/// The intervals of a line that was solved again.
+type Repaired = Result<Vec<Interval>, UnresolvedReason>;
+
+/// What a line is solved again with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Repair {
+    /// The first attempt.
+    pub attempt: usize,
+    /// The number of boxes for all attempts.
+    pub most: u64,
+    /// Why it is unresolved without another one.
+    pub reason: UnresolvedReason,
+}
+
+impl Repair {
+    /// After the first search.
+    pub const fn first(most: u64) -> Self {
+        Self {
+            attempt: 1,
+            most,
+            reason: UnresolvedReason::Budget,
+        }
+    }
+}
+
 impl SweepJob<'_> {
     /// The swept intervals of the lines that have any, counted, audited, and repaired where they do not add up. For few lines of a large grid, where
     /// [`count`](Self::count) would visit all.
@@ -79,7 +106,7 @@ impl SweepJob<'_> {
             let counted = certain.then(|| self.intervals(group).ok()).flatten();
             let found = match counted {
                 Some(intervals) => Ok(intervals),
-                None => self.with_space(|space| self.repair(chunk, line, (1, most), space).0),
+                None => self.with_space(|space| self.repair(chunk, line, Repair::first(most), space).0),
             };
             (line, found)
         };
@@ -152,10 +179,10 @@ impl SweepJob<'_> {
         wrong.sort_unstable();
         wrong.dedup();
         let most = self.repairs.of_each(wrong.len());
-        let repaired: Vec<(Result<Vec<Interval>, UnresolvedReason>, u64)> = wrong
-            .par_iter()
+        let repaired: Vec<(Vec<Repaired>, u64)> = wrong
+            .par_chunks(TOGETHER)
             .with_max_len(1)
-            .map(|line| self.with_space(|space| self.repair(chunk, *line, (1, most), space)))
+            .map(|lines| self.repair_together(chunk, lines, most))
             .collect();
         let boxes = repaired.iter().map(|(_, boxes)| boxes).sum();
         self.repairs.spend(boxes);
@@ -163,7 +190,8 @@ impl SweepJob<'_> {
         if self.monitor.cancelled() {
             return Err(SweepError::Cancelled);
         }
-        for (line, (result, _)) in wrong.into_iter().zip(repaired) {
+        let results = repaired.into_iter().flat_map(|(results, _)| results);
+        for (line, result) in wrong.into_iter().zip(results) {
             let united = result.and_then(|intervals| Ok(volume.unite(line as usize, &intervals)?));
             match united {
                 Ok(()) => statistics.repaired += 1,
@@ -176,36 +204,76 @@ impl SweepJob<'_> {
         Ok(())
     }
 
-    /// Solves one line, from the given attempt on displaced farther each time, until its audit closes or the search has examined about as many boxes as it
-    /// may. Also the number of boxes.
+    /// Solves some lines again: all of them by one search at first, and one by one those that fail once more. Each may use as many boxes as if it were alone, but for its
+    /// share of the first search. Also the number of boxes.
+    fn repair_together(&self, chunk: &[PathPart], lines: &[u32], most: u64) -> (Vec<Repaired>, u64) {
+        let count = lines.len() as u64;
+        let mut harvest = Harvest::default();
+        // A single line that takes many boxes must not be at the expense of the others.
+        let is_done =
+            count > 1 && self.with_space(|space| self.again(chunk, lines, (1, most / 2), space, &mut harvest));
+        let spent = harvest.statistics.boxes;
+        let rest = most - (spent / count).min(most);
+        let Harvest {
+            mut crossings,
+            mut open,
+            ..
+        } = harvest;
+        crossings.sort_by_key(|(line, _)| *line);
+        open.sort_by_key(|(line, _)| *line);
+        let found = lines.par_iter().with_max_len(1).map(|line| {
+            let next = if is_done && !self.monitor.cancelled() {
+                let [from, to] = [0, 1].map(|after| crossings.partition_point(|(own, _)| *own < line + after));
+                let why = open.binary_search_by_key(line, |(own, _)| *own).map(|at| &open[at].1);
+                match self.judged(&crossings[from..to], why.ok()) {
+                    Ok(intervals) => return (Ok(intervals), 0),
+                    Err(reason) => Repair {
+                        attempt: 2,
+                        most: rest,
+                        reason,
+                    },
+                }
+            } else {
+                Repair::first(rest)
+            };
+            self.with_space(|space| self.repair(chunk, *line, next, space))
+        });
+        let (results, boxes): (Vec<Repaired>, Vec<u64>) = found.unzip();
+        (results, spent + boxes.iter().sum::<u64>())
+    }
+
+    /// Solves one line, displaced farther at each attempt, until its audit closes or the search has examined about as many boxes as it may. Also the number of boxes.
     pub fn repair(
         &self,
         chunk: &[PathPart],
         line: u32,
-        (first, most): (usize, u64),
+        Repair { attempt, most, reason }: Repair,
         space: &mut Workspace,
-    ) -> (Result<Vec<Interval>, UnresolvedReason>, u64) {
-        let (mut reason, mut boxes) = (UnresolvedReason::Budget, 0);
-        for attempt in first..=Tolerances::REPAIRS {
+    ) -> (Repaired, u64) {
+        let (mut reason, mut boxes) = (reason, 0);
+        for attempt in attempt..=Tolerances::REPAIRS {
             if self.monitor.cancelled() || boxes > most {
                 break;
             }
             let mut harvest = Harvest::default();
-            self.line(chunk, line as usize, (attempt, most - boxes), space, &mut harvest);
+            let is_done = self.again(chunk, &[line], (attempt, most - boxes), space, &mut harvest);
             boxes += harvest.statistics.boxes;
-            if let Some((_, why)) = harvest.open.first() {
-                reason = match why {
-                    Cause::Boxes => UnresolvedReason::Budget,
-                    _ => UnresolvedReason::SmallestBox,
-                };
-                continue;
-            }
-            match self.intervals(&harvest.crossings) {
+            let why = harvest.open.first().map(|(_, why)| why);
+            match self.judged(&harvest.crossings, why.or((!is_done).then_some(&Cause::Boxes))) {
                 Ok(intervals) => return (Ok(intervals), boxes),
-                Err(failure) => reason = UnresolvedReason::Audit(failure),
+                Err(why) => reason = why,
             }
         }
         (Err(reason), boxes)
+    }
+
+    /// The intervals of a line whose search is done, unless a box was left open.
+    fn judged(&self, group: &[Numbered], open: Option<&Cause>) -> Repaired {
+        match open {
+            Some(Cause::Boxes) => Err(UnresolvedReason::Budget),
+            Some(_) => Err(UnresolvedReason::SmallestBox),
+            None => self.intervals(group).map_err(UnresolvedReason::Audit),
+        }
     }
 
     /// The intervals of one line.

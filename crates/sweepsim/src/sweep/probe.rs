@@ -2,6 +2,7 @@
 
 use crate::error::SweepError;
 use crate::methods::workspace::Workspace;
+use crate::sweep::audit::Repair;
 use crate::sweep::options::Options;
 use crate::sweep::plan::Plan;
 use crate::sweep::ray::Ray;
@@ -108,7 +109,11 @@ pub(crate) fn probe_lines(
         let mut volume = Dexels::empty(grid);
         let mut probed: Result<(), UnresolvedReason> = Ok(());
         for chunk in plan.parts.chunks(CHUNK) {
-            let found = job.repair(chunk, 0, (0, job.repairs.of_each(1)), &mut own).0;
+            let whole = Repair {
+                attempt: 0,
+                ..Repair::first(job.repairs.of_each(1))
+            };
+            let found = job.repair(chunk, 0, whole, &mut own).0;
             let united = found.and_then(|intervals| Ok(volume.unite(0, &intervals)?));
             probed = probed.and(united);
         }

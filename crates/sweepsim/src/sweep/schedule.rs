@@ -28,7 +28,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, Mutex};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::Tool;
-use sweepsim_solve::{Cause, Monitor};
+use sweepsim_solve::Monitor;
 
 /// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
 pub(crate) const CHUNK: usize = 256;
@@ -243,17 +243,21 @@ impl SweepJob<'_> {
         Ok(all)
     }
 
-    /// The crossings of one line, displaced as in the given attempt.
-    /// Ends when the search has examined `most` boxes, with the line open.
-    pub fn line(
+    /// The crossings of some lines, displaced as in the given attempt. Ends when the search has examined `most` boxes, and returns whether it did not.
+    pub fn again(
         &self,
         chunk: &[PathPart],
-        line: usize,
+        lines: &[u32],
         (attempt, most): (usize, u64),
         space: &mut Workspace,
         harvest: &mut Harvest,
-    ) {
-        let lines = Lattice::one(self.grid, line, self.tolerances.line_displacement(attempt));
+    ) -> bool {
+        let shift = self.tolerances.line_displacement(attempt);
+        let mask = LineMask::new(self.grid, lines.iter().copied());
+        let lines = match lines {
+            [line] => Lattice::one(self.grid, *line as usize, shift),
+            _ => Lattice::all(self.grid, shift).masked(mask.as_ref()),
+        };
         let over = self.over(&lines);
         let search = Search {
             closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
@@ -266,9 +270,9 @@ impl SweepJob<'_> {
             }
             search.part(at, space, harvest);
             if harvest.statistics.boxes > most {
-                harvest.open.push((line as u32, Cause::Boxes));
-                break;
+                return false;
             }
         }
+        true
     }
 }

@@ -10,8 +10,8 @@ use sweepsim_solve::Monitor;
 
 /// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour.
 const THRIFTY: [(Method, f64); 2] = [(Method::General, 2.2), (Method::Surface, 2.2)];
-/// In the wall of a lollipop's neck, lines cannot be certified one by one at the least tolerance: charts repair them.
-const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.4), (Method::Lines, 3.4)];
+/// In the wall of a lollipop's neck, lines cannot be certified one by one at the least tolerance: charts repair them together.
+const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.4), (Method::Lines, 2.8)];
 
 /// Ends a sweep that takes far too long, and so makes it fail.
 struct Patience(Instant);
