@@ -7,7 +7,7 @@ use sweepsim_formats::Job;
 
 /// What is wanted of two threads.
 const WANTED: f64 = 1.85;
-const JOBS: [&str; 3] = ["impeller", "teapot-exterior", "teapot-interior"];
+const JOBS: [&str; 4] = ["impeller", "impeller-blade", "teapot-exterior", "teapot-interior"];
 /// Times that both are measured, one after the other, so that a disturbance meets both.
 const ROUNDS: usize = 3;
 

@@ -2,12 +2,19 @@
 //! exactly.
 
 use std::cmp::Ordering;
+use std::fmt::Write as _;
 use std::io::{self, BufRead, Read as _, Write};
+use std::ops::Range;
 
+use rayon::prelude::*;
 use sweepsim_dexel::{Dexels, Grid, Interval};
 
 use crate::error::{FormatError, Problem, TextPosition};
 use sweepsim_nc::shortest;
+
+/// Dexels whose rows are made by one thread at a time, and blocks of these that are written together.
+const BLOCK: usize = 1024;
+const BLOCKS: usize = 64;
 
 pub(crate) const HEADER: &str = "i,j,z0,z1";
 
@@ -30,14 +37,32 @@ pub struct DexelRow {
 /// Those of the writer.
 pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> io::Result<()> {
     writeln!(writer, "{HEADER}")?;
-    for index in 0..dexels.grid().len() {
-        let (i, j) = dexels.grid().place(index);
-        for interval in dexels.at(index) {
-            let (z0, z1) = (shortest(interval.lower.z), shortest(interval.upper.z));
-            writeln!(writer, "{i},{j},{z0},{z1}")?;
+    // Digits take longer than the disk: many blocks are made into text at a time, and not all, for the sake of memory.
+    let count = dexels.grid().len();
+    for begin in (0..count).step_by(BLOCK * BLOCKS) {
+        let texts: Vec<String> = (begin..count.min(begin + BLOCK * BLOCKS))
+            .into_par_iter()
+            .step_by(BLOCK)
+            .map(|begin| rows_of(dexels, begin..count.min(begin + BLOCK)))
+            .collect();
+        for text in texts {
+            writer.write_all(text.as_bytes())?;
         }
     }
     Ok(())
+}
+
+/// The rows of some dexels.
+fn rows_of(dexels: &Dexels, lines: Range<usize>) -> String {
+    let mut text = String::new();
+    for index in lines {
+        let (i, j) = dexels.grid().place(index);
+        for interval in dexels.at(index) {
+            let [z0, z1] = [interval.lower, interval.upper].map(|end| shortest(end.z));
+            writeln!(text, "{i},{j},{z0},{z1}").expect("a string takes any text");
+        }
+    }
+    text
 }
 
 /// The longest line, in bytes. Rows have a hundred at most.

@@ -293,3 +293,22 @@ fn endless_rows() {
     let error = read_dexels_csv(reader).unwrap_err().to_string();
     assert!(error.starts_with("3:1: a line is longer than 4096 bytes"), "{error}");
 }
+
+/// More dexels than are made into text at a time, with gaps where a block of them begins or ends.
+#[test]
+fn rows_of_many_dexels_are_in_order() {
+    let [nx, ny] = [411, 509];
+    let grid = Grid::new([0.0, 0.0], [nx as f64, ny as f64], [nx, ny]).unwrap();
+    let mut dexels = Dexels::empty(grid.clone());
+    let mut expected = Vec::new();
+    for index in (0..grid.len()).filter(|index| index % 1024 > 2 && index % 7 != 0) {
+        let (i, j) = grid.place(index);
+        let [z0, z1] = [0.1 * index as f64, 0.1 * index as f64 + 0.3];
+        dexels.set(index, &[Interval::between(z0, z1)]).unwrap();
+        expected.push(DexelRow { i, j, z0, z1 });
+    }
+    expected.sort_by_key(|row| (row.i, row.j));
+    let mut bytes = Vec::new();
+    write_dexels_csv(&dexels, &mut bytes).unwrap();
+    assert_eq!(read_dexels_csv(&bytes[..]).unwrap(), expected);
+}

@@ -4,8 +4,8 @@
 #[must_use]
 pub fn shortest(value: f64) -> String {
     let plain = value.to_string();
-    // An exponent is shorter only for many digits.
-    if plain.len() < 5 {
+    // An exponent is shorter only in place of zeros at an end.
+    if plain.len() < 5 || (value.abs() >= 1.0 && plain.contains('.')) {
         return plain;
     }
     let scientific = format!("{value:e}");
@@ -52,7 +52,11 @@ mod tests {
         }
         let mut value = 1.234_567_891_234_567_8e-300_f64;
         while value.is_finite() {
-            assert_eq!(shortest(value).parse::<f64>().unwrap().to_bits(), value.to_bits());
+            for value in [value, value.trunc(), (value * 8.0).round() / 8.0] {
+                let (text, [plain, scientific]) = (shortest(value), [value.to_string(), format!("{value:e}")]);
+                assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
+                assert_eq!(text.len(), plain.len().min(scientific.len()));
+            }
             value *= -1.7e3;
         }
     }
