@@ -299,7 +299,7 @@ fn endless_rows() {
 fn rows_of_many_dexels_are_in_order() {
     let [nx, ny] = [411, 509];
     let grid = Grid::new([0.0, 0.0], [nx as f64, ny as f64], [nx, ny]).unwrap();
-    let mut dexels = Dexels::empty(grid.clone());
+    let mut dexels = Dexels::empty(grid);
     let mut expected = Vec::new();
     for index in (0..grid.len()).filter(|index| index % 1024 > 2 && index % 7 != 0) {
         let (i, j) = grid.place(index);
