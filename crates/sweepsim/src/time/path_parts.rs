@@ -7,7 +7,7 @@ use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
 use sweepsim_dexel::Frame;
-use sweepsim_motion::{Path, Segment};
+use sweepsim_motion::{Course, Path, Segment, Turning};
 
 /// A motion, and its place in the path.
 #[derive(Clone, Debug)]
@@ -60,7 +60,17 @@ pub(crate) fn parts(
         None
     };
     let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
-    let displaced = |k: usize| tolerances.tip_displacement(k);
+    // Ends of an arc that the tool lies across are not displaced out of its plane.
+    let displaced = |k: usize, planes: [Option<usize>; 2]| {
+        let mut by = tolerances.tip_displacement(k);
+        planes.into_iter().flatten().for_each(|normal| by[normal] = 0.0);
+        by
+    };
+    let plane = |from: usize, to: usize| {
+        symmetric
+            .then(|| lies_across(path, to - 1 - first, frame, [tip(from), tip(to)]))
+            .flatten()
+    };
     let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
     let put = |parts: &mut Vec<PathPart>,
                number: usize,
@@ -97,7 +107,7 @@ pub(crate) fn parts(
             });
         }
     };
-    let mut from = moves.start;
+    let (mut from, mut last) = (moves.start, None);
     for to in moves.start + 1..=moves.end {
         if !path.rests(from - first, to - first) {
             let segments = if symmetric {
@@ -105,7 +115,12 @@ pub(crate) fn parts(
             } else {
                 path.segments(to - 1 - first, reach, tolerances.law_deviation())
             };
-            let by = [displaced(from), displaced(to)];
+            let own = plane(from, to);
+            let next = (to + 1..=moves.end)
+                .find(|next| !path.rests(to - first, next - first))
+                .and_then(|next| plane(to, next));
+            let by = [displaced(from, [last, own]), displaced(to, [own, next])];
+            last = own;
             let limit = tolerances.circle_deviation();
             let round = if symmetric {
                 Round::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit))
@@ -134,12 +149,30 @@ pub(crate) fn parts(
         && let Some(pose) = poses.first()
     {
         // A tool that stands still: sweep it along the displacement.
-        let by = displaced(0);
+        let by = tolerances.tip_displacement(0);
         let still = [by, by + tolerances.standstill()];
         let segments = Segment::between(pose, pose).into_iter().map(seen);
         put(&mut parts, 0, segments.collect(), [tip(0); 2], still);
     }
     parts
+}
+
+/// The axis of the frame, across the dexels, that a tool lies along while its tip moves along an arc about exactly that axis, in one plane and without turning.
+///
+/// Faces across the tool's axis slide along themselves, parallel to the dexels. They are seen edge-on as long as they stay in one plane to the last digit.
+fn lies_across(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
+    let way = path.way(number);
+    let Course::Arc(arc) = way.course else { return None };
+    let poses = [path.pose(number), path.pose(number + 1)];
+    let still = match way.turning {
+        Turning::Slerp | Turning::Even => true,
+        Turning::Rotary { from, to, .. } => from == to,
+    };
+    let along = |v: [f64; 3], k: usize| v[k].abs() == 1.0 && (0..3).all(|other| other == k || v[other] == 0.0);
+    let [axis, normal] = [poses[0].axis(), arc.normal()].map(|v| frame.turn_from_world(v));
+    let lies = |k: &usize| along(axis, *k) && along(normal, *k) && ends[0][*k] == ends[1][*k];
+    let one = still && poses[0].axis() == poses[1].axis();
+    one.then(|| (0..2).find(lies)).flatten()
 }
 
 /// So many moves are unpacked at a time.
@@ -214,7 +247,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use sweepsim_motion::Law;
-    use sweepsim_motion::{Course, Move, PathBuilder, Pose, RotaryTable, Turning};
+    use sweepsim_motion::{Move, PathBuilder, Pose, RotaryTable};
 
     /// A path of random turns, some of them of rotary axes, with rests.
     fn path(moves: &[([f64; 3], bool, bool)], packed: bool) -> Path {

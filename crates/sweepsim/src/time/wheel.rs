@@ -71,7 +71,12 @@ impl Wheel {
             return None;
         }
         let side = 1.0_f64.copysign(chord.xy().dot(&towards));
-        let ahead = chord.xy() * (side / across);
+        // In a plane along the axes, a quotient could be off by a rounding.
+        let ahead = if chord.xy().perp(&towards) == 0.0 && towards.amax() == 1.0 {
+            towards
+        } else {
+            chord.xy() * (side / across)
+        };
         // In the plane: the middle of the chord, and the centre to the left of it.
         let flat = Vector2::new(side * across, chord.z);
         let out = Vector2::new(-flat.y, flat.x) * (0.5 / (0.5 * angle).tan());

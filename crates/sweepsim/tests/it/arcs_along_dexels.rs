@@ -9,15 +9,24 @@ use sweepsim_dexel::Grid;
 use sweepsim_motion::{Move, Path, Pose, Profile, ProfileSegment, TipArc, Tool};
 
 /// An arc of the path: radius, the direction of its plane, angle of its start from that direction upwards, angle.
-type Arc = [f64; 4];
+pub type Arc = [f64; 4];
+
+/// The direction of a plane, exact along the axes.
+pub fn direction(plane: f64) -> [f64; 2] {
+    if plane == FRAC_PI_2 {
+        return [0.0, 1.0];
+    }
+    let (y, x) = plane.sin_cos();
+    [x, y]
+}
 
 /// Arcs one after the other from a point, joined by straight moves of this vector; each begins at its angle.
-fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3], axis: [f64; 3]) -> Path {
+pub fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3], axis: [f64; 3]) -> Path {
     let mut tip = start;
     let mut poses = vec![Pose::new(tip, axis).unwrap()];
     let mut moves = Vec::new();
     for [radius, plane, from, angle] in arcs {
-        let (y, x) = plane.sin_cos();
+        let [x, y] = direction(*plane);
         let at = |angle: f64| [radius * angle.cos() * x, radius * angle.cos() * y, radius * angle.sin()];
         let out = at(*from);
         let centre: [f64; 3] = std::array::from_fn(|k| tip[k] - out[k]);
@@ -40,12 +49,12 @@ fn planes() -> impl Strategy<Value = f64> {
 }
 
 /// Starts of arcs, at extremes and elsewhere.
-fn starts() -> impl Strategy<Value = f64> {
+pub fn starts() -> impl Strategy<Value = f64> {
     prop_oneof![(0..4_i32).prop_map(|quarter| f64::from(quarter) * FRAC_PI_2), -PI..PI]
 }
 
 /// Angles of arcs: quarters, full circles, and others.
-fn angles() -> impl Strategy<Value = f64> {
+pub fn angles() -> impl Strategy<Value = f64> {
     prop_oneof![
         (1..5_i32, any::<bool>())
             .prop_map(|(quarters, left)| f64::from(if left { quarters } else { -quarters }) * FRAC_PI_2),
@@ -127,7 +136,7 @@ fn hardly_a_box() {
 }
 
 /// A tool with a round corner, or one with a tip, and its radius.
-fn tool(pointed: bool) -> (Tool, f64) {
+pub fn tool(pointed: bool) -> (Tool, f64) {
     if !pointed {
         return (Tool::bull(3.0, 0.8, 10.0).unwrap(), 3.0);
     }
@@ -148,7 +157,7 @@ fn bottom(pointed: bool, rho: f64) -> f64 {
 
 /// The least value of a function on [0, 1], if it has one least value in the neighbourhood of each sample that is not above the next ones: on a full circle, two samples
 /// are at one place.
-fn least(function: impl Fn(f64) -> f64) -> f64 {
+pub fn least(function: impl Fn(f64) -> f64) -> f64 {
     const SAMPLES: usize = 1000;
     let share = |n: usize| n.min(SAMPLES) as f64 / SAMPLES as f64;
     let samples: Vec<f64> = (0..=SAMPLES).map(|n| function(share(n))).collect();

@@ -15,6 +15,7 @@ mod discs;
 mod grazing;
 mod rest;
 mod rows;
+mod stretches;
 mod strip;
 mod wheel;
 

@@ -70,11 +70,11 @@ pub(crate) fn leaning(
     }
 }
 
-struct Leaning<'a, 'b> {
-    floor: Floor,
+pub(super) struct Leaning<'a, 'b> {
+    pub floor: Floor,
     /// Sine and cosine of the angle between the axis and the dexels.
-    tilt: [f64; 2],
-    sides: [Side; 2],
+    pub tilt: [f64; 2],
+    pub sides: [Side; 2],
     lines: &'a mut Collector<'b>,
     source: Source,
 }
@@ -83,7 +83,7 @@ struct Leaning<'a, 'b> {
 pub(super) struct Point {
     /// Above the tip, along the dexel.
     pub height: f64,
-    /// The unit normal.
+    /// The normal, of any length.
     pub normal: [f64; 3],
     /// By how much the normal may be off across the tool's axis, and along it.
     pub error: [f64; 2],
@@ -117,6 +117,12 @@ impl Leaning<'_, '_> {
         let heights = [from[1].min(to[1]), from[1].max(to[1])];
         match piece.shape {
             Shape::Line { normal: [0.0, up] } => {
+                if k == 0.0 {
+                    // Lines in its plane only.
+                    let place = s * from[1];
+                    self.visit([[-radii[1], radii[1]], [place; 2]], |_, _| Points::Tangent);
+                    return Some(());
+                }
                 if k.abs() < PARALLEL {
                     return None;
                 }
@@ -198,6 +204,7 @@ impl Leaning<'_, '_> {
                     }))
                 });
             }
+            Shape::Arc { .. } if k == 0.0 => self.lying(piece)?,
             Shape::Arc { .. } => return None,
         }
         Some(())
@@ -218,7 +225,7 @@ impl Leaning<'_, '_> {
     }
 
     /// The lines with `b` and `q` in these ranges; `meet` tells where each meets the surface.
-    fn visit(&mut self, ranges: [[f64; 2]; 2], meet: impl Fn(f64, f64) -> Points) {
+    pub fn visit(&mut self, ranges: [[f64; 2]; 2], meet: impl Fn(f64, f64) -> Points) {
         let lattice = self.lines.lines;
         let floor = self.floor;
         let [ux, uy] = floor.ahead;

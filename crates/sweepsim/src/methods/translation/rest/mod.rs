@@ -3,6 +3,7 @@
 mod cones;
 mod leaning;
 mod lunes;
+mod lying;
 mod placed;
 mod radial;
 mod wedges;

@@ -71,23 +71,44 @@ impl Wedge {
 }
 
 /// The azimuths at which the sign of `g` on a line of the meridian changes, or may change.
-pub(super) fn wedges([n, m]: [f64; 2], sides: &[Side; 2]) -> Vec<Wedge> {
-    let mut borders: Vec<f64> = Vec::with_capacity(6);
-    let mut ranges: Vec<[f64; 2]> = Vec::with_capacity(8);
+pub(super) fn wedges(normal: [f64; 2], sides: &[Side; 2]) -> Vec<Wedge> {
+    wedges_between([normal; 2], sides)
+}
+
+/// The same on an arc of the meridian between two normals, which are on one side of the axis and not along it.
+pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[Side; 2]) -> Vec<Wedge> {
+    let [[n, m], last] = normals;
+    let mut borders: Vec<f64> = Vec::with_capacity(10);
+    let mut ranges: Vec<[f64; 2]> = Vec::with_capacity(12);
     for side in sides {
         let Side::Along([da, db, dc]) = *side else { continue };
-        let (size, offset) = (n.abs() * da.hypot(db), m * dc);
-        if offset.abs() > size * (1.0 + STEEP) {
+        // g = size cos(φ − towards) + offset
+        let ratios = normals.map(|[n, m]| {
+            let (size, offset) = (n.abs() * da.hypot(db), m * dc);
+            if size > 0.0 {
+                -offset / size
+            } else {
+                -offset.signum() * f64::INFINITY
+            }
+        });
+        if ratios.iter().all(|ratio| *ratio > 1.0 + STEEP) || ratios.iter().all(|ratio| *ratio < -1.0 - STEEP) {
             continue;
         }
-        // g = size cos(φ − towards) + offset
         let towards = (n * db).atan2(n * da);
-        let ratio = if size > 0.0 { -offset / size } else { 0.0 };
-        let open = ratio.clamp(-1.0, 1.0).acos();
-        borders.extend([towards - open, towards + open]);
-        if ratio.abs() > 1.0 - STEEP {
-            let middle = if ratio > 0.0 { towards } else { towards + PI };
-            ranges.push([middle - BLUR, middle + BLUR]);
+        let opens = ratios.map(|ratio| ratio.clamp(-1.0, 1.0).acos());
+        for open in opens {
+            borders.extend([towards - open, towards + open]);
+        }
+        if normals[0] != last {
+            // On either side of the direction, the border is somewhere between.
+            let [near, far] = [opens[0].min(opens[1]) - MARGIN, opens[0].max(opens[1]) + MARGIN];
+            ranges.extend([[towards + near, towards + far], [towards - far, towards - near]]);
+        }
+        for ratio in ratios {
+            if ratio.abs() > 1.0 - STEEP {
+                let middle = if ratio > 0.0 { towards } else { towards + PI };
+                ranges.push([middle - BLUR, middle + BLUR]);
+            }
         }
     }
     let negative = |angle: f64| {
@@ -193,6 +214,25 @@ mod tests {
                         prop_assert!(b >= low - 1e-9 && b <= high + 1e-9 && q >= back - 1e-9 && q <= front + 1e-9);
                     }
                 }
+            }
+        }
+
+        /// The same between two normals.
+        #[test]
+        fn wedges_of_an_arc_hold_all_changes(ends in [-1.55..1.55_f64, -1.55..1.55], inner in any::<bool>(), share in 0.0..1.0_f64, sides in [side(), side()]) {
+            let out = if inner { -1.0 } else { 1.0 };
+            let normal = |angle: f64| [out * angle.cos(), angle.sin()];
+            let wedges = wedges_between(ends.map(normal), &sides);
+            let [n, m] = normal(ends[0] + share * (ends[1] - ends[0]));
+            for azimuth in (0..200).map(|k| 0.0314 * f64::from(k)) {
+                let (sine, cosine) = azimuth.sin_cos();
+                let negative = sides.map(|side| match side {
+                    Side::Beyond(negative) => negative,
+                    Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
+                });
+                let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
+                prop_assert!(held <= 1, "{wedges:?} {azimuth}");
+                prop_assert!(held == 1 || negative[0] == negative[1], "{wedges:?} {azimuth}");
             }
         }
     }

@@ -7,6 +7,7 @@
 //!   a line meets them where `cos α = q/s`;
 //! - a sharp edge of an upright tool is met at `±ρ` from its centre, and so where `r cos α = q ∓ ρ`;
 //! - a disc of an upright tool where the arc is lowest or highest, and its cylinder never;
+//! - a tool whose axis is perpendicular to the arc's plane has a circle in each section, as a ball has, but for the normal;
 //! - the section of a cone or a torus of an upright tool sweeps the curves that are parallel to it at the distance `r`: one equation in one unknown for each line.
 //!
 //! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
@@ -15,6 +16,7 @@ mod ball;
 mod edge;
 mod parallel;
 mod sheet;
+mod slice;
 
 use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
@@ -49,10 +51,11 @@ pub(crate) fn along(
     let turn = segment.start();
     let axis: Vector3<f64> = turn.column(2).into_owned();
     let [ux, uy] = wheel.ahead;
+    let own = [ux * axis.x + uy * axis.y, ux * axis.y - uy * axis.x, axis.z];
     let mut rolling = Rolling {
         wheel,
         slack,
-        axis: [ux * axis.x + uy * axis.y, ux * axis.y - uy * axis.x, axis.z],
+        axis: own,
         directions: wheel.directions(),
         rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| segment.velocity(end)[1][2]),
         highest: ceiling.map_or(f64::INFINITY, |ceiling| {
@@ -61,20 +64,35 @@ pub(crate) fn along(
         lines,
         source,
     };
-    let upright = axis == Vector3::z();
+    let stance = match own {
+        [0.0, 0.0, 1.0] => Stance::Upright,
+        [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
+        _ => Stance::Other,
+    };
     for piece in &outline.pieces {
-        if rolling.piece(piece, upright) {
+        if rolling.piece(piece, stance) {
             patches[piece.patches.clone()].fill(true);
         }
     }
     for rim in &outline.rims {
-        if upright {
-            if rim.height <= rolling.highest {
-                rolling.rim(rim);
-            }
-            edges[rim.edges.clone()].fill(true);
+        match stance {
+            Stance::Upright if rim.height <= rolling.highest => rolling.rim(rim),
+            Stance::Upright => {}
+            Stance::Across => rolling.edge_across(rim),
+            Stance::Other => continue,
         }
+        edges[rim.edges.clone()].fill(true);
     }
+}
+
+/// How the tool's axis lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Stance {
+    /// Along the dexels.
+    Upright,
+    /// Perpendicular to the arc's plane.
+    Across,
+    Other,
 }
 
 /// The search along one arc.
@@ -115,13 +133,17 @@ enum Directions {
 
 impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     /// Whether it is settled.
-    fn piece(&mut self, piece: &Piece, upright: bool) -> bool {
+    fn piece(&mut self, piece: &Piece, stance: Stance) -> bool {
+        let upright = stance == Stance::Upright;
         if upright && piece.heights()[0] > self.highest {
             return true;
         }
         if let Some(part) = piece.ball() {
             ball(self, &part);
             return true;
+        }
+        if stance == Stance::Across {
+            return self.slices(piece);
         }
         match piece.shape {
             // No line meets an upright wall.
