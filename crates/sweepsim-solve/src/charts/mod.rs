@@ -112,6 +112,11 @@ pub trait ChartMap<const N: usize> {
 
     /// How far each value of [`ChartMap::evaluate`] may be off by rounding.
     fn rounding(&self) -> [f64; N];
+
+    /// The same in one cell, if less is known of it.
+    fn rounding_in(&self, _cell: &Self::Cell) -> [f64; N] {
+        self.rounding()
+    }
 }
 
 /// A map at a point.

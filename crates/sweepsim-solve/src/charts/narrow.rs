@@ -151,7 +151,7 @@ where
         evaluations: &mut u64,
     ) -> Option<Narrowed<N>> {
         let centre = self.centre(map, range, evaluations);
-        let rounding = map.rounding();
+        let rounding = map.rounding_in(cell);
         // By the derivatives at one point, at first.
         let slopes = centre.sample.jacobian.map(|row| row.map(|x| Enclosure::hull(x, x)));
         let (hoped, _) = self.part(&centre, &self.change(&slopes), range, &rounding)?;

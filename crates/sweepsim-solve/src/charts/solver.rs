@@ -151,7 +151,7 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             budget -= 1;
-            let mut linear = Linear::new(&bounds, &jacobian, &map.rounding());
+            let mut linear = Linear::new(&bounds, &jacobian, &map.rounding_in(&cell));
             if count <= FEW
                 && let Some(linear) = linear.as_mut().filter(|linear| linear.radius >= 1.0)
                 && let Some(products) = map.combined_jacobian(&cell, &linear.rows())

@@ -154,13 +154,13 @@ impl Cells {
                 all_or_none(&mut points[slot.start..][..3 * slot.len()]);
             }
             own = sampled.unwrap_or(own);
-            own.tangents = tangents.missing(widths);
+            own.tangents = tangents.missing(lower, upper);
         } else {
             points.resize(layout.position.start + 3 * layout.position.len(), 0.0);
         }
         if let (Some(reduced), [slot], None) = (&element.reduced, &layout.fields[..], sampled) {
             let forms = &mut c[slot.start..][..6 * slot.len()];
-            if missing.is_none_or(|missing| missing.is_coarse(forms, slot.degrees, widths)) {
+            if missing.is_none_or(|missing| missing.is_coarse(forms, slot.degrees, widths, reduced.vanishes)) {
                 own = Missing {
                     tangents: own.tangents,
                     ..reduced.on(lower, upper, forms)

@@ -72,12 +72,17 @@ impl Direct {
             let own = patch.position().iter().map(|form| form.degree(axis)).max();
             own.unwrap_or(0).max(weight.degree(axis))
         });
-        let centre = Vector3::from(patch.point(0.5, 0.5));
+        let middle = patch.point(0.5, 0.5);
+        let flat = patch.position().each_ref().map(|form| flat_at(form, weight));
+        let centre = Vector3::from_fn(|k, _| flat[k].unwrap_or(middle[k]));
         let raised = |form: &Bernstein| form.elevated_to(&degrees);
         let shifted = [0, 1, 2].map(|k| raised(&patch.position()[k]).sub(&raised(&weight.scale(centre[k]))));
         let [x, y, z] = shifted.clone();
         // Of the shift, whose terms are as large as the distance from the origin: of a product, and four of each raise of a degree.
         let shift = std::array::from_fn(|k| {
+            if flat[k].is_some() {
+                return 0.0;
+            }
             let form = &patch.position()[k];
             let raises = [form, weight].map(|form| [0, 1].map(|axis| degrees[axis] - form.degree(axis)));
             let roundings = 1 + 4 * raises.map(|[u, v]| u + v).into_iter().max().unwrap_or(0);
@@ -104,6 +109,7 @@ impl Direct {
         })
     }
 
+    /// The point that the position is taken about, near the middle of the patch.
     pub fn centre(&self) -> &Vector3<f64> {
         &self.centre
     }
@@ -116,6 +122,15 @@ impl Direct {
             (!lower || at[axis] >= POLE) && (!upper || at[axis] <= 1.0 - POLE)
         };
         far(0) && far(1)
+    }
+
+    /// Whether no point of a cell is [covered](Self::covers), nor any one a little outside it.
+    pub fn is_at_pole(&self, lower: [f64; 2], upper: [f64; 2]) -> bool {
+        let close = |axis: usize| {
+            let [at_lower, at_upper] = self.sides[axis];
+            (at_lower && upper[axis] < 0.5 * POLE) || (at_upper && lower[axis] > 1.0 - 0.5 * POLE)
+        };
+        close(0) || close(1)
     }
 
     /// The product of the distances by which `N` is divided, and the quotients of its derivatives and itself.
@@ -234,6 +249,16 @@ impl Direct {
             grown,
         }
     }
+}
+
+/// The coordinate that all points have in common, exactly: the patch is flat, and two components of its normals are 0 without any error.
+fn flat_at(form: &Bernstein, weight: &Bernstein) -> Option<f64> {
+    let same_degrees = (0..2).all(|axis| form.degree(axis) == weight.degree(axis));
+    let (own, weights) = (form.coefficients(), weight.coefficients());
+    let at = own[0] / weights[0];
+    // Rounded once, a difference of 0 is exact.
+    let is_flat = same_degrees && own.iter().zip(weights).all(|(p, w)| at.mul_add(-w, *p) == 0.0);
+    is_flat.then_some(at)
 }
 
 /// `travel + spin × F`.

@@ -9,6 +9,7 @@ mod places;
 pub(crate) mod reduced;
 pub(crate) mod revolution;
 mod tangents;
+mod vanishing;
 
 use nalgebra::Vector3;
 use outline::Outline;

@@ -283,7 +283,15 @@ impl PatchForms {
             return None;
         }
         write(fields, &values[2..]);
-        Some(reduced.missing(widths, direct.rounding, fields))
+        Some(reduced.missing((lower, upper), direct.rounding, fields))
+    }
+
+    /// [`rounding`](Self::rounding) on a cell: less where all of it is close to a pole, and normals are taken from their forms.
+    pub fn rounding_in(&self, lower: [f64; 2], upper: [f64; 2]) -> &Sizes {
+        match &self.direct {
+            Some(direct) if direct.is_at_pole(lower, upper) => &self.largest,
+            _ => &self.rounding,
+        }
     }
 
     /// The number of coefficients of a cell's field along the first variable.

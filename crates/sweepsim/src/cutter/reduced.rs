@@ -9,6 +9,7 @@
 
 use crate::algebra::bivariate::MOST;
 use crate::algebra::quad::Quad;
+use crate::cutter::vanishing::{Size, is_near_side, largest};
 use crate::time::pieces::Sizes;
 use sweepsim_spline::kernel::basis;
 
@@ -63,8 +64,9 @@ pub(crate) struct Reduced {
     degrees: [usize; 2],
     /// Six tensors: `N`, `M`.
     forms: Vec<f64>,
-    /// Of each, the rounding of a reduced coefficient, and bounds of the third derivatives in each variable.
-    sizes: [(f64, [f64; 2]); 6],
+    sizes: [Size; 6],
+    /// Whether some of them lack less and less towards a side, as the components of normals do that vanish at a pole.
+    pub vanishes: bool,
 }
 
 impl Reduced {
@@ -72,29 +74,14 @@ impl Reduced {
     pub fn new(forms: &[f64], degrees: [usize; 2]) -> Option<Self> {
         let [p, q] = degrees;
         Self::lowers(degrees)?;
-        let mut sizes = [(0.0, [0.0; 2]); 6];
-        for (size, form) in sizes.iter_mut().zip(forms.chunks_exact((p + 1) * (q + 1))) {
-            let third = |axis: usize| {
-                let (n, step) = (degrees[axis], if axis == 0 { 1 } else { p + 1 });
-                let inside = |k: &usize| {
-                    if axis == 0 {
-                        k % (p + 1) + 3 <= p
-                    } else {
-                        k / (p + 1) + 3 <= q
-                    }
-                };
-                let difference = |k: usize| form[k + 3 * step] - 3.0 * (form[k + 2 * step] - form[k + step]) - form[k];
-                let steps = largest((0..form.len()).filter(inside).map(difference));
-                (n * n.saturating_sub(1) * n.saturating_sub(2)) as f64 * steps
-            };
-            // In each variable, 1.5 n roundings of Bernstein polynomials, 2n that the nodes are off by, and n/2 + 1 of a sum of products.
-            let roundings = COMBINED * (4 * (p + q) + 8) as f64;
-            let rounding = roundings * f64::EPSILON * largest(form.iter().copied());
-            *size = (rounding, [third(0), third(1)]);
-        }
+        let mut each = forms
+            .chunks_exact((p + 1) * (q + 1))
+            .map(|form| Size::new(form, degrees, COMBINED));
+        let sizes: [Size; 6] = std::array::from_fn(|_| each.next().expect("six forms"));
         Some(Self {
             degrees,
             forms: forms.to_vec(),
+            vanishes: sizes.iter().any(Size::vanishes),
             sizes,
         })
     }
@@ -114,8 +101,7 @@ impl Reduced {
     pub fn on(&self, lower: [f64; 2], upper: [f64; 2], out: &mut [f64]) -> Missing {
         let [p, q] = self.degrees;
         let [a, b] = self.low();
-        let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
-        let [in_u, in_v] = [0, 1].map(|axis| weights(self.degrees[axis], lower[axis], widths[axis]));
+        let [in_u, in_v] = [0, 1].map(|axis| weights(self.degrees[axis], lower[axis], upper[axis]));
         let few = (a + 1) * (b + 1);
         let forms = self.forms.chunks_exact((p + 1) * (q + 1));
         for (form, out) in forms.zip(out.chunks_exact_mut(few)) {
@@ -137,19 +123,26 @@ impl Reduced {
                 line.copy_from_slice(&sum[..=a]);
             }
         }
-        self.missing(widths, [[0.0; 3]; 2], out)
+        self.missing((lower, upper), [[0.0; 3]; 2], out)
     }
 
-    /// What is missing from reduced tensors on a cell with these sides, if the values at its nodes have these errors.
+    /// What is missing from reduced tensors on a cell, if the values at its nodes have these errors.
     ///
     /// If that is unknown, all of `out` becomes NaN.
-    pub fn missing(&self, widths: [f64; 2], errors: Sizes, out: &mut [f64]) -> Missing {
+    pub fn missing(&self, (lower, upper): ([f64; 2], [f64; 2]), errors: Sizes, out: &mut [f64]) -> Missing {
         let mut missing = Missing::default();
-        for (number, (rounding, third)) in self.sizes.iter().enumerate() {
+        let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
+        let is_near = self.vanishes && is_near_side(lower, upper);
+        for (number, size) in self.sizes.iter().enumerate() {
             let (vector, k) = (1 - number / 3, number % 3);
+            let (rounding, third) = if is_near {
+                size.on(lower, upper)
+            } else {
+                size.anywhere()
+            };
             let rounding = rounding + COMBINED * errors[vector][k];
             let cubes = [0, 1].map(|axis| third[axis] * widths[axis] * widths[axis] * widths[axis]);
-            missing.value[vector][k] = beyond(*third, widths) + rounding;
+            missing.value[vector][k] = beyond(third, widths) + rounding;
             for axis in 0..2 {
                 let across = LEBESGUE_OF_SLOPES * (VALUE * cubes[1 - axis]);
                 missing.slopes[axis][vector][k] = (SLOPE * cubes[axis] + across + 4.0 * rounding) / widths[axis];
@@ -165,9 +158,10 @@ impl Reduced {
 }
 
 /// For each coefficient of a form of this degree, its weights in the coefficients of the form of degree `LOW`, or its own if that is lower, that agrees with it at the Chebyshev nodes of an interval.
-fn weights(degree: usize, start: f64, width: f64) -> [[f64; ROWS]; MOST] {
+fn weights(degree: usize, start: f64, end: f64) -> [[f64; ROWS]; MOST] {
     let mut weights = [[0.0; ROWS]; MOST];
     let mut values = [0.0; MOST];
+    let width = end - start;
     if degree < LOW {
         // At the ends, or anywhere: these are the coefficients.
         for i in 0..=degree {
@@ -178,8 +172,15 @@ fn weights(degree: usize, start: f64, width: f64) -> [[f64; ROWS]; MOST] {
         }
         return weights;
     }
-    for (node, of_coefficients) in nodes(start, width).into_iter().zip(INVERSE) {
+    // From the nearer side, so that all values have a small relative error.
+    let is_mirrored = start > 0.5;
+    let near = if is_mirrored { 1.0 - end } else { start };
+    for (at, node) in nodes(near, width).into_iter().enumerate() {
         basis(degree, node, &mut values);
+        let of_coefficients = INVERSE[if is_mirrored { 2 - at } else { at }];
+        if is_mirrored {
+            values[..=degree].reverse();
+        }
         for (weights, value) in weights.iter_mut().zip(values).take(degree + 1) {
             for i in 0..ROWS {
                 weights[i] += of_coefficients[i] * value;
@@ -218,7 +219,8 @@ impl Missing {
 
     /// Whether the forms had better be reduced again: the bounds of derivatives must shrink with the cell, as the derivatives' own ranges do, since what
     /// remains of an error keeps boxes near singular points from ever becoming charts. `forms`: six tensors of the degrees `low`, on a cell with these sides.
-    pub fn is_coarse(&self, forms: &[f64], low: [usize; 2], widths: [f64; 2]) -> bool {
+    /// `each`: for each component, and not only for the largest of a vector.
+    pub fn is_coarse(&self, forms: &[f64], low: [usize; 2], widths: [f64; 2], each: bool) -> bool {
         // Of the change of derivatives along the cell, and of the forms' size.
         const SHARE: f64 = 0.25;
         const LEAST: f64 = 2e-12;
@@ -228,18 +230,21 @@ impl Missing {
             .into_iter()
             .zip(forms.chunks_exact(3 * count))
             .any(|(vector, forms)| {
-                let (mut spread, mut size) = (0.0_f64, 0.0_f64);
-                for form in forms.chunks_exact(count) {
+                let (mut spreads, mut size) = ([0.0_f64; 3], 0.0_f64);
+                for (spread, form) in spreads.iter_mut().zip(forms.chunks_exact(count)) {
                     size = size.max(largest(form.iter().copied()));
                     let in_v = form[row..].iter().zip(form).map(|(next, this)| next - this);
                     let in_u = form
                         .chunks_exact(row)
                         .flat_map(|line| line.windows(2).map(|pair| pair[1] - pair[0]));
                     let own = low[0] as f64 * width(in_u);
-                    spread = spread.max(own.max(low[1] as f64 * width(in_v)));
+                    *spread = own.max(low[1] as f64 * width(in_v));
                 }
-                let allowed = SHARE * spread + LEAST * size;
-                (0..2).any(|axis| self.slopes[axis][vector].iter().any(|e| e * widths[axis] > allowed))
+                if !each {
+                    spreads = [largest(spreads.into_iter()); 3];
+                }
+                let allowed = spreads.map(|spread| SHARE * spread + LEAST * size);
+                (0..2).any(|axis| (0..3).any(|k| self.slopes[axis][vector][k] * widths[axis] > allowed[k]))
             })
     }
 }
@@ -250,18 +255,6 @@ fn width(values: impl Iterator<Item = f64>) -> f64 {
         (if x < lo { x } else { lo }, if x > hi { x } else { hi })
     });
     if hi > lo { hi - lo } else { 0.0 }
-}
-
-/// The largest absolute value; NaN if one of them is.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    // NaN is larger than any number in this order, and stays.
-    values.fold(0.0, |most: f64, x| {
-        if most.is_nan() || x.abs() <= most {
-            most
-        } else {
-            x.abs()
-        }
-    })
 }
 
 #[cfg(test)]
@@ -280,12 +273,30 @@ mod tests {
         #[test]
         fn reductions_are_within_their_bounds(
             degrees in degrees(), numbers in proptest::collection::vec(-3.0..3.0, 6 * 144), corner in [0.0..0.9, 0.0..0.9],
-            width in [1e-3..0.1, 1e-3..0.1], whole in any::<bool>(), at in proptest::collection::vec([0.0..=1.0, 0.0..=1.0], 12),
+            width in [1e-3..0.1, 1e-3..0.1], whole in any::<bool>(), pole in proptest::option::of((0_usize..2, any::<bool>(), 1.0..12.0_f64, any::<bool>())), at in proptest::collection::vec([0.0..=1.0, 0.0..=1.0], 12),
         ) {
             let count = (degrees[0] + 1) * (degrees[1] + 1);
-            let forms = &numbers[..6 * count];
+            let mut forms = numbers[..6 * count].to_vec();
+            let (mut lower, mut upper) = if whole { ([0.0; 2], [1.0; 2]) } else { (corner, [corner[0] + width[0], corner[1] + width[1]]) };
+            // Forms that vanish on a side, on a cell as near to it as some distance.
+            let mut scale = [1.0; 2];
+            let mut mirrored = None;
+            if let Some((axis, is_upper, digits, touches)) = pole {
+                let row = degrees[0] + 1;
+                for (k, c) in forms.iter_mut().enumerate() {
+                    let index = [k % count % row, k % count / row][axis];
+                    if index == if is_upper { degrees[axis] } else { 0 } {
+                        *c = 0.0;
+                    }
+                }
+                let far = 10_f64.powf(-digits);
+                let near = if touches { 0.0 } else { 0.3 * far };
+                (lower[axis], upper[axis]) = if is_upper { (1.0 - far, 1.0 - near) } else { (near, far) };
+                scale[1 - axis] = (40.0 * far).min(1.0);
+                mirrored = is_upper.then_some(axis);
+            }
+            let forms = &forms[..];
             let reduced = Reduced::new(forms, degrees).unwrap();
-            let (lower, upper) = if whole { ([0.0; 2], [1.0; 2]) } else { (corner, [corner[0] + width[0], corner[1] + width[1]]) };
             let widths = [upper[0] - lower[0], upper[1] - lower[1]];
             let low = reduced.low();
             let few = (low[0] + 1) * (low[1] + 1);
@@ -294,21 +305,38 @@ mod tests {
             let middle = [0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis]));
             let half = reduced.on(lower, middle, &mut vec![0.0; 6 * few]);
             for k in 0..6 {
-                let full = Bernstein::new(&degrees, forms[k * count..][..count].to_vec()).unwrap();
+                // About the nearer side, where the original's roundings are small.
+                let mut full = forms[k * count..][..count].to_vec();
+                match mirrored {
+                    Some(0) => full.chunks_exact_mut(degrees[0] + 1).for_each(<[f64]>::reverse),
+                    Some(_) => {
+                        full.reverse();
+                        full.chunks_exact_mut(degrees[0] + 1).for_each(<[f64]>::reverse);
+                    }
+                    None => {}
+                }
+                let full = Bernstein::new(&degrees, full).unwrap();
                 let own = Bernstein::new(&low, out[k * few..][..few].to_vec()).unwrap();
                 let (vector, k) = (1 - k / 3, k % 3);
                 for at in &at {
-                    let place = [0, 1].map(|axis| lower[axis] + at[axis] * widths[axis]);
+                    let place = [0, 1].map(|axis| match mirrored {
+                        Some(own) if own == axis => (1.0 - upper[axis]) + (1.0 - at[axis]) * widths[axis],
+                        _ => lower[axis] + at[axis] * widths[axis],
+                    });
                     let off = (full.evaluate(&place) - own.evaluate(at)).abs();
-                    prop_assert!(off <= missing.value[vector][k] + 1e-12, "{off} {}", missing.value[vector][k]);
+                    let (lacking, small) = (missing.value[vector][k], scale[0].min(scale[1]));
+                    prop_assert!(off <= lacking + 1e-12 * small, "{off} {lacking}");
+                    // Nothing is left of it at a pole.
+                    prop_assert!(lacking <= 1e5 * small, "{lacking} {small}");
                     for axis in 0..2 {
+                        let sign = if mirrored == Some(axis) { -1.0 } else { 1.0 };
                         let slope = own.derivative(axis).evaluate(at) / widths[axis];
-                        let off = (full.derivative(axis).evaluate(&place) - slope).abs();
-                        prop_assert!(off <= missing.slopes[axis][vector][k] + 1e-10);
+                        let off = (sign * full.derivative(axis).evaluate(&place) - slope).abs();
+                        prop_assert!(off <= missing.slopes[axis][vector][k] + 1e-10 * scale[axis]);
                     }
                 }
                 let less = half.value[vector][k] - 0.125 * missing.value[vector][k];
-                prop_assert!(less.abs() < 1e-10, "{less}");
+                prop_assert!(less < 1e-10 && (pole.is_some() || less > -1e-10), "{less}");
             }
         }
     }
@@ -342,6 +370,6 @@ mod tests {
         let missing = reduced.on([0.1, 0.2], [0.3, 0.4], &mut out);
         assert!(out.iter().all(|x| x.is_nan()));
         assert_eq!(missing.value, [[0.0; 3]; 2]);
-        assert!(!missing.is_coarse(&out, [2; 2], [0.2; 2]));
+        assert!(!missing.is_coarse(&out, [2; 2], [0.2; 2], true));
     }
 }

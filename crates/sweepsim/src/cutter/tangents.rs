@@ -15,6 +15,19 @@ use sweepsim_spline::Bernstein;
 pub(super) struct Tangents {
     /// Of each component of both, the rounding of a reduced coefficient, and bounds of the third derivatives in each variable.
     sizes: [[(f64, [f64; 2]); 3]; 2],
+    /// Of each component of both, for each pole at a side of the other variable, what bounds the third derivative in its own variable near it.
+    near_poles: Option<NearPoles>,
+}
+
+type NearPoles = [[[Option<NearPole>; 2]; 3]; 2];
+
+/// Along a pole, all derivatives in the pole's own variable vanish, and beside it they grow with the distance.
+#[derive(Clone, Copy, Debug)]
+struct NearPole {
+    /// A bound at the pole, where the side is a point only up to rounding.
+    there: f64,
+    /// How fast it may grow.
+    growth: f64,
 }
 
 /// Orders of derivatives that are bounded: up to this, less one, in each variable.
@@ -30,9 +43,9 @@ const CHOOSE: [[f64; ORDERS]; ORDERS] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
-/// Whether the third derivatives of `F_u` and `F_v`, or those that they depend on, have these orders.
+/// Whether the third derivatives of `F_u` and `F_v`, their growth beside a pole, or those that they depend on, have these orders.
 fn is_needed(a: usize, b: usize) -> bool {
-    (a <= 1 || b <= 1) && a + b < ORDERS
+    (a <= 1 || b <= 1) && a + b <= ORDERS
 }
 
 /// Bounds of the derivatives of a form whose coefficients are off by up to `error`.
@@ -66,6 +79,8 @@ impl Tangents {
         let of_weight = derivatives(weight, 16.0 * f64::EPSILON * heaviest);
         let mut sizes = [[(0.0, [0.0; 2]); 3]; 2];
         let mut shares = [[0.0_f64; 2]; 2];
+        let mut near_poles = [[[None; 2]; 3]; 2];
+        let poles = patch.shrunk_sides();
         for k in 0..3 {
             let position = &patch.position()[k];
             let centre = direct.centre()[k];
@@ -90,20 +105,80 @@ impl Tangents {
                 let off = 2.0 * f64::EPSILON * (bounds[u + 1][v] + bounds[u][v + 1]);
                 let rounding = COMBINED * (direct.of_slopes[axis][k] + off + 8.0 * f64::EPSILON * bounds[u][v]);
                 sizes[axis][k] = (rounding, third);
+                for side in (0..2).filter(|side| poles[1 - axis][*side]) {
+                    let growth = if axis == 0 { bounds[4][1] } else { bounds[1][4] };
+                    let there = along_side((position, weight), axis, side);
+                    near_poles[axis][k][side] = Some(NearPole { there, growth });
+                }
                 shares[axis][0] = shares[axis][0].max(beyond(third, [0.25; 2]));
                 shares[axis][1] = shares[axis][1].max(bounds[u][v]);
             }
         }
         let good = shares.iter().all(|[missing, size]| *missing <= SHARE * size);
         let finite = |(rounding, third): &(f64, [f64; 2])| rounding.is_finite() && third.iter().all(|x| x.is_finite());
-        (good && sizes.as_flattened().iter().all(finite)).then_some(Self { sizes })
+        (good && sizes.as_flattened().iter().all(finite)).then_some(Self {
+            sizes,
+            near_poles: (poles != [[false; 2]; 2]).then_some(near_poles),
+        })
     }
 
-    /// Bounds of what is missing from `F_u` and `F_v` on a cell with these sides, component by component.
-    pub fn missing(&self, widths: [f64; 2]) -> Sizes {
-        self.sizes
-            .map(|slope| slope.map(|(rounding, third)| beyond(third, widths) + rounding))
+    /// Bounds of what is missing from `F_u` and `F_v` on a cell, component by component.
+    pub fn missing(&self, lower: [f64; 2], upper: [f64; 2]) -> Sizes {
+        let widths = [0, 1].map(|axis| upper[axis] - lower[axis]);
+        let missing = |(rounding, third): &(f64, [f64; 2])| beyond(*third, widths) + rounding;
+        let Some(near_poles) = &self.near_poles else {
+            return self.sizes.each_ref().map(|slope| slope.each_ref().map(missing));
+        };
+        let mut sizes = self.sizes;
+        for (axis, (sizes, near_poles)) in sizes.iter_mut().zip(near_poles).enumerate() {
+            let distances = [upper[1 - axis], 1.0 - lower[1 - axis]];
+            for ((_, third), near) in sizes.iter_mut().zip(near_poles) {
+                for (near, distance) in near.iter().zip(distances) {
+                    if let Some(near) = near {
+                        third[axis] = third[axis].min(near.there + distance * near.growth);
+                    }
+                }
+            }
+        }
+        sizes.each_ref().map(|slope| slope.each_ref().map(missing))
     }
+}
+
+/// A bound of the fourth derivative of `F` along a side, in its own variable, of which this is the number: that of `F` less one of its points, which is but rounding where the side is a pole.
+fn along_side((position, weight): (&Bernstein, &Bernstein), axis: usize, side: usize) -> f64 {
+    let degrees = [0, 1].map(|axis| position.degree(axis).max(weight.degree(axis)));
+    let [position, weight] = [position, weight].map(|form| form.elevated_to(&degrees));
+    let row = |form: &Bernstein| -> Vec<f64> {
+        let (n, other) = (degrees[axis], side * degrees[1 - axis]);
+        let index = |i: usize| {
+            if axis == 0 {
+                other * (n + 1) + i
+            } else {
+                i * (degrees[0] + 1) + other
+            }
+        };
+        (0..=n).map(|i| form.coefficients()[index(i)]).collect()
+    };
+    let [own, weights] = [&position, &weight].map(row);
+    let point = own[0] / weights[0];
+    let largest = |list: &[f64]| list.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    // Rounded once more in the difference.
+    let sizes = largest(&own) + point.abs() * largest(&weights);
+    let off: Vec<f64> = own.iter().zip(&weights).map(|(p, w)| p - point * w).collect();
+    let off = largest(&off) + 4.0 * f64::EPSILON * sizes;
+    let lightest = weights.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut of_weight = weights;
+    let mut bounds = [0.0; ORDERS];
+    let mut of_weights = [0.0; ORDERS];
+    for a in 0..ORDERS {
+        of_weights[a] = largest(&of_weight);
+        let degree = of_weight.len().saturating_sub(1) as f64;
+        of_weight = of_weight.windows(2).map(|pair| degree * (pair[1] - pair[0])).collect();
+        let own = off * (2.0 * degrees[axis] as f64).powi(a as i32);
+        let rest: f64 = (1..=a).map(|i| CHOOSE[a][i] * of_weights[i] * bounds[a - i]).sum();
+        bounds[a] = (own + rest) / lightest * (1.0 + 128.0 * f64::EPSILON);
+    }
+    bounds[ORDERS - 1]
 }
 
 #[cfg(test)]
@@ -150,7 +225,7 @@ mod tests {
         fn samples_are_within_their_bounds(
             degrees in prop_oneof![2 => Just([3, 3]), 1 => [2_usize..5, 2_usize..5]], has_pole in any::<bool>(), spread in prop_oneof![Just(0.0), Just(0.04), Just(0.2)],
             bumps in proptest::collection::vec(-0.08..0.08, 25), numbers in proptest::collection::vec(-1.0..1.0, 25),
-            corner in [0.0..0.9, 0.0..0.9], width in [1e-3..0.1, 1e-3..0.1], is_whole in any::<bool>(), axis in 0_usize..2,
+            corner in [0.0..0.9, 0.0..0.9], width in [1e-3..0.1, 1e-3..0.1], is_whole in any::<bool>(), axis in 0_usize..2, near in proptest::option::of(1.0..9.0_f64),
             places in proptest::collection::vec([0.0..=1.0, 0.0..=1.0], 8),
         ) {
             let weights: Vec<f64> = numbers.iter().map(|x| 1.0 + spread * x).collect();
@@ -160,6 +235,10 @@ mod tests {
             prop_assert!(element.tangents.is_some() || spread > 0.1);
             prop_assume!(element.tangents.is_some());
             let (lower, upper) = if is_whole { ([0.0; 2], [1.0; 2]) } else { (corner, [0, 1].map(|k| corner[k] + width[k])) };
+            let (lower, upper) = match near {
+                Some(digits) => ([lower[0], 0.0], [upper[0], 10_f64.powf(-digits)]),
+                None => (lower, upper),
+            };
             let mut cells = Cells::new(element);
             let whole = cells.place(element, lower, upper);
             let parts = cells.split(element, whole, axis);
@@ -197,6 +276,11 @@ mod tests {
                         }
                     }
                 }
+            }
+            if has_pole {
+                // Of the slopes along the pole, next to nothing is missing beside it.
+                let most = 1e3 * upper[1] + 1e-9;
+                prop_assert!(cells.missing(whole).tangents[0].iter().all(|missing| *missing < most), "{:?} {upper:?}", cells.missing(whole).tangents);
             }
             let (all, part) = (cells.missing(parts[0]).tangents, cells.missing(last[0]).tangents);
             for (all, part) in all.as_flattened().iter().zip(part.as_flattened()) {

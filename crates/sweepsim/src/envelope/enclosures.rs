@@ -53,6 +53,12 @@ pub(super) fn envelope_size(element: &PatchForms, times: &Times) -> f64 {
     product_size(&times.sizes(), &element.largest)
 }
 
+/// A bound of the rounding error of `g` on a cell.
+pub(super) fn envelope_error_in(element: &PatchForms, cells: &Cells, times: &Times, cell: u32) -> f64 {
+    let [u, v] = [0, 1].map(|axis| cells.bounds(cell, axis));
+    ROUNDING * product_size(&times.sizes(), element.rounding_in([u.0, v.0], [u.1, v.1]))
+}
+
 /// A bound of the rounding error of `g`.
 pub(super) fn envelope_error(element: &PatchForms, times: &Times) -> f64 {
     ROUNDING * product_size(&times.sizes(), &element.rounding)

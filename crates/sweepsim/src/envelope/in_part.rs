@@ -82,6 +82,10 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
     fn rounding(&self) -> [f64; N] {
         self.map.rounding()
     }
+
+    fn rounding_in(&self, cell: &Self::Cell) -> [f64; N] {
+        self.map.rounding_in(cell)
+    }
 }
 
 impl<const N: usize, M: AnyBox<N>> AnyBox<N> for InPart<'_, M> {

@@ -8,7 +8,8 @@ use crate::envelope::absent::is_absent;
 use crate::envelope::any_box::AnyBox;
 use crate::envelope::clipped::clipped;
 use crate::envelope::enclosures::{
-    Brick, Near, Size, envelope_error, envelope_size, interval, largest, plane_values, product_size, turning, widened,
+    Brick, Near, Size, envelope_error, envelope_error_in, envelope_size, interval, largest, plane_values, product_size,
+    turning, widened,
 };
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
@@ -66,7 +67,7 @@ impl ChartMap<3> for PatchMap<'_> {
         let (spins, travels) = self.times.twist(cell.1);
         let missing = product_size(&self.times.sizes(), &self.cells.missing(cell.0).value);
         let g = widened(envelope(spins, travels, &field), missing);
-        let error = envelope_error(self.element, self.times);
+        let error = envelope_error_in(self.element, self.cells, self.times, cell.0);
         if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
             return None;
         }
@@ -205,6 +206,15 @@ impl ChartMap<3> for PatchMap<'_> {
     fn rounding(&self) -> [f64; 3] {
         let slack = self.size.slack;
         [slack, slack, envelope_error(self.element, self.times)]
+    }
+
+    fn rounding_in(&self, cell: &Brick) -> [f64; 3] {
+        let slack = self.size.slack;
+        [
+            slack,
+            slack,
+            envelope_error_in(self.element, self.cells, self.times, cell.0),
+        ]
     }
 }
 

@@ -1,11 +1,11 @@
 //! Moves without rotation of tools of any shape, by their grazing curves, against charts.
 
 use crate::freeform::block;
-use crate::translations::{TOLERANCE, agree, cases, path};
+use crate::translations::{TOLERANCE, agree, cases, path, same};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::{Rotation3, Vector3};
-use sweepsim::{Options, SweepError, sweep};
+use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Patch, Path, Pose, Tool};
 use sweepsim_spline::Bernstein;
@@ -237,5 +237,67 @@ fn few_boxes_along_a_raster() {
         let [curves, charts] = agree(name, tool, &moves, &grid([41, 43]), TOLERANCE).expect("the same");
         let [own, other] = [&curves.statistics, &charts.statistics];
         assert!(2 * own.boxes < other.boxes, "{name}: {own:?} {other:?}");
+    }
+}
+
+/// Level moves whose tip passes over lines, exactly or almost: the pole of the round end touches the envelope all the way there. All methods find the same, and the
+/// search is not at the mercy of the distance.
+#[test]
+fn poles_that_pass_over_lines() {
+    let tool = bud();
+    let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid");
+    let boxes_and_dexels = |tips: [[f64; 3]; 2], method, tolerance| {
+        let options = Options::new(tolerance).method(method);
+        let done = sweep(&tool, &carried(&tips, [0.0; 3]), &grid, &options, &()).expect("a sweep");
+        assert!(
+            done.statistics.unresolved.is_empty(),
+            "{tips:?} {method}: {:?}",
+            done.statistics
+        );
+        (done.statistics, done.volume)
+    };
+    let along = |off: f64| [[-4.0, off, 0.0], [4.0, off, 0.0]];
+    let (neighbour, _) = boxes_and_dexels(along(0.1), Method::General, TOLERANCE);
+    let ways = [
+        ("over a row", along(0.0)),
+        ("a row begins", [[-0.1, 0.0, 0.0], [4.0, 0.0, 0.0]]),
+        ("beside a row", along(1e-8)),
+        ("farther beside it", along(1e-5)),
+        ("hardly rising", [[-4.0, 0.0, 0.0], [4.0, 0.0, 1e-8]]),
+        ("along a diagonal", [[-4.0, -4.0, 0.0], [4.0, 4.0, 0.0]]),
+        ("along another", [[-4.0, -2.0, 0.0], [4.0, 2.0, 0.0]]),
+    ];
+    for (name, tips) in ways {
+        let [(exact, own), (_, curves), (_, planes), (_, lines)] =
+            [Method::General, Method::Charts, Method::Planes, Method::Lines]
+                .map(|method| boxes_and_dexels(tips, method, TOLERANCE));
+        assert_eq!(exact.repaired, 0, "{name}");
+        let most = if name.starts_with("along") { 150 } else { 8 };
+        assert!(exact.boxes < most * neighbour.boxes, "{name}: {exact:?} {neighbour:?}");
+        for other in [curves, planes, lines] {
+            for line in 0..grid.len() {
+                let [a, b] = [&own, &other].map(|volume| volume.at(line).to_vec());
+                assert!(same(&a, &b, TOLERANCE), "{name}: {line}: {a:?} {b:?}");
+            }
+        }
+        for tolerance in [1e-3, 1e-8] {
+            boxes_and_dexels(tips, Method::Charts, tolerance);
+        }
+    }
+}
+
+/// The flat end of a tool of patches that moves level is left to a displacement, however small: two components of its normals are 0 without any error.
+#[test]
+fn flat_ends_at_fine_tolerances() {
+    let tool = bud();
+    let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid");
+    let moves = carried(&[[-4.0, 0.137, 0.0], [4.0, 0.137, 0.0]], [0.0; 3]);
+    for method in [Method::General, Method::Charts] {
+        let [coarse, fine] = [1e-6, 1e-9].map(|tolerance| {
+            let done = sweep(&tool, &moves, &grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
+            assert!(done.statistics.unresolved.is_empty() && done.statistics.repaired == 0);
+            done.statistics.boxes
+        });
+        assert!(fine < 2 * coarse, "{method}: {fine} {coarse}");
     }
 }
