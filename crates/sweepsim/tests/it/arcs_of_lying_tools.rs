@@ -137,9 +137,11 @@ proptest! {
                 let z = start[2] + radius * (at.sin() - from.sin());
                 let (along, across) = (ax * x + ay * y, ax * y - ay * x);
                 let wide = width(pointed, along)?;
-                (across.abs() <= wide).then(|| (wide - across.abs(), z - (wide * wide - across * across).sqrt()))
+                let inside = wide - across.abs();
+                // Beside the line, the search is led to where the tool is over it, however short the time.
+                Some((inside, if inside < 0.0 { 1e6 - inside } else { z - (wide * wide - across * across).sqrt() }))
             };
-            let deepest = -least(|share| at(share).map_or(0.0, |(inside, _)| -inside));
+            let deepest = -least(|share| at(share).map_or(f64::INFINITY, |(inside, _)| -inside));
             let lowest = least(|share| at(share).map_or(f64::INFINITY, |(_, z)| z));
             let own = found.volume.at(index).to_vec();
             let Some(first) = own.first() else {
