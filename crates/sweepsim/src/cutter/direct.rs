@@ -73,7 +73,7 @@ impl Direct {
             own.unwrap_or(0).max(weight.degree(axis))
         });
         let middle = patch.point(0.5, 0.5);
-        let flat = patch.position().each_ref().map(|form| flat_at(form, weight));
+        let flat = [0, 1, 2].map(|k| flat_at(patch, k));
         let centre = Vector3::from_fn(|k, _| flat[k].unwrap_or(middle[k]));
         let raised = |form: &Bernstein| form.elevated_to(&degrees);
         let shifted = [0, 1, 2].map(|k| raised(&patch.position()[k]).sub(&raised(&weight.scale(centre[k]))));
@@ -251,14 +251,19 @@ impl Direct {
     }
 }
 
-/// The coordinate that all points have in common, exactly: the patch is flat, and two components of its normals are 0 without any error.
-fn flat_at(form: &Bernstein, weight: &Bernstein) -> Option<f64> {
+/// The coordinate `k` of all points, if it is exactly the same and the forms of the normals and moments agree: the patch is flat, and where only `N_k` is not 0, nothing else
+/// has an error.
+fn flat_at(patch: &Patch, k: usize) -> Option<f64> {
+    let (form, weight) = (&patch.position()[k], patch.weight());
     let same_degrees = (0..2).all(|axis| form.degree(axis) == weight.degree(axis));
     let (own, weights) = (form.coefficients(), weight.coefficients());
     let at = own[0] / weights[0];
     // Rounded once, a difference of 0 is exact.
     let is_flat = same_degrees && own.iter().zip(weights).all(|(p, w)| at.mul_add(-w, *p) == 0.0);
-    is_flat.then_some(at)
+    let vanish =
+        |forms: &[Bernstein; 3], is_own: bool| (0..3).all(|j| (j == k) != is_own || forms[j].magnitude() == 0.0);
+    let field = patch.field();
+    (is_flat && vanish(field.normal(), false) && vanish(field.moment(), true)).then_some(at)
 }
 
 /// `travel + spin × F`.

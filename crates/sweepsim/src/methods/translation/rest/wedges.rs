@@ -167,6 +167,7 @@ pub(super) fn wedges_between(normals: [[f64; 2]; 2], sides: &[Side; 2]) -> Vec<W
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use proptest::test_runner::TestCaseResult;
 
     fn side() -> impl Strategy<Value = Side> {
         let moving = ([-1.0..1.0_f64, -1.0..1.0, -1.0..1.0], -12..1i32);
@@ -177,6 +178,19 @@ mod tests {
             }),
             1 => any::<bool>().prop_map(Side::Beyond),
         ]
+    }
+
+    /// At most one wedge holds an azimuth, and one does where the signs differ.
+    fn check(wedges: &[Wedge], [n, m]: [f64; 2], sides: &[Side; 2], azimuth: f64) -> TestCaseResult {
+        let (sine, cosine) = azimuth.sin_cos();
+        let negative = sides.map(|side| match side {
+            Side::Beyond(negative) => negative,
+            Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
+        });
+        let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
+        prop_assert!(held <= 1, "{wedges:?} {azimuth}");
+        prop_assert!(held == 1 || negative[0] == negative[1], "{wedges:?} {azimuth}");
+        Ok(())
     }
 
     proptest! {
@@ -194,14 +208,7 @@ mod tests {
                 _ => None,
             };
             for azimuth in (0..200).map(|k| 0.0314 * f64::from(k)).chain(border) {
-                let (sine, cosine) = azimuth.sin_cos();
-                let negative = sides.map(|side| match side {
-                    Side::Beyond(negative) => negative,
-                    Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
-                });
-                let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
-                prop_assert!(held <= 1, "{wedges:?} {azimuth}");
-                prop_assert!(held == 1 || negative[0] == negative[1], "{wedges:?} {azimuth}");
+                check(&wedges, [n, m], &sides, azimuth)?;
             }
             // Points on a circle are where the ranges say.
             for wedge in &wedges {
@@ -225,14 +232,7 @@ mod tests {
             let wedges = wedges_between(ends.map(normal), &sides);
             let [n, m] = normal(ends[0] + share * (ends[1] - ends[0]));
             for azimuth in (0..200).map(|k| 0.0314 * f64::from(k)) {
-                let (sine, cosine) = azimuth.sin_cos();
-                let negative = sides.map(|side| match side {
-                    Side::Beyond(negative) => negative,
-                    Side::Along([a, b, c]) => n * (a * cosine + b * sine) + m * c < 0.0,
-                });
-                let held = wedges.iter().filter(|wedge| wedge.holds(cosine, sine)).count();
-                prop_assert!(held <= 1, "{wedges:?} {azimuth}");
-                prop_assert!(held == 1 || negative[0] == negative[1], "{wedges:?} {azimuth}");
+                check(&wedges, [n, m], &sides, azimuth)?;
             }
         }
     }
