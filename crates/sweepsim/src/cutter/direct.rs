@@ -5,7 +5,7 @@
 
 use crate::algebra::quad::{Quad, add, cross, dot, mix, quad};
 use crate::algebra::table::Table;
-use crate::cutter::errors::Errors;
+use crate::cutter::errors::{Errors, flat_at};
 use crate::cutter::places::Places;
 use crate::time::pieces::Sizes;
 use crate::time::placement::Twisted;
@@ -249,21 +249,6 @@ impl Direct {
             grown,
         }
     }
-}
-
-/// The coordinate `k` of all points, if it is exactly the same and the forms of the normals and moments agree: the patch is flat, and where only `N_k` is not 0, nothing else
-/// has an error.
-fn flat_at(patch: &Patch, k: usize) -> Option<f64> {
-    let (form, weight) = (&patch.position()[k], patch.weight());
-    let same_degrees = (0..2).all(|axis| form.degree(axis) == weight.degree(axis));
-    let (own, weights) = (form.coefficients(), weight.coefficients());
-    let at = own[0] / weights[0];
-    // Rounded once, a difference of 0 is exact.
-    let is_flat = same_degrees && own.iter().zip(weights).all(|(p, w)| at.mul_add(-w, *p) == 0.0);
-    let vanish =
-        |forms: &[Bernstein; 3], is_own: bool| (0..3).all(|j| (j == k) != is_own || forms[j].magnitude() == 0.0);
-    let field = patch.field();
-    (is_flat && vanish(field.normal(), false) && vanish(field.moment(), true)).then_some(at)
 }
 
 /// `travel + spin × F`.
