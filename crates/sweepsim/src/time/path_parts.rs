@@ -60,7 +60,7 @@ pub(crate) fn parts(
         None
     };
     let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
-    // Ends of an arc that the tool lies across are not displaced out of its plane.
+    // Ends of an arc of a tool that lies along an axis of the grid are not displaced out of its plane.
     let displaced = |k: usize, planes: [Option<usize>; 2]| {
         let mut by = tolerances.tip_displacement(k);
         planes.into_iter().flatten().for_each(|normal| by[normal] = 0.0);
@@ -68,7 +68,7 @@ pub(crate) fn parts(
     };
     let plane = |from: usize, to: usize| {
         symmetric
-            .then(|| lies_across(path, to - 1 - first, frame, [tip(from), tip(to)]))
+            .then(|| exact_plane(path, to - 1 - first, frame, [tip(from), tip(to)]))
             .flatten()
     };
     let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
@@ -157,10 +157,11 @@ pub(crate) fn parts(
     parts
 }
 
-/// The axis of the frame, across the dexels, that a tool lies along while its tip moves along an arc about exactly that axis, in one plane and without turning.
+/// The axis of the frame that is normal to the plane of an arc to the last digit, if a tool that lies exactly along an axis of the frame, across the dexels, moves along it without turning.
 ///
-/// Faces across the tool's axis slide along themselves, parallel to the dexels. They are seen edge-on as long as they stay in one plane to the last digit.
-fn lies_across(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
+/// The plane then holds the tool's axis, or is perpendicular to it. In the second case, faces across the tool's axis slide along themselves, parallel to the dexels: they are seen edge-on as long as they
+/// stay in one plane to the last digit.
+fn exact_plane(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
     let way = path.way(number);
     let Course::Arc(arc) = way.course else { return None };
     let poses = [path.pose(number), path.pose(number + 1)];
@@ -170,9 +171,10 @@ fn lies_across(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2
     };
     let along = |v: [f64; 3], k: usize| v[k].abs() == 1.0 && (0..3).all(|other| other == k || v[other] == 0.0);
     let [axis, normal] = [poses[0].axis(), arc.normal()].map(|v| frame.turn_from_world(v));
-    let lies = |k: &usize| along(axis, *k) && along(normal, *k) && ends[0][*k] == ends[1][*k];
+    let lies = (0..2).any(|k| along(axis, k));
+    let plane = |k: &usize| along(normal, *k) && ends[0][*k] == ends[1][*k];
     let one = still && poses[0].axis() == poses[1].axis();
-    one.then(|| (0..2).find(lies)).flatten()
+    (one && lies).then(|| (0..2).find(plane)).flatten()
 }
 
 /// So many moves are unpacked at a time.

@@ -103,7 +103,7 @@ fn hardly_a_box() {
 }
 
 /// Its radius at a height, if it has one.
-fn width(pointed: bool, height: f64) -> Option<f64> {
+pub fn width(pointed: bool, height: f64) -> Option<f64> {
     let [end, wide] = if pointed {
         [8.0, 2.5_f64.min(height / 0.6)]
     } else {

@@ -14,7 +14,10 @@
 
 mod ball;
 mod edge;
+mod lengthwise;
 mod parallel;
+mod quarter;
+mod roots;
 mod sheet;
 mod slice;
 
@@ -67,6 +70,7 @@ pub(crate) fn along(
     let stance = match own {
         [0.0, 0.0, 1.0] => Stance::Upright,
         [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
+        [1.0 | -1.0, 0.0, 0.0] => Stance::Within,
         _ => Stance::Other,
     };
     for piece in &outline.pieces {
@@ -79,6 +83,7 @@ pub(crate) fn along(
             Stance::Upright if rim.height <= rolling.highest => rolling.rim(rim),
             Stance::Upright => {}
             Stance::Across => rolling.edge_across(rim),
+            Stance::Within => rolling.edge_lengthwise(rim),
             Stance::Other => continue,
         }
         edges[rim.edges.clone()].fill(true);
@@ -92,6 +97,8 @@ enum Stance {
     Upright,
     /// Perpendicular to the arc's plane.
     Across,
+    /// In the arc's plane, and perpendicular to the dexels.
+    Within,
     Other,
 }
 
@@ -142,8 +149,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             ball(self, &part);
             return true;
         }
-        if stance == Stance::Across {
-            return self.slices(piece);
+        match stance {
+            Stance::Across => return self.slices(piece),
+            Stance::Within => return self.lengthwise(piece),
+            Stance::Upright | Stance::Other => {}
         }
         match piece.shape {
             // No line meets an upright wall.
@@ -188,12 +197,8 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         });
     }
 
-    /// A disc or ring with this normal along the axis: all of it where the tool is highest or lowest.
-    fn disc(&mut self, height: f64, [inner, outer]: [f64; 2], up: f64) {
-        let [before, after] = self.rates.map(|rate| up * rate < 0.0);
-        if before == after {
-            return;
-        }
+    /// Where the velocity along the dexels changes its sign: 1 if that is where the tip is highest, −1 if it is lowest; and the share of the way.
+    fn turn(&self) -> (f64, f64) {
         let top = if self.rates[0] > self.rates[1] { 1.0 } else { -1.0 };
         let share = match self.place([0.0, top], 0.0) {
             Place::Inside(share) => share,
@@ -201,6 +206,16 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
             _ if (self.rates[0].abs()) < self.rates[1].abs() => 0.0,
             _ => 1.0,
         };
+        (top, share)
+    }
+
+    /// A disc or ring with this normal along the axis: all of it where the tool is highest or lowest.
+    fn disc(&mut self, height: f64, [inner, outer]: [f64; 2], up: f64) {
+        let [before, after] = self.rates.map(|rate| up * rate < 0.0);
+        if before == after {
+            return;
+        }
+        let (top, share) = self.turn();
         let change = i8::from(after) - i8::from(before);
         let jump = if up > 0.0 { -change } else { change };
         let [x, y, z] = self.wheel.centre;

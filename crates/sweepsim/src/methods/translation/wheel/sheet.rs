@@ -1,5 +1,6 @@
 //! A stretch of a cone or torus about the dexels' direction with one height at each radius, and the curves parallel to its sections.
 
+use super::roots::Curve;
 use crate::cutter::outline::{Piece, Shape};
 use std::f64::consts::PI;
 
@@ -17,7 +18,7 @@ const CERTAIN: f64 = 64.0;
 pub(super) struct Sheet {
     /// Ascending.
     pub radii: [f64; 2],
-    curve: Curve,
+    pub curve: Meridian,
     /// The sign of the vertical part of `(e, f)`.
     pub up: f64,
     /// 1 if `(e, f)` is the outward normal, otherwise −1.
@@ -26,7 +27,7 @@ pub(super) struct Sheet {
 
 /// With the unit normal `(e, f)`: of a torus the direction from the centre of its tube.
 #[derive(Clone, Copy, Debug)]
-enum Curve {
+pub(super) enum Meridian {
     Cone {
         normal: [f64; 2],
         /// A point, and the height for each radius.
@@ -57,6 +58,8 @@ pub(super) struct Parallel<'a> {
 /// A point of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
+    /// The unknown.
+    pub x: f64,
     pub v: f64,
     pub rho: f64,
     pub e: f64,
@@ -66,7 +69,7 @@ pub(super) struct Point {
     /// `Q`.
     pub q: f64,
     /// `D`.
-    room: f64,
+    pub room: f64,
 }
 
 /// What is known between two places.
@@ -88,7 +91,7 @@ impl Sheet {
                 let rate = (piece.to[1] - piece.from[1]) / (piece.to[0] - piece.from[0]);
                 vec![Self {
                     radii: sorted(ends),
-                    curve: Curve::Cone {
+                    curve: Meridian::Cone {
                         normal,
                         from: piece.from,
                         rate,
@@ -106,7 +109,7 @@ impl Sheet {
                 if !(last - first > SHORTEST && radius * SHORTEST > slack) {
                     return None;
                 }
-                let curve = Curve::Torus {
+                let curve = Meridian::Torus {
                     centre,
                     tube: radius,
                     bend: radius.recip(),
@@ -138,8 +141,8 @@ impl Sheet {
     #[inline]
     fn normal(&self, rho: f64) -> [f64; 2] {
         match self.curve {
-            Curve::Cone { normal: [e, f], .. } => [e, f * f],
-            Curve::Torus { centre, bend, .. } => {
+            Meridian::Cone { normal: [e, f], .. } => [e, f * f],
+            Meridian::Torus { centre, bend, .. } => {
                 let e = (rho - centre[0]) * bend;
                 [e, ((1.0 - e) * (1.0 + e)).max(0.0)]
             }
@@ -148,10 +151,10 @@ impl Sheet {
 
     /// The curvature of the meridian.
     #[inline]
-    fn bend(&self) -> f64 {
+    pub fn bend(&self) -> f64 {
         match self.curve {
-            Curve::Cone { .. } => 0.0,
-            Curve::Torus { bend, .. } => bend,
+            Meridian::Cone { .. } => 0.0,
+            Meridian::Torus { bend, .. } => bend,
         }
     }
 
@@ -163,21 +166,22 @@ impl Sheet {
 
     pub fn height(&self, point: &Point) -> f64 {
         match self.curve {
-            Curve::Cone { from, rate, .. } => from[1] + rate * (point.rho - from[0]),
-            Curve::Torus { centre, tube, .. } => centre[1] + self.up * tube * point.square.sqrt(),
+            Meridian::Cone { from, rate, .. } => from[1] + rate * (point.rho - from[0]),
+            Meridian::Torus { centre, tube, .. } => centre[1] + self.up * tube * point.square.sqrt(),
         }
     }
 }
 
-impl Parallel<'_> {
+impl Curve for Parallel<'_> {
     #[inline]
-    pub fn at(&self, v: f64) -> Point {
+    fn at(&self, v: f64) -> Point {
         let rho = (v * v + self.p * self.p).sqrt();
         let [e, square] = self.sheet.normal(rho);
         let room = v * v + square * self.p * self.p;
         // At a tip, where there is no normal.
         let nu = if room > 0.0 { e * v / room.sqrt() } else { 0.0 };
         Point {
+            x: v,
             v,
             rho,
             e,
@@ -188,9 +192,39 @@ impl Parallel<'_> {
         }
     }
 
+    #[inline]
+    fn slope(&self, at: &Point) -> f64 {
+        self.growth(at)
+    }
+
+    /// Not negative places.
+    fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
+        match self.growths([a, b]) {
+            Some((slope, room)) => Bounds {
+                slope,
+                error: self.error([b.v, b.rho], room),
+            },
+            None => Bounds::UNKNOWN,
+        }
+    }
+
+    fn error_at(&self, at: &Point) -> f64 {
+        self.error([at.v, at.rho], at.room)
+    }
+
+    fn is_axis(&self, at: &Point) -> bool {
+        at.v == 0.0
+    }
+
+    fn slack(&self) -> f64 {
+        self.slack
+    }
+}
+
+impl Parallel<'_> {
     /// `Q′`: `ν′ = (v² ρ w + e f² p²)/D^(3/2)` with the curvature `w` of the meridian.
     #[inline]
-    pub fn slope(&self, at: &Point) -> f64 {
+    pub fn growth(&self, at: &Point) -> f64 {
         let top = at.v * at.v * at.rho * self.sheet.bend() + at.e * at.square * self.p * self.p;
         1.0 + self.side * self.r * top / (at.room * at.room.sqrt())
     }
@@ -198,14 +232,15 @@ impl Parallel<'_> {
     /// By how much `Q` is off: where `|∂ν/∂p|` and the error of `e` count. Infinite where that is not known.
     fn error(&self, [v, rho]: [f64; 2], room: f64) -> f64 {
         let bend = self.sheet.bend();
-        if !(room > CERTAIN * self.doubt(rho)) {
+        if !self.known(rho, room) {
             return f64::INFINITY;
         }
         self.slack * (8.0 + 4.0 * self.r * v * (self.p.abs() + 2.0 * rho * rho * bend) / (room * room.sqrt()))
     }
 
-    pub fn error_at(&self, at: &Point) -> f64 {
-        self.error([at.v, at.rho], at.room)
+    /// Whether `D` is beyond its error.
+    pub fn known(&self, rho: f64, room: f64) -> bool {
+        room > CERTAIN * self.doubt(rho)
     }
 
     /// By how much `D` is off.
@@ -213,8 +248,8 @@ impl Parallel<'_> {
         8.0 * self.slack * rho * (1.0 + rho * self.sheet.bend())
     }
 
-    /// Between two places, not negative and ascending.
-    pub fn bounds(&self, [a, b]: [&Point; 2]) -> Bounds {
+    /// The range of `Q′` between two places in the order of `v`, and the least `D`. `None` if it is not known.
+    pub fn growths(&self, [a, b]: [&Point; 2]) -> Option<([f64; 2], f64)> {
         let [least, most] = if a.e * b.e >= 0.0 {
             [a.square.min(b.square), a.square.max(b.square)]
         } else {
@@ -223,13 +258,10 @@ impl Parallel<'_> {
         let across = self.p * self.p;
         let bend = self.sheet.bend();
         let room = [a.v * a.v + least * across, b.v * b.v + most * across];
-        let doubt = self.doubt(b.rho);
-        if !(room[0] > CERTAIN * doubt) {
-            return Bounds {
-                slope: [f64::NEG_INFINITY, f64::INFINITY],
-                error: f64::INFINITY,
-            };
+        if !self.known(b.rho, room[0]) {
+            return None;
         }
+        let doubt = self.doubt(b.rho);
         // `e` grows along a torus.
         let low = a.e * if a.e < 0.0 { most } else { least };
         let high = b.e * if b.e > 0.0 { most } else { least };
@@ -242,11 +274,18 @@ impl Parallel<'_> {
         let above = top[1] / if top[1] > 0.0 { rooms[0] } else { rooms[1] };
         let ends = [below, above].map(|rate| self.side * self.r * rate);
         let margin = 1e-12 * (1.0 + ends[0].abs().max(ends[1].abs()));
-        Bounds {
-            slope: [1.0 + ends[0].min(ends[1]) - margin, 1.0 + ends[0].max(ends[1]) + margin],
-            error: self.error([b.v, b.rho], room[0]),
-        }
+        Some((
+            [1.0 + ends[0].min(ends[1]) - margin, 1.0 + ends[0].max(ends[1]) + margin],
+            room[0],
+        ))
     }
+}
+
+impl Bounds {
+    pub const UNKNOWN: Self = Self {
+        slope: [f64::NEG_INFINITY, f64::INFINITY],
+        error: f64::INFINITY,
+    };
 }
 
 #[cfg(test)]
@@ -257,7 +296,7 @@ mod tests {
     fn sheets() -> impl Strategy<Value = Sheet> {
         let torus = (-4.0..4.0_f64, 0.1..4.0_f64, any::<bool>()).prop_map(|(centre, tube, up)| Sheet {
             radii: [(centre - tube).max(0.0), centre + tube],
-            curve: Curve::Torus {
+            curve: Meridian::Torus {
                 centre: [centre, 0.0],
                 tube,
                 bend: tube.recip(),
@@ -267,7 +306,7 @@ mod tests {
         });
         let cone = (-PI..PI, 0.0..2.0_f64, 2.0..4.0_f64).prop_map(|(angle, a, b)| Sheet {
             radii: [a, b],
-            curve: Curve::Cone {
+            curve: Meridian::Cone {
                 normal: [angle.cos(), angle.sin()],
                 from: [a, 0.0],
                 rate: -angle.cos() / angle.sin(),

@@ -1,0 +1,168 @@
+//! The solutions of `Q(x) = y` for a curve parallel to a section: there is one where `Q′` has one sign, and the values at both ends are on different sides.
+
+use super::sheet::{Bounds, Point};
+
+/// Stretches are halved so many times at most,
+const HALVINGS: usize = 30;
+/// and there are so many for one line.
+const STRETCHES: usize = 240;
+/// Steps of Newton's method or halvings of a bracket.
+const STEPS: usize = 64;
+
+/// What is left to the general method.
+pub(super) struct Open;
+
+/// A solution.
+pub(super) struct Root {
+    pub at: Point,
+    /// How far off it may be.
+    pub error: f64,
+    /// Whether `Q` grows there.
+    pub grows: bool,
+}
+
+/// A coordinate of a curve parallel to a section, with one unknown `x`.
+pub(super) trait Curve {
+    fn at(&self, x: f64) -> Point;
+    /// `Q′`.
+    fn slope(&self, at: &Point) -> f64;
+    /// Between two places, ascending.
+    fn bounds(&self, ends: [&Point; 2]) -> Bounds;
+    /// By how much `Q` may be off.
+    fn error_at(&self, at: &Point) -> f64;
+    /// Whether it is where another curve goes on, on which the same line is searched.
+    fn is_axis(&self, at: &Point) -> bool;
+    /// The rounding error of coordinates.
+    fn slack(&self) -> f64;
+}
+
+/// A section, with the part of it whose envelope may be over a line.
+pub(super) struct Search<C> {
+    pub curve: C,
+    /// The wanted value of `Q`.
+    pub y: f64,
+    /// −1 if the curve is traversed backwards: behind the axis, the half has its start at the axis where the other has its end.
+    pub mirror: f64,
+}
+
+impl<C: Curve> Search<C> {
+    /// On which side of the line: the same at the axis for both halves.
+    fn before(&self, at: &Point) -> bool {
+        if self.mirror > 0.0 {
+            at.q < self.y
+        } else {
+            at.q > self.y
+        }
+    }
+
+    /// Whether the line may be met between two places.
+    fn may_meet(&self, [a, b]: [&Point; 2]) -> bool {
+        let bounds = self.curve.bounds([a, b]);
+        let steepest = bounds.slope[0].abs().max(bounds.slope[1].abs());
+        let reach = 0.5 * (b.x - a.x) * steepest + bounds.error;
+        // NaN may.
+        !((0.5 * (a.q + b.q) - self.y).abs() > reach)
+    }
+
+    /// All solutions in a part of the section. The range of each of its ends; the range beyond which the envelope is not on the arc.
+    pub fn roots(
+        &self,
+        [from, to]: [[f64; 2]; 2],
+        clip: [f64; 2],
+        mut found: impl FnMut(Root) -> Result<(), Open>,
+    ) -> Result<(), Open> {
+        let all = [from[0].max(clip[0]), to[1].min(clip[1])];
+        if !(all[0] <= all[1]) {
+            return Ok(());
+        }
+        let sure = [from[1].max(all[0]), to[0].min(all[1])];
+        let [first, last] = all.map(|x| self.curve.at(x));
+        if !(sure[0] < sure[1]) {
+            return if self.may_meet([&first, &last]) {
+                Err(Open)
+            } else {
+                Ok(())
+            };
+        }
+        let [a, b] = sure.map(|x| self.curve.at(x));
+        for (end, beyond) in [(&a, &first), (&b, &last)] {
+            let uncertain = if end.x == beyond.x {
+                // An end of the arc, or the axis.
+                !self.curve.is_axis(end) && !((end.q - self.y).abs() > self.curve.error_at(end))
+            } else if end.x < beyond.x {
+                self.may_meet([end, beyond])
+            } else {
+                self.may_meet([beyond, end])
+            };
+            if uncertain {
+                return Err(Open);
+            }
+        }
+        let mut stretches = 0;
+        self.between([&a, &b], (0, &mut stretches), &mut found)
+    }
+
+    /// The solutions between two places.
+    fn between(
+        &self,
+        [a, b]: [&Point; 2],
+        (depth, stretches): (usize, &mut usize),
+        found: &mut impl FnMut(Root) -> Result<(), Open>,
+    ) -> Result<(), Open> {
+        let bounds = self.curve.bounds([a, b]);
+        let [low, high] = bounds.slope;
+        let differ = self.before(a) != self.before(b);
+        if low > 0.0 || high < 0.0 {
+            let grows = low > 0.0;
+            if !differ {
+                return Ok(());
+            }
+            if (b.q > a.q) != grows {
+                return Err(Open);
+            }
+            let at = self.solve([*a, *b]);
+            let error = (bounds.error + (at.q - self.y).abs()) / low.abs().min(high.abs());
+            return found(Root { at, error, grows });
+        }
+        let reach = 0.5 * (b.x - a.x) * low.abs().max(high) + bounds.error;
+        if !differ && (0.5 * (a.q + b.q) - self.y).abs() > reach {
+            return Ok(());
+        }
+        *stretches += 1;
+        if depth == HALVINGS || *stretches > STRETCHES {
+            return Err(Open);
+        }
+        let middle = self.curve.at(0.5 * (a.x + b.x));
+        self.between([a, &middle], (depth + 1, stretches), found)?;
+        self.between([&middle, b], (depth + 1, stretches), found)
+    }
+
+    /// The solution between two places on different sides.
+    fn solve(&self, [mut a, mut b]: [Point; 2]) -> Point {
+        let enough = 0.25 * self.curve.slack();
+        let share = (self.y - a.q) / (b.q - a.q);
+        let mut at = self.curve.at(a.x + (b.x - a.x) * share.clamp(0.0, 1.0));
+        for _ in 0..STEPS {
+            if (at.q - self.y).abs() <= enough {
+                break;
+            }
+            if self.before(&at) == self.before(&a) {
+                a = at;
+            } else {
+                b = at;
+            }
+            let step = at.x - (at.q - self.y) / self.curve.slope(&at);
+            // NaN is outside.
+            let next = if step > a.x && step < b.x {
+                step
+            } else {
+                0.5 * (a.x + b.x)
+            };
+            if !(next > a.x && next < b.x) {
+                break;
+            }
+            at = self.curve.at(next);
+        }
+        at
+    }
+}
