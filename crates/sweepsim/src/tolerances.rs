@@ -94,8 +94,8 @@ impl Tolerances {
     ///
     /// Each translation is changed by the *same* vector, so that the sign of `g` on a patch that it decides is the same for all of them, and no
     /// kinks arise between collinear moves. The exception is every 61st, which takes all of the displacement back: before and after it there may be
-    /// kinks, as thin as the displacement, which are counted like any others. The same holds at the ends of arcs that the tool lies across, where one component
-    /// of it is left out.
+    /// kinks, as thin as the displacement, which are counted like any others. The same holds at the ends of arcs of tools that lie along an axis of the
+    /// grid, where one component of it is left out.
     pub fn tip_displacement(&self, pose: usize) -> Vector3<f64> {
         let period = if self.tolerance < FINE * self.size {
             FINE_PERIOD

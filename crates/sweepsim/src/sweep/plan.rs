@@ -3,9 +3,9 @@
 use crate::cutter::Cutter;
 use crate::error::SweepError;
 use crate::methods::translation::GAP;
-use crate::sweep::options::Options;
+use crate::sweep::options::{Method, Options};
 use crate::sweep::short_tools::ShortTools;
-use crate::time::path_parts::{self, PathPart};
+use crate::time::path_parts::{self, Kind, PathPart};
 use crate::tolerances::Tolerances;
 use std::ops::Range;
 use std::sync::Arc;
@@ -73,7 +73,12 @@ impl Plan {
         options: &Options,
     ) -> Result<Self, SweepError> {
         let tolerances = Tolerances::new(options.tolerance, size)?;
-        let mut parts = path_parts::parts((path, moves), frame, tool.is_revolved(), cutter.reach, &tolerances);
+        let whole = cutter.outline.as_ref().is_some_and(|outline| outline.complete);
+        let kind = Kind {
+            symmetric: tool.is_revolved(),
+            closed: whole && options.method == Method::Charts,
+        };
+        let mut parts = path_parts::parts((path, moves), frame, kind, cutter.reach, &tolerances);
         // About an arc as wide as a wall or an edge of the tool, lines near the centre touch it all along: squared distances have no digits for them.
         let pieces = cutter.outline.iter().flat_map(|outline| &outline.pieces);
         let radii: Vec<f64> = pieces.flat_map(|piece| [piece.from[0], piece.to[0]]).collect();

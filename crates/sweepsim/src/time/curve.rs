@@ -319,7 +319,10 @@ mod tests {
         let parts = parts(
             (&path, 0..path.moves()),
             &sweepsim_dexel::Frame::WORLD,
-            true,
+            crate::time::path_parts::Kind {
+                symmetric: true,
+                closed: false,
+            },
             40.0,
             &Tolerances::new(1e-6, 100.0).unwrap(),
         );

@@ -155,7 +155,7 @@ mod tests {
             let pose = |tip: [f64; 3], lean: [f64; 2]| Pose::new(tip, [lean[0], lean[1], 1.0]).unwrap();
             let path = Path::new(vec![pose([0.0, 1.0, 2.0], from), pose([30.0, -10.0, 5.0], if still { from } else { to })]).unwrap();
             let own: LocalFrame = (Rotation3::new(Vector3::new(0.3, -0.7, 0.2)).into_inner(), Vector3::new(0.0, 0.0, 5.0));
-            for part in parts((&path, 0..path.moves()), &sweepsim_dexel::Frame::WORLD, true, 40.0, &Tolerances::new(1e-6, 100.0).unwrap()) {
+            for part in parts((&path, 0..path.moves()), &sweepsim_dexel::Frame::WORLD, crate::time::path_parts::Kind { symmetric: true, closed: false }, 40.0, &Tolerances::new(1e-6, 100.0).unwrap()) {
                 let times = Times::new(&part.segment);
                 for frame in [None, Some(&own)] {
                     let (motion, expected) = (FramedMotion::new(&times, frame), Instant::of(&times.at(t), frame));

@@ -107,7 +107,16 @@ mod tests {
         let pose = |(n, tip): (usize, &[f64; 3])| Pose::new(*tip, axes[usize::from(n == last)]).unwrap();
         let path = Path::new(tips.iter().enumerate().map(pose).collect()).unwrap();
         let whole = (&path, 0..path.moves());
-        let all = parts(whole, &sweepsim_dexel::Frame::WORLD, true, 40.0, &tolerances);
+        let all = parts(
+            whole,
+            &sweepsim_dexel::Frame::WORLD,
+            crate::time::path_parts::Kind {
+                symmetric: true,
+                closed: false,
+            },
+            40.0,
+            &tolerances,
+        );
         let mut made = Vec::new();
         all.into_iter()
             .for_each(|part| push_joined(&mut made, part, tolerances.joint_deviation()));

@@ -28,20 +28,30 @@ pub(crate) struct PathPart {
     pub joined: Vec<Stretch>,
 }
 
+/// A tool, and how it is searched.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kind {
+    /// Whether it is symmetric about its axis.
+    pub symmetric: bool,
+    /// Whether all of it is searched in closed form.
+    pub closed: bool,
+}
+
 /// The motions of some moves of a path in a frame, with displaced tips. Moves of length zero are left out.
 ///
-/// A tool that is not `symmetric` about its axis moves without turning about it, unless the poses specify how it turns.
+/// A tool that is not symmetric about its axis moves without turning about it, unless the poses specify how it turns.
 /// How it has turned by then follows from all moves before.
 /// Motions that are not exact are within [`Tolerances::law_deviation`] for a tool of this `reach`.
 pub(crate) fn parts(
     (whole, moves): (&Path, Range<usize>),
     frame: &Frame,
-    symmetric: bool,
+    Kind { symmetric, closed }: Kind,
     reach: f64,
     tolerances: &Tolerances,
 ) -> Vec<PathPart> {
-    // A long path is unpacked only where it is swept.
-    let (path, first) = whole.unpacked(moves.clone());
+    // A long path is unpacked only where it is swept; the moves before and after tell how its ends are displaced.
+    let around = moves.start.saturating_sub(1)..(moves.end + 1).min(whole.moves());
+    let (path, first) = whole.unpacked(around.clone());
     let (path, poses) = (&*path, path.poses());
     let turn = Matrix3::from_columns(&frame.axes().map(Vector3::from)).transpose();
     let shift = -turn * Vector3::from(frame.origin());
@@ -70,6 +80,7 @@ pub(crate) fn parts(
         symmetric
             .then(|| exact_plane(path, to - 1 - first, frame, [tip(from), tip(to)]))
             .flatten()
+            .filter(|normal| closed || *normal < 2)
     };
     let mut parts: Vec<PathPart> = Vec::with_capacity(moves.len());
     let put = |parts: &mut Vec<PathPart>,
@@ -107,7 +118,12 @@ pub(crate) fn parts(
             });
         }
     };
-    let (mut from, mut last) = (moves.start, None);
+    let mut from = moves.start;
+    let mut last = if around.start < from && !path.rests(around.start - first, from - first) {
+        plane(around.start, from)
+    } else {
+        None
+    };
     for to in moves.start + 1..=moves.end {
         if !path.rests(from - first, to - first) {
             let segments = if symmetric {
@@ -116,7 +132,7 @@ pub(crate) fn parts(
                 path.segments(to - 1 - first, reach, tolerances.law_deviation())
             };
             let own = plane(from, to);
-            let next = (to + 1..=moves.end)
+            let next = (to + 1..=around.end)
                 .find(|next| !path.rests(to - first, next - first))
                 .and_then(|next| plane(to, next));
             let by = [displaced(from, [last, own]), displaced(to, [own, next])];
@@ -159,7 +175,8 @@ pub(crate) fn parts(
 
 /// The axis of the frame that is normal to the plane of an arc to the last digit, if a tool that lies exactly along an axis of the frame, across the dexels, moves along it without turning.
 ///
-/// The plane then holds the tool's axis, or is perpendicular to it. In the second case, faces across the tool's axis slide along themselves, parallel to the dexels: they are seen edge-on as long as they
+/// The plane then holds the tool's axis, or is perpendicular to it. If it is perpendicular to the dexels, the search by charts takes longer where the tool moves along its axis, over the lines at which
+/// its wall is widest: two branches of the envelope meet there. If it is perpendicular to the axis, faces across the tool's axis slide along themselves, parallel to the dexels: they are seen edge-on as long as they
 /// stay in one plane to the last digit.
 fn exact_plane(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2]) -> Option<usize> {
     let way = path.way(number);
@@ -174,7 +191,7 @@ fn exact_plane(path: &Path, number: usize, frame: &Frame, ends: [Vector3<f64>; 2
     let lies = (0..2).any(|k| along(axis, k));
     let plane = |k: &usize| along(normal, *k) && ends[0][*k] == ends[1][*k];
     let one = still && poses[0].axis() == poses[1].axis();
-    (one && lies).then(|| (0..2).find(plane)).flatten()
+    (one && lies).then(|| (0..3).find(plane)).flatten()
 }
 
 /// So many moves are unpacked at a time.
@@ -294,7 +311,7 @@ mod tests {
             let path = path(&moves, packed);
             let frame = if leaning { Frame::new([1.0, 2.0, 3.0], [0.6, 0.0, 0.8], [0.0, 1.0, 0.0]).unwrap() } else { Frame::WORLD };
             let tolerances = Tolerances::new(1e-6, 1e4).unwrap();
-            let of = |moves| parts((&path, moves), &frame, false, 40.0, &tolerances);
+            let of = |moves| parts((&path, moves), &frame, Kind { symmetric: false, closed: false }, 40.0, &tolerances);
             let whole = of(0..path.moves());
             let middle = (share * path.moves() as f64) as usize;
             let after = |all: &[PathPart]| all.partition_point(|part| part.number as usize <= middle);
@@ -305,6 +322,45 @@ mod tests {
                 prop_assert_eq!((a.number, a.start, a.segment.turns()), (b.number, b.start, b.segment.turns()));
                 // The tip of the first move is displaced as at the first of the poses where it rests.
                 prop_assert!(a.number == expected[0].number || a.segment == b.segment);
+            }
+        }
+
+        /// Tips between arcs of a lying tool and other moves are displaced alike, whether moves are prepared together or some after others.
+        #[test]
+        fn tips_are_as_among_all(
+            kinds in proptest::collection::vec((0..4_i32, 1..4_i32), 2..30), packed in any::<bool>(), share in 0.0..1.0,
+        ) {
+            let mut tip = [0.0; 3];
+            let mut builder = PathBuilder::default();
+            let pose = |tip| Pose::new(tip, [1.0, 0.0, 0.0]).unwrap();
+            builder.push(pose(tip), Move::default());
+            for (kind, turns) in kinds {
+                // The normal of an arc's plane, and the direction of its centre.
+                let [normal, out] = [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], [[0.0; 3]; 2]][kind as usize];
+                let centre: [f64; 3] = std::array::from_fn(|k| tip[k] + 2.0 * out[k]);
+                if kind == 3 {
+                    tip = [tip[0] + 1.0, tip[1] + 0.3, tip[2] - 0.2];
+                    builder.push(pose(tip), Move::default());
+                } else {
+                    let [v, n] = [out, normal].map(Vector3::from);
+                    let (s, c) = (f64::from(turns) * 0.5 * std::f64::consts::PI).sin_cos();
+                    let end = Vector3::from(centre) - 2.0 * (v * c + n.cross(&v) * s);
+                    tip = std::array::from_fn(|k| if normal[k] == 1.0 { tip[k] } else { end[k] });
+                    let arc = sweepsim_motion::TipArc::new(centre, normal, f64::from(turns) * 0.5 * std::f64::consts::PI).unwrap();
+                    builder.push(pose(tip), Move::arc(arc));
+                }
+            }
+            let path = builder.finish(Law::Slerp).unwrap();
+            let path = if packed { path } else { path.unpacked(0..path.moves()).0.into_owned() };
+            let tolerances = Tolerances::new(1e-6, 1e4).unwrap();
+            let of = |moves| parts((&path, moves), &Frame::WORLD, Kind { symmetric: true, closed: true }, 40.0, &tolerances);
+            let middle = (share * path.moves() as f64) as usize;
+            let [whole, mut before, after] = [0..path.moves(), 0..middle.max(1), middle.max(1)..path.moves()].map(of);
+            before.extend(after);
+            prop_assert_eq!(whole.len(), before.len());
+            for (a, b) in whole.iter().zip(&before) {
+                prop_assert_eq!((a.number, a.wheel.is_some()), (b.number, b.wheel.is_some()));
+                prop_assert!(a.segment == b.segment);
             }
         }
     }

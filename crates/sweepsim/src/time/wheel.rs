@@ -1,4 +1,4 @@
-//! Arcs of the tip in planes that hold the direction of the dexels, as circles to the last digit.
+//! Arcs of the tip in planes that hold the direction of the dexels, or that are perpendicular to it and hold the axis of a tool that lies, as circles to the last digit.
 
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::FRAC_PI_2;
@@ -10,17 +10,19 @@ const SHORTEST: f64 = 1e3;
 /// Places at which an arc is cut are at least this part of it away from its ends.
 const SLIVER: f64 = 1.0 / 64.0;
 
-/// An arc of the tip in a plane along the dexels, at constant speed, of a tool that does not turn except about its own axis.
+/// An arc of the tip in a plane along the dexels, at constant speed, of a tool that does not turn except about its own axis; or in a plane across them that holds this axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wheel {
     pub centre: [f64; 3],
     pub radius: f64,
-    /// The direction of the plane across the dexels.
+    /// The direction of the plane across the dexels; if it is level, the tool's axis is to the left of it.
     pub ahead: [f64; 2],
-    /// The direction from the centre to the tip at the start: ahead, and up.
+    /// The direction from the centre to the tip at the start: ahead, and up; in a level plane to the left.
     pub from: [f64; 2],
-    /// Not much more than 90° at most, positive from ahead to up.
+    /// Not much more than 90° at most, positive from ahead to up, or to the left.
     pub angle: f64,
+    /// Whether the plane is across the dexels.
+    pub level: bool,
 }
 
 /// A part of a move along an arc.
@@ -56,6 +58,15 @@ fn cuts(from: f64, angle: f64) -> Vec<f64> {
     shares
 }
 
+/// The motion along an arc between two points; not more than 90°: one segment, if any deviation is allowed.
+fn segment([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, reach: f64) -> Option<Segment> {
+    let poses = [a, b].map(|tip| Pose::new(tip.into(), axis).ok());
+    let [Some(from), Some(to)] = poses else { return None };
+    let path = Path::with_moves(vec![from, to], vec![Move::arc(arc)]).ok()?;
+    let mut segments = path.segments_of_symmetric(0, reach, f64::INFINITY);
+    (segments.len() == 1).then(|| segments.remove(0))
+}
+
 impl Wheel {
     /// The arc between two points, in the plane through both; and its motion. `None` if it is not that of an arc.
     fn between(
@@ -84,20 +95,47 @@ impl Wheel {
         let radius = offset.norm();
         let flat_centre = a.xy() + ahead * offset.x;
         let centre = [flat_centre.x, flat_centre.y, a.z + offset.y];
-        let poses = [a, b].map(|tip| Pose::new(tip.into(), axis).ok());
-        let [Some(from), Some(to)] = poses else { return None };
         let arc = TipArc::new(centre, [ahead.y, -ahead.x, 0.0], angle).ok()?;
-        let path = Path::with_moves(vec![from, to], vec![Move::arc(arc)]).ok()?;
-        // Not more than 90°: one segment, if any deviation is allowed.
-        let mut segments = path.segments_of_symmetric(0, reach, f64::INFINITY);
+        let segment = segment([a, b], axis, arc, reach)?;
         let wheel = Self {
             centre,
             radius,
             ahead: ahead.into(),
             from: (-offset / radius).into(),
             angle,
+            level: false,
         };
-        (segments.len() == 1 && radius.is_finite() && radius > 0.0).then(|| (wheel, segments.remove(0)))
+        (radius.is_finite() && radius > 0.0).then_some((wheel, segment))
+    }
+
+    /// The same in a level plane, for a tool that lies along an axis of the grid.
+    fn between_level(
+        [a, b]: [Vector3<f64>; 2],
+        angle: f64,
+        (axis, reach): ([f64; 3], f64),
+        least: f64,
+    ) -> Option<(Self, Segment)> {
+        let ahead = Vector2::new(axis[1], -axis[0]);
+        let left = Vector2::new(axis[0], axis[1]);
+        let chord = (b - a).xy();
+        if !(chord.norm() > least) {
+            return None;
+        }
+        let flat = Vector2::new(chord.dot(&ahead), chord.dot(&left));
+        let offset = flat * 0.5 + Vector2::new(-flat.y, flat.x) * (0.5 / (0.5 * angle).tan());
+        let radius = offset.norm();
+        let centre = a.xy() + ahead * offset.x + left * offset.y;
+        let centre = [centre.x, centre.y, a.z];
+        let wheel = Self {
+            centre,
+            radius,
+            ahead: ahead.into(),
+            from: (-offset / radius).into(),
+            angle,
+            level: true,
+        };
+        let segment = segment([a, b], axis, TipArc::new(centre, [0.0, 0.0, 1.0], angle).ok()?, reach)?;
+        (radius.is_finite() && radius > 0.0).then_some((wheel, segment))
     }
 
     /// The parts of a move, in a frame, with the ends of the tip displaced. `None` if the move is not one of these, or if its law deviates by more than `limit`
@@ -117,20 +155,33 @@ impl Wheel {
             Turning::Rotary { from, to, .. } => from == to,
         };
         let [x, y, z] = frame.turn_from_world(arc.normal());
-        if !still || ends[0].axis() != ends[1].axis() || z != 0.0 {
+        let [from, to] = ends.map(|pose| Vector3::from(frame.from_world(pose.tip())));
+        let lies = [1.0, -1.0]
+            .iter()
+            .any(|c| [axis[0], axis[1]] == [*c, 0.0] || [axis[0], axis[1]] == [0.0, *c])
+            && axis[2] == 0.0;
+        let level = lies && [x, y] == [0.0; 2] && z.abs() == 1.0 && from.z + by[0].z == to.z + by[1].z;
+        if !still || ends[0].axis() != ends[1].axis() || !(z == 0.0 || level) {
             return None;
         }
-        let ahead = Vector2::new(-y, x);
-        let [from, to] = ends.map(|pose| Vector3::from(frame.from_world(pose.tip())));
+        // The plane: positive angles lead from the first direction to the second.
+        let (ahead, up, angle) = if level {
+            (
+                Vector3::new(axis[1], -axis[0], 0.0),
+                Vector3::from(axis),
+                z * arc.angle(),
+            )
+        } else {
+            (Vector3::new(-y, x, 0.0), Vector3::z(), arc.angle())
+        };
         let out = from - Vector3::from(frame.from_world(arc.centre()));
-        let flat = Vector2::new(out.xy().dot(&ahead), out.z);
+        let flat = Vector2::new(out.dot(&ahead), out.dot(&up));
         // From the start.
         let turned = |angle: f64| {
             let (s, c) = angle.sin_cos();
             let [q, z] = [c * flat.x - s * flat.y - flat.x, s * flat.x + c * flat.y - flat.y];
-            from + Vector3::new(ahead.x * q, ahead.y * q, z)
+            from + ahead * q + up * z
         };
-        let angle = arc.angle();
         let missing = to - turned(angle);
         if !(missing.norm() <= limit) {
             return None;
@@ -147,8 +198,12 @@ impl Wheel {
         let shares = cuts(flat.y.atan2(flat.x), angle);
         let part = |pair: &[f64]| {
             let &[start, end] = pair else { return None };
-            let own = (ahead, angle * (end - start));
-            let (wheel, segment) = Self::between([point(start), point(end)], own, (axis, reach), least)?;
+            let (ends, angle) = ([point(start), point(end)], angle * (end - start));
+            let (wheel, segment) = if level {
+                Self::between_level(ends, angle, (axis, reach), least)?
+            } else {
+                Self::between(ends, (ahead.xy(), angle), (axis, reach), least)?
+            };
             Some(WheelPart {
                 wheel,
                 segment,
@@ -206,6 +261,9 @@ impl Wheel {
 
     /// The lowest and the highest place of the tip.
     pub fn heights(&self) -> [f64; 2] {
+        if self.level {
+            return [self.centre[2]; 2];
+        }
         let [_, [low, high]] = self.directions();
         [self.centre[2] + self.radius * low, self.centre[2] + self.radius * high]
     }

@@ -4,7 +4,7 @@
 
 use super::quarter::{Lengthwise, Quarter};
 use super::roots::{Open, Root, Search};
-use super::sheet::Parallel;
+use super::sheet::{Parallel, Point};
 use super::{Directions, Place, ROUNDING, Rolling};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use sweepsim_dexel::Source;
@@ -47,7 +47,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         if changes == [0; 2] {
             return;
         }
-        let (top, share) = self.turn();
+        let (top, share) = self.turn([0.0, 1.0]);
         let source = (self.source)(share);
         let [low, high] = self.along(heights);
         let wide = 8.0 * self.slack;
@@ -166,7 +166,11 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         let mirror = quarter.climb * self.axis[0];
         // Of `side ν`, which is `mirror cos α`.
         let [a, b] = self.directions[0].map(|cosine| mirror * cosine);
-        let normals = if side * quarter.side() > 0.0 { [-1.0, 0.0] } else { [0.0, 1.0] };
+        let normals = if side * quarter.side() > 0.0 {
+            [-1.0, 0.0]
+        } else {
+            [0.0, 1.0]
+        };
         let low = a.min(b).max(normals[0]);
         let high = a.max(b).min(normals[1]);
         if !(low <= high + ROUNDING) {
@@ -197,7 +201,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
     }
 
     /// What both halves of the section have at a solution.
-    fn both(&mut self, search: &Search<Lengthwise>, root: Root, (i, j): (usize, usize)) -> Result<(), Open> {
+    fn both(&mut self, search: &Search<Lengthwise>, root: Root<Point>, (i, j): (usize, usize)) -> Result<(), Open> {
         let Search {
             curve: Lengthwise { quarter, parallel },
             y,

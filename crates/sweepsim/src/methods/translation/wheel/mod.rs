@@ -13,8 +13,10 @@
 //! With the outward normal `N = (ν cos α, p, ν sin α)`, `ν = s − r`, the `g` of a ball has the derivative `−r s` along a line, but for a positive factor: it falls where `s > 0`.
 
 mod ball;
+mod crosswise;
 mod edge;
 mod lengthwise;
+mod level;
 mod parallel;
 mod quarter;
 mod roots;
@@ -60,7 +62,10 @@ pub(crate) fn along(
         slack,
         axis: own,
         directions: wheel.directions(),
-        rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| segment.velocity(end)[1][2]),
+        rates: [SegmentEnd::Start, SegmentEnd::Finish].map(|end| {
+            let [x, y, z] = segment.velocity(end)[1];
+            if wheel.level { ux * x + uy * y } else { z }
+        }),
         highest: ceiling.map_or(f64::INFINITY, |ceiling| {
             ceiling.above(wheel.heights()[0], lines.lines.spacing())
         }),
@@ -68,6 +73,7 @@ pub(crate) fn along(
         source,
     };
     let stance = match own {
+        _ if wheel.level => Stance::Level,
         [0.0, 0.0, 1.0] => Stance::Upright,
         [0.0, 1.0 | -1.0, 0.0] => Stance::Across,
         [1.0 | -1.0, 0.0, 0.0] => Stance::Within,
@@ -84,6 +90,7 @@ pub(crate) fn along(
             Stance::Upright => {}
             Stance::Across => rolling.edge_across(rim),
             Stance::Within => rolling.edge_lengthwise(rim),
+            Stance::Level => rolling.level_edge(rim),
             Stance::Other => continue,
         }
         edges[rim.edges.clone()].fill(true);
@@ -99,6 +106,8 @@ enum Stance {
     Across,
     /// In the arc's plane, and perpendicular to the dexels.
     Within,
+    /// In the arc's plane, to the left of `ahead`, with the dexels perpendicular to the plane.
+    Level,
     Other,
 }
 
@@ -111,7 +120,7 @@ struct Rolling<'a, 'b, S> {
     axis: [f64; 3],
     /// The ranges of `cos α` and `sin α`.
     directions: [[f64; 2]; 2],
-    /// The velocity along the dexels at the ends, but for positive factors.
+    /// The velocity along the dexels at the ends, but for positive factors; for a plane across them, that across the tool's axis.
     rates: [f64; 2],
     /// What is this high above the tip is above the ceiling at all times.
     highest: f64,
@@ -145,6 +154,9 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         if upright && piece.heights()[0] > self.highest {
             return true;
         }
+        if stance == Stance::Level {
+            return self.level(piece);
+        }
         if let Some(part) = piece.ball() {
             ball(self, &part);
             return true;
@@ -152,7 +164,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         match stance {
             Stance::Across => return self.slices(piece),
             Stance::Within => return self.lengthwise(piece),
-            Stance::Upright | Stance::Other => {}
+            Stance::Upright | Stance::Level | Stance::Other => {}
         }
         match piece.shape {
             // No line meets an upright wall.
@@ -197,10 +209,10 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         });
     }
 
-    /// Where the velocity along the dexels changes its sign: 1 if that is where the tip is highest, −1 if it is lowest; and the share of the way.
-    fn turn(&self) -> (f64, f64) {
+    /// Where the velocity in a direction, that of the [`rates`](Self::rates), changes its sign: 1 if that is where the tip has gone farthest in it, −1 if it is farthest behind; and the share of the way.
+    fn turn(&self, towards: [f64; 2]) -> (f64, f64) {
         let top = if self.rates[0] > self.rates[1] { 1.0 } else { -1.0 };
-        let share = match self.place([0.0, top], 0.0) {
+        let share = match self.place(towards.map(|c| top * c), 0.0) {
             Place::Inside(share) => share,
             // At an end but for rounding.
             _ if (self.rates[0].abs()) < self.rates[1].abs() => 0.0,
@@ -215,7 +227,7 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
         if before == after {
             return;
         }
-        let (top, share) = self.turn();
+        let (top, share) = self.turn([0.0, 1.0]);
         let change = i8::from(after) - i8::from(before);
         let jump = if up > 0.0 { -change } else { change };
         let [x, y, z] = self.wheel.centre;
@@ -252,22 +264,28 @@ impl<S: Fn(f64) -> Source> Rolling<'_, '_, S> {
 
     /// The directions with a cosine that is known up to an error.
     fn directions(&self, cosine: f64, error: f64) -> Directions {
-        let [[low, high], _] = self.directions;
+        self.directions_by(0, cosine, error)
+    }
+
+    /// The directions with this cosine (0) or sine (1), that is known up to an error. [`Directions`] speaks of the other one.
+    fn directions_by(&self, k: usize, value: f64, error: f64) -> Directions {
+        let [low, high] = self.directions[k];
         let error = error + ROUNDING;
-        if cosine > high + error || cosine < low - error {
+        if value > high + error || value < low - error {
             return Directions::None;
         }
-        let square = (1.0 - cosine) * (1.0 + cosine);
-        // The angle is off by the error over the sine, to first order.
+        let square = (1.0 - value) * (1.0 + value);
+        // The angle is off by the error over the other one, to first order.
         if !(square > 64.0 * error) {
-            let extreme = 1.0_f64.copysign(cosine);
-            // The cosine is this far from the extreme at most, and the angle the root of twice that.
+            let mut extreme = [0.0; 2];
+            extreme[k] = 1.0_f64.copysign(value);
+            // The value is this far from the extreme at most, and the angle the root of twice that.
             let wide = (2.0 * (66.0 * error)).sqrt() + ROUNDING;
-            let place = self.place([extreme, 0.0], wide.min(FRAC_PI_2));
+            let place = self.place(extreme, wide.min(FRAC_PI_2));
             return Directions::Level(!matches!(place, Place::Outside));
         }
-        let sine = square.sqrt();
-        Directions::Pair(sine, 1.25 * error / sine)
+        let other = square.sqrt();
+        Directions::Pair(other, 1.25 * error / other)
     }
 
     /// A direction `(q, p, z)` in space.

@@ -2,8 +2,8 @@
 //!
 //! The unknown is the height, taken with the sign with which it grows with the radius: then a stretch looks like a [`Sheet`], and the bounds of one serve both.
 
-use super::roots::Curve;
-use super::sheet::{Bounds, Meridian, Parallel, Point, Sheet};
+use super::roots::{Bounds, Curve};
+use super::sheet::{Meridian, Parallel, Point, Sheet};
 use crate::cutter::outline::{Piece, Shape};
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,12 +19,12 @@ pub(super) struct Quarter {
     pub climb: f64,
     /// Heights with that sign, ascending.
     pub ends: [f64; 2],
-    curve: Profile,
+    pub curve: Profile,
 }
 
 /// The meridian by `x`, the height with its sign.
 #[derive(Clone, Copy, Debug)]
-enum Profile {
+pub(super) enum Profile {
     /// The normal, and `dρ/dx`.
     Cone { normal: [f64; 2], rate: f64 },
     /// `ρ = middle + side √(tube² − (x − level)²)`
@@ -50,8 +50,14 @@ impl Quarter {
     pub fn all(piece: &Piece, slack: f64) -> Option<Vec<Self>> {
         let ends = [piece.from, piece.to].map(|[rho, zeta]| [rho.max(0.0), zeta]);
         match piece.shape {
-            Shape::Line { normal: normal @ [e, f] } => {
-                let [thin, wide] = if ends[0][0] < ends[1][0] { ends } else { [ends[1], ends[0]] };
+            Shape::Line {
+                normal: normal @ [e, f],
+            } => {
+                let [thin, wide] = if ends[0][0] < ends[1][0] {
+                    ends
+                } else {
+                    [ends[1], ends[0]]
+                };
                 (e.abs() > FLATTEST && f.abs() > FLATTEST && thin[0] < wide[0] && thin[1] != wide[1]).then(|| {
                     let climb = 1.0_f64.copysign(wide[1] - thin[1]);
                     vec![Self {
@@ -130,7 +136,9 @@ impl Quarter {
     pub fn rounding(&self) -> f64 {
         let own = match self.curve {
             Profile::Cone { .. } => 0.0,
-            Profile::Torus { middle, level, tube, .. } => middle.abs() + level.abs() + tube,
+            Profile::Torus {
+                middle, level, tube, ..
+            } => middle.abs() + level.abs() + tube,
         };
         16.0 * f64::EPSILON * (own + self.sheet.radii[1] + self.ends[0].abs().max(self.ends[1].abs()))
     }
@@ -192,6 +200,8 @@ impl Lengthwise<'_> {
 }
 
 impl Curve for Lengthwise<'_> {
+    type Point = Point;
+
     #[inline]
     fn at(&self, x: f64) -> Point {
         let Quarter { sheet, ends, curve, .. } = self.quarter;
@@ -247,10 +257,6 @@ impl Curve for Lengthwise<'_> {
 
     fn error_at(&self, at: &Point) -> f64 {
         self.error([at.v, at.rho], at.square, at.room)
-    }
-
-    fn is_axis(&self, _: &Point) -> bool {
-        false
     }
 
     fn slack(&self) -> f64 {

@@ -1,7 +1,5 @@
 //! The solutions of `Q(x) = y` for a curve parallel to a section: there is one where `Q′` has one sign, and the values at both ends are on different sides.
 
-use super::sheet::{Bounds, Point};
-
 /// Stretches are halved so many times at most,
 const HALVINGS: usize = 30;
 /// and there are so many for one line.
@@ -13,25 +11,54 @@ const STEPS: usize = 64;
 pub(super) struct Open;
 
 /// A solution.
-pub(super) struct Root {
-    pub at: Point,
+pub(super) struct Root<P> {
+    pub at: P,
     /// How far off it may be.
     pub error: f64,
     /// Whether `Q` grows there.
     pub grows: bool,
 }
 
-/// A coordinate of a curve parallel to a section, with one unknown `x`.
+/// What is known between two places.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// The range of `Q′`.
+    pub slope: [f64; 2],
+    /// How much `Q` is off by if coordinates are off by `slack`.
+    pub error: f64,
+}
+
+impl Bounds {
+    pub const UNKNOWN: Self = Self {
+        slope: [f64::NEG_INFINITY, f64::INFINITY],
+        error: f64::INFINITY,
+    };
+}
+
+/// A point with its unknown, and the value there.
+pub(super) trait Point: Copy {
+    fn x(&self) -> f64;
+    fn q(&self) -> f64;
+}
+
+/// A function of one unknown.
 pub(super) trait Curve {
-    fn at(&self, x: f64) -> Point;
+    type Point: Point;
+    fn at(&self, x: f64) -> Self::Point;
     /// `Q′`.
-    fn slope(&self, at: &Point) -> f64;
+    fn slope(&self, at: &Self::Point) -> f64;
     /// Between two places, ascending.
-    fn bounds(&self, ends: [&Point; 2]) -> Bounds;
+    fn bounds(&self, ends: [&Self::Point; 2]) -> Bounds;
     /// By how much `Q` may be off.
-    fn error_at(&self, at: &Point) -> f64;
+    fn error_at(&self, at: &Self::Point) -> f64;
     /// Whether it is where another curve goes on, on which the same line is searched.
-    fn is_axis(&self, at: &Point) -> bool;
+    fn is_axis(&self, _: &Self::Point) -> bool {
+        false
+    }
+    /// Whether `Q` is certainly not 0 between two places, ascending.
+    fn vanishes_nowhere(&self, _: [&Self::Point; 2]) -> bool {
+        false
+    }
     /// The rounding error of coordinates.
     fn slack(&self) -> f64;
 }
@@ -47,21 +74,21 @@ pub(super) struct Search<C> {
 
 impl<C: Curve> Search<C> {
     /// On which side of the line: the same at the axis for both halves.
-    fn before(&self, at: &Point) -> bool {
+    fn before(&self, at: &C::Point) -> bool {
         if self.mirror > 0.0 {
-            at.q < self.y
+            at.q() < self.y
         } else {
-            at.q > self.y
+            at.q() > self.y
         }
     }
 
     /// Whether the line may be met between two places.
-    fn may_meet(&self, [a, b]: [&Point; 2]) -> bool {
+    fn may_meet(&self, [a, b]: [&C::Point; 2]) -> bool {
         let bounds = self.curve.bounds([a, b]);
         let steepest = bounds.slope[0].abs().max(bounds.slope[1].abs());
-        let reach = 0.5 * (b.x - a.x) * steepest + bounds.error;
-        // NaN may.
-        !((0.5 * (a.q + b.q) - self.y).abs() > reach)
+        let reach = 0.5 * (b.x() - a.x()) * steepest + bounds.error;
+        // Infinite values and NaN may.
+        !((0.5 * (a.q() + b.q()) - self.y).abs() > reach || self.curve.vanishes_nowhere([a, b]))
     }
 
     /// All solutions in a part of the section. The range of each of its ends; the range beyond which the envelope is not on the arc.
@@ -69,7 +96,7 @@ impl<C: Curve> Search<C> {
         &self,
         [from, to]: [[f64; 2]; 2],
         clip: [f64; 2],
-        mut found: impl FnMut(Root) -> Result<(), Open>,
+        mut found: impl FnMut(Root<C::Point>) -> Result<(), Open>,
     ) -> Result<(), Open> {
         let all = [from[0].max(clip[0]), to[1].min(clip[1])];
         if !(all[0] <= all[1]) {
@@ -86,10 +113,10 @@ impl<C: Curve> Search<C> {
         }
         let [a, b] = sure.map(|x| self.curve.at(x));
         for (end, beyond) in [(&a, &first), (&b, &last)] {
-            let uncertain = if end.x == beyond.x {
+            let uncertain = if end.x() == beyond.x() {
                 // An end of the arc, or the axis.
-                !self.curve.is_axis(end) && !((end.q - self.y).abs() > self.curve.error_at(end))
-            } else if end.x < beyond.x {
+                !self.curve.is_axis(end) && !((end.q() - self.y).abs() > self.curve.error_at(end))
+            } else if end.x() < beyond.x() {
                 self.may_meet([end, beyond])
             } else {
                 self.may_meet([beyond, end])
@@ -105,9 +132,9 @@ impl<C: Curve> Search<C> {
     /// The solutions between two places.
     fn between(
         &self,
-        [a, b]: [&Point; 2],
+        [a, b]: [&C::Point; 2],
         (depth, stretches): (usize, &mut usize),
-        found: &mut impl FnMut(Root) -> Result<(), Open>,
+        found: &mut impl FnMut(Root<C::Point>) -> Result<(), Open>,
     ) -> Result<(), Open> {
         let bounds = self.curve.bounds([a, b]);
         let [low, high] = bounds.slope;
@@ -117,33 +144,36 @@ impl<C: Curve> Search<C> {
             if !differ {
                 return Ok(());
             }
-            if (b.q > a.q) != grows {
+            if (b.q() > a.q()) != grows {
                 return Err(Open);
             }
             let at = self.solve([*a, *b]);
-            let error = (bounds.error + (at.q - self.y).abs()) / low.abs().min(high.abs());
+            let error = (bounds.error + (at.q() - self.y).abs()) / low.abs().min(high.abs());
             return found(Root { at, error, grows });
         }
-        let reach = 0.5 * (b.x - a.x) * low.abs().max(high) + bounds.error;
-        if !differ && (0.5 * (a.q + b.q) - self.y).abs() > reach {
+        let reach = 0.5 * (b.x() - a.x()) * low.abs().max(high) + bounds.error;
+        if !differ && (0.5 * (a.q() + b.q()) - self.y).abs() > reach {
+            return Ok(());
+        }
+        if !differ && self.curve.vanishes_nowhere([a, b]) {
             return Ok(());
         }
         *stretches += 1;
         if depth == HALVINGS || *stretches > STRETCHES {
             return Err(Open);
         }
-        let middle = self.curve.at(0.5 * (a.x + b.x));
+        let middle = self.curve.at(0.5 * (a.x() + b.x()));
         self.between([a, &middle], (depth + 1, stretches), found)?;
         self.between([&middle, b], (depth + 1, stretches), found)
     }
 
     /// The solution between two places on different sides.
-    fn solve(&self, [mut a, mut b]: [Point; 2]) -> Point {
+    fn solve(&self, [mut a, mut b]: [C::Point; 2]) -> C::Point {
         let enough = 0.25 * self.curve.slack();
-        let share = (self.y - a.q) / (b.q - a.q);
-        let mut at = self.curve.at(a.x + (b.x - a.x) * share.clamp(0.0, 1.0));
+        let share = (self.y - a.q()) / (b.q() - a.q());
+        let mut at = self.curve.at(a.x() + (b.x() - a.x()) * share.clamp(0.0, 1.0));
         for _ in 0..STEPS {
-            if (at.q - self.y).abs() <= enough {
+            if (at.q() - self.y).abs() <= enough {
                 break;
             }
             if self.before(&at) == self.before(&a) {
@@ -151,14 +181,14 @@ impl<C: Curve> Search<C> {
             } else {
                 b = at;
             }
-            let step = at.x - (at.q - self.y) / self.curve.slope(&at);
+            let step = at.x() - (at.q() - self.y) / self.curve.slope(&at);
             // NaN is outside.
-            let next = if step > a.x && step < b.x {
+            let next = if step > a.x() && step < b.x() {
                 step
             } else {
-                0.5 * (a.x + b.x)
+                0.5 * (a.x() + b.x())
             };
-            if !(next > a.x && next < b.x) {
+            if !(next > a.x() && next < b.x()) {
                 break;
             }
             at = self.curve.at(next);

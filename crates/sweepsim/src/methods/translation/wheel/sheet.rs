@@ -1,6 +1,6 @@
 //! A stretch of a cone or torus about the dexels' direction with one height at each radius, and the curves parallel to its sections.
 
-use super::roots::Curve;
+use super::roots::{self, Bounds, Curve};
 use crate::cutter::outline::{Piece, Shape};
 use std::f64::consts::PI;
 
@@ -70,15 +70,6 @@ pub(super) struct Point {
     pub q: f64,
     /// `D`.
     pub room: f64,
-}
-
-/// What is known between two places.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
-    /// The range of `Q′`.
-    pub slope: [f64; 2],
-    /// How much `Q` is off by if coordinates are off by `slack`.
-    pub error: f64,
 }
 
 impl Sheet {
@@ -172,7 +163,19 @@ impl Sheet {
     }
 }
 
+impl roots::Point for Point {
+    fn x(&self) -> f64 {
+        self.x
+    }
+
+    fn q(&self) -> f64 {
+        self.q
+    }
+}
+
 impl Curve for Parallel<'_> {
+    type Point = Point;
+
     #[inline]
     fn at(&self, v: f64) -> Point {
         let rho = (v * v + self.p * self.p).sqrt();
@@ -279,13 +282,6 @@ impl Parallel<'_> {
             room[0],
         ))
     }
-}
-
-impl Bounds {
-    pub const UNKNOWN: Self = Self {
-        slope: [f64::NEG_INFINITY, f64::INFINITY],
-        error: f64::INFINITY,
-    };
 }
 
 #[cfg(test)]
