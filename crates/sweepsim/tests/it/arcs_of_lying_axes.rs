@@ -86,6 +86,17 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
     prop::collection::vec(arc, 1..=count)
 }
 
+/// Level arcs are displaced within their plane for closed forms only, so that there may be other crossings within the tool.
+fn compare(lie: Lie, number: usize, path: &Path) -> TestCaseResult {
+    if !lie.level {
+        return check_in_general(number, path);
+    }
+    let [closed, charts] = check(number, path)?;
+    let [own, other] = [&closed.statistics, &charts.statistics];
+    prop_assert!(own.repaired <= other.repaired + 2, "{own:?} {other:?}");
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2 * cases(), ..ProptestConfig::default() })]
 
@@ -93,13 +104,13 @@ proptest! {
     #[test]
     fn in_plane(lie in lies(), number in 0_usize..13, start in small(3.0), way in small(2.0), inside in any::<bool>(), arcs in arcs(3, 0.3..6.0)) {
         let way = if inside { lie.within(way) } else { way };
-        check_in_general(number, &lie.path(start, &arcs, way))?;
+        compare(lie, number, &lie.path(start, &arcs, way))?;
     }
 
     /// One after the other.
     #[test]
     fn joined(lie in lies(), number in 0_usize..13, start in small(3.0), arcs in arcs(3, 0.3..6.0)) {
-        check_in_general(number, &lie.path(start, &arcs, [0.0; 3]))?;
+        compare(lie, number, &lie.path(start, &arcs, [0.0; 3]))?;
     }
 
     /// Tiny and wide arcs.
