@@ -88,11 +88,11 @@ pub(super) struct Point {
 }
 
 impl roots::Point for Point {
-    fn x(&self) -> f64 {
+    fn unknown(&self) -> f64 {
         self.angle
     }
 
-    fn q(&self) -> f64 {
+    fn value(&self) -> f64 {
         self.h
     }
 }

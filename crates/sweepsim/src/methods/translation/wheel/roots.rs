@@ -37,8 +37,8 @@ impl Bounds {
 
 /// A point with its unknown, and the value there.
 pub(super) trait Point: Copy {
-    fn x(&self) -> f64;
-    fn q(&self) -> f64;
+    fn unknown(&self) -> f64;
+    fn value(&self) -> f64;
 }
 
 /// A function of one unknown.
@@ -76,9 +76,9 @@ impl<C: Curve> Search<C> {
     /// On which side of the line: the same at the axis for both halves.
     fn before(&self, at: &C::Point) -> bool {
         if self.mirror > 0.0 {
-            at.q() < self.y
+            at.value() < self.y
         } else {
-            at.q() > self.y
+            at.value() > self.y
         }
     }
 
@@ -86,9 +86,9 @@ impl<C: Curve> Search<C> {
     fn may_meet(&self, [a, b]: [&C::Point; 2]) -> bool {
         let bounds = self.curve.bounds([a, b]);
         let steepest = bounds.slope[0].abs().max(bounds.slope[1].abs());
-        let reach = 0.5 * (b.x() - a.x()) * steepest + bounds.error;
+        let reach = 0.5 * (b.unknown() - a.unknown()) * steepest + bounds.error;
         // Infinite values and NaN may.
-        !((0.5 * (a.q() + b.q()) - self.y).abs() > reach || self.curve.vanishes_nowhere([a, b]))
+        !((0.5 * (a.value() + b.value()) - self.y).abs() > reach || self.curve.vanishes_nowhere([a, b]))
     }
 
     /// All solutions in a part of the section. The range of each of its ends; the range beyond which the envelope is not on the arc.
@@ -113,10 +113,10 @@ impl<C: Curve> Search<C> {
         }
         let [a, b] = sure.map(|x| self.curve.at(x));
         for (end, beyond) in [(&a, &first), (&b, &last)] {
-            let uncertain = if end.x() == beyond.x() {
+            let uncertain = if end.unknown() == beyond.unknown() {
                 // An end of the arc, or the axis.
-                !self.curve.is_axis(end) && !((end.q() - self.y).abs() > self.curve.error_at(end))
-            } else if end.x() < beyond.x() {
+                !self.curve.is_axis(end) && !((end.value() - self.y).abs() > self.curve.error_at(end))
+            } else if end.unknown() < beyond.unknown() {
                 self.may_meet([end, beyond])
             } else {
                 self.may_meet([beyond, end])
@@ -144,15 +144,15 @@ impl<C: Curve> Search<C> {
             if !differ {
                 return Ok(());
             }
-            if (b.q() > a.q()) != grows {
+            if (b.value() > a.value()) != grows {
                 return Err(Open);
             }
             let at = self.solve([*a, *b]);
-            let error = (bounds.error + (at.q() - self.y).abs()) / low.abs().min(high.abs());
+            let error = (bounds.error + (at.value() - self.y).abs()) / low.abs().min(high.abs());
             return found(Root { at, error, grows });
         }
-        let reach = 0.5 * (b.x() - a.x()) * low.abs().max(high) + bounds.error;
-        if !differ && (0.5 * (a.q() + b.q()) - self.y).abs() > reach {
+        let reach = 0.5 * (b.unknown() - a.unknown()) * low.abs().max(high) + bounds.error;
+        if !differ && (0.5 * (a.value() + b.value()) - self.y).abs() > reach {
             return Ok(());
         }
         if !differ && self.curve.vanishes_nowhere([a, b]) {
@@ -162,7 +162,7 @@ impl<C: Curve> Search<C> {
         if depth == HALVINGS || *stretches > STRETCHES {
             return Err(Open);
         }
-        let middle = self.curve.at(0.5 * (a.x() + b.x()));
+        let middle = self.curve.at(0.5 * (a.unknown() + b.unknown()));
         self.between([a, &middle], (depth + 1, stretches), found)?;
         self.between([&middle, b], (depth + 1, stretches), found)
     }
@@ -170,10 +170,12 @@ impl<C: Curve> Search<C> {
     /// The solution between two places on different sides.
     fn solve(&self, [mut a, mut b]: [C::Point; 2]) -> C::Point {
         let enough = 0.25 * self.curve.slack();
-        let share = (self.y - a.q()) / (b.q() - a.q());
-        let mut at = self.curve.at(a.x() + (b.x() - a.x()) * share.clamp(0.0, 1.0));
+        let share = (self.y - a.value()) / (b.value() - a.value());
+        let mut at = self
+            .curve
+            .at(a.unknown() + (b.unknown() - a.unknown()) * share.clamp(0.0, 1.0));
         for _ in 0..STEPS {
-            if (at.q() - self.y).abs() <= enough {
+            if (at.value() - self.y).abs() <= enough {
                 break;
             }
             if self.before(&at) == self.before(&a) {
@@ -181,14 +183,14 @@ impl<C: Curve> Search<C> {
             } else {
                 b = at;
             }
-            let step = at.x() - (at.q() - self.y) / self.curve.slope(&at);
+            let step = at.unknown() - (at.value() - self.y) / self.curve.slope(&at);
             // NaN is outside.
-            let next = if step > a.x() && step < b.x() {
+            let next = if step > a.unknown() && step < b.unknown() {
                 step
             } else {
-                0.5 * (a.x() + b.x())
+                0.5 * (a.unknown() + b.unknown())
             };
-            if !(next > a.x() && next < b.x()) {
+            if !(next > a.unknown() && next < b.unknown()) {
                 break;
             }
             at = self.curve.at(next);

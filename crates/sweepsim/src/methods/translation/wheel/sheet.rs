@@ -164,11 +164,11 @@ impl Sheet {
 }
 
 impl roots::Point for Point {
-    fn x(&self) -> f64 {
+    fn unknown(&self) -> f64 {
         self.x
     }
 
-    fn q(&self) -> f64 {
+    fn value(&self) -> f64 {
         self.q
     }
 }
