@@ -9,8 +9,8 @@ const LARGEST: f64 = 1e4;
 const LARGEST_IN_CHORDS: f64 = 5e8;
 /// The largest difference of the distances of its ends from its centre, and of their places along the normal of a plane along z.
 const SPIRAL: f64 = 1e-9;
-/// An arc in a plane along z is mostly cheaper than this many chords: with dexels along z it always is; with those along x and y as well, where tools lie, from about half to twice as many on. Found by trial.
-const WORTH: f64 = 64.0;
+/// An arc in a plane along z is cheaper than this many chords with every kind of end: with a round corner already than two. Found by trial.
+const WORTH: f64 = 8.0;
 
 /// The kinds of arcs that are kept.
 #[derive(Clone, Copy, Debug)]

@@ -32,7 +32,7 @@ pub struct ReadOptions {
     /// Keeps those arcs and helices that turn about z while the tool stands along it, and whose ends are equally far from the centre: they are cheaper
     /// than their chords. Others, and those of a radius of more than 10 m, are divided unless [`exact_arcs`](Self::exact_arcs) keeps them.
     pub level_arcs: bool,
-    /// Keeps, on the same terms, arcs in planes along z (`G18`, `G19`) that do not leave their plane, where they would take 64 chords or more.
+    /// Keeps, on the same terms, arcs in planes along z (`G18`, `G19`) that do not leave their plane, where they would take 8 chords or more.
     pub upright_arcs: bool,
     /// The format of the file. `None`: as its content says.
     pub format: Option<Format>,

@@ -62,6 +62,8 @@ fn arcs_in_planes_along_z_are_kept_if_asked_for() {
     assert_eq!(courses(&siemens::read(text, &upright).unwrap()), [1, 0]);
     // Few chords are cheaper.
     upright.arc_tolerance = 2e-3;
+    assert_eq!(courses(&siemens::read(text, &upright).unwrap()), [1, 0]);
+    upright.arc_tolerance = 0.2;
     assert!(courses(&siemens::read(text, &upright).unwrap())[1] > 1);
 }
 
