@@ -75,6 +75,17 @@ pub trait ChartMap<const N: usize> {
         None
     }
 
+    /// A part of the box that holds the preimages of all targets, however many they are, if it is much smaller than the box. It is searched instead. Asked for boxes
+    /// where `∂Φ` may be singular, with their enclosures.
+    fn remainder(
+        &mut self,
+        _cell: &Self::Cell,
+        _values: &[Enclosure; N],
+        _jacobian: &[[Enclosure; N]; N],
+    ) -> Option<[Enclosure; N]> {
+        None
+    }
+
     /// Drops the last part asked for.
     fn drop_part(&mut self, _part: Self::Cell) {}
 

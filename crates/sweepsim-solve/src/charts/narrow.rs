@@ -31,7 +31,7 @@ const LAST: f64 = 1e-3;
 /// Half a side of a thin box, in those of the box.
 const THIN: f64 = 1e-6;
 /// A part is wider than the rounding of a preimage by this factor.
-const ROUNDINGS: f64 = 1024.0;
+const ROUNDINGS: f64 = 32.0;
 
 /// Where all preimages in a box are.
 pub(super) enum Narrowed<const N: usize> {

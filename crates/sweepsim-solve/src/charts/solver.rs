@@ -159,7 +159,15 @@ impl<C: Clone> ChartSolver<C> {
                 linear.sharpen(&products, &jacobian);
             }
             let mut axis = widest(&bounds, domain, &jacobian, &map.scales());
-            let is_singular = linear.as_ref().is_none_or(|linear| linear.radius >= 1.0);
+            let is_singular = linear.as_ref().is_none_or(|linear| linear.radius >= LIMIT);
+            if is_singular
+                && let Some(part) = map.remainder(&cell, &values, &jacobian)
+                && let Some(part) = map.narrowed(&cell, &part)
+            {
+                self.stack.push((part.clone(), depth, Next::Drop));
+                self.stack.push((part, depth + 1, Next::Examine(1)));
+                continue;
+            }
             let (is_stuck, of_parts) = if count <= FEW && is_singular {
                 (stuck >= STUCK, stuck + 1)
             } else {

@@ -50,6 +50,8 @@ pub(crate) struct PatchForms {
     /// Another one, of any patch.
     direct: Option<Direct>,
     frame: Option<LocalFrame>,
+    /// The sides of a patch that have shrunk to a point, in each variable the lower and the upper one, where normals are not of revolution.
+    pub poles: [[bool; 2]; 2],
     /// Homogeneous position, arranged for the inner loop.
     pub places: Table,
     /// All fields, one after another, arranged for the inner loop.
@@ -85,7 +87,7 @@ impl PatchForms {
         )
     }
 
-    pub(super) fn of_patches(patches: &[Patch]) -> Vec<Self> {
+    pub fn of_patches(patches: &[Patch]) -> Vec<Self> {
         patches.iter().map(Self::patch).collect()
     }
 
@@ -101,6 +103,7 @@ impl PatchForms {
             }
         }
         Self {
+            poles: patch.shrunk_sides(),
             direct,
             rounding,
             revolution: patch.revolved().map(Revolution::new),
@@ -187,6 +190,7 @@ impl PatchForms {
             rounding: largest,
             largest,
             revolution: None,
+            poles: [[false; 2]; 2],
             direct: None,
             frame: None,
             places,

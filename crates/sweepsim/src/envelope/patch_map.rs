@@ -135,6 +135,44 @@ impl ChartMap<3> for PatchMap<'_> {
         is_small.then(|| (self.cells.place(self.element, lower, upper), cell.1))
     }
 
+    fn remainder(
+        &mut self,
+        cell: &Brick,
+        values: &[Enclosure; 3],
+        jacobian: &[[Enclosure; 3]; 3],
+    ) -> Option<[Enclosure; 3]> {
+        /// Of the side, at each step.
+        const SMALL: f64 = 0.125;
+        // If the tip moves level, `g` is 0 all along a pole, and steep across it in all directions but those along the tip's way: only the pole is left.
+        let axis = (0..2).find(|axis| {
+            let (start, end) = self.cells.bounds(cell.0, *axis);
+            let [lower, upper] = self.element.poles[*axis];
+            (lower && start == 0.0) || (upper && end == 1.0)
+        })?;
+        let mut part = None;
+        let (mut sides, mut g, mut slope) = (self.bounds(cell), values[2], jacobian[2][axis]);
+        loop {
+            let (start, end) = (sides[axis].lo(), sides[axis].hi());
+            let (lower, upper) = with_zeros((start, end), g, slope);
+            if !(upper - lower < SMALL * (end - start)) {
+                return part;
+            }
+            sides[axis] = interval((lower, upper));
+            part = Some(sides);
+            let [u, v, _] = sides;
+            let own = (
+                self.cells.place(self.element, [u.lo(), v.lo()], [u.hi(), v.hi()]),
+                cell.1,
+            );
+            let found = self
+                .values(&own)
+                .map(|values| (values[2], self.jacobian(&own)[2][axis]));
+            self.drop_part(own);
+            let Some(found) = found else { return part };
+            (g, slope) = found;
+        }
+    }
+
     fn drop_part(&mut self, (cell, _): Brick) {
         self.cells.release(cell as usize);
     }
@@ -222,14 +260,101 @@ impl ChartMap<3> for PatchMap<'_> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use sweepsim_motion::{Law, Path, Pose, Tool};
+    use sweepsim_motion::{Law, Patch, Path, Pose, Segment, Tool};
+    use sweepsim_spline::Bernstein;
 
     const SIZE: Size = Size {
         spacing: [0.1; 2],
         slack: 64.0 * f64::EPSILON * 50.0,
     };
 
+    /// A smooth tip, a quarter of the way round: the side `v = 0` is a point, the tangent plane there is level.
+    fn tip(numbers: &[f64]) -> Patch {
+        let form = |value: &dyn Fn(f64, usize, f64) -> f64| {
+            let each = (0..16).map(|k| value((k % 4) as f64 / 3.0, k / 4, numbers[k]));
+            Bernstein::new(&[3, 3], each.collect()).unwrap()
+        };
+        let far = |row: usize| row as f64 / 3.0;
+        let x = form(&|u, row, bump| far(row) * (3.0 * (1.5 * u).cos() + 0.1 * bump));
+        let y = form(&|u, row, bump| far(row) * (2.0 * (1.5 * u).sin() - 0.1 * bump));
+        let z = form(&|_, row, bump| if row < 2 { 0.0 } else { far(row) * (1.0 + 0.2 * bump) });
+        let one = form(&|_, _, _| 1.0);
+        Patch::new([x, y, z], one).unwrap()
+    }
+
+    fn straight(way: [f64; 3]) -> Segment {
+        let poses = [-1.0, 1.0].map(|side| Pose::new(way.map(|x| side * x), [0.0, 0.0, 1.0]).unwrap());
+        Path::with_law(poses.into(), Law::Slerp)
+            .unwrap()
+            .segments(0, 10.0, 1e-6)
+            .remove(0)
+    }
+
     proptest! {
+        /// What is left of a cell at a pole holds each point of it with `g = 0`.
+        #[test]
+        fn remainders_at_poles_hold_all_zeros(
+            numbers in proptest::collection::vec(-1.0..1.0, 16), angle in 0.0..6.3_f64, digits in 0.0..12.0_f64, falls in any::<bool>(),
+            place in 0.0..1.0_f64, share in 0.0..1.0_f64, width in 0.0..6.0_f64, larger in 0.0..4.0_f64,
+        ) {
+            let patches = [tip(&numbers)];
+            let elements = PatchForms::of_patches(&patches);
+            let element = &elements[0];
+            prop_assert!(element.poles == [[false; 2], [true, false]]);
+            let sign = if falls { -1.0 } else { 1.0 };
+            let rise = sign * 10_f64.powf(-digits);
+            let segment = straight([f64::cos(angle), f64::sin(angle), rise]);
+            let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
+            let mut map = PatchMap {
+                motion: FramedMotion::new(&times, element.frame()),
+                element,
+                cells: &mut cells,
+                times: &mut times,
+                size: SIZE,
+            };
+            let negative = |map: &PatchMap, v: f64| map.evaluate(&[place, v, 0.5]).value[2] < 0.0;
+            let (mut low, mut high) = (0.0, 1.0);
+            let at_pole = negative(&map, low);
+            if at_pole == negative(&map, high) {
+                return Ok(());
+            }
+            while high - low > 1e-16 + 1e-9 * low {
+                let middle = 0.5 * (low + high);
+                *(if negative(&map, middle) == at_pole { &mut low } else { &mut high }) = middle;
+            }
+            let width = 10_f64.powf(-width);
+            let start = (place - share * width).max(0.0);
+            let end = (1.000_001 * high * 10_f64.powf(larger)).min(1.0);
+            let cell = map.place(&[Enclosure::hull(start, (start + width).min(1.0)), Enclosure::hull(0.0, end), Enclosure::UNIT]);
+            let values = map.values(&cell).unwrap();
+            let jacobian = map.jacobian(&cell);
+            if let Some(part) = map.remainder(&cell, &values, &jacobian) {
+                prop_assert!(part[1].lo() <= low && high <= part[1].hi() && 2.0 * part[1].radius() <= 0.126 * end, "{low} {high} {part:?}");
+            }
+        }
+
+        /// Where a tip that moves level is steep across its way, next to nothing but the pole is left.
+        #[test]
+        fn poles_alone_remain_where_a_level_tip_is_steep(numbers in proptest::collection::vec(-1.0..1.0, 16), start in 0.0..0.2_f64) {
+            let patches = [tip(&numbers)];
+            let elements = PatchForms::of_patches(&patches);
+            let element = &elements[0];
+            let segment = straight([1.0, 0.0, 0.0]);
+            let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
+            let mut map = PatchMap {
+                motion: FramedMotion::new(&times, element.frame()),
+                element,
+                cells: &mut cells,
+                times: &mut times,
+                size: SIZE,
+            };
+            let cell = map.place(&[Enclosure::hull(start, start + 0.1), Enclosure::hull(0.0, 0.1), Enclosure::UNIT]);
+            let values = map.values(&cell).unwrap();
+            let jacobian = map.jacobian(&cell);
+            let part = map.remainder(&cell, &values, &jacobian);
+            prop_assert!(part.is_some_and(|part| part[1].hi() < 1e-11), "{part:?}");
+        }
+
         /// The part of a box where `g` can vanish, on a wall that moves sideways, shrinks with the square of the box about the ruling where it does.
         #[test]
         fn parts_of_walls_shrink_with_the_square_of_the_box(size in 1..5_i32, angle in 0.0..6.2, share in 0.0..1.0) {

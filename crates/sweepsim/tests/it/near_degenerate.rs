@@ -3,6 +3,7 @@
 //!
 //! `cargo test -p sweepsim --release --test near_degenerate -- --nocapture` prints the table of the docs.
 
+use crate::grazing_curves::{bud, carried};
 use sweepsim::{Method, Options, Statistics, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Apt, Course, Law, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
@@ -173,15 +174,42 @@ fn cost(tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
         .statistics
 }
 
+/// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising by `d` over a row.
+fn over_poles() -> Vec<Family> {
+    fn tip_over(tips: [[f64; 3]; 2]) -> (Path, Grid) {
+        (
+            carried(&tips, [0.0; 3]),
+            Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid"),
+        )
+    }
+    vec![
+        ("line from the way of a pole, in a row", |d| {
+            tip_over([[-4.0, d, 0.0], [4.0, d, 0.0]])
+        }),
+        ("line from the way of a pole, on a diagonal", |d| {
+            let off = d * std::f64::consts::FRAC_1_SQRT_2;
+            tip_over([[-4.0 - off, -4.0 + off, 0.0], [4.0 - off, 4.0 + off, 0.0]])
+        }),
+        ("line from the way of a pole, on another diagonal", |d| {
+            tip_over([[-4.0, -2.0 + 0.1 * d, 0.0], [4.0, 2.0 + 0.1 * d, 0.0]])
+        }),
+        ("rise of a pole over a row of lines", |d| {
+            tip_over([[-4.0, 0.0, 0.0], [4.0, 0.0, d]])
+        }),
+    ]
+}
+
 #[test]
 fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
     let mut wrong = Vec::new();
     println!("| boxes for a generic neighbour, then times | {:?} |", DISTANCES);
-    for (what, family) in families() {
-        for (name, tool) in tools() {
-            let generic = cost(&tool, &family(GENERIC));
+    let [tools, free_form] = [tools(), vec![("bud", bud())]];
+    let families = families().into_iter().map(|family| (family, &tools));
+    for ((what, family), tools) in families.chain(over_poles().into_iter().map(|family| (family, &free_form))) {
+        for (name, tool) in tools {
+            let generic = cost(tool, &family(GENERIC));
             let ratio = |d: &f64| {
-                let found = cost(&tool, &family(*d));
+                let found = cost(tool, &family(*d));
                 let trouble = found.repaired + found.unresolved.len();
                 (found.boxes as f64 / generic.boxes as f64, trouble)
             };
