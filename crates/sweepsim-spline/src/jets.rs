@@ -7,12 +7,18 @@ pub(crate) type Buffer = SmallVec<[f64; 128]>;
 
 /// `values[k] = Σ_i basis[i] · values[i · inner + k]`, and shortened to `inner`.
 pub(crate) fn contract(values: &mut Buffer, inner: usize, basis: &[f64]) {
+    contract_rows(values, inner, basis);
+    values.truncate(inner);
+}
+
+/// The same for the first `inner` values; the others are left as they are.
+#[inline(always)]
+pub(crate) fn contract_rows(values: &mut [f64], inner: usize, basis: &[f64]) {
     let (sum, rest) = values.split_at_mut(inner);
     sum.iter_mut().for_each(|v| *v *= basis[0]);
     for (row, &weight) in rest.chunks_exact(inner).zip(&basis[1..]) {
         accumulate(sum, row, weight);
     }
-    values.truncate(inner);
 }
 
 /// All partial derivatives of a map at a point, up to a total order.

@@ -11,15 +11,40 @@ use super::stretch::JointStretch;
 use super::{Edge, Patch, Side, ToolError};
 use nalgebra::Vector3;
 
+/// Places in the order of `x`, so that few are compared with each other.
+struct InOrder(Vec<(f64, usize)>);
+
+impl InOrder {
+    fn new(places: impl Iterator<Item = Vector3<f64>>) -> Self {
+        let mut order: Vec<(f64, usize)> = places.enumerate().map(|(number, place)| (place.x, number)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self(order)
+    }
+
+    /// The numbers of the places with `low ≤ x ≤ high`, in order.
+    fn between(&self, low: f64, high: f64) -> Vec<usize> {
+        let from = self.0.partition_point(|(x, _)| *x < low);
+        let within = self.0[from..].iter().take_while(|(x, _)| *x <= high);
+        let mut numbers: Vec<usize> = within.map(|(_, number)| *number).collect();
+        numbers.sort_unstable();
+        numbers
+    }
+}
+
 /// The sides cut at the corners that lie on them.
 fn stretches(curves: &[SideCurve], tolerance: f64) -> Vec<JointStretch<'_>> {
+    // Every corner begins a side.
+    let corners = InOrder::new(curves.iter().map(|curve| curve.places[0]));
     let mut stretches = Vec::with_capacity(curves.len());
     for (number, curve) in curves.iter().enumerate() {
         let ends = [curve.places[0], curve.places[PLACES - 1]];
         let mut cuts: Vec<f64> = Vec::new();
-        for (_, other) in curves.iter().enumerate().filter(|(other, _)| *other != number) {
-            // Every corner begins a side.
-            let corner = other.places[0];
+        let [low, high] = curve.bounds.map(|corner| corner.x);
+        for other in corners.between(low - tolerance, high + tolerance) {
+            if other == number {
+                continue;
+            }
+            let corner = curves[other].places[0];
             let at_end = ends.iter().any(|end| (end - corner).norm() <= 2.0 * tolerance);
             if at_end || !curve.may_hold(&corner, tolerance) {
                 continue;
@@ -58,32 +83,38 @@ pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, Tool
         .collect();
     curves.retain(|curve| !curve.is_pole(tolerance));
     let stretches = stretches(&curves, tolerance);
+    let starts = InOrder::new(stretches.iter().map(|stretch| stretch.ends[0]));
     let mut edges = Vec::new();
     for (number, stretch) in stretches.iter().enumerate() {
-        let others = || stretches.iter().enumerate().filter(|(other, _)| *other != number);
-        let mut joined = others().filter(|(_, other)| stretch.runs_along(other, true, tolerance));
+        // Those that begin where this one ends or, if not backwards, begins.
+        let others = |backwards: bool| {
+            let start = stretch.ends[usize::from(backwards)].x;
+            let near = starts.between(start - 3.0 * tolerance, start + 3.0 * tolerance);
+            let near = near.into_iter().filter(|other| *other != number);
+            let stretches = &stretches;
+            near.filter(move |other| stretch.runs_along(&stretches[*other], backwards, tolerance))
+        };
+        let mut joined = others(true);
         let (patch, side) = (stretch.curve.patch, stretch.curve.side);
-        let Some((partner, other)) = joined.next() else {
-            return Err(
-                match others().find(|(_, other)| stretch.runs_along(other, false, tolerance)) {
-                    Some((_, other)) => ToolError::Flipped {
-                        patch,
-                        side,
-                        other: other.curve.patch,
-                    },
-                    None => ToolError::Open {
-                        patch,
-                        side,
-                        place: stretch.at(0.5).into(),
-                    },
+        let Some(partner) = joined.next() else {
+            return Err(match others(false).next() {
+                Some(other) => ToolError::Flipped {
+                    patch,
+                    side,
+                    other: stretches[other].curve.patch,
                 },
-            );
+                None => ToolError::Open {
+                    patch,
+                    side,
+                    place: stretch.at(0.5).into(),
+                },
+            });
         };
         if joined.next().is_some() {
             return Err(ToolError::Branching { patch, side });
         }
         if number < partner {
-            edges.extend(stretch.edges(other, tolerance));
+            edges.extend(stretch.edges(&stretches[partner], tolerance));
         }
     }
     if volume(patches) <= 0.0 {
@@ -103,22 +134,24 @@ fn volume(patches: &[Patch]) -> f64 {
     volume_by(patches, MANY).0
 }
 
-/// The sum over `steps`² points of each patch, and that of the terms' absolute values.
+/// The sum over `steps`² quadrangles of each patch, and that of the terms' absolute values.
 fn volume_by(patches: &[Patch], steps: usize) -> (f64, f64) {
-    let middle = |n: usize| (n as f64 + 0.5) / steps as f64;
-    let h = 0.5 / steps as f64;
+    let part = |n: usize| n as f64 / steps as f64;
     let (mut sum, mut sizes) = (0.0, 0.0_f64);
+    let (mut before, mut row) = (Vec::new(), Vec::new());
     for patch in patches {
-        for i in 0..steps {
-            for j in 0..steps {
-                let (u, v) = (middle(i), middle(j));
-                let at = |u: f64, v: f64| Vector3::from(patch.point(u, v));
-                let along_u = at(u + h, v) - at(u - h, v);
-                let along_v = at(u, v + h) - at(u, v - h);
-                let term = at(u, v).dot(&along_u.cross(&along_v));
-                sum += term;
-                sizes += term.abs();
+        for i in 0..=steps {
+            row.clear();
+            row.extend((0..=steps).map(|j| Vector3::from(patch.point(part(i), part(j)))));
+            if i > 0 {
+                for (lower, upper) in before.windows(2).zip(row.windows(2)) {
+                    let [a, d, b, c]: [Vector3<f64>; 4] = [lower[0], lower[1], upper[0], upper[1]];
+                    let term = (a + b + c + d).dot(&(c - a).cross(&(d - b)));
+                    sum += term;
+                    sizes += term.abs();
+                }
             }
+            std::mem::swap(&mut before, &mut row);
         }
     }
     (sum, sizes)

@@ -36,12 +36,12 @@ enum Next {
 const MANY: usize = 1000;
 /// With the spectral radius of `R` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
-/// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`, 0.68 for a hundred. Nearer to 1,
+/// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`, 0.63 for a hundred. Nearer to 1,
 /// targets beyond a face of the box take more evaluations than smaller boxes would. Both found by trial.
-const LIMIT: f64 = 0.8;
-const SHARE: i32 = 12;
-/// With a spectral radius beyond this, the two parts of a box are not charts, either: they are split without a look at their derivatives.
-const FAR: f64 = 3.0;
+const LIMIT: f64 = 0.95;
+const SHARE: i32 = 10;
+/// With a spectral radius beyond this, the two parts of a box are probably not charts, either: they are split without a look at their derivatives. Found by trial.
+const FAR: f64 = 1.7;
 /// After this many boxes, one in the other, in which `∂Φ` is nearly singular and the targets are few, boxes are [narrowed]: before, splitting them is cheaper. Found by
 /// trial.
 const STUCK: u32 = 3;

@@ -5,7 +5,7 @@
 //! sums run over contiguous rows.
 
 use super::{Bernstein, BernsteinError};
-use crate::jets::{self, Buffer, Derivatives, contract};
+use crate::jets::{self, Buffer, Derivatives, contract, contract_rows};
 use crate::kernel;
 use crate::rounding::{UNDERFLOW, gamma, up};
 use smallvec::SmallVec;
@@ -15,18 +15,33 @@ impl Bernstein {
     ///
     /// A missing coordinate counts as NaN, and makes the value NaN. Outside `[0,1]ⁿ` the polynomial is extrapolated.
     pub fn evaluate(&self, point: &[f64]) -> f64 {
-        let mut values = Buffer::from_slice(&self.coefficients);
-        for axis in (0..self.variables()).rev() {
-            let degree = self.degrees[axis];
-            if degree == 0 {
-                if point.len() <= axis {
-                    return f64::NAN;
-                }
-                continue;
-            }
-            let basis = basis(degree, point.get(axis).copied().unwrap_or(f64::NAN));
-            let inner = values.len() / (degree + 1);
-            contract(&mut values, inner, &basis);
+        if point.len() < self.variables() {
+            return f64::NAN;
+        }
+        let mut axes = (0..self.variables()).rev().filter(|&axis| self.degrees[axis] > 0);
+        let Some(last) = axes.next() else {
+            return self.coefficients[0];
+        };
+        let (mut basis, mut values) = (Short::<16>::new(), Short::<32>::new());
+        let rows = self.degrees[last] + 1;
+        let values = values.first(self.coefficients.len() / rows);
+        let basis_of = basis.first(rows);
+        kernel::basis(rows - 1, point[last], basis_of);
+        let (row, others) = self.coefficients.split_at(values.len());
+        for (value, &coefficient) in values.iter_mut().zip(row) {
+            *value = coefficient * basis_of[0];
+        }
+        for (row, &weight) in others.chunks_exact(values.len()).zip(&basis_of[1..]) {
+            kernel::accumulate(values, row, weight);
+        }
+        let mut len = values.len();
+        for axis in axes {
+            let rows = self.degrees[axis] + 1;
+            let basis_of = basis.first(rows);
+            kernel::basis(rows - 1, point[axis], basis_of);
+            let inner = len / rows;
+            contract_rows(&mut values[..len], inner, basis_of);
+            len = inner;
         }
         values[0]
     }
@@ -159,6 +174,32 @@ impl Bernstein {
             index[j] += 1;
             all.get(&index).map_or(0.0, |v| v[0])
         })
+    }
+}
+
+/// Numbers on the stack, if they are at most `N`.
+struct Short<const N: usize> {
+    few: [f64; N],
+    many: Vec<f64>,
+}
+
+impl<const N: usize> Short<N> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            few: [0.0; N],
+            many: Vec::new(),
+        }
+    }
+
+    /// Room for `len` numbers, which are not cleared.
+    #[inline(always)]
+    fn first(&mut self, len: usize) -> &mut [f64] {
+        if len <= N {
+            return &mut self.few[..len];
+        }
+        self.many.resize(len, 0.0);
+        &mut self.many[..len]
     }
 }
 
