@@ -38,7 +38,7 @@ const MANY: usize = 1000;
 const CLOSE: f64 = 0.4;
 /// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`, 0.63 for a hundred. Nearer to 1,
 /// targets beyond a face of the box take more evaluations than smaller boxes would. Both found by trial.
-const LIMIT: f64 = 0.95;
+const LIMIT: f64 = 0.85;
 const SHARE: i32 = 10;
 /// With a spectral radius beyond this, the two parts of a box are probably not charts, either: they are split without a look at their derivatives. Found by trial.
 const FAR: f64 = 1.7;

@@ -16,6 +16,9 @@ const EXTRAPOLATION: [&[f64]; DEPTH + 1] = [
 /// How many places a row is extended backwards when the next row begins, since that one may begin earlier.
 const BEFORE: usize = 3;
 
+/// Rows have room for as many places at first.
+const USUAL: usize = 16;
+
 /// The polynomial through `count` places, nearest first, at the next one.
 fn extrapolate<const N: usize>(count: usize, place: impl Fn(usize) -> [f64; N]) -> [f64; N] {
     let mut sum = [0.0; N];
@@ -63,7 +66,9 @@ pub(crate) struct Trail<const N: usize> {
 
 impl<const N: usize> Trail<N> {
     pub fn new() -> Self {
-        Self { rows: Vec::new() }
+        Self {
+            rows: Vec::with_capacity(DEPTH + 1),
+        }
     }
 
     pub fn push(&mut self, [number, place]: [usize; 2], s: [f64; N]) {
@@ -84,7 +89,7 @@ impl<const N: usize> Trail<N> {
                 let mut found = if self.rows.len() > DEPTH {
                     self.rows.remove(0).found
                 } else {
-                    Vec::new()
+                    Vec::with_capacity(USUAL)
                 };
                 found.clear();
                 found.resize(BEFORE, [f64::NAN; N]);

@@ -243,7 +243,12 @@ impl Cells {
         }
         let node = &self.nodes[cell as usize];
         let (mut lower, mut upper) = (node.c.clone(), node.c.clone());
-        let buffers = |c| Buffers { c, points: Vec::new() };
+        let points = self.points;
+        // With room for what `prepare` adds.
+        let buffers = |c| Buffers {
+            c,
+            points: Vec::with_capacity(points),
+        };
         let layout = &element.layout;
         for (slot, count) in layout.tensors(element.tangents.is_none(), !node.sampled) {
             let range = slot.start..slot.start + count * slot.len();

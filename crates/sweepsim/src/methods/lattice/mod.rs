@@ -84,17 +84,11 @@ impl<'a> Lattice<'a> {
     /// The numbers of the lines along one direction whose coordinate lies in the range.
     pub fn numbers(&self, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
-        // NaN ranges contain everything.
-        let number = |z: f64, otherwise: usize| {
-            let n = (z - self.first[axis]) * self.density[axis];
-            if n.is_nan() {
-                otherwise as f64
-            } else {
-                n.clamp(window[0] as f64, window[1] as f64)
-            }
-        };
-        let mut lo = number(range.lo(), window[0]) as usize;
-        let mut hi = (number(range.hi(), window[1]) as usize + 1).min(window[1]);
+        let [start, end] = window.map(|number| number as f64);
+        let number = |z: f64| (z - self.first[axis]) * self.density[axis];
+        // NaN ranges contain everything: `max` and `min` ignore NaN.
+        let mut lo = number(range.lo()).max(start).min(end) as usize;
+        let mut hi = (number(range.hi()).min(end).max(start) as usize + 1).min(window[1]);
         // The product is only a guess: the exact coordinates of the lines decide.
         while lo <= hi && self.coordinate(axis, lo) < range.lo() {
             lo += 1;
