@@ -45,6 +45,8 @@ pub(crate) struct Cells {
     points: usize,
 }
 
+/// The memory of so many released cells is kept: most of them are parts of others, which take none of it.
+const SPARE: usize = 16;
 /// Cells beyond this number are not kept for the next segment.
 const KEPT: usize = 4096;
 
@@ -125,7 +127,8 @@ impl Cells {
     /// Drops the cells created since the mark: placed ones, and their parts.
     pub fn release(&mut self, mark: usize) {
         let released = self.nodes.drain(mark..);
-        self.spare.extend(released.map(|node| Buffers {
+        let room = SPARE.saturating_sub(self.spare.len());
+        self.spare.extend(released.take(room).map(|node| Buffers {
             c: node.c,
             points: node.points,
         }));
@@ -344,4 +347,28 @@ fn control_points(slot: &Slot, c: &[f64], points: &mut [f64]) {
         z[i] = of[2 * len + i] * inverse;
     }
     all_or_none(&mut points[slot.start..][..3 * len]);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sweepsim_motion::Tool;
+
+    /// A search that narrows many boxes, and divides what is left of each, keeps the memory of a few only.
+    #[test]
+    fn memory_of_released_cells_does_not_grow() {
+        let (patches, _) = PatchForms::all(&Tool::ball(2.0, 7.0).unwrap());
+        for element in &patches {
+            let mut cells = Cells::new(element);
+            for round in 0..100 {
+                let mark = cells.mark();
+                let mut cell = cells.place(element, [0.25; 2], [0.5; 2]);
+                for axis in [0, 1, 0, 1] {
+                    [cell, _] = cells.split(element, cell, axis);
+                }
+                cells.release(mark);
+                assert!(cells.spare.len() <= SPARE && cells.nodes.len() == mark, "{round}");
+            }
+        }
+    }
 }
