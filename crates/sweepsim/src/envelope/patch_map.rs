@@ -11,6 +11,7 @@ use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_error_in, envelope_size, interval, largest, plane_values, product_size,
     turning, widened,
 };
+use crate::envelope::zeros::{at_pole, with_zeros};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;
@@ -32,25 +33,8 @@ pub(crate) struct PatchMap<'a> {
     pub size: Size,
 }
 
-/// The part of the side of a box outside which a function has a sign, if it is steep along the side: it is at least `lo` at one end and at most `hi` at the other,
-/// and changes at least as `slope` says.
-fn with_zeros((start, end): (f64, f64), values: Enclosure, slope: Enclosure) -> (f64, f64) {
-    /// Of the domain's sides: far below what matters, far above rounding.
-    const LEAST: f64 = 1e-13;
-    let steepness = slope.lo().max(-slope.hi());
-    if !(steepness > 0.0) {
-        return (start, end);
-    }
-    let reach = |value: f64| value / steepness + LEAST;
-    // Where it grows, from the start it takes at most this to grow from its least value to 0, and from 0 to its largest to the end.
-    let [near, far] = if slope.lo() > 0.0 {
-        [-values.lo(), values.hi()]
-    } else {
-        [values.hi(), -values.lo()]
-    };
-    let (lower, upper) = ((end - reach(far)).max(start), (start + reach(near)).min(end));
-    // NaN, or no zero, which rounding may hide.
-    if lower < upper { (lower, upper) } else { (start, end) }
+fn pair(range: Enclosure) -> (f64, f64) {
+    (range.lo(), range.hi())
 }
 
 impl ChartMap<3> for PatchMap<'_> {
@@ -129,7 +113,7 @@ impl ChartMap<3> for PatchMap<'_> {
         let mut is_small = false;
         for axis in 0..2 {
             let (start, end) = self.cells.bounds(cell.0, axis);
-            (lower[axis], upper[axis]) = with_zeros((start, end), values[2], jacobian[2][axis]);
+            (lower[axis], upper[axis]) = with_zeros((start, end), pair(values[2]), pair(jacobian[2][axis]));
             is_small |= upper[axis] - lower[axis] < SMALL * (end - start);
         }
         is_small.then(|| (self.cells.place(self.element, lower, upper), cell.1))
@@ -141,36 +125,18 @@ impl ChartMap<3> for PatchMap<'_> {
         values: &[Enclosure; 3],
         jacobian: &[[Enclosure; 3]; 3],
     ) -> Option<[Enclosure; 3]> {
-        /// Of the side, at each step.
-        const SMALL: f64 = 0.125;
-        // If the tip moves level, `g` is 0 all along a pole, and steep across it in all directions but those along the tip's way: only the pole is left.
-        let axis = (0..2).find(|axis| {
-            let (start, end) = self.cells.bounds(cell.0, *axis);
-            let [lower, upper] = self.element.poles[*axis];
-            (lower && start == 0.0) || (upper && end == 1.0)
-        })?;
-        let mut part = None;
-        let (mut sides, mut g, mut slope) = (self.bounds(cell), values[2], jacobian[2][axis]);
-        loop {
-            let (start, end) = (sides[axis].lo(), sides[axis].hi());
-            let (lower, upper) = with_zeros((start, end), g, slope);
-            if !(upper - lower < SMALL * (end - start)) {
-                return part;
-            }
-            sides[axis] = interval((lower, upper));
-            part = Some(sides);
-            let [u, v, _] = sides;
-            let own = (
-                self.cells.place(self.element, [u.lo(), v.lo()], [u.hi(), v.hi()]),
-                cell.1,
-            );
+        let slopes = |jacobian: &[[Enclosure; 3]; 3]| [pair(jacobian[2][0]), pair(jacobian[2][1])];
+        let sides = [0, 1].map(|axis| self.cells.bounds(cell.0, axis));
+        let known = (pair(values[2]), slopes(jacobian));
+        let [u, v] = at_pole(&self.element.poles, sides, known, |[u, v]| {
+            let own = (self.cells.place(self.element, [u.0, v.0], [u.1, v.1]), cell.1);
             let found = self
                 .values(&own)
-                .map(|values| (values[2], self.jacobian(&own)[2][axis]));
+                .map(|values| (pair(values[2]), slopes(&self.jacobian(&own))));
             self.drop_part(own);
-            let Some(found) = found else { return part };
-            (g, slope) = found;
-        }
+            found
+        })?;
+        Some([interval(u), interval(v), interval(self.times.bounds(cell.1))])
     }
 
     fn drop_part(&mut self, (cell, _): Brick) {

@@ -168,6 +168,21 @@ proptest! {
         agree_cheaply(number, &carried(&tips, turn), &grid([25, 27]))?;
     }
 
+    /// Moves in the tangent plane of the bud's pole, or almost, whose tip passes over a line, or almost: the grazing curve passes through the pole.
+    #[test]
+    fn poles_over_lines(turn in turn(), stands in any::<bool>(), heading in 0.0..6.3_f64, along in -3.0..3.0_f64, beside in 0.0..13.0_f64, slope in 0.0..13.0_f64, line in [0..29usize, 0..31usize], back in any::<bool>()) {
+        let turn = if stands { [0.0; 3] } else { turn };
+        let small = |digits: f64| if digits > 12.0 { 0.0 } else { 10f64.powf(-digits) };
+        let grid = grid([29, 31]);
+        let way = Rotation3::new(Vector3::from(turn)) * Vector3::new(heading.cos(), heading.sin(), small(slope));
+        let over = Vector3::new(grid.x(line[0]), grid.y(line[1]) + small(beside), 0.0);
+        let mut tips = vec![(over + along * way).into(), (over + (along + 4.0) * way).into()];
+        if back {
+            tips.push((over + (along - 1.0) * way).into());
+        }
+        agree("bud", &bud(), &carried(&tips, turn), &grid, TOLERANCE)?;
+    }
+
     /// Moves far beyond the grid, and the least tolerance.
     #[test]
     fn far_and_fine(number in 0..3usize, turn in turn(), length in 1.0..5.0f64, heading in 0.0..6.3, rise in -0.2..0.2f64, fine in any::<bool>()) {
@@ -269,12 +284,17 @@ fn poles_that_pass_over_lines() {
         ("along another", another(0.0), another(0.03)),
     ];
     for (name, tips, neighbour) in ways {
-        let (neighbour, _) = boxes_and_dexels(neighbour, Method::General, TOLERANCE);
-        let [(exact, own), (_, curves), (_, planes), (_, lines)] =
+        let [(neighbour, _), (by_curves, _)] =
+            [Method::General, Method::Charts].map(|method| boxes_and_dexels(neighbour, method, TOLERANCE));
+        let [(exact, own), (cheap, curves), (_, planes), (_, lines)] =
             [Method::General, Method::Charts, Method::Planes, Method::Lines]
                 .map(|method| boxes_and_dexels(tips, method, TOLERANCE));
         assert_eq!(exact.repaired, 0, "{name}");
         assert!(exact.boxes < 3 * neighbour.boxes, "{name}: {exact:?} {neighbour:?}");
+        assert!(
+            cheap.boxes < 3 * by_curves.boxes && cheap.repaired == 0,
+            "{name}: {cheap:?} {by_curves:?}"
+        );
         for other in [curves, planes, lines] {
             for line in 0..grid.len() {
                 let [a, b] = [&own, &other].map(|volume| volume.at(line).to_vec());

@@ -253,6 +253,13 @@ impl Grazing {
     }
 }
 
+/// What comes next in a walk.
+enum Next {
+    Visit(u32),
+    /// Release the cells made since.
+    Release(usize),
+}
+
 /// The walk through the cells of one patch.
 struct Walk<'a, 'b, S> {
     element: &'a PatchForms,
@@ -271,8 +278,15 @@ struct Walk<'a, 'b, S> {
 impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
     fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
         let slack = self.course.slack;
-        let mut stack = vec![0];
-        while let Some(number) = stack.pop() {
+        let mut stack = vec![Next::Visit(0)];
+        while let Some(next) = stack.pop() {
+            let number = match next {
+                Next::Visit(number) => number,
+                Next::Release(mark) => {
+                    self.cells.release(mark);
+                    continue;
+                }
+            };
             let node = tree.node(number);
             let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
             self.visits += 1;
@@ -294,7 +308,14 @@ impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
             match known {
                 Known::Empty => {}
                 Known::Chart(chart) => self.lines.chart(chart, window),
-                Known::Parts([low, high]) => stack.extend([high, low]),
+                Known::Parts(parts) => stack.extend(parts.into_iter().rev().map(Next::Visit)),
+                Known::Rest(rest) => {
+                    // Such cells are kept for a family. All that are made until it is visited again are its parts.
+                    if directions.spread == 0.0 {
+                        stack.push(Next::Release(tree.node(rest).cell as usize));
+                    }
+                    stack.push(Next::Visit(rest));
+                }
                 Known::Mixed => {
                     let own = &self.course.own;
                     let mut tree = Tree::new(self.element, self.cells, cell, own, slack);

@@ -5,6 +5,7 @@ use super::course::Directions;
 use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::{at_pole, pole};
 
 /// Cells with sides smaller than this are not divided.
 const SMALLEST: f64 = 1e-14;
@@ -30,6 +31,8 @@ enum State {
     Chart(u32),
     /// Number of the first part.
     Parts(u32),
+    /// Number of the only part that holds points of the curve.
+    Rest(u32),
     /// Not the same for all directions.
     Mixed,
     /// As small as rounding allows.
@@ -42,6 +45,8 @@ pub(super) enum Known<'a> {
     Chart(&'a Chart),
     /// The numbers of its parts.
     Parts([u32; 2]),
+    /// The number of its only part, which is a cell of its own.
+    Rest(u32),
     /// Each direction has to tell by itself.
     Mixed,
     /// The curve may be anywhere in it.
@@ -119,6 +124,31 @@ pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
     ROUNDING * total(&directions.way, &element.rounding[1])
 }
 
+/// The range of `g` on a cell, but for rounding.
+fn g(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions) -> Range {
+    let [normals, _] = cells.field(element, cell, 0);
+    let missing = total(&directions.way, &cells.missing(cell).value[1]);
+    widened(products(&[directions.way], &normals), missing)
+}
+
+/// The ranges of its derivatives on a prepared cell, for all directions that differ by so much.
+fn slopes(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
+    [0, 1].map(|axis| {
+        let [normals, _] = cells.field_slope(cell, 0, axis);
+        let missing = total(&directions.way, &cells.missing(cell).slopes[axis][1]);
+        widened(products(&[directions.way], &normals), missing + blur[axis])
+    })
+}
+
+/// The direction in which a small cell at a pole is divided. Across it, what is left at the pole would have to be divided again and again: as `p` and `g` have the distance from the pole as a
+/// factor, the cell becomes no more regular by that.
+fn towards_pole(element: &PatchForms, bounds: [Range; 2]) -> Option<usize> {
+    /// Of the patch's sides: towards the pole, and across.
+    const SMALL: [f64; 2] = [1.0 / 16.0, 0.25];
+    let side = |axis: usize| bounds[axis].1 - bounds[axis].0;
+    pole(&element.poles, bounds).filter(|axis| side(*axis) < SMALL[0] && side(1 - axis) <= SMALL[1])
+}
+
 impl Tree {
     /// Of all of a cell.
     pub fn new(element: &PatchForms, cells: &mut Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
@@ -178,6 +208,7 @@ impl Tree {
             State::Empty => Known::Empty,
             State::Chart(chart) => Known::Chart(&self.charts[chart as usize]),
             State::Parts(first) => Known::Parts([first, first + 1]),
+            State::Rest(rest) => Known::Rest(rest),
             State::Mixed => Known::Mixed,
         }
     }
@@ -190,10 +221,7 @@ impl Tree {
         slack: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
-        let (way, missing) = (&directions.way, *cells.missing(cell));
-        let [normals, _] = cells.field(element, cell, 0);
-        let g = products(&[*way], &normals);
-        let (lo, hi) = widened(g, total(way, &missing.value[1]));
+        let (lo, hi) = g(element, cells, cell, directions);
         let error = error(element, directions);
         let within = error + self.blur.g;
         // Where g is exactly 0, it counts as not negative.
@@ -205,22 +233,22 @@ impl Tree {
             return State::Mixed;
         }
         cells.prepare(element, cell);
-        let Blur { slopes, g_slopes, .. } = &self.blur;
+        let Blur {
+            slopes: place_slopes,
+            g_slopes,
+            ..
+        } = &self.blur;
         let of_place = |k: usize, axis: usize| {
             widened(
                 cells.slope_products(element, cell, axis, &[directions.rows[k]]),
-                slopes[axis],
+                place_slopes[axis],
             )
         };
-        let of_g = [0, 1].map(|axis| {
-            let [normals, _] = cells.field_slope(cell, 0, axis);
-            let range = products(&[*way], &normals);
-            widened(range, total(way, &missing.slopes[axis][1]) + g_slopes[axis])
-        });
+        let of_g = slopes(cells, cell, directions, g_slopes);
         let jacobian = [[of_place(1, 0), of_place(1, 1)], of_g];
         let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
-        let blur = [*slopes, *g_slopes];
+        let blur = [*place_slopes, *g_slopes];
         let ahead = [of_place(0, 0), of_place(0, 1)];
         let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], ahead) {
             Ok(chart) => {
@@ -229,6 +257,21 @@ impl Tree {
             }
             Err(rough) => rough,
         };
+        let rest = at_pole(&element.poles, bounds, (widened((lo, hi), within), of_g), |[u, v]| {
+            let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
+            let (lo, hi) = g(element, cells, part, directions);
+            let found = (lo <= within && hi >= -within).then(|| {
+                cells.prepare(element, part);
+                (widened((lo, hi), within), slopes(cells, part, directions, g_slopes))
+            });
+            cells.release(part as usize);
+            found
+        });
+        if let Some([u, v]) = rest {
+            let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
+            self.put((element, cells), (part, depth + 1), directions, slack);
+            return State::Rest(self.nodes.len() as u32 - 1);
+        }
         let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
         let small = sides.iter().all(|side| *side < SMALLEST);
         if directions.spread > 0.0 && (rough.blurred || small) {
@@ -237,7 +280,7 @@ impl Tree {
         if small || p.1 - p.0 - 2.0 * slack < FLAT * slack {
             return State::Least;
         }
-        let axis = divided(&jacobian, sides, depth, &rough);
+        let axis = towards_pole(element, bounds).unwrap_or_else(|| divided(&jacobian, sides, depth, &rough));
         let parts = cells.split(element, cell, axis);
         let first = self.nodes.len() as u32;
         for part in parts {
