@@ -1,30 +1,51 @@
-//! A map over a part of a motion, as if that were all of it: for methods whose forms are those of the part.
+//! A map over a part of its domain, as if that were all of it: for methods whose forms are those of the part.
 
 use crate::envelope::any_box::AnyBox;
 use crate::time::over::Part;
 use sweepsim_solve::{Affine, ChartMap, Enclosure, Preimage, Sample, Sink, UnresolvedTarget};
 
-/// A map whose last variable is the time, over a part of it: the variable is the share of the part.
-pub(crate) struct InPart<'m, M> {
+/// A map over a part of its domain: its variables are the shares of the part.
+pub(crate) struct InPart<'m, const N: usize, M> {
     map: &'m mut M,
-    part: Part,
+    part: [Part; N],
 }
 
-impl<'m, M> InPart<'m, M> {
-    pub fn new(map: &'m mut M, part: Part) -> Self {
+impl<'m, const N: usize, M> InPart<'m, N, M> {
+    pub fn new(map: &'m mut M, part: [Part; N]) -> Self {
         Self { map, part }
+    }
+
+    /// Derivatives, with what each variable of the map is in parts of another one.
+    fn scaled(&self, jacobian: &[[Enclosure; N]; N], factor: impl Fn(&Part) -> f64) -> [[Enclosure; N]; N] {
+        jacobian.map(|row| {
+            std::array::from_fn(|j| {
+                let factor = factor(&self.part[j]);
+                Enclosure::hull(row[j].lo() * factor, row[j].hi() * factor)
+            })
+        })
     }
 }
 
-impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
+/// The place in the domain of one in a part.
+fn place<const N: usize>(part: &[Part; N], x: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|j| part[j].time(x[j]))
+}
+
+/// The same for boxes.
+fn whole<const N: usize>(part: &[Part; N], bounds: &[Enclosure; N]) -> [Enclosure; N] {
+    std::array::from_fn(|j| Enclosure::hull(part[j].time(bounds[j].lo()), part[j].time(bounds[j].hi())))
+}
+
+impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, N, M> {
     type Cell = M::Cell;
     type Seen = M::Seen;
 
     fn bounds(&self, cell: &M::Cell) -> [Enclosure; N] {
-        let mut bounds = self.map.bounds(cell);
-        let time = bounds[N - 1];
-        bounds[N - 1] = Enclosure::hull(self.part.share(time.lo()), self.part.share(time.hi()));
-        bounds
+        let bounds = self.map.bounds(cell);
+        std::array::from_fn(|j| {
+            let share = |x: f64| self.part[j].share(x);
+            Enclosure::hull(share(bounds[j].lo()), share(bounds[j].hi()))
+        })
     }
 
     fn values(&mut self, cell: &M::Cell) -> Option<[Enclosure; N]> {
@@ -32,12 +53,8 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
     }
 
     fn jacobian(&mut self, cell: &M::Cell) -> [[Enclosure; N]; N] {
-        let mut jacobian = self.map.jacobian(cell);
-        for row in &mut jacobian {
-            let slope = row[N - 1];
-            row[N - 1] = Enclosure::hull(slope.lo() * self.part.length, slope.hi() * self.part.length);
-        }
-        jacobian
+        let jacobian = self.map.jacobian(cell);
+        self.scaled(&jacobian, |part| part.length)
     }
 
     fn split(&mut self, cell: &M::Cell, axis: usize) -> [M::Cell; 2] {
@@ -53,11 +70,7 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
     }
 
     fn part(&mut self, cell: &M::Cell, values: &[Enclosure; N], jacobian: &[[Enclosure; N]; N]) -> Option<M::Cell> {
-        let mut own = *jacobian;
-        for row in &mut own {
-            let slope = row[N - 1];
-            row[N - 1] = Enclosure::hull(slope.lo() / self.part.length, slope.hi() / self.part.length);
-        }
+        let own = self.scaled(jacobian, |part| part.length.recip());
         self.map.part(cell, values, &own)
     }
 
@@ -66,11 +79,11 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
     }
 
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, M::Seen> {
-        let mut at = *x;
-        at[N - 1] = self.part.time(x[N - 1]);
-        let mut sample = self.map.evaluate(&at);
+        let mut sample = self.map.evaluate(&place(&self.part, x));
         for row in &mut sample.jacobian {
-            row[N - 1] *= self.part.length;
+            for (slope, part) in row.iter_mut().zip(&self.part) {
+                *slope *= part.length;
+            }
         }
         sample
     }
@@ -88,16 +101,13 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, M> {
     }
 }
 
-impl<const N: usize, M: AnyBox<N>> AnyBox<N> for InPart<'_, M> {
+impl<const N: usize, M: AnyBox<N>> AnyBox<N> for InPart<'_, N, M> {
     fn root(&mut self) -> M::Cell {
         self.place(&[Enclosure::UNIT; N])
     }
 
     fn place(&mut self, bounds: &[Enclosure; N]) -> M::Cell {
-        let mut own = *bounds;
-        let share = own[N - 1];
-        own[N - 1] = Enclosure::hull(self.part.time(share.lo()), self.part.time(share.hi()));
-        self.map.place(&own)
+        self.map.place(&whole(&self.part, bounds))
     }
 
     fn mark(&self) -> [usize; 2] {
@@ -109,16 +119,16 @@ impl<const N: usize, M: AnyBox<N>> AnyBox<N> for InPart<'_, M> {
     }
 }
 
-/// Passes solutions on, with the times of the whole motion.
-pub(crate) struct OfPart<'s, K> {
+/// Passes solutions on, with their places in the whole domain.
+pub(crate) struct OfPart<'s, const N: usize, K> {
     pub sink: &'s mut K,
-    pub part: Part,
+    pub part: [Part; N],
 }
 
-impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for OfPart<'_, K> {
+impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for OfPart<'_, N, K> {
     fn found(&mut self, mut preimage: Preimage<N, S>) {
         for x in [&mut preimage.x, &mut preimage.from] {
-            x[N - 1] = self.part.time(x[N - 1]);
+            *x = place(&self.part, x);
         }
         self.sink.found(preimage);
     }
@@ -132,8 +142,7 @@ impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for OfPart<'_, K> {
     }
 
     fn unresolved(&mut self, mut target: UnresolvedTarget<N>) {
-        let share = target.bounds[N - 1];
-        target.bounds[N - 1] = Enclosure::hull(self.part.time(share.lo()), self.part.time(share.hi()));
+        target.bounds = whole(&self.part, &target.bounds);
         self.sink.unresolved(target);
     }
 }

@@ -19,8 +19,8 @@ mod in_part;
 mod patch_map;
 mod placed_map;
 mod plane;
+mod poles;
 pub mod systems;
-mod zeros;
 
 pub(crate) use any_box::AnyBox;
 pub(crate) use edge_map::{EdgeMap, OnEdge};
@@ -28,4 +28,4 @@ pub(crate) use enclosures::{Brick, Near, ROOT, ROUNDING, Size};
 pub(crate) use in_part::{InPart, OfPart};
 pub(crate) use patch_map::{OnPatch, PatchMap};
 pub(crate) use placed_map::{OnPlaced, PlacedMap, Side, Twist};
-pub(crate) use zeros::{at_pole, pole};
+pub(crate) use poles::{Apart, at_pole, pole};

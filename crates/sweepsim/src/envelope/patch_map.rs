@@ -11,7 +11,7 @@ use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_error_in, envelope_size, interval, largest, plane_values, product_size,
     turning, widened,
 };
-use crate::envelope::zeros::{at_pole, with_zeros};
+use crate::envelope::poles::{at_pole, with_zeros};
 use crate::time::framed::FramedMotion;
 use crate::time::pieces::Times;
 use nalgebra::Vector3;

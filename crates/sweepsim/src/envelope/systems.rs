@@ -158,15 +158,23 @@ impl PatchMotion {
     /// The forms of a patch moved by a segment.
     #[must_use]
     pub fn new(patch: &Patch, segment: &Segment) -> Self {
-        Self::over(patch, segment, Part::WHOLE)
+        Self::over(patch, segment, [Part::WHOLE; 3])
     }
 
-    /// The same over a part of the motion, as forms of its own.
-    pub(crate) fn over(patch: &Patch, segment: &Segment, part: Part) -> Self {
-        let motion = MotionForms::new(segment, part);
+    /// The same over a part of the patch and of the motion, as forms of its own.
+    pub(crate) fn over(patch: &Patch, segment: &Segment, [u, v, time]: [Part; 3]) -> Self {
+        let motion = MotionForms::new(segment, time);
+        let restricted = |form: Bernstein| {
+            let parts = [u, v].into_iter().enumerate().filter(|(_, part)| !part.is_whole());
+            parts.fold(form, |form, (axis, part)| form.restrict(axis, part.from, part.to()))
+        };
+        let MovingPoint { numerators, weight } = motion.place(patch.position(), patch.weight());
         Self {
-            place: motion.place(patch.position(), patch.weight()),
-            envelope: motion.envelope(patch.field()),
+            place: MovingPoint {
+                numerators: numerators.map(restricted),
+                weight: restricted(weight),
+            },
+            envelope: restricted(motion.envelope(patch.field())),
         }
     }
 

@@ -3,13 +3,33 @@
 use crate::envelope::{EdgeMap, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROOT};
 use crate::methods::method::{CrossingMethod, Query};
 use crate::methods::workspace::Solvers;
-use crate::time::over::Over;
+use crate::time::over::{Over, Part};
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{CancelOnly, ChartMap, Sink};
 
 /// Charts need only the maps.
 pub(crate) struct Charts;
+
+impl Charts {
+    /// Solves Eq. 6 for a part of a patch. Solutions on its upper sides belong to other parts.
+    pub fn on_part(
+        [u, v]: [Part; 2],
+        query: Query,
+        map: &mut PatchMap,
+        solvers: &mut Solvers,
+        sink: &mut impl Sink<3, OnPatch>,
+    ) {
+        let domain = map.bounds(&ROOT);
+        let mark = map.cells.mark();
+        let cell = map.cells.place(map.element, [u.from, v.from], [u.to(), v.to()]);
+        let monitor = &CancelOnly(query.monitor);
+        solvers
+            .moving
+            .solve_part(map, (cell, query.times.1), &domain, query.lines, sink, monitor);
+        map.cells.release(mark);
+    }
+}
 
 impl CrossingMethod<'_> for Charts {
     fn prepare(_: &Tool, _: &[PathPart], _: &Over) -> Self {

@@ -5,7 +5,7 @@
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch};
 use crate::envelope::{
-    AnyBox, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side,
+    AnyBox, Apart, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side,
 };
 use crate::methods::charts::Charts;
 use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
@@ -40,7 +40,8 @@ impl PartBundles {
     fn new(tool: &Tool, parts: &[PathPart], at: usize, part: Part) -> Self {
         let segment = &parts[at].segment;
         let face = |patch: &Patch| {
-            let motion = PatchMotion::over(patch, segment, part);
+            let [u, v] = Apart::new(&patch.shrunk_sides()).rest;
+            let motion = PatchMotion::over(patch, segment, [u, v, part]);
             let ([x, y, _], weight) = motion.position();
             Bundle::new(vec![x.clone(), y.clone()], weight, vec![motion.condition().clone()]).ok()
         };
@@ -81,17 +82,17 @@ impl PartBundles {
     }
 }
 
-/// Solves a bundle, over the part of the motion in which the tool is over the lines.
+/// Solves a bundle whose forms are those over a part of the map's domain.
 fn bundled<const N: usize, M: AnyBox<N>>(
     bundle: &Bundle<N>,
     map: &mut M,
+    part: [Part; N],
     query: Query,
     solvers: &mut Solvers,
     sink: &mut impl Sink<N, M::Seen>,
 ) {
     let monitor = &CancelOnly(query.monitor);
-    let (part, _) = query.times;
-    if part.is_whole() {
+    if part.iter().all(Part::is_whole) {
         solvers.bundles.solve(bundle, map, query.lines, sink, monitor);
     } else {
         let (map, mut sink) = (InPart::new(map, part), OfPart { sink, part });
@@ -129,14 +130,20 @@ impl CrossingMethod<'_> for Lines {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         match &self.bundles[query.part].patches[query.number] {
-            Some(bundle) => bundled(bundle, map, query, solvers, sink),
+            Some(bundle) => {
+                let Apart { rest: [u, v], beside } = Apart::new(&map.element.poles);
+                bundled(bundle, map, [u, v, query.times.0], query, solvers, sink);
+                for part in beside {
+                    Charts::on_part(part, query, map, solvers, sink);
+                }
+            }
             None => Charts.on_patch(query, map, solvers, sink),
         }
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         match &self.bundles[query.part].edges[query.number] {
-            Some(bundle) => bundled(bundle, map, query, solvers, sink),
+            Some(bundle) => bundled(bundle, map, [Part::WHOLE, query.times.0], query, solvers, sink),
             None => Charts.on_edge(query, map, solvers, sink),
         }
     }

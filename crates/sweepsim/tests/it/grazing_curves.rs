@@ -284,21 +284,18 @@ fn poles_that_pass_over_lines() {
         ("along another", another(0.0), another(0.03)),
     ];
     for (name, tips, neighbour) in ways {
-        let [(neighbour, _), (by_curves, _)] =
-            [Method::General, Method::Charts].map(|method| boxes_and_dexels(neighbour, method, TOLERANCE));
-        let [(exact, own), (cheap, curves), (_, planes), (_, lines)] =
-            [Method::General, Method::Charts, Method::Planes, Method::Lines]
-                .map(|method| boxes_and_dexels(tips, method, TOLERANCE));
-        assert_eq!(exact.repaired, 0, "{name}");
-        assert!(exact.boxes < 3 * neighbour.boxes, "{name}: {exact:?} {neighbour:?}");
-        assert!(
-            cheap.boxes < 3 * by_curves.boxes && cheap.repaired == 0,
-            "{name}: {cheap:?} {by_curves:?}"
-        );
-        for other in [curves, planes, lines] {
+        const METHODS: [Method; 4] = [Method::General, Method::Charts, Method::Planes, Method::Lines];
+        let [generic, found] =
+            [neighbour, tips].map(|tips| METHODS.map(|method| boxes_and_dexels(tips, method, TOLERANCE)));
+        let (_, own) = &found[0];
+        for (method, ((beside, _), (exact, other))) in METHODS.iter().zip(generic.iter().zip(&found)) {
+            assert!(
+                exact.boxes < 3 * beside.boxes && exact.repaired == 0,
+                "{name}, {method}: {exact:?} {beside:?}"
+            );
             for line in 0..grid.len() {
-                let [a, b] = [&own, &other].map(|volume| volume.at(line).to_vec());
-                assert!(same(&a, &b, TOLERANCE), "{name}: {line}: {a:?} {b:?}");
+                let [a, b] = [own, other].map(|volume| volume.at(line).to_vec());
+                assert!(same(&a, &b, TOLERANCE), "{name}, {method}: {line}: {a:?} {b:?}");
             }
         }
         for tolerance in [1e-3, 1e-8] {

@@ -244,7 +244,13 @@ fn almost_degenerate_input_costs_at_most_thrice_its_generic_neighbour() {
 #[test]
 fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     let (mut wrong, tool) = (Vec::new(), ("bud", bud()));
-    for method in [Method::General, Method::Charts] {
+    for method in [
+        Method::General,
+        Method::Charts,
+        Method::Surface,
+        Method::Planes,
+        Method::Lines,
+    ] {
         wrong.extend(
             over_poles()
                 .into_iter()

@@ -5,7 +5,8 @@ pub(crate) mod slicer;
 mod spans;
 
 use crate::envelope::systems::{EdgeMotion, PatchMotion, PlacedPatch, Plane};
-use crate::envelope::{AnyBox, Brick, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
+use crate::envelope::{AnyBox, Apart, Brick, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap};
+use crate::methods::charts::Charts;
 use crate::methods::lattice::Lattice;
 use crate::methods::method::{CrossingMethod, Query, WorkShare};
 use crate::methods::planes::slicer::Slicer;
@@ -15,7 +16,7 @@ use crate::time::path_parts::PathPart;
 use nalgebra::{Const, DimMin, Matrix3, ToTypenum, Vector3};
 use rayon::prelude::*;
 use sweepsim_motion::{Segment, SegmentEnd, Tool};
-use sweepsim_solve::{CancelOnly, ChartSolver, Sink, System, SystemError};
+use sweepsim_solve::{ChartSolver, Sink, System, SystemError};
 
 /// The exact forms of each part of a chunk.
 pub(crate) struct Planes {
@@ -41,7 +42,10 @@ impl Forms {
             patches: tool
                 .patches()
                 .iter()
-                .map(|patch| PatchMotion::over(patch, segment, part))
+                .map(|patch| {
+                    let [u, v] = Apart::new(&patch.shrunk_sides()).rest;
+                    PatchMotion::over(patch, segment, [u, v, part])
+                })
                 .collect(),
             edges: tool
                 .edges()
@@ -58,14 +62,15 @@ fn plane(lines: &Lattice) -> Plane {
     Plane::of_lines(lines.coordinate(0, lines.i[0]))
 }
 
-/// Solves a map by the curves in the lines' plane, or by charts if that fails to decide it.
+/// Solves a map by the curves in the lines' plane; `false`, without solutions, if that fails to decide it.
 fn slice<const N: usize, M: AnyBox<N>>(
     map: &mut M,
     system: impl FnOnce() -> Result<System, SystemError>,
     query: Query,
-    (slicer, charts): (&mut Slicer, &mut ChartSolver<M::Cell>),
+    (slicer, charts): (&mut Slicer, &ChartSolver<M::Cell>),
     sink: &mut impl Sink<N, M::Seen>,
-) where
+) -> bool
+where
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
     // Most planes miss most patches.
@@ -73,31 +78,30 @@ fn slice<const N: usize, M: AnyBox<N>>(
     let touches = map
         .values(&root)
         .is_some_and(|values| query.lines.meets([values[0], values[1]]));
-    if touches && !slicer.solve(map, system(), query, charts.options.accept, sink) {
-        charts.solve(map, root, query.lines, sink, &CancelOnly(query.monitor));
-    }
+    !touches || slicer.solve(map, system(), query, charts.options.accept, sink)
 }
 
-/// The same for a map under a motion, over the part of it in which the tool is over the lines.
+/// The same for a map under a motion, over a part of its domain, of which the system is.
 fn slice_moving<const N: usize, M: AnyBox<N, Cell = Brick>>(
     map: &mut M,
     system: impl FnOnce() -> Result<System, SystemError>,
+    part: [Part; N],
     query: Query,
     solvers: &mut Solvers,
     sink: &mut impl Sink<N, M::Seen>,
-) where
+) -> bool
+where
     Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
 {
-    let solvers = (&mut solvers.slicer, &mut solvers.moving);
-    let (part, _) = query.times;
-    if part.is_whole() {
-        slice(map, system, query, solvers, sink);
-    } else {
-        let mark = map.mark();
-        let mut sink = OfPart { sink, part };
-        slice(&mut InPart::new(map, part), system, query, solvers, &mut sink);
-        map.release(mark);
+    let solvers = (&mut solvers.slicer, &solvers.moving);
+    if part.iter().all(Part::is_whole) {
+        return slice(map, system, query, solvers, sink);
     }
+    let mark = map.mark();
+    let mut sink = OfPart { sink, part };
+    let is_decided = slice(&mut InPart::new(map, part), system, query, solvers, &mut sink);
+    map.release(mark);
+    is_decided
 }
 
 impl CrossingMethod<'_> for Planes {
@@ -119,12 +123,21 @@ impl CrossingMethod<'_> for Planes {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         let system = || self.forms[query.part].patches[query.number].section(&plane(query.lines));
-        slice_moving(map, system, query, solvers, sink);
+        let Apart { rest: [u, v], beside } = Apart::new(&map.element.poles);
+        if slice_moving(map, system, [u, v, query.times.0], query, solvers, sink) {
+            for part in beside {
+                Charts::on_part(part, query, map, solvers, sink);
+            }
+        } else {
+            Charts.on_patch(query, map, solvers, sink);
+        }
     }
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         let system = || self.forms[query.part].edges[query.number].section(&plane(query.lines));
-        slice_moving(map, system, query, solvers, sink);
+        if !slice_moving(map, system, [Part::WHOLE, query.times.0], query, solvers, sink) {
+            Charts.on_edge(query, map, solvers, sink);
+        }
     }
 
     fn on_placed(
@@ -137,6 +150,8 @@ impl CrossingMethod<'_> for Planes {
     ) {
         let placed = &self.forms[query.part].placed[usize::from(end == SegmentEnd::Finish)];
         let system = || placed[query.number].section(&plane(query.lines));
-        slice(map, system, query, (&mut solvers.slicer, &mut solvers.placed), sink);
+        if !slice(map, system, query, (&mut solvers.slicer, &solvers.placed), sink) {
+            Charts.on_placed(query, end, map, solvers, sink);
+        }
     }
 }

@@ -1,4 +1,7 @@
-//! Where `g` can vanish, if it is steep along a side of a cell.
+//! Sides of patches that have shrunk to a point: where `g` can vanish beside them, and how they are searched apart from the rest.
+
+use crate::time::over::Part;
+use smallvec::SmallVec;
 
 type Range = (f64, f64);
 
@@ -21,6 +24,43 @@ pub(super) fn with_zeros((start, end): Range, values: Range, slope: Range) -> Ra
     let (lower, upper) = ((end - reach(far)).max(start), (start + reach(near)).min(end));
     // NaN, or no zero, which rounding may hide.
     if lower < upper { (lower, upper) } else { (start, end) }
+}
+
+/// The most parts of a patch beside its poles.
+const SIDES: usize = 4;
+
+/// A patch without what is beside its poles, and the parts of it that are.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Apart {
+    pub rest: [Part; 2],
+    pub beside: SmallVec<[[Part; 2]; SIDES]>,
+}
+
+impl Apart {
+    /// With poles at the lower and the upper side in each variable.
+    pub fn new(poles: &[[bool; 2]; 2]) -> Self {
+        /// Of the patch's side. All numbers are exact.
+        const NEAR: f64 = 1.0 / 16.0;
+        let (mut rest, mut beside) = ([Part::WHOLE; 2], SmallVec::new());
+        for axis in 0..2 {
+            for (upper, _) in [false, true]
+                .into_iter()
+                .zip(poles[axis])
+                .filter(|(_, is_pole)| *is_pole)
+            {
+                let mut part = rest;
+                part[axis].length = NEAR;
+                rest[axis].length -= NEAR;
+                if upper {
+                    part[axis].from = 1.0 - NEAR;
+                } else {
+                    rest[axis].from = NEAR;
+                }
+                beside.push(part);
+            }
+        }
+        Self { rest, beside }
+    }
 }
 
 /// The direction towards the pole, in a cell that has one.
@@ -56,5 +96,24 @@ pub(crate) fn at_pole(
         part = Some(sides);
         let Some(found) = look(sides) else { return part };
         (g, slopes) = found;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Each point of a patch is in exactly one part, but for those between two; points beside poles are in parts beside poles.
+        #[test]
+        fn parts_fill_the_patch(poles in [[any::<bool>(), any::<bool>()], [any::<bool>(), any::<bool>()]], at in [0.0..1.0_f64, 0.0..1.0_f64]) {
+            let Apart { rest, beside } = Apart::new(&poles);
+            let holds = |part: &[Part; 2]| (0..2).all(|axis| part[axis].from <= at[axis] && at[axis] < part[axis].to());
+            let others = beside.iter().filter(|part| holds(part)).count();
+            prop_assert_eq!(usize::from(holds(&rest)) + others, 1);
+            let near = (0..2).any(|axis| (poles[axis][0] && at[axis] < 0.0625) || (poles[axis][1] && at[axis] >= 0.9375));
+            prop_assert_eq!(near, others == 1);
+        }
     }
 }
