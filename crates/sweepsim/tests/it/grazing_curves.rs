@@ -183,6 +183,13 @@ proptest! {
         agree("bud", &bud(), &carried(&tips, turn), &grid, TOLERANCE)?;
     }
 
+    /// Grids on which many lines lie over one chart, so that its curve is divided before its lines are looked at.
+    #[test]
+    fn many_lines_over_a_chart(number in 0..3usize, turn in turn(), tips in prop::collection::vec(tip(), 2..4), narrow in any::<bool>()) {
+        let cells = if narrow { [23, 397] } else { [151, 149] };
+        agree_cheaply(number, &carried(&tips, turn), &grid(cells))?;
+    }
+
     /// Moves far beyond the grid, and the least tolerance.
     #[test]
     fn far_and_fine(number in 0..3usize, turn in turn(), length in 1.0..5.0f64, heading in 0.0..6.3, rise in -0.2..0.2f64, fine in any::<bool>()) {
@@ -222,7 +229,7 @@ fn the_same_bytes_whatever_came_before() {
         &[[-3.0, 0.0, 0.0], [2.0, 1.0, 0.5], [-1.0, -2.0, 0.3], [4.0, -1.0, 0.8]],
         [0.4, 0.1, 0.0],
     );
-    let grid = grid([51, 50]);
+    let grid = grid([151, 150]);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)

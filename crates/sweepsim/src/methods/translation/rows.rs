@@ -99,6 +99,15 @@ pub(super) fn meets(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2]) -> bo
     })
 }
 
+/// Whether at least so many lines that are asked for have `p` and `q` in these ranges, or a little beside.
+pub(super) fn are_many(lines: &Lattice, floor: &Floor, ranges: [[f64; 2]; 2], many: usize) -> bool {
+    let mut count = 0;
+    search(lines, floor, ranges, |Row { i, j, .. }| {
+        count += (j[0]..=j[1]).filter(|j| lines.asks(i, *j)).count();
+        count >= many
+    })
+}
+
 /// Visits rows until `visit` returns true.
 #[inline]
 fn search(lines: &Lattice, floor: &Floor, [p, q]: [[f64; 2]; 2], mut visit: impl FnMut(Row) -> bool) -> bool {

@@ -69,6 +69,11 @@ pub(super) fn solved(a: &Square, b: [f64; 2]) -> Option<[f64; 2]> {
     x.iter().all(|x| x.is_finite()).then_some(x)
 }
 
+/// The larger number; NaN if one of them is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a >= b { a + 0.0 * b } else { b + 0.0 * a }
+}
+
 fn middle((lo, hi): Range) -> f64 {
     0.5 * lo + 0.5 * hi
 }
@@ -249,6 +254,20 @@ impl Chart {
         region
     }
 
+    /// The same of the grazing curve, for all values of `p` in a range: predictions and reaches are convex between its ends.
+    pub fn region_along(&self, witness: &Witness, range: [f64; 2]) -> Region {
+        let [(a, near), (b, far)] = range.map(|p| self.prediction(witness, [p, 0.0]));
+        let mut region = Region::WHOLE;
+        // Not farther from the place than R times the largest distance from the witness.
+        let most = times(&self.rest, witness.at.map(|s| 1.0 + s.abs()));
+        let reach = [0, 1].map(|i: usize| larger(near[i], far[i]).min(most[i] + self.slack[i]));
+        region.intersect(&Region {
+            lo: [0, 1].map(|i: usize| -larger(-a[i], -b[i]) - reach[i]),
+            hi: [0, 1].map(|i: usize| larger(a[i], b[i]) + reach[i]),
+        });
+        region
+    }
+
     /// The range of `q` in a region.
     #[inline]
     pub fn q(&self, witness: &Witness, region: &Region) -> Range {
@@ -280,5 +299,32 @@ impl Chart {
             let (lo, hi) = (self.lower[i], self.upper[i]);
             x[i] >= lo && (x[i] < hi || (x[i] <= hi && hi == 1.0))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The region for a range of `p` holds those for all of its values.
+        #[test]
+        fn regions_along_the_curve_hold_all_others(
+            middles in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, -1.0..1.0], spread in 0.0..0.4_f64, at in [-1.0..1.0, -1.0..1.0],
+            value in [-2.0..2.0, -0.5..0.5], range in [-3.0..3.0, 0.0..3.0], share in 0.0..1.0_f64,
+        ) {
+            let entry = |k: usize| (middles[k] - spread * middles[k].abs(), middles[k] + spread * middles[k].abs());
+            let jacobian = [[entry(0), entry(1)], [entry(2), entry(3)]];
+            let chart = Chart::new([[0.0; 2], [1.0; 2]], &jacobian, &[[0.0; 2]; 2], [1e-12; 2], [(0.0, 1.0); 2]);
+            let Ok(chart) = chart else { return Ok(()) };
+            let witness = Witness { at, value, q: 0.0 };
+            let [low, length] = range;
+            let all = chart.region_along(&witness, [low, low + length]);
+            let one = chart.region(&witness, [low + share * length, 0.0], &Region::WHOLE);
+            for i in 0..2 {
+                prop_assert!(one.is_empty() || (all.lo[i] <= one.lo[i] + 1e-12 && all.hi[i] >= one.hi[i] - 1e-12), "{all:?} {one:?}");
+            }
+        }
     }
 }

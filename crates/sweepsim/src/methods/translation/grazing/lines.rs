@@ -1,25 +1,23 @@
 //! The lines over a chart: one unknown, `p`, for all of them.
 
 use super::super::Collector;
-use super::super::rows::{Floor, Row, rows};
-use super::chart::{Chart, Region, Witness, solved};
+use super::super::rows::{Floor, Row, are_many, rows};
+use super::chart::{Chart, Region, Witness};
 use super::course::Course;
 use super::face::{Face, Sight};
 use super::knot::{Knot, Quintic, Seen};
+use super::span::{Graph, Known, Span, Spans, is_absent};
+use crate::methods::lattice::Lattice;
 use sweepsim_dexel::Source;
 
-/// The most steps of Newton's method, which takes two to four.
-const STEPS: usize = 32;
-/// As in `charts/`: if a point can only be in a part of the chart no larger than this (besides rounding), Newton's result decides whether it is there.
-const ON_FACE: f64 = 1e-11;
-/// This close to a side of the chart, Newton's method is as accurate as if the chart were all of the patch.
-const NEAR_FACE: f64 = 1e-4;
 /// The last step is never longer than this.
 const LONGEST: f64 = 1e-3;
-/// The last step to a point between which and others the curve is interpolated.
-const POLISHED: f64 = 1e-8;
 /// So many lines or fewer are solved one by one.
 const FEW: usize = 8;
+/// Over charts with as many lines the curve is divided into [spans](Span) first. Found by trial.
+const MANY: usize = 100;
+/// Into no more than about so many.
+const SPANS: f64 = 1024.0;
 
 /// A line, in the coordinates of the move.
 #[derive(Clone, Copy, Debug)]
@@ -27,12 +25,6 @@ pub(super) struct Target {
     p: f64,
     q: f64,
     line: u32,
-}
-
-/// What became of a line.
-enum Verdict {
-    Settled,
-    Unsure,
 }
 
 /// The search of lines over charts.
@@ -50,13 +42,14 @@ pub(super) struct Lines<'a, 'b, S> {
 }
 
 /// The lines of one chart.
-struct Over<'a, 'b, 'c, S> {
-    lines: &'c mut Lines<'a, 'b, S>,
-    targets: &'c [Target],
-    chart: &'c Chart,
-    centre: Witness,
+pub(super) struct Over<'a, 'b, 'c, S> {
+    pub lines: &'c mut Lines<'a, 'b, S>,
+    /// Those that are solved one by one, in the order of `p`.
+    targets: Vec<Target>,
+    pub chart: &'c Chart,
+    pub centre: Witness,
     /// The longest last step, inside and near a side.
-    accept: [f64; 2],
+    pub accept: [f64; 2],
 }
 
 impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
@@ -73,65 +66,53 @@ impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
         [[p.0, p.1], [q.0, q.1 + self.course.length]]
     }
 
-    /// Calls `visit` with the lines of a window.
-    fn visit(&mut self, window: [[f64; 2]; 2], mut visit: impl FnMut(&mut Collector, Target)) {
-        let floor = self.floor();
-        let lattice = self.collector.lines;
-        let [[p_low, p_high], [q_low, q_high]] = window;
-        let [ux, uy] = floor.ahead;
-        let collector = &mut *self.collector;
-        rows(lattice, &floor, window, |Row { i, j, x }| {
-            for j in j[0]..=j[1] {
-                let y = lattice.coordinate(1, j) - floor.tip[1];
-                let (p, q) = (ux * y - uy * x, ux * x + uy * y);
-                // NaN is inside.
-                let outside = p < p_low || p > p_high || q < q_low || q > q_high;
-                if !outside && lattice.asks(i, j) {
-                    let line = lattice.line(i, j) as u32;
-                    visit(collector, Target { p, q, line });
-                }
-            }
-        });
-    }
-
     /// Leaves the lines of a window open.
     pub fn leave(&mut self, window: [[f64; 2]; 2]) {
-        self.visit(window, |collector, target| collector.open(target.line as usize));
+        let (lines, floor) = (self.collector.lines, self.floor());
+        visit(lines, &floor, window, |target| {
+            self.collector.open(target.line as usize)
+        });
     }
 
     /// The lines over a chart.
     pub fn chart(&mut self, chart: &Chart, window: [[f64; 2]; 2]) {
         let centre = self.face.at(chart.point([0.0; 2]));
         self.evaluations += 1;
-        let centre = witness([0.0; 2], &centre);
-        let length = self.course.length;
-        let mut targets = std::mem::take(&mut self.targets);
-        targets.clear();
-        self.visit(window, |_, target| {
-            let region = chart.region(&centre, [target.p, 0.0], &Region::WHOLE);
-            if !region.is_empty() && meets(chart.q(&centre, &region), target.q, length) {
-                targets.push(target);
-            }
-        });
-        if !targets.is_empty() {
-            targets.sort_unstable_by(|a, b| a.p.total_cmp(&b.p).then(a.line.cmp(&b.line)));
-            let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
-            // As in `charts/`: `R` bounds how much the derivatives change over the chart.
-            let inside = self.last / (part * part.max(chart.norm())).sqrt();
-            let mut over = Over {
-                targets: &targets,
-                chart,
-                centre,
-                accept: [inside.min(LONGEST).max(self.last), self.last],
-                lines: self,
-            };
-            over.all();
-        }
+        let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
+        // As in `charts/`: `R` bounds how much the derivatives change over the chart.
+        let inside = self.last / (part * part.max(chart.norm())).sqrt();
+        let mut over = Over {
+            targets: std::mem::take(&mut self.targets),
+            chart,
+            centre: witness([0.0; 2], &centre),
+            accept: [inside.min(LONGEST).max(self.last), self.last],
+            lines: self,
+        };
+        over.window(window);
+        let targets = over.targets;
         self.targets = targets;
     }
 }
 
-fn witness(at: [f64; 2], sight: &Sight) -> Witness {
+/// Calls `each` with the lines of a window.
+fn visit(lines: &Lattice, floor: &Floor, window: [[f64; 2]; 2], mut each: impl FnMut(Target)) {
+    let [[p_low, p_high], [q_low, q_high]] = window;
+    let [ux, uy] = floor.ahead;
+    rows(lines, floor, window, |Row { i, j, x }| {
+        for j in j[0]..=j[1] {
+            let y = lines.coordinate(1, j) - floor.tip[1];
+            let (p, q) = (ux * y - uy * x, ux * x + uy * y);
+            // NaN is inside.
+            let outside = p < p_low || p > p_high || q < q_low || q > q_high;
+            if !outside && lines.asks(i, j) {
+                let line = lines.line(i, j) as u32;
+                each(Target { p, q, line });
+            }
+        }
+    });
+}
+
+pub(super) fn witness(at: [f64; 2], sight: &Sight) -> Witness {
     Witness {
         at,
         value: [sight.place[1], sight.g[0]],
@@ -140,14 +121,118 @@ fn witness(at: [f64; 2], sight: &Sight) -> Witness {
 }
 
 /// Whether a line may be met by points with these `q`.
-fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
+pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
     // NaN may.
     !(q - lo < 0.0 || q - hi > length)
 }
 
 impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
+    /// The lines of a window.
+    fn window(&mut self, mut window: [[f64; 2]; 2]) {
+        let (lines, floor) = (self.lines.collector.lines, self.lines.floor());
+        self.targets.clear();
+        let mut spans = None;
+        if are_many(lines, &floor, window, MANY) {
+            let found = Spans::new(self.spans(window));
+            let Some(reach) = found.reach() else { return };
+            window[0] = reach;
+            spans = Some(found);
+        }
+        visit(lines, &floor, window, |target| {
+            let span = spans.as_mut().and_then(|spans| spans.find(target.p));
+            if span.is_some_and(|span| self.over(span, target)) {
+                return;
+            }
+            let region = self.chart.region(&self.centre, [target.p, 0.0], &Region::WHOLE);
+            if !region.is_empty() && meets(self.chart.q(&self.centre, &region), target.q, self.lines.course.length) {
+                self.targets.push(target);
+            }
+        });
+        self.targets
+            .sort_unstable_by(|a, b| a.p.total_cmp(&b.p).then(a.line.cmp(&b.line)));
+        self.all();
+    }
+
+    /// The curve over a window of many lines.
+    fn spans(&mut self, [p, [q_low, q_high]]: [[f64; 2]; 2]) -> Vec<Span> {
+        let lines = self.lines.collector.lines;
+        let density = lines.scale(0).1 * lines.scale(1).1 * (q_high - q_low);
+        let least = f64::max(FEW as f64 / density, (p[1] - p[0]) / SPANS);
+        let mut spans = Vec::new();
+        self.divide(p, [&Seen::default(); 2], None, least, &mut spans);
+        spans
+    }
+
+    /// Divides a range of `p` until the curve is smooth there, or not in the chart, or the part is `least`. `larger`: the polynomial over a part twice as large.
+    fn divide(
+        &mut self,
+        [low, high]: [f64; 2],
+        ends: [&Seen; 2],
+        larger: Option<&Quintic>,
+        least: f64,
+        spans: &mut Vec<Span>,
+    ) {
+        let range = [low, high];
+        if is_absent(self.chart, &self.centre, ends, range) {
+            return spans.push(Span {
+                range,
+                known: Known::Absent,
+            });
+        }
+        // Not a number is the least, too.
+        if !(high - low > least) {
+            let witnesses = ends.map(|end| end.witness);
+            return spans.push(Span {
+                range,
+                known: Known::Witnesses(witnesses),
+            });
+        }
+        let middle = 0.5 * (low + high);
+        let found = self.seen(middle, None, ends, true);
+        let mut through = None;
+        if let [Some(a), Some(knot), Some(b)] = [ends[0].knot, found.knot, ends[1].knot] {
+            through = Quintic::through(&a, &knot, &b);
+            if let Some(own) = through.take_if(|_| larger.is_some_and(|larger| self.is_smooth(larger, &knot))) {
+                let known = Known::Graph(Box::new(Graph::new(self.chart, [a, knot, b], own)));
+                return spans.push(Span { range, known });
+            }
+        }
+        self.divide([low, middle], [ends[0], &found], through.as_ref(), least, spans);
+        self.divide([middle, high], [&found, ends[1]], through.as_ref(), least, spans);
+    }
+
+    /// Settles a line over a span, if all decisions are certain.
+    fn over(&mut self, span: &Span, target: Target) -> bool {
+        let Target { p, q, line } = target;
+        let graph = match &span.known {
+            Known::Absent => return true,
+            Known::Witnesses(witnesses) => {
+                let mut within = Region::WHOLE;
+                for witness in witnesses.iter().flatten() {
+                    within = self.chart.region(witness, [p, 0.0], &within);
+                }
+                return within.is_empty();
+            }
+            Known::Graph(graph) => graph,
+        };
+        let (knot, range) = graph.near(p);
+        if let Some((lo, hi)) = range {
+            let (length, margin) = (self.lines.course.length, 4.0 * self.lines.course.slack);
+            if q - lo < -margin || q - hi > length + margin {
+                return true;
+            }
+            if q - hi > margin && q - lo < length - margin {
+                self.follow(&graph.curve, (p, q, line), knot.normal);
+                return true;
+            }
+        }
+        self.interpolated(target, knot, &graph.curve)
+    }
+
     fn all(&mut self) {
-        let last = self.targets.len() - 1;
+        let Some(last) = self.targets.len().checked_sub(1) else {
+            return;
+        };
         let polished = last > FEW;
         let first = self.one(0, [&Seen::default(); 2], polished);
         if last > 0 {
@@ -176,7 +261,12 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
             {
                 for ([low, high], ends) in parts {
                     for n in low..high {
-                        if !self.interpolated(n, ends, own) {
+                        let target = self.targets[n];
+                        let nearest = match ends.map(|end| end.knot.as_ref()) {
+                            [Some(a), Some(b)] if target.p - a.p < b.p - target.p => Some(a),
+                            [a, b] => b.or(a),
+                        };
+                        if !nearest.is_some_and(|knot| self.interpolated(target, knot, own)) {
                             self.one(n, ends, false);
                         }
                     }
@@ -200,13 +290,8 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         off <= LESS * self.lines.near
     }
 
-    /// Settles a line between two knots without an evaluation, if all decisions are certain.
-    fn interpolated(&mut self, n: usize, ends: [&Seen; 2], curve: &Quintic) -> bool {
-        let Target { p, q, line } = self.targets[n];
-        let [Some(a), Some(b)] = ends.map(|end| end.knot.as_ref()) else {
-            return false;
-        };
-        let nearest = if p - a.p < b.p - p { a } else { b };
+    /// Settles a line near a knot without an evaluation, if all decisions are certain.
+    fn interpolated(&mut self, Target { p, q, line }: Target, nearest: &Knot, curve: &Quintic) -> bool {
         let region = self.chart.region(&nearest.witness, [p, 0.0], &Region::WHOLE);
         if region.is_empty() {
             return true;
@@ -220,17 +305,23 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         if !(met && region.is_inside()) {
             return false;
         }
+        self.follow(curve, (p, q, line), nearest.normal);
+        true
+    }
+
+    /// Puts a crossing of a line that is met by a polynomial; `outside`: a normal nearby.
+    fn follow(&mut self, curve: &Quintic, (p, q, line): (f64, f64, u32), outside: [f64; 3]) {
+        let course = self.lines.course;
         let [[own, dq], [z, dz]] = curve.at(p);
         let [length, rise] = [course.length, course.way[2]];
         // Across the curve and the way.
         let normal = [-rise, rise * dq - length * dz, length];
-        let outwards = (0..3).map(|k| normal[k] * nearest.normal[k]).sum::<f64>() >= 0.0;
-        let normal = if outwards { normal } else { normal.map(|x| -x) };
+        let is_outwards = (0..3).map(|k| normal[k] * outside[k]).sum::<f64>() >= 0.0;
+        let normal = if is_outwards { normal } else { normal.map(|x| -x) };
         self.put(line, q - own, z, normal);
-        true
     }
 
-    fn put(&mut self, line: u32, ahead: f64, z: f64, [q, p, up]: [f64; 3]) {
+    pub fn put(&mut self, line: u32, ahead: f64, z: f64, [q, p, up]: [f64; 3]) {
         let course = self.lines.course;
         let share = (ahead / course.length).clamp(0.0, 1.0);
         let z = course.from[2] + share * course.way[2] + z;
@@ -246,150 +337,18 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
 
     /// One line, between two others.
     fn one(&mut self, n: usize, ends: [&Seen; 2], polished: bool) -> Seen {
+        let Target { p, q, line } = self.targets[n];
+        self.seen(p, Some((q, line)), ends, polished)
+    }
+
+    /// The curve at `p` between two other places, and the line that is there.
+    fn seen(&mut self, p: f64, line: Option<(f64, u32)>, ends: [&Seen; 2], polished: bool) -> Seen {
         let mut latest = None;
-        let knot = self.solve(n, ends, polished, &mut latest);
-        let p = self.targets[n].p;
+        let knot = self.solve((p, line), ends, polished, &mut latest);
         let witness = match &knot {
             Some(knot) => Some(knot.witness),
             None => latest.or_else(|| Seen::nearest(ends, p)),
         };
         Seen { witness, knot }
-    }
-
-    /// One line; the point of the curve, if it has one in the chart. `latest`: where that was evaluated last.
-    fn solve(&mut self, n: usize, ends: [&Seen; 2], polished: bool, latest: &mut Option<Witness>) -> Option<Knot> {
-        let chart = self.chart;
-        let Target { p, q, line } = self.targets[n];
-        let length = self.lines.course.length;
-        let mut within = chart.region(&self.centre, [p, 0.0], &Region::WHOLE);
-        // Where the curve has left the chart, the points that were looked at there tell.
-        for witness in ends.into_iter().filter_map(|end| end.witness.as_ref()) {
-            within = chart.region(witness, [p, 0.0], &within);
-        }
-        if within.is_empty() {
-            return None;
-        }
-        let knots = ends.map(|end| end.knot.as_ref());
-        let nearest = match knots {
-            [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
-            [a, b] => a.or(b),
-        };
-        let slack = 4.0 * self.lines.course.slack;
-        if let Some(knot) = nearest {
-            let (lo, hi) = chart.q(&knot.witness, &within);
-            // A knot is of use to other lines.
-            if !polished && !meets((lo - slack, hi + slack), q, length) {
-                return None;
-            }
-            // So near that it needs no other point.
-            let next = knot.along(p);
-            let from = [next[0] - knot.witness.at[0], next[1] - knot.witness.at[1]];
-            if self.is_close(from, next) && chart.owns(next) && within.is_inside() {
-                let verdict = self.decide((q, line), &knot.witness, next, knot.place_at(p), knot.normal, p);
-                if let Verdict::Settled = verdict {
-                    return Some(*knot);
-                }
-            }
-        }
-        let mut s = match (knots, nearest) {
-            ([Some(a), Some(b)], _) if a.p < b.p => Knot::position(a, b, p),
-            (_, Some(knot)) => knot.along(p),
-            _ => chart.prediction(&self.centre, [p, 0.0]).0,
-        };
-        for _ in 0..STEPS {
-            s = within.clamp(s);
-            let sight = self.lines.face.at(chart.point(s));
-            self.lines.evaluations += 1;
-            let here = witness(s, &sight);
-            *latest = Some(here);
-            let scaled = |row: [f64; 2]| [row[0] * chart.half[0], row[1] * chart.half[1]];
-            let [in_u, in_v] = sight.slopes;
-            let jacobian = [scaled([in_u[1], in_v[1]]), scaled([sight.g[1], sight.g[2]])];
-            let step = solved(&jacobian, [p - here.value[0], -here.value[1]]);
-            if let Some(step) = step {
-                let next = [s[0] + step[0], s[1] + step[1]];
-                let long = step[0].abs().max(step[1].abs());
-                if self.is_close(step, next) && chart.owns(next) && (!polished || long <= POLISHED) {
-                    let along = |k: usize, d: [f64; 2]| in_u[k] * chart.half[0] * d[0] + in_v[k] * chart.half[1] * d[1];
-                    let place = [0, 2].map(|k| sight.place[k] + along(k, step));
-                    if let Verdict::Settled = self.decide((q, line), &here, next, place, sight.normal, p) {
-                        let rate = solved(&jacobian, [1.0, 0.0])?;
-                        return Some(Knot {
-                            witness: here,
-                            p,
-                            at: next,
-                            rate,
-                            place,
-                            slope: [along(0, rate), along(2, rate)],
-                            normal: sight.normal,
-                        });
-                    }
-                    if long <= ON_FACE {
-                        self.lines.collector.open(line as usize);
-                        return None;
-                    }
-                }
-            }
-            within = chart.region(&here, [p, 0.0], &within);
-            if within.is_empty() {
-                return None;
-            }
-            let own = chart.slack();
-            if within.is_within(own.map(|own| ON_FACE + 4.0 * own)) {
-                // As close as rounding allows.
-                if let Some(step) = step {
-                    let next = [s[0] + step[0], s[1] + step[1]];
-                    let rests = (0..2).all(|i| step[i].abs() <= self.accept[1].max(2.0 * own[i]));
-                    if chart.owns(next) {
-                        let place = [0, 2].map(|k| sight.place[k]);
-                        if let Verdict::Settled = self.decide((q, line), &here, next, place, sight.normal, p) {
-                            return None;
-                        }
-                    } else if rests {
-                        return None;
-                    }
-                }
-                self.lines.collector.open(line as usize);
-                return None;
-            }
-            s = step.map_or_else(
-                || chart.prediction(&here, [p, 0.0]).0,
-                |step| [s[0] + step[0], s[1] + step[1]],
-            );
-        }
-        self.lines.collector.open(line as usize);
-        None
-    }
-
-    /// Whether a step is a last one.
-    fn is_close(&self, step: [f64; 2], next: [f64; 2]) -> bool {
-        let near_face = next[0].abs().max(next[1].abs()) > 1.0 - NEAR_FACE;
-        step[0].abs().max(step[1].abs()) <= self.accept[usize::from(near_face)]
-    }
-
-    /// Puts a crossing if the line is met at the place `(q, z)` of the curve, reached from a witness. Unsure if the witness is too far away to tell.
-    fn decide(
-        &mut self,
-        (q, line): (f64, u32),
-        witness: &Witness,
-        next: [f64; 2],
-        place: [f64; 2],
-        normal: [f64; 3],
-        p: f64,
-    ) -> Verdict {
-        let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
-        let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
-        let error = self.chart.change(off) + 4.0 * self.lines.course.slack;
-        let ahead = q - place[0];
-        let length = self.lines.course.length;
-        if ahead < -error || ahead > length + error {
-            return Verdict::Settled;
-        }
-        // NaN is unsure.
-        if !(ahead > error && ahead < length - error) {
-            return Verdict::Unsure;
-        }
-        self.put(line, ahead, place[1], normal);
-        Verdict::Settled
     }
 }

@@ -9,6 +9,8 @@ mod course;
 mod face;
 mod knot;
 mod lines;
+mod newton;
+mod span;
 mod tree;
 
 use super::rows::meets;
