@@ -360,11 +360,10 @@ mod tests {
             let at = |angle: f64| [centre + tube * angle.cos(), 0.5 + tube * angle.sin()];
             let ends = [at(from), at(from + angle)];
             let normal = [ends[1][1] - ends[0][1], ends[0][0] - ends[1][0]];
-            let length = normal[0].hypot(normal[1]);
             let shape = if round {
                 outline::Shape::Arc { centre: [centre, 0.5], radius: tube, angles: [from, from + angle], out: 1.0 }
             } else {
-                outline::Shape::Line { normal: normal.map(|c| c / length) }
+                outline::Shape::Line { normal: normal.map(|c| c / normal[0].hypot(normal[1])) }
             };
             let piece = Piece { from: ends[0], to: ends[1], shape, patches: 0..0 };
             let turns = [PI, 3.0 * PI].iter().any(|left| (from..from + angle).contains(left));
