@@ -104,6 +104,18 @@ pub trait ChartMap<const N: usize> {
     /// Drops the last of these cells, and the parts that it was split into.
     fn drop_narrowed(&mut self, _cell: Self::Cell) {}
 
+    /// A search begins.
+    fn begin(&mut self) {}
+
+    /// Whether so many cells have been made since the search [began](Self::begin) that [`keep`](Self::keep) is to be called.
+    fn is_full(&self) -> bool {
+        false
+    }
+
+    /// Drops the cells made since the search began, except for these, which are all that it still needs. They may be replaced by others over the same boxes, with the same
+    /// order of creation.
+    fn keep(&mut self, _cells: &mut [Self::Cell]) {}
+
     /// Encloses the product of `matrix` and `∂Φ` over the box, if that can be done more closely than by multiplying enclosures, because values depend on each
     /// other. Asked for boxes that hold few targets and where `∂Φ` is nearly singular. Rounding may be left out.
     fn combined_jacobian(&mut self, _cell: &Self::Cell, _matrix: &[[f64; N]; N]) -> Option<[[Enclosure; N]; N]> {

@@ -100,7 +100,18 @@ impl<C: Clone> ChartSolver<C> {
         let mut budget = self.options.boxes;
         self.stack.clear();
         self.stack.push((part, 0, Next::Examine(0)));
-        while let Some((cell, depth, next)) = self.stack.pop() {
+        map.begin();
+        loop {
+            if map.is_full() {
+                let mut waiting: Vec<C> = self.stack.iter().map(|(cell, ..)| cell.clone()).collect();
+                map.keep(&mut waiting);
+                for ((cell, ..), kept) in self.stack.iter_mut().zip(waiting) {
+                    *cell = kept;
+                }
+            }
+            let Some((cell, depth, next)) = self.stack.pop() else {
+                break;
+            };
             let (planned, stuck) = match next {
                 Next::Examine(stuck) => (None, stuck),
                 Next::Split(axis, stuck) => (Some(axis), stuck),

@@ -1,7 +1,8 @@
-//! The engine's arithmetic: bivariate Bernstein forms, four-component vectors, and ranges of forms over boxes.
+//! The engine's arithmetic: bivariate Bernstein forms, four-component vectors, and ranges of forms over boxes; lists of such boxes.
 
 pub(crate) mod bivariate;
 pub(crate) mod jets;
+pub(crate) mod nodes;
 pub(crate) mod quad;
 pub(crate) mod ranges;
 pub(crate) mod table;

@@ -1,5 +1,6 @@
 //! The cells that a patch or an edge is cut into, on demand.
 
+use crate::algebra::nodes::{Divided, Recent, drop_from};
 use crate::algebra::ranges::{Triples, all_or_none, products};
 use crate::cutter::patch_forms::{PatchForms, Slot};
 use crate::cutter::reduced::Missing;
@@ -27,6 +28,12 @@ struct CellNode {
     missing: Missing,
 }
 
+impl Divided for CellNode {
+    fn forget_parts(&mut self, from: u32) {
+        self.parts = self.parts.map(|part| if part < from { part } else { NONE });
+    }
+}
+
 /// The lists of a cell.
 #[derive(Clone, Debug, Default)]
 struct Buffers {
@@ -38,6 +45,7 @@ struct Buffers {
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
     nodes: Vec<CellNode>,
+    recent: Recent,
     /// The memory of released cells.
     spare: Vec<Buffers>,
     /// Per field and axis, the position and length of the derivatives of N and M in `points`.
@@ -47,7 +55,7 @@ pub(crate) struct Cells {
 
 /// The memory of so many released cells is kept: most of them are parts of others, which take none of it.
 const SPARE: usize = 16;
-/// Cells beyond this number are not kept for the next segment.
+/// Cells beyond this number are not kept for the next search.
 const KEPT: usize = 4096;
 
 impl Cells {
@@ -75,6 +83,7 @@ impl Cells {
             .collect();
         let mut cells = Self {
             nodes: Vec::new(),
+            recent: Recent::default(),
             spare: Vec::new(),
             derivatives,
             points,
@@ -90,12 +99,26 @@ impl Cells {
 
     /// Drops cells if there are many, and returns whether it does.
     pub fn trim(&mut self) -> bool {
-        let many = self.nodes.len() > KEPT;
-        if many {
-            self.nodes.truncate(1);
-            self.nodes[0].parts = [NONE; 2];
+        let is_long = self.nodes.len() > KEPT;
+        if is_long {
+            drop_from(&mut self.nodes, 1);
         }
-        many
+        is_long
+    }
+
+    /// A search begins.
+    pub fn begin(&mut self) {
+        self.recent = Recent::begin(self.nodes.len());
+    }
+
+    /// Whether the search has made too many cells.
+    pub fn is_full(&self) -> bool {
+        self.recent.is_full(self.nodes.len())
+    }
+
+    /// Drops the cells that the search has made, except for those that it still needs: see [`Recent::keep`].
+    pub fn keep<'a>(&mut self, needed: impl Iterator<Item = &'a mut u32>) {
+        self.recent.keep(&mut self.nodes, needed);
     }
 
     /// A separate cell over any box, kept until it is [released](Self::release).
@@ -126,7 +149,7 @@ impl Cells {
 
     /// Drops the cells created since the mark: placed ones, and their parts.
     pub fn release(&mut self, mark: usize) {
-        let released = self.nodes.drain(mark..);
+        let released = self.nodes.drain(mark.min(self.nodes.len())..);
         let room = SPARE.saturating_sub(self.spare.len());
         self.spare.extend(released.take(room).map(|node| Buffers {
             c: node.c,

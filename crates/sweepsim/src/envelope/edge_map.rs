@@ -92,6 +92,20 @@ impl ChartMap<2> for EdgeMap<'_> {
         self.release([cell as usize, piece as usize]);
     }
 
+    fn begin(&mut self) {
+        self.cells.begin();
+        self.times.begin();
+    }
+
+    fn is_full(&self) -> bool {
+        self.cells.is_full() || self.times.is_full()
+    }
+
+    fn keep(&mut self, bricks: &mut [Brick]) {
+        self.cells.keep(bricks.iter_mut().map(|brick| &mut brick.0));
+        self.times.keep(bricks.iter_mut().map(|brick| &mut brick.1));
+    }
+
     fn evaluate(&self, x: &[f64; 2]) -> Sample<2, OnEdge> {
         let instant = self.motion.at(self.times, x[1]);
         let [position, slope] = position(&self.element.places.along::<4>(x[0]));

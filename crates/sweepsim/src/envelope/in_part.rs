@@ -78,6 +78,18 @@ impl<const N: usize, M: AnyBox<N>> ChartMap<N> for InPart<'_, N, M> {
         self.map.drop_part(part);
     }
 
+    fn begin(&mut self) {
+        self.map.begin();
+    }
+
+    fn is_full(&self) -> bool {
+        self.map.is_full()
+    }
+
+    fn keep(&mut self, cells: &mut [M::Cell]) {
+        self.map.keep(cells);
+    }
+
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, M::Seen> {
         let mut sample = self.map.evaluate(&place(&self.part, x));
         for row in &mut sample.jacobian {

@@ -29,3 +29,6 @@ pub(crate) use in_part::{InPart, OfPart};
 pub(crate) use patch_map::{OnPatch, PatchMap};
 pub(crate) use placed_map::{OnPlaced, PlacedMap, Side, Twist};
 pub(crate) use poles::{Apart, at_pole, pole};
+
+#[cfg(test)]
+mod tests;

@@ -157,6 +157,20 @@ impl ChartMap<3> for PatchMap<'_> {
         self.release([cell as usize, piece as usize]);
     }
 
+    fn begin(&mut self) {
+        self.cells.begin();
+        self.times.begin();
+    }
+
+    fn is_full(&self) -> bool {
+        self.cells.is_full() || self.times.is_full()
+    }
+
+    fn keep(&mut self, bricks: &mut [Brick]) {
+        self.cells.keep(bricks.iter_mut().map(|brick| &mut brick.0));
+        self.times.keep(bricks.iter_mut().map(|brick| &mut brick.1));
+    }
+
     fn value(&self, x: &[f64; 3]) -> Option<[f64; 3]> {
         if self.element.revolution.is_some() {
             return None;

@@ -208,6 +208,18 @@ impl ChartMap<2> for PlacedMap<'_> {
         self.release([cell as usize, 0]);
     }
 
+    fn begin(&mut self) {
+        self.cells.begin();
+    }
+
+    fn is_full(&self) -> bool {
+        self.cells.is_full()
+    }
+
+    fn keep(&mut self, cells: &mut [u32]) {
+        self.cells.keep(cells.iter_mut());
+    }
+
     fn value(&self, x: &[f64; 2]) -> Option<[f64; 2]> {
         if self.element.revolution.is_some() {
             return None;

@@ -162,6 +162,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             let query = self.query((at, (Part::WHOLE, ROOT.1)), number);
             self.method
                 .on_placed(query, end, &mut map, &mut space.solvers, &mut sink);
+            if cells.trim() {
+                space.grazing.forget(number);
+            }
         }
     }
 }

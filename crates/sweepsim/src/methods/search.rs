@@ -83,14 +83,6 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             harvest.keep_below(mark, ceiling.z, self.near);
         }
         harvest.count(&space.solvers.take_statistics());
-        for cells in &mut space.edges {
-            cells.trim();
-        }
-        for cells in &mut space.patches {
-            if cells.trim() {
-                space.grazing.clear();
-            }
-        }
     }
 
     /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
@@ -187,6 +179,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         };
         let mark = times.mark();
         let piece = times.place(leftover.times[0], leftover.times[1]);
+        let own = times.mark();
         let monitor = &CancelOnly(self.monitor);
         match &leftover.element {
             Element::Patches(patches) => {
@@ -198,6 +191,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                         .solvers
                         .moving
                         .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
+                    drop(sink);
+                    times.trim(own);
+                    space.trim_patch(number);
                 }
             }
             Element::Edges(edges) => {
@@ -209,6 +205,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                         .solvers
                         .moving
                         .solve_part(&mut map, part, &domain, &lines, &mut sink, monitor);
+                    drop(sink);
+                    times.trim(own);
+                    space.edges[number].trim();
                 }
             }
         }
@@ -255,6 +254,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
+        let mark = times.mark();
         for number in 0..self.cutter.patches.len() {
             if space.done.patches[number] {
                 continue;
@@ -262,6 +262,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             let (mut map, mut sink) = self.patch((at, number), times, &mut space.patches, harvest);
             let query = self.query((at, within), number);
             self.method.on_patch(query, &mut map, &mut space.solvers, &mut sink);
+            drop(sink);
+            times.trim(mark);
+            space.trim_patch(number);
         }
     }
 
@@ -300,6 +303,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         space: &mut Workspace,
         harvest: &mut Harvest,
     ) {
+        let mark = times.mark();
         for number in 0..self.cutter.edges.len() {
             if space.done.edges[number] {
                 continue;
@@ -307,6 +311,9 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             let (mut map, mut sink) = self.edge((at, number), times, &mut space.edges, harvest);
             let query = self.query((at, within), number);
             self.method.on_edge(query, &mut map, &mut space.solvers, &mut sink);
+            drop(sink);
+            times.trim(mark);
+            space.edges[number].trim();
         }
     }
 

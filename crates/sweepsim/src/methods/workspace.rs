@@ -70,12 +70,21 @@ impl Workspace {
     }
 }
 
-/// The most boxes of one system: more than any that is not degenerate needs, on as many lines. They bound the memory, too.
+/// The most boxes of one system: more than any that is not degenerate needs, on as many lines.
 const MOST_BOXES: u64 = 400_000;
 /// For one line, and for each further one.
 const CHART_BOXES: [u64; 2] = [100_000, 100];
 /// The same for the systems of [lines](crate::methods::lines), which charts repair.
 const BUNDLE_BOXES: [u64; 2] = [10_000, 100];
+
+impl Workspace {
+    /// Drops the cells of a patch if there are many, and what refers to them.
+    pub fn trim_patch(&mut self, number: usize) {
+        if self.patches[number].trim() {
+            self.grazing.forget(number);
+        }
+    }
+}
 
 impl Solvers {
     /// Limits the searches for some lines.

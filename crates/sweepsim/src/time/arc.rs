@@ -1,5 +1,6 @@
 //! The motion of an arc (straight tip, turn about one axis) cut into pieces of `t`: the simplest motion, in its lowest degrees.
 
+use crate::algebra::nodes::{Divided, Recent};
 use crate::time::moment::Moment;
 use crate::time::pieces::{Sizes, back_size};
 use nalgebra::{Matrix3, Vector3};
@@ -10,7 +11,7 @@ type Rows = [[f64; 3]; 3];
 
 /// A piece of the motion: rows of `A(t)` over its weight, per Bernstein coefficient in `t`.
 #[derive(Clone, Debug)]
-struct TimePiece {
+pub(super) struct TimePiece {
     lower: f64,
     upper: f64,
     parts: u32,
@@ -27,10 +28,19 @@ struct TimePiece {
     pace: (f64, f64),
 }
 
+impl Divided for TimePiece {
+    fn forget_parts(&mut self, from: u32) {
+        if self.parts >= from {
+            self.parts = u32::MAX;
+        }
+    }
+}
+
 /// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct ArcTimes {
-    nodes: Vec<TimePiece>,
+    pub(super) nodes: Vec<TimePiece>,
+    pub(super) recent: Recent,
     /// Coefficients in `t`: 1 or 3.
     pub count: usize,
     /// `κ A₀ᵀ k`.
@@ -52,6 +62,7 @@ impl ArcTimes {
         weights[..count].copy_from_slice(segment.weights());
         let mut times = Self {
             nodes: Vec::with_capacity(64),
+            recent: Recent::default(),
             count,
             spin: [(segment.start().transpose() * Vector3::from(segment.spin())).into()],
             tips: segment.tips().map(Vector3::from),
@@ -82,14 +93,6 @@ impl ArcTimes {
         let node = self.node(lower, upper, turns, weights);
         self.nodes.push(node);
         self.nodes.len() as u32 - 1
-    }
-
-    pub fn mark(&self) -> usize {
-        self.nodes.len()
-    }
-
-    pub fn release(&mut self, mark: usize) {
-        self.nodes.truncate(mark);
     }
 
     fn node(&self, lower: f64, upper: f64, turns: [Matrix3<f64>; 3], weights: [f64; 3]) -> TimePiece {

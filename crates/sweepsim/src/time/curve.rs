@@ -5,6 +5,7 @@
 //! bound a rational form, because it is a convex combination of them.
 
 use crate::algebra::bivariate::MOST;
+use crate::algebra::nodes::{Divided, Recent};
 use crate::algebra::ranges::{all_or_none, range_of};
 use crate::time::moment::{Moment, Rows};
 use crate::time::pieces::{PRODUCT, Sizes};
@@ -70,7 +71,7 @@ const SPIN: usize = 4;
 const TRAVEL: usize = 5;
 
 #[derive(Clone, Debug)]
-struct TimePiece {
+pub(super) struct TimePiece {
     lower: f64,
     upper: f64,
     parts: u32,
@@ -85,10 +86,19 @@ struct TimePiece {
     twist_slope: [Vec<[f64; 3]>; 2],
 }
 
+impl Divided for TimePiece {
+    fn forget_parts(&mut self, from: u32) {
+        if self.parts >= from {
+            self.parts = u32::MAX;
+        }
+    }
+}
+
 /// The pieces of one segment, created on demand.
 #[derive(Clone, Debug)]
 pub(crate) struct CurveTimes {
-    nodes: Vec<TimePiece>,
+    pub(super) nodes: Vec<TimePiece>,
+    pub(super) recent: Recent,
     pub sizes: Sizes,
     /// Whether orientation and tip have the same weights: then `X` is a convex combination of sums of control values.
     joint: bool,
@@ -164,6 +174,7 @@ impl CurveTimes {
         let mut times = Self {
             joint,
             nodes: Vec::with_capacity(32),
+            recent: Recent::default(),
             sizes: [size(&spins), size(&travels)],
         };
         times.nodes.push(node(0.0, 1.0, channels, joint));
@@ -186,14 +197,6 @@ impl CurveTimes {
         });
         self.nodes.push(node(lower, upper, channels, self.joint));
         self.nodes.len() as u32 - 1
-    }
-
-    pub fn mark(&self) -> usize {
-        self.nodes.len()
-    }
-
-    pub fn release(&mut self, mark: usize) {
-        self.nodes.truncate(mark);
     }
 
     pub fn bounds(&self, piece: u32) -> (f64, f64) {

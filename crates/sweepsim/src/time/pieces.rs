@@ -1,10 +1,14 @@
 //! A segment's motion cut into pieces of `t`, in the form the envelope systems need.
 
+use crate::algebra::nodes::{Recent, drop_from};
 use crate::time::arc::ArcTimes;
 use crate::time::curve::CurveTimes;
 use crate::time::moment::{Moment, Rows};
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
+
+/// Pieces beyond this number are not kept for the next search.
+const KEPT: usize = 4096;
 
 /// Bounds of the components of two vectors: of an angular and a linear velocity, or of a moment and a normal.
 pub(crate) type Sizes = [[f64; 3]; 2];
@@ -54,16 +58,51 @@ impl Times {
     /// The number of pieces, as a mark for releasing later ones.
     pub fn mark(&self) -> usize {
         match self {
-            Self::Arc(times) => times.mark(),
-            Self::Curve(times) => times.mark(),
+            Self::Arc(times) => times.nodes.len(),
+            Self::Curve(times) => times.nodes.len(),
         }
     }
 
     /// Drops the pieces created since the mark: placed ones, and their parts.
     pub fn release(&mut self, mark: usize) {
         match self {
-            Self::Arc(times) => times.release(mark),
-            Self::Curve(times) => times.release(mark),
+            Self::Arc(times) => times.nodes.truncate(mark),
+            Self::Curve(times) => times.nodes.truncate(mark),
+        }
+    }
+
+    /// Drops the pieces created since the mark, if there are many.
+    pub fn trim(&mut self, mark: usize) {
+        if self.mark() > mark + KEPT {
+            match self {
+                Self::Arc(times) => drop_from(&mut times.nodes, mark),
+                Self::Curve(times) => drop_from(&mut times.nodes, mark),
+            }
+        }
+    }
+
+    /// A search begins.
+    pub fn begin(&mut self) {
+        let recent = Recent::begin(self.mark());
+        match self {
+            Self::Arc(times) => times.recent = recent,
+            Self::Curve(times) => times.recent = recent,
+        }
+    }
+
+    /// Whether the search has made too many pieces.
+    pub fn is_full(&self) -> bool {
+        match self {
+            Self::Arc(times) => times.recent.is_full(times.nodes.len()),
+            Self::Curve(times) => times.recent.is_full(times.nodes.len()),
+        }
+    }
+
+    /// Drops the pieces that the search has made, except for those that it still needs: see [`Recent::keep`].
+    pub fn keep<'a>(&mut self, needed: impl Iterator<Item = &'a mut u32>) {
+        match self {
+            Self::Arc(times) => times.recent.keep(&mut times.nodes, needed),
+            Self::Curve(times) => times.recent.keep(&mut times.nodes, needed),
         }
     }
 

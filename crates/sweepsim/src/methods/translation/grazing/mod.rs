@@ -73,10 +73,14 @@ pub(crate) struct Grazed<'a, 'b> {
 }
 
 impl Grazing {
-    /// Forgets everything: to be called when cells of the tool are dropped.
-    pub fn clear(&mut self) {
-        self.families.clear();
-        self.poses.clear();
+    /// Forgets a patch: to be called when its cells are dropped.
+    pub fn forget(&mut self, patch: usize) {
+        for family in &mut self.families {
+            family.trees[patch] = None;
+        }
+        for (_, trees) in &mut self.poses {
+            trees[patch] = None;
+        }
     }
 
     /// The number of the family of a course, which is the last one then.
@@ -125,6 +129,7 @@ impl Grazing {
         let highest = grazed
             .ceiling
             .map_or(f64::INFINITY, |ceiling| ceiling.above(lowest, spacing));
+        let mut trimmed = Vec::new();
         for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
             if done[number] {
                 continue;
@@ -133,7 +138,7 @@ impl Grazing {
             let face = Face::new(element, &course.own);
             let mut walk = Walk {
                 element,
-                cells,
+                cells: &mut *cells,
                 course: &course,
                 highest,
                 monitor: grazed.monitor,
@@ -164,8 +169,12 @@ impl Grazing {
                 Ok(()) => done[number] = true,
                 Err(TooMany) => grazed.collector.forget(mark),
             }
+            if cells.trim() {
+                trimmed.push(number);
+            }
         }
         self.targets = targets;
+        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }
 
@@ -221,6 +230,7 @@ impl Grazing {
         let Some((_, trees)) = self.poses.last_mut() else {
             return;
         };
+        let mut trimmed = Vec::new();
         for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
             if done[number] {
                 continue;
@@ -228,7 +238,7 @@ impl Grazing {
             let lines = resting.collector.lines;
             let mark = resting.collector.mark();
             let mut search = Search {
-                map: &mut PlacedMap::new(element, cells, resting.pose, resting.sides, resting.size),
+                map: &mut PlacedMap::new(element, &mut *cells, resting.pose, resting.sides, resting.size),
                 lines,
                 tip: [tip.x, tip.y],
                 last: resting.last,
@@ -251,7 +261,11 @@ impl Grazing {
                 Ok(()) => done[number] = true,
                 Err(TooMany) => resting.collector.forget(mark),
             }
+            if cells.trim() {
+                trimmed.push(number);
+            }
         }
+        trimmed.into_iter().for_each(|number| self.forget(number));
     }
 }
 
