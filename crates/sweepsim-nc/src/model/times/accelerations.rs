@@ -57,14 +57,14 @@ impl<'a> Accelerating<'a> {
         self.chain.profile.len() > 0
     }
 
-    /// The way of the next move, which takes `full` at full speed; `None` if it is no feed move, or no axis moves. If the axes rest before it, the moves so far
-    /// get their times, which are the last ones of `kept`.
+    /// The way of the next move, which takes `full` at full speed; `None` if it is no feed move, or no axis moves. If the axes rest before it, it gives the times of the
+    /// moves so far.
     pub fn begin(
         &mut self,
         [from, to]: [&ProgramPose; 2],
         ends: [&Position; 2],
         full: &MoveTime,
-        kept: &mut [MoveTime],
+        each: impl FnMut(MoveTime),
     ) -> Option<Way> {
         let index = self.next;
         self.next += 1;
@@ -77,32 +77,23 @@ impl<'a> Accelerating<'a> {
         let feeds = full.seconds.is_some() && to.joined && !to.rapid;
         let way = feeds.then(|| self.axes.way(from, to, ends)).flatten();
         if rests || way.is_none() {
-            self.rest(kept);
+            self.rest(each);
         }
         way
     }
 
-    /// Takes the move that [`begin`](Self::begin) gave the way of.
-    pub fn push(&mut self, way: &Way, full: &MoveTime) {
-        if let Some(full) = full.seconds {
-            self.chain.push(&self.axes, full, way);
+    /// Takes the move that [`begin`](Self::begin) gave the way of, and gives the times of earlier ones, as far as later moves cannot change them.
+    pub fn push(&mut self, way: &Way, full: &MoveTime, each: impl FnMut(MoveTime)) {
+        if let Some(seconds) = full.seconds {
+            self.chain.push(&self.axes, [seconds, full.rest], way);
+            self.chain.profile.settled(each);
         }
     }
 
-    /// The axes rest: the moves so far get their times, which are the last ones of `kept`.
-    pub fn rest(&mut self, kept: &mut [MoveTime]) {
-        let own = kept.len() - self.chain.profile.len();
+    /// The axes rest: gives the times of the moves so far.
+    pub fn rest(&mut self, each: impl FnMut(MoveTime)) {
         self.chain.last = None;
-        let mut own = kept[own..].iter_mut();
-        self.chain.profile.rest(|seconds| slow_down(&mut own, seconds));
-    }
-
-    /// Gives the first ones of `kept`, all of which are moving, their times, as far as later moves cannot change them; tells how many.
-    pub fn settle(&mut self, kept: &mut [MoveTime]) -> usize {
-        let before = self.chain.profile.len();
-        let mut own = kept.iter_mut();
-        self.chain.profile.settled(|seconds| slow_down(&mut own, seconds));
-        before - self.chain.profile.len()
+        self.chain.profile.rest(each);
     }
 }
 
@@ -125,26 +116,19 @@ struct Chain {
 }
 
 impl Chain {
-    fn push(&mut self, axes: &Dynamics, seconds: f64, way: &Way) {
+    fn push(&mut self, axes: &Dynamics, full: [f64; 2], way: &Way) {
         let corner = match (self.last, way.tangents) {
             (Some((last, length)), Some([first, _])) => axes.corner(last, first, 0.5 * length.min(way.length)),
             _ => 0.0,
         };
         self.profile.push(Stretch {
             length: way.length,
-            speed: way.speed.min(way.length / seconds),
+            speed: way.speed.min(way.length / full[0]),
             corner,
             acceleration: way.acceleration,
+            full,
         });
         self.last = way.tangents.map(|[_, last]| (last, way.length));
-    }
-}
-
-/// The next of these moves takes so long.
-fn slow_down<'a>(own: &mut impl Iterator<Item = &'a mut MoveTime>, seconds: f64) {
-    if let Some(time) = own.next() {
-        // Rounding makes no move faster than at full speed.
-        time.seconds = time.seconds.map(|full| full.max(seconds));
     }
 }
 

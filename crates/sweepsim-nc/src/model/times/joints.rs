@@ -7,13 +7,13 @@ use super::{Axes, MoveTime};
 use crate::machines::{Kinematics, Position};
 use crate::model::program::{Program, ProgramPose};
 
-/// Takes the times of moves in order, as they would be from rest to rest or at full speed, and gives them as they are. It keeps those of moves without a rest
-/// that later ones may still slow down.
+/// Takes the times of moves in order, as they would be from rest to rest or at full speed, and gives them as they are. Those of feed moves without a rest that
+/// later ones may still slow down are in `accelerating`; then there are no others.
 pub(super) struct Joints<'a, F> {
     machine: Option<&'a Kinematics>,
     accelerating: Option<Accelerating<'a>>,
     rapid: Option<Chords>,
-    /// Not given yet; the last ones belong to the rapid or to the feed moves without a rest.
+    /// Not given yet; the last ones belong to the rapid.
     kept: Vec<MoveTime>,
     last: Option<(ProgramPose, Option<Position>)>,
     each: F,
@@ -46,17 +46,17 @@ impl<'a, F: FnMut(MoveTime)> Joints<'a, F> {
         let way = self
             .accelerating
             .as_mut()
-            .and_then(|feed| feed.begin([&from, &pose], [&start, &end], &time, &mut self.kept));
+            .and_then(|feed| feed.begin([&from, &pose], [&start, &end], &time, &mut self.each));
         let moves_on = self.accelerating.as_ref().is_some_and(Accelerating::is_moving);
         if !goes_on && !moves_on {
             self.kept.drain(..).for_each(&mut self.each);
         }
-        self.kept.push(time);
         if let (Some(feed), Some(way)) = (&mut self.accelerating, way) {
-            feed.push(&way, &time);
-            let settled = feed.settle(&mut self.kept);
-            self.kept.drain(..settled).for_each(&mut self.each);
-        } else if !goes_on {
+            feed.push(&way, &time, &mut self.each);
+            return;
+        }
+        self.kept.push(time);
+        if !goes_on {
             self.rapid = Chords::starting(&pose, [start, end]);
         }
     }
@@ -67,7 +67,7 @@ impl<'a, F: FnMut(MoveTime)> Joints<'a, F> {
             rapid.share_time(machine, &mut self.kept);
         }
         if let Some(feed) = &mut self.accelerating {
-            feed.rest(&mut self.kept);
+            feed.rest(&mut self.each);
         }
         self.kept.drain(..).for_each(&mut self.each);
     }
