@@ -5,6 +5,7 @@ mod arcs_in_closed_form;
 mod arcs_of_lying_axes;
 mod arcs_of_lying_tools;
 mod cancelling;
+mod displaced;
 mod faces;
 mod far_and_fine;
 mod frames;

@@ -1,10 +1,11 @@
 //! Moves without rotation in closed form, against charts: the same crossings from other systems, bounds and certificates.
 
+pub use crate::displaced::{agree, same};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::Vector3;
-use sweepsim::{Method, Options, Sweep, SweepError, sweep};
-use sweepsim_dexel::{Frame, Grid, Interval};
+use sweepsim::{Options, SweepError, sweep};
+use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Apt, Barrel, Dovetail, Lens, Lollipop, Path, Pose, Profile, ProfileSegment, Taper, Tool, Turn};
 
 pub const TOLERANCE: f64 = 1e-6;
@@ -106,57 +107,6 @@ pub fn tools() -> Vec<(&'static str, Tool, bool)> {
 pub fn path(tips: &[[f64; 3]], axis: [f64; 3]) -> Path {
     let poses = tips.iter().map(|tip| Pose::new(*tip, axis).expect("a pose"));
     Path::new(poses.collect()).expect("a path")
-}
-
-/// Whether the ends agree, each within the tolerance measured across the surface.
-pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
-    let near = |(a, b): (&Interval, &Interval)| {
-        [(a.lower, b.lower), (a.upper, b.upper)].iter().all(|(a, b)| {
-            let steep = f64::from(a.normal[2]).abs().max(f64::from(b.normal[2]).abs()).max(1e-3);
-            (a.z - b.z).abs() <= tolerance / steep
-        })
-    };
-    a.len() == b.len() && a.iter().zip(b).all(near)
-}
-
-/// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside it.
-pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) -> Result<[Sweep; 2], TestCaseError> {
-    let on =
-        |grid: &Grid, method| sweep(tool, path, grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
-    let [closed, charts] = [Method::Charts, Method::General].map(|method| on(grid, method));
-    for found in [&closed, &charts] {
-        prop_assert!(found.statistics.unresolved.is_empty(), "{name}: {:?}", found.statistics);
-    }
-    for index in 0..grid.len() {
-        let [a, b] = [&closed, &charts].map(|found| found.volume.at(index).to_vec());
-        if same(&a, &b, tolerance) {
-            continue;
-        }
-        let (i, j) = grid.place(index);
-        let beside = |step: [f64; 2]| {
-            let [x, y] = [grid.x(i) + step[0] * tolerance, grid.y(j) + step[1] * tolerance];
-            let half = 1e-3;
-            let one = Grid::new([x - half, y - half], [x + half, y + half], [1, 1]).expect("a grid");
-            same(
-                &a,
-                &on(&one.in_frame(*grid.frame()), Method::General).volume.at(0).to_vec(),
-                tolerance,
-            )
-        };
-        let around = (0..8).map(|k| std::f64::consts::FRAC_PI_4 * f64::from(k));
-        let steps = around.flat_map(|angle| [0.05, 0.3].map(|r| [r * angle.cos(), r * angle.sin()]));
-        // Where lines are solved again, seen from where they are solved first: two vertical tangents in one place magnify any difference.
-        let again = [[3e-3, 1.970], [1e-2, 3.520], [3e-2, 5.323], [0.1, 1.154], [0.2, 2.747]];
-        let moved = |[r, angle]: [f64; 2]| {
-            [
-                r * angle.cos() - 1e-3 * 0.7391_f64.cos(),
-                r * angle.sin() - 1e-3 * 0.7391_f64.sin(),
-            ]
-        };
-        let steps = steps.chain(again.map(moved));
-        prop_assert!({ steps }.any(beside), "{name}: {:?}: {a:?} {b:?}", (i, j));
-    }
-    Ok([closed, charts])
 }
 
 /// As [`agree`], where nothing is degenerate: hardly any line needs the general method.
