@@ -2,6 +2,7 @@
 
 mod arcs_along_dexels;
 mod arcs_in_closed_form;
+mod arcs_in_tilted_planes;
 mod arcs_of_lying_axes;
 mod arcs_of_lying_tools;
 mod cancelling;
