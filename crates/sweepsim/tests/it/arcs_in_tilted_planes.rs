@@ -68,7 +68,9 @@ fn check(number: usize, path: &Path) -> TestCaseResult {
     let (name, tool, whole) = &tools()[number];
     let [closed, charts] = agree(name, tool, path, &grid([23, 21]), TOLERANCE)?;
     let [own, other] = [&closed.statistics, &charts.statistics];
-    prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
+    // Wide arcs have fewer digits: more lines are too close to an end.
+    let few = 2 + own.covered / 10;
+    prop_assert!(own.repaired <= other.repaired + few, "{name}: {own:?} {other:?}");
     let off = own.crossings.abs_diff(other.crossings);
     prop_assert!(off <= 6 + other.crossings / 50, "{name}: {own:?} {other:?}");
     // Walls almost along the dexels have too few digits at this tolerance; tori at rest are left to charts.
