@@ -65,11 +65,13 @@ impl<const N: usize> Affine<N> {
         affine
     }
 
-    /// The sign over the region, if it has only one: `true` is negative. 0 is not.
-    fn negative(&self, region: &Region<N>) -> Option<bool> {
+    /// The sign over the box from `lo` to `hi`, if it has only one: `true` is negative. 0 is not.
+    #[must_use]
+    #[inline]
+    pub fn is_negative(&self, lo: &[f64; N], hi: &[f64; N]) -> Option<bool> {
         let (mut value, mut reach, mut size) = (self.value, self.error, self.value.abs());
         for (i, slope) in self.slope.iter().enumerate() {
-            let (lo, hi) = (region.lo[i], region.hi[i]);
+            let (lo, hi) = (lo[i], hi[i]);
             value += slope * 0.5 * (lo + hi);
             reach += slope.abs() * 0.5 * (hi - lo);
             size += slope.abs() * lo.abs().max(hi.abs());
@@ -92,9 +94,9 @@ impl<const N: usize> Sides<N> {
     /// Whether both functions have the same sign everywhere in the region.
     #[inline]
     pub fn agree(&self, region: &Region<N>) -> bool {
-        let [a, b] = &self.0;
-        let sign = a.negative(region);
-        sign.is_some() && sign == b.negative(region)
+        let (lo, hi) = (region.lo.into(), region.hi.into());
+        let [a, b] = self.0.each_ref().map(|side| side.is_negative(&lo, &hi));
+        a.is_some() && a == b
     }
 
     /// The range of second values for which targets that agree with `q` otherwise can have a preimage in the box where the signs differ, predicted from
@@ -174,7 +176,14 @@ mod tests {
             let form = Bernstein::new(&degrees, numbers[..count].to_vec()).unwrap();
             let affine = Affine::<2>::of_form(form.coefficients(), degrees[0] + 1, 0.0);
             let value = affine.value + affine.slope[0] * (2.0 * at[0] - 1.0) + affine.slope[1] * (2.0 * at[1] - 1.0);
-            prop_assert!((form.evaluate(&at) - value).abs() <= affine.error + 1e-13);
+            let exact = form.evaluate(&at);
+            prop_assert!((exact - value).abs() <= affine.error + 1e-13);
+            for width in [0.0, 0.1, 1.0] {
+                let [lo, hi] = [-width, width].map(|reach| at.map(|x| (2.0 * x - 1.0 + reach).clamp(-1.0, 1.0)));
+                if let Some(is_negative) = affine.is_negative(&lo, &hi) {
+                    prop_assert_eq!(exact < 0.0, is_negative, "{}", exact);
+                }
+            }
             // Bilinear forms differ from linear ones by their twist alone.
             if degrees == [1, 1] {
                 let twist = 0.25 * (numbers[0] - numbers[1] - numbers[2] + numbers[3]).abs();

@@ -148,25 +148,6 @@ impl Node {
     }
 }
 
-/// The sign of a linear function over a region, if it has only one.
-fn negative(side: &Affine<2>, region: &Region) -> Option<bool> {
-    let (mut value, mut reach, mut size) = (side.value, side.error, side.value.abs());
-    for k in 0..2 {
-        let (lo, hi) = (region.lo[k], region.hi[k]);
-        value += side.slope[k] * 0.5 * (lo + hi);
-        reach += side.slope[k].abs() * 0.5 * (hi - lo);
-        size += side.slope[k].abs() * lo.abs().max(hi.abs());
-    }
-    reach += 1e-13 * size;
-    if value < -reach {
-        Some(true)
-    } else if value > reach {
-        Some(false)
-    } else {
-        None
-    }
-}
-
 impl Search<'_, '_> {
     /// Ranges from the tip, in space.
     fn placed(&self, place: [Range; 2]) -> [Enclosure; 2] {
@@ -292,9 +273,11 @@ impl Over<'_, '_> {
 
     /// Whether both signs are the same all over a region.
     fn agree(&self, region: &Region) -> bool {
-        let [a, b] = &self.sides;
-        let sign = negative(a, region);
-        sign.is_some() && sign == negative(b, region)
+        let [a, b] = self
+            .sides
+            .each_ref()
+            .map(|side| side.is_negative(&region.lo, &region.hi));
+        a.is_some() && a == b
     }
 
     /// One line.
