@@ -33,6 +33,7 @@ use crate::Monitor;
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Sink, Targets};
 use cell::Blocks;
 use search::Search;
+use std::collections::BTreeMap;
 use sweepsim_spline::Bernstein;
 use thiserror::Error;
 
@@ -134,6 +135,8 @@ pub struct BundleSolver {
     pub options: ChartOptions,
     /// Totals over all calls; `charts` counts boxes on which targets were tried.
     pub statistics: ChartStatistics,
+    /// A target that so many boxes have left undecided, each having tested it on its own, is reported as unresolved and not searched for any further.
+    pub patience: u32,
     coefficients: Vec<f64>,
     scratch: Vec<f64>,
 }
@@ -145,6 +148,7 @@ impl BundleSolver {
         Self {
             options,
             statistics: ChartStatistics::default(),
+            patience: u32::MAX,
             coefficients: Vec::new(),
             scratch: Vec::new(),
         }
@@ -189,6 +193,8 @@ impl BundleSolver {
             lines: Vec::new(),
             straddlers: Vec::new(),
             open: Vec::new(),
+            patience: self.patience,
+            undecided: BTreeMap::new(),
         };
         search.run(sink);
         self.coefficients = search.coefficients;

@@ -6,6 +6,7 @@ use super::taylor::Taylor;
 use crate::charts::{BETWEEN, Trail, all_of, collapses, largest, widest};
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, ChartTarget, Preimage, Sink, Targets, UnresolvedTarget};
 use crate::{Cause, Enclosure, Monitor};
+use std::collections::BTreeMap;
 
 /// A box on which certificates would still fail has its targets tested one by one before it is split, if it has at most this many.
 const FEW: usize = 6;
@@ -37,6 +38,9 @@ pub(super) struct Search<'a, const N: usize, M: ChartMap<N>, T: ?Sized> {
     pub straddlers: Vec<Straddler<N, M::Seen>>,
     /// Targets that are not searched for any further, in order: rounding is larger than some box that may hold their roots.
     pub open: Vec<usize>,
+    /// The most boxes that may leave a target undecided, and for each target how many have.
+    pub patience: u32,
+    pub undecided: BTreeMap<usize, u32>,
 }
 
 impl<const N: usize, M, T> Search<'_, N, M, T>
@@ -108,9 +112,8 @@ where
         };
         if let Some(cause) = cause {
             self.each(frame, &values, &mut |search, target| {
-                let place = search.open.binary_search(&target.number);
-                if let (true, Err(place)) = (drowned, place) {
-                    search.open.insert(place, target.number);
+                if drowned {
+                    search.give_up(target.number);
                 }
                 sink.unresolved(UnresolvedTarget {
                     target: target.number,
@@ -133,19 +136,48 @@ where
             };
             match rest {
                 Some((from, to)) if from == to => return None,
-                Some(rest) => lines = Some(rest),
+                Some(rest) => {
+                    self.count(rest, bounds, sink);
+                    lines = Some(rest);
+                }
                 None => {}
             }
             let smear = largest(&taylor.smear(inverse));
             if frame.depth % 3 != 2 && !collapses(&bounds, &slopes, smear) {
                 axis = smear;
             }
+        } else if let Some(rest) = self.few(frame, &values, &taylor) {
+            self.count(rest, bounds, sink);
+            lines = Some(rest);
         }
         if frame.hi[axis] - frame.lo[axis] <= self.options.smallest {
             let sides: [f64; N] = std::array::from_fn(|j| frame.hi[j] - frame.lo[j]);
             axis = largest(&sides);
         }
         Some((axis, lines))
+    }
+
+    fn give_up(&mut self, target: usize) {
+        if let Err(place) = self.open.binary_search(&target) {
+            self.open.insert(place, target);
+        }
+    }
+
+    /// Counts a box that left these targets undecided.
+    fn count<S: Sink<N, M::Seen>>(&mut self, (from, to): (usize, usize), bounds: [Enclosure; N], sink: &mut S) {
+        for at in from..to {
+            let target = self.lines[at].number;
+            let count = self.undecided.entry(target).or_insert(0);
+            *count += 1;
+            if *count > self.patience {
+                self.give_up(target);
+                sink.unresolved(UnresolvedTarget {
+                    target,
+                    bounds,
+                    cause: Cause::Boxes,
+                });
+            }
+        }
     }
 
     fn is_open(&self, target: &ChartTarget<N>) -> bool {
@@ -238,7 +270,7 @@ where
         let mut count = 0;
         self.each(frame, values, &mut |search, target| {
             count += 1;
-            if taylor.window(&target.value).is_some() {
+            if taylor.inverse.is_none() || taylor.window(&target.value).is_some() {
                 search.lines.push(target);
             }
             count <= FEW

@@ -218,6 +218,8 @@ pub trait Sink<const N: usize, S = ()> {
     fn mark(&self) -> usize;
     /// Discards the solutions since the mark: their box is searched again in parts.
     fn forget(&mut self, mark: usize);
+    /// Discards the solutions of these targets (in order) since the mark: they are searched for in another way.
+    fn forget_targets(&mut self, mark: usize, targets: &[usize]);
     /// A box that may hold further solutions for a target.
     fn unresolved(&mut self, target: UnresolvedTarget<N>);
 }

@@ -149,6 +149,10 @@ impl Sink<3> for Found {
         self.places.truncate(mark);
     }
 
+    fn forget_targets(&mut self, _: usize, targets: &[usize]) {
+        unreachable!("{targets:?}");
+    }
+
     fn unresolved(&mut self, _: UnresolvedTarget<3>) {
         self.open += 1;
     }

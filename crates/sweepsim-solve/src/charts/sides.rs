@@ -312,6 +312,10 @@ mod tests {
             self.truncate(mark);
         }
 
+        fn forget_targets(&mut self, _: usize, targets: &[usize]) {
+            unreachable!("{targets:?}");
+        }
+
         fn unresolved(&mut self, target: UnresolvedTarget<2>) {
             unreachable!("{target:?}");
         }

@@ -4,7 +4,9 @@ use crate::support;
 
 use support::planted::Random;
 use support::targets::{Answer, List};
-use sweepsim_solve::{Bundle, BundleSolver, ChartMap, ChartOptions, Enclosure, PointSolver, Preimage, Sample, System};
+use sweepsim_solve::{
+    Bundle, BundleSolver, ChartMap, ChartOptions, Enclosure, PointSolver, Preimage, Sample, Sink, System,
+};
 use sweepsim_spline::Bernstein;
 
 /// A rational map by its forms: numerators over a weight, then forms that must be zero.
@@ -78,12 +80,17 @@ impl<const N: usize> ChartMap<N> for Forms<N> {
 }
 
 fn solve<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64) -> Answer<N> {
+    patiently(forms, targets, boxes, u32::MAX)
+}
+
+fn patiently<const N: usize>(forms: &Forms<N>, targets: &List<N>, boxes: u64, patience: u32) -> Answer<N> {
     let mut answer = Answer {
         found: Vec::new(),
         open: Vec::new(),
     };
-    let options = ChartOptions::default().boxes(boxes);
-    BundleSolver::new(options).solve(&forms.bundle(), forms, targets, &mut answer, &());
+    let mut solver = BundleSolver::new(ChartOptions::default().boxes(boxes));
+    solver.patience = patience;
+    solver.solve(&forms.bundle(), forms, targets, &mut answer, &());
     answer
 }
 
@@ -274,6 +281,32 @@ fn a_budget_leaves_targets_open() {
         };
         assert!(covered || few.found.iter().any(near), "{found:?}");
     }
+}
+
+/// Without patience, a target's solutions are all found unless it is open, whatever the box.
+#[test]
+fn targets_that_are_given_up_are_open() {
+    let mut random = Random(15);
+    let (mut given_up, mut solved) = (0, 0);
+    for _ in 0..20 {
+        let forms = Forms::<2> {
+            numerators: vec![form(&[3, 3], &mut random), form(&[3, 3], &mut random)],
+            weight: weight(&[2, 2], &mut random),
+            zeros: vec![],
+        };
+        let targets = List((0..40).map(|_| [0, 1].map(|_| random.unit() - 0.5)).collect());
+        let all = solve(&forms, &targets, 400_000);
+        for patience in 0..4 {
+            let mut answer = patiently(&forms, &targets, 400_000, patience);
+            let mut open: Vec<usize> = answer.open.iter().map(|open| open.target).collect();
+            open.sort_unstable();
+            answer.forget_targets(0, &open);
+            let closed = |found: &&Preimage<2>| open.binary_search(&found.target).is_err();
+            assert_eq!(answer.found.len(), all.found.iter().filter(closed).count());
+            (given_up, solved) = (given_up + open.len(), solved + answer.found.len());
+        }
+    }
+    assert!(given_up > 50 && solved > 200, "{given_up} {solved}");
 }
 
 /// A map whose values are known to be rounded more coarsely than they are.

@@ -153,6 +153,10 @@ impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for OfPart<'_, N, K> {
         self.sink.forget(mark);
     }
 
+    fn forget_targets(&mut self, mark: usize, targets: &[usize]) {
+        self.sink.forget_targets(mark, targets);
+    }
+
     fn unresolved(&mut self, mut target: UnresolvedTarget<N>) {
         target.bounds = whole(&self.part, &target.bounds);
         self.sink.unresolved(target);

@@ -135,6 +135,10 @@ impl Sink<3, OnPatch> for Found {
         self.preimages.truncate(mark);
     }
 
+    fn forget_targets(&mut self, _: usize, targets: &[usize]) {
+        unreachable!("{targets:?}");
+    }
+
     fn unresolved(&mut self, target: UnresolvedTarget<3>) {
         self.open.push(target);
     }

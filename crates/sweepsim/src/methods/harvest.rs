@@ -60,6 +60,12 @@ impl<const N: usize, S, F: Fn(&Preimage<N, S>) -> Option<Crossing>> Sink<N, S> f
         self.crossings.truncate(mark);
     }
 
+    fn forget_targets(&mut self, mark: usize, targets: &[usize]) {
+        let kept = self.crossings.split_off(mark);
+        let is_kept = |(line, _): &Numbered| targets.binary_search(&(*line as usize)).is_err();
+        self.crossings.extend(kept.into_iter().filter(is_kept));
+    }
+
     fn unresolved(&mut self, target: UnresolvedTarget<N>) {
         self.open.push((target.target as u32, target.cause));
     }

@@ -8,6 +8,7 @@ use crate::envelope::{
     AnyBox, Apart, EdgeMap, InPart, OfPart, OnEdge, OnPatch, OnPlaced, PatchMap, PlacedMap, ROUNDING, Side,
 };
 use crate::methods::charts::Charts;
+use crate::methods::lattice::LineMask;
 use crate::methods::method::{CrossingMethod, Query, WorkShare, in_blocks};
 use crate::methods::placement::sides;
 use crate::methods::workspace::Solvers;
@@ -15,7 +16,7 @@ use crate::time::over::{Over, Part};
 use crate::time::path_parts::PathPart;
 use rayon::prelude::*;
 use sweepsim_motion::{NormalField, Patch, SegmentEnd, Tool};
-use sweepsim_solve::{Bundle, CancelOnly, Sink};
+use sweepsim_solve::{Bundle, CancelOnly, Preimage, Sink, UnresolvedTarget};
 use sweepsim_spline::Bernstein;
 
 /// The number of dexel columns whose lines form a bundle.
@@ -82,7 +83,7 @@ impl PartBundles {
     }
 }
 
-/// Solves a bundle whose forms are those over a part of the map's domain.
+/// Solves a bundle whose forms are those over a part of the map's domain. Returns the lines that it leaves to charts, none of whose solutions are reported.
 fn bundled<const N: usize, M: AnyBox<N>>(
     bundle: &Bundle<N>,
     map: &mut M,
@@ -90,13 +91,54 @@ fn bundled<const N: usize, M: AnyBox<N>>(
     query: Query,
     solvers: &mut Solvers,
     sink: &mut impl Sink<N, M::Seen>,
-) {
+) -> Option<LineMask> {
     let monitor = &CancelOnly(query.monitor);
+    let mark = sink.mark();
+    let (mut rest, mut sink) = (Vec::new(), OfPart { sink, part });
+    let mut decided = Decided {
+        sink: &mut sink,
+        rest: &mut rest,
+    };
     if part.iter().all(Part::is_whole) {
-        solvers.bundles.solve(bundle, map, query.lines, sink, monitor);
+        solvers.bundles.solve(bundle, map, query.lines, &mut decided, monitor);
     } else {
-        let (map, mut sink) = (InPart::new(map, part), OfPart { sink, part });
-        solvers.bundles.solve(bundle, &map, query.lines, &mut sink, monitor);
+        let map = InPart::new(map, part);
+        solvers.bundles.solve(bundle, &map, query.lines, &mut decided, monitor);
+    }
+    rest.sort_unstable();
+    rest.dedup();
+    if rest.is_empty() {
+        return None;
+    }
+    sink.forget_targets(mark, &rest);
+    LineMask::new(query.lines.grid, rest.iter().map(|line| *line as u32))
+}
+
+/// Passes solutions on, and lists lines with open boxes.
+struct Decided<'s, K> {
+    sink: &'s mut K,
+    rest: &'s mut Vec<usize>,
+}
+
+impl<const N: usize, S, K: Sink<N, S>> Sink<N, S> for Decided<'_, K> {
+    fn found(&mut self, preimage: Preimage<N, S>) {
+        self.sink.found(preimage);
+    }
+
+    fn mark(&self) -> usize {
+        self.sink.mark()
+    }
+
+    fn forget(&mut self, mark: usize) {
+        self.sink.forget(mark);
+    }
+
+    fn forget_targets(&mut self, mark: usize, targets: &[usize]) {
+        self.sink.forget_targets(mark, targets);
+    }
+
+    fn unresolved(&mut self, target: UnresolvedTarget<N>) {
+        self.rest.push(target.target);
     }
 }
 
@@ -132,7 +174,10 @@ impl CrossingMethod<'_> for Lines {
         match &self.bundles[query.part].patches[query.number] {
             Some(bundle) => {
                 let Apart { rest: [u, v], beside } = Apart::new(&map.element.poles);
-                bundled(bundle, map, [u, v, query.times.0], query, solvers, sink);
+                if let Some(mask) = bundled(bundle, map, [u, v, query.times.0], query, solvers, sink) {
+                    let lines = &query.lines.clone().masked(Some(&mask));
+                    Charts::on_part([u, v], Query { lines, ..query }, map, solvers, sink);
+                }
                 for part in beside {
                     Charts::on_part(part, query, map, solvers, sink);
                 }
@@ -143,7 +188,12 @@ impl CrossingMethod<'_> for Lines {
 
     fn on_edge(&self, query: Query, map: &mut EdgeMap, solvers: &mut Solvers, sink: &mut impl Sink<2, OnEdge>) {
         match &self.bundles[query.part].edges[query.number] {
-            Some(bundle) => bundled(bundle, map, [Part::WHOLE, query.times.0], query, solvers, sink),
+            Some(bundle) => {
+                if let Some(mask) = bundled(bundle, map, [Part::WHOLE, query.times.0], query, solvers, sink) {
+                    let lines = &query.lines.clone().masked(Some(&mask));
+                    Charts.on_edge(Query { lines, ..query }, map, solvers, sink);
+                }
+            }
             None => Charts.on_edge(query, map, solvers, sink),
         }
     }
@@ -158,9 +208,12 @@ impl CrossingMethod<'_> for Lines {
     ) {
         let placed = &self.bundles[query.part].placed[usize::from(end == SegmentEnd::Finish)];
         match placed.get(query.number).and_then(Option::as_ref) {
-            Some(bundle) => solvers
-                .bundles
-                .solve(bundle, map, query.lines, sink, &CancelOnly(query.monitor)),
+            Some(bundle) => {
+                if let Some(mask) = bundled(bundle, map, [Part::WHOLE; 2], query, solvers, sink) {
+                    let lines = &query.lines.clone().masked(Some(&mask));
+                    Charts.on_placed(Query { lines, ..query }, end, map, solvers, sink);
+                }
+            }
             None => Charts.on_placed(query, end, map, solvers, sink),
         }
     }

@@ -8,12 +8,14 @@ use crate::methods::workspace::Solvers;
 use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use sweepsim_motion::{SegmentEnd, Tool};
-use sweepsim_solve::{CancelOnly, ChartMap, Enclosure, Sink, SurfaceSolver};
+use sweepsim_solve::{CancelOnly, ChartMap, Enclosure, Sink, SurfaceSolver, Targets};
 
 /// How flat the surface is in its boxes, relative to the parameters' ranges.
 const FLATNESS: f64 = 0.02;
 /// The budget of boxes for an envelope surface. Well-behaved ones need about ten to a thousand.
 const BOXES: u64 = 2_000;
+/// A surface is sought with this many, and one for each line over which the patch may be: charts find the crossings of few lines sooner.
+const LEAST_BOXES: u64 = 64;
 
 /// Edges and patches at rest are surfaces without an equation: charts solve them.
 pub(crate) struct Surfaces<'a> {
@@ -28,16 +30,23 @@ impl<'a> CrossingMethod<'a> for Surfaces<'a> {
 
     fn on_patch(&self, query: Query, map: &mut PatchMap, solvers: &mut Solvers, sink: &mut impl Sink<3, OnPatch>) {
         let values = map.values(&(ROOT.0, query.times.1));
-        if !values.is_some_and(|values| query.lines.meets([values[0], values[1]])) {
+        let lines = values.map_or(0, |values| query.lines.count(&values));
+        if lines == 0 {
             return;
         }
         let motion = PatchMotion::new(&self.tool.patches()[query.number], &self.chunk[query.part].segment);
-        let options = SurfaceSolver::new(FLATNESS).options.boxes(BOXES).unresolved(0);
+        let options = SurfaceSolver::new(FLATNESS)
+            .options
+            .boxes(BOXES.min(LEAST_BOXES + lines as u64))
+            .unresolved(0);
         let mut solver = SurfaceSolver::with_options(FLATNESS, options);
         let surface = motion
             .envelope()
             .ok()
             .and_then(|system| solver.solve(&system, &CancelOnly(query.monitor)).ok());
+        if let Some(surface) = &surface {
+            solvers.moving.statistics.boxes += surface.statistics.boxes;
+        }
         let Some(surface) = surface.filter(|surface| surface.unresolved.is_empty()) else {
             // No equation (the patch slides along itself), or a singular one: the whole domain is the box.
             Charts.on_patch(query, map, solvers, sink);

@@ -50,6 +50,8 @@ pub(crate) struct Solvers {
 impl Workspace {
     pub fn new(cutter: &Cutter, tolerances: Tolerances) -> Self {
         let options = ChartOptions::default().accept(tolerances.last_step());
+        let mut bundles = BundleSolver::new(options);
+        bundles.patience = PATIENCE;
         Self {
             patches: cutter.patches.iter().map(Cells::new).collect(),
             edges: cutter.edges.iter().map(Cells::new).collect(),
@@ -63,7 +65,7 @@ impl Workspace {
                 moving: ChartSolver::new(options),
                 placed: ChartSolver::new(options),
                 slicer: Slicer::new(),
-                bundles: BundleSolver::new(options),
+                bundles,
             },
             tolerances,
         }
@@ -76,6 +78,8 @@ const MOST_BOXES: u64 = 400_000;
 const CHART_BOXES: [u64; 2] = [100_000, 100];
 /// The same for the systems of [lines](crate::methods::lines), which charts repair.
 const BUNDLE_BOXES: [u64; 2] = [10_000, 100];
+/// The most boxes of such a system that may leave a line undecided before charts take it over. One in a thousand lines of generic moves is undecided in more.
+const PATIENCE: u32 = 4;
 
 impl Workspace {
     /// Drops the cells of a patch if there are many, and what refers to them.

@@ -11,7 +11,8 @@ use sweepsim_solve::Monitor;
 /// The methods, each with the most boxes of a far or finely resolved move in those of its neighbour.
 const THRIFTY: [(Method, f64); 2] = [(Method::General, 2.2), (Method::Surface, 2.2)];
 /// In the wall of a lollipop's neck, lines cannot be certified one by one at the least tolerance: charts repair them together.
-const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.4), (Method::Lines, 2.8)];
+/// The boxes of `planes` are those of the curves, too.
+const OTHERS: [(Method, f64); 2] = [(Method::Planes, 1.5), (Method::Lines, 2.8)];
 
 /// Ends a sweep that takes far too long, and so makes it fail.
 struct Patience(Instant);
@@ -87,7 +88,7 @@ fn swept(tool: &Tool, path: &Path, options: &Options, name: &str) -> (u64, Dexel
 }
 
 /// The largest difference of ends of the same intervals, up to a height.
-fn difference(a: &Dexels, b: &Dexels, top: f64) -> f64 {
+pub fn difference(a: &Dexels, b: &Dexels, top: f64) -> f64 {
     let mut most: f64 = 0.0;
     for line in 0..a.grid().len() {
         let ends = |dexels: &Dexels| -> Vec<f64> {

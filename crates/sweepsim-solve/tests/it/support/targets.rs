@@ -52,6 +52,12 @@ impl<const N: usize> Sink<N> for Answer<N> {
         self.found.truncate(mark);
     }
 
+    fn forget_targets(&mut self, mark: usize, targets: &[usize]) {
+        let later = self.found.split_off(mark);
+        let is_kept = |found: &Preimage<N>| targets.binary_search(&found.target).is_err();
+        self.found.extend(later.into_iter().filter(is_kept));
+    }
+
     fn unresolved(&mut self, target: UnresolvedTarget<N>) {
         self.open.push(target);
     }

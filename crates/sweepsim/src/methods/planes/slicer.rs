@@ -20,10 +20,12 @@ use sweepsim_solve::{CancelOnly, ChartStatistics, CurveSolver, Curves, Enclosure
 /// Tolerances of the polylines, relative to the parameters' ranges: the boxes of spans are this much wider than those of the chords. The next
 /// tolerance is tried if a span could not be decided with the previous one.
 const TOLERANCES: [f64; 3] = [0.03, 0.003, 0.0003];
-/// The budget of boxes for a section, and for each search on a face of one. Well-behaved sections need about ten to a hundred.
-const BOXES: u64 = 4_000;
-/// The budget of spans for a section, including halves. Well-behaved sections need about a hundred; where a curve almost touches itself, halving would never end.
-const SPANS: u32 = 4_000;
+/// The budget of boxes for a section, and for each search on a face of one: the first number, and the second for each line, up to the third. Well-behaved sections need about ten to a
+/// hundred; charts find the crossings of few lines sooner than more.
+const BOXES: [u64; 3] = [50, 4, 4_000];
+/// The budget of spans for a section, including halves: the first number, and the second for each vertex. Well-behaved sections need little more than one for each vertex; where a curve almost
+/// touches itself, halving would never end.
+const SPANS: [u32; 2] = [100, 2];
 
 /// Finds the curves of sections.
 #[derive(Debug)]
@@ -36,7 +38,7 @@ pub(crate) struct Slicer {
 impl Slicer {
     pub fn new() -> Self {
         Self {
-            curves: CurveSolver::with_options(TOLERANCES[0], curve_options(BOXES, 4)),
+            curves: CurveSolver::with_options(TOLERANCES[0], curve_options(BOXES[2], 4)),
             statistics: ChartStatistics::default(),
         }
     }
@@ -59,30 +61,38 @@ impl Slicer {
             return false;
         };
         let mark = sink.mark();
+        let [first, each, most] = BOXES;
+        self.curves.options.boxes = most.min(first + each * query.lines.len() as u64);
         for tolerance in TOLERANCES {
             self.curves.tolerance = tolerance;
             let Ok(curves) = self.curves.solve(&system, &CancelOnly(query.monitor)) else {
                 return false;
             };
+            self.statistics.boxes += curves.statistics.boxes + curves.statistics.faces;
             if !curves.singular.is_empty() {
                 return false;
             }
-            if self.cut(map, &curves, tolerance, query, accept, sink) {
+            let vertices: usize = curves.curves.iter().map(|curve| curve.points.len()).sum();
+            let mut left = SPANS[0] + SPANS[1] * vertices as u32;
+            if self.cut(map, &curves, tolerance, (query, accept), &mut left, sink) {
                 return true;
             }
             sink.forget(mark);
+            if left == 0 {
+                return false;
+            }
         }
         false
     }
 
-    /// Intersects the curves with the lines; `false` if some span stays undecided.
+    /// Intersects the curves with the lines; `false` if some span stays undecided. `left`: of the budget of spans.
     fn cut<const N: usize, M>(
         &mut self,
         map: &mut M,
         Curves { curves, skin, .. }: &Curves,
         tolerance: f64,
-        query: Query,
-        accept: f64,
+        (query, accept): (Query, f64),
+        left: &mut u32,
         sink: &mut impl Sink<N, M::Seen>,
     ) -> bool
     where
@@ -99,7 +109,7 @@ impl Slicer {
             accept,
             sink,
             statistics: &mut self.statistics,
-            left: SPANS,
+            left,
         };
         for curve in curves {
             let count = curve.points.len();

@@ -63,7 +63,7 @@ pub(super) struct Cutting<'a, const N: usize, M: AnyBox<N>, K> {
     pub sink: &'a mut K,
     pub statistics: &'a mut ChartStatistics,
     /// Spans that may still be examined.
-    pub left: u32,
+    pub left: &'a mut u32,
 }
 
 impl<const N: usize, M, K> Cutting<'_, N, M, K>
@@ -88,7 +88,7 @@ where
         let Some(left) = self.left.checked_sub(1) else {
             return false;
         };
-        self.left = left;
+        *self.left = left;
         if self.monitor.cancelled() {
             return false;
         }

@@ -6,6 +6,9 @@ use super::wedges::Wedge;
 /// Nearer to the axis than this, azimuths say nothing.
 const APEX: f64 = 1e-6;
 
+/// Where a cone's normals lean less than this, from being on one side of the dexels, a line meets it once.
+const UPRIGHT: f64 = 1e-6;
+
 /// A cone or a cylinder.
 pub(super) struct Cone {
     /// Of the meridian.
@@ -22,6 +25,19 @@ impl Cone {
     /// Where a line meets it, within a wedge if that is given.
     pub fn points(&self, [q, b]: [f64; 2], wedge: Option<&Wedge>) -> Points {
         let ([n, m], [s, k]) = (self.normal, self.tilt);
+        if m == 0.0 {
+            return self.on_cylinder([q, b], wedge);
+        }
+        if (n * s).abs() < UPRIGHT * (m * k).abs() {
+            // With one sign of `n_z` there is one point, near the one of an upright cone.
+            let mut tangent = false;
+            let point = self.point([q, b], (-q / k, f64::INFINITY), wedge, &mut tangent);
+            return if tangent {
+                Points::Tangent
+            } else {
+                Points::Two([point, None])
+            };
+        }
         let u = s * self.weight - m * q;
         let [round, flat] = [n * s, m * k];
         let square = round * round - flat * flat;
@@ -67,6 +83,42 @@ impl Cone {
             tangent = true;
         }
         if tangent { Points::Tangent } else { Points::Two(points) }
+    }
+
+    /// The points on a cylinder, `a² + b² = ρ²`: dexels may be almost parallel to it. Then most of them are beside the ends of the cylinder, on the plane `s ζ = q + k a`.
+    fn on_cylinder(&self, [q, b]: [f64; 2], wedge: Option<&Wedge>) -> Points {
+        let ([n, _], [s, k]) = (self.normal, self.tilt);
+        let rho = self.ends[0][1];
+        let (square, doubt) = ((rho - b) * (rho + b), 16.0 * self.slack * (rho + b.abs()));
+        if square < -doubt {
+            return Points::Two([None, None]);
+        }
+        let heights = self.ends[1].map(|height| s * height);
+        if square < doubt {
+            // Anywhere near the middle.
+            let reach = k.abs() * (square.max(0.0) + doubt).sqrt() + 8.0 * self.slack;
+            let beside = q - reach > heights[1] || q + reach < heights[0];
+            return if beside {
+                Points::Two([None, None])
+            } else {
+                Points::Tangent
+            };
+        }
+        let half = square.sqrt();
+        let error = 8.0 * self.slack * rho / half;
+        Points::Two([-half, half].map(|a| {
+            if wedge.is_some_and(|wedge| !wedge.holds(a / rho, b / rho)) {
+                return None;
+            }
+            let rise = q + k * a;
+            let height = rise / s;
+            Some(Point {
+                height: a * s + height * k,
+                normal: [n * a / rho, n * b / rho, 0.0],
+                error: [error / rho, 0.0],
+                inside: within(rise, heights, error + 8.0 * self.slack),
+            })
+        }))
     }
 
     /// `n_z`.
