@@ -88,11 +88,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
         let PathPart {
-            segment,
-            round,
-            wheel,
-            inclined,
-            ..
+            segment, round, wheel, ..
         } = &self.parts[at];
         let mut collector = Collector {
             lines: self.lines,
@@ -100,13 +96,8 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         };
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
-        let by_share = |share: f64| self.source_after(at, share);
-        if let Some(arc) = inclined {
-            let arc = (arc, segment, translation::slack(self.size.slack), self.near);
-            translation::inclined(outline, arc, &mut collector, by_share, settled);
-            return;
-        }
         let collector = (&mut collector, self.ceiling);
+        let by_share = |share: f64| self.source_after(at, share);
         if let Some(wheel) = wheel {
             let arc = (wheel, segment, translation::slack(self.size.slack), self.near);
             translation::along(outline, arc, collector, by_share, settled);

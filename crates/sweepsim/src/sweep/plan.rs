@@ -12,9 +12,6 @@ use std::sync::Arc;
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Path, Tool};
 
-/// Arcs whose radius is that of a wall or an edge of the tool, to within this part of it, are solved by charts.
-const ALIKE: f64 = 1e-5;
-
 /// A tool and a path, prepared for any lines.
 pub(crate) struct Plan {
     pub cutter: Arc<Cutter>,
@@ -78,16 +75,7 @@ impl Plan {
             symmetric: tool.is_revolved(),
             closed: whole && options.method == Method::Charts,
         };
-        let mut parts = path_parts::parts((path, moves), frame, kind, cutter.reach, &tolerances);
-        // About an arc as wide as a wall or an edge of the tool, lines near the centre touch it all along: squared distances have no digits for them.
-        let pieces = cutter.outline.iter().flat_map(|outline| &outline.pieces);
-        let radii: Vec<f64> = pieces.flat_map(|piece| [piece.from[0], piece.to[0]]).collect();
-        for part in &mut parts {
-            part.round = part.round.filter(|round| {
-                let apart = radii.iter().map(|radius| (round.radius - radius).abs());
-                apart.fold(f64::INFINITY, f64::min) > ALIKE * round.radius
-            });
-        }
+        let parts = path_parts::parts((path, moves), frame, kind, cutter.reach, &tolerances);
         Ok(Self {
             parts,
             cutter,

@@ -1,8 +1,8 @@
 //! Integration tests of `sweepsim`, in one binary: it links once.
 
 mod arcs_along_dexels;
+mod arcs_as_wide_as_the_tool;
 mod arcs_in_closed_form;
-mod arcs_in_tilted_planes;
 mod arcs_of_lying_axes;
 mod arcs_of_lying_tools;
 mod cancelling;

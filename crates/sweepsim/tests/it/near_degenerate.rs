@@ -1,5 +1,5 @@
 //! What almost degenerate input costs: in boxes of the subdivision, which no clock disturbs. By each method it may cost three times its generic
-//! neighbour, whatever the distance from degeneracy, with the exception listed here.
+//! neighbour, whatever the distance from degeneracy.
 //!
 //! `cargo test -p sweepsim --release --test it near_degenerate -- --include-ignored --nocapture` prints the table of the docs.
 
@@ -22,8 +22,6 @@ const METHODS: [Method; 5] = [
     Method::Planes,
     Method::Lines,
 ];
-/// By default, arcs as wide as the tool are left to the general search: they are compared with its generic neighbour.
-const IN_GENERAL: &str = "tool's radius from that of the arc";
 
 fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
@@ -83,6 +81,9 @@ fn families() -> Vec<Family> {
         }),
         ("tool's radius from that of the arc", |d| {
             (arc(2.0 - d, 0.0, [UP; 2], Turning::Even), around([0.0; 2]))
+        }),
+        ("tool's radius from that of a helix", |d| {
+            (arc(2.0 - d, 0.7, [UP; 2], Turning::Even), around([0.0; 2]))
         }),
         ("tilt of a level move", |d| {
             let axis = leaning(d);
@@ -222,13 +223,8 @@ fn is_cheap(
     (name, tool): &(&'static str, Tool),
     distances: &[f64],
 ) -> Result<(), String> {
-    let neighbour = if method == Method::Charts && what == IN_GENERAL {
-        Method::General
-    } else {
-        method
-    };
     let input = family(GENERIC);
-    let generic = work(neighbour, &cost(neighbour, tool, &input), &input.1);
+    let generic = work(method, &cost(method, tool, &input), &input.1);
     let ratio = |d: &f64| {
         let input = family(*d);
         let found = cost(method, tool, &input);

@@ -138,8 +138,8 @@ impl CircularArc {
         Self::about((start, end), plane, centre, across > 0.0, 1.0)
     }
 
-    /// The arc's image under a map: `None` if that is no arc.
-    pub(crate) fn mapped(&self, map: &Map) -> Option<Self> {
+    /// The arc's image under a map: `None` if that is no arc in one of the three planes.
+    fn mapped(&self, map: &Map) -> Option<Self> {
         let [u, v, w] = self.plane;
         if map.is_shift() {
             let add = map.add;
@@ -243,6 +243,59 @@ impl CircularArc {
         point[v] = self.centre[1] + scale * (sin * from[0] + cos * from[1]);
         point[w] = self.start[w] + s * (self.end[w] - self.start[w]);
         point
+    }
+}
+
+/// An arc where the tool goes.
+#[derive(Clone, Debug)]
+pub(crate) struct PlacedArc {
+    arc: CircularArc,
+    /// What turns it into its plane, if that is none of the three, and the scale.
+    tilt: Option<(Map, f64)>,
+}
+
+impl PlacedArc {
+    /// The image under a map: `None` if that is no arc.
+    pub(crate) fn new(arc: CircularArc, map: &Map) -> Option<Self> {
+        if let Some(arc) = arc.mapped(map) {
+            return Some(Self { arc, tilt: None });
+        }
+        let scale = map.scale()?;
+        let tilt = Some((*map, scale));
+        Some(Self { arc, tilt })
+    }
+
+    fn placed(&self, point: [f64; 3]) -> [f64; 3] {
+        match &self.tilt {
+            Some((map, _)) => map.apply(point),
+            None => point,
+        }
+    }
+
+    pub(crate) fn ends(&self) -> [[f64; 3]; 2] {
+        [self.placed(self.arc.start), self.placed(self.arc.end)]
+    }
+
+    /// The arc, about an axis of any direction.
+    pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
+        let arc = self.arc.exact()?;
+        let Some((map, scale)) = &self.tilt else { return Ok(arc) };
+        let [start, end] = self.ends();
+        let normal = map.apply_direction(arc.normal()).map(|c| c / scale.abs());
+        // A mirrored arc turns the other way.
+        let angle = arc.angle() * scale.signum();
+        Ok(TipArc::new(map.apply(arc.centre()), normal, angle)?.through(start, end))
+    }
+
+    /// The number of chords that stay within `tolerance` (mm) of the arc.
+    pub(crate) fn chords(&self, tolerance: f64) -> Result<usize, String> {
+        let scale = self.tilt.as_ref().map_or(1.0, |(_, scale)| scale.abs());
+        self.arc.chords(tolerance / scale)
+    }
+
+    /// The point at `s` in `[0, 1]`.
+    pub(crate) fn at(&self, s: f64) -> [f64; 3] {
+        self.placed(self.arc.at(s))
     }
 }
 

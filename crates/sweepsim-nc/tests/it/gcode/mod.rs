@@ -9,6 +9,7 @@ mod flow;
 mod frames;
 mod shop_codes;
 mod speed;
+mod tilted_arcs;
 
 use sweepsim_nc::gcode::read;
 use sweepsim_nc::{Controller, Program, ReadOptions};

@@ -11,12 +11,15 @@
 //! outwards and ahead, with `σ = 1` for arcs that turn left and `−1` for the others. The squared distance `s` takes the place of `p`, and the angle that of
 //! `q`. On lines of the meridian, balls about the axis and edges, `ρ²` is a quadratic function of `p`, and the inverse of `s` a square root.
 
-use super::curves::{Graph, Heading, Parabola, ring, slant, torus};
+mod ends;
+
+use super::curves::{Beside, Graph, Heading, Parabola, Seen, Turned, ring, slant, torus};
 use super::rows::{Row, Sector};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
-use crate::time::circles::Round;
+use crate::time::round::Round;
+use ends::{Bend, Place};
 use std::f64::consts::PI;
 use sweepsim_dexel::Source;
 
@@ -71,24 +74,6 @@ struct Bow<'a, 'b, S> {
     side: f64,
 }
 
-/// A stretch of a graph over which `s` is monotone.
-struct Bend {
-    /// `p` where `s` is least, and where it is greatest.
-    p: [f64; 2],
-    s: [f64; 2],
-    margins: [f64; 2],
-    /// By which the jumps of the graph are multiplied.
-    sense: i8,
-}
-
-/// What the sides of a line say of it.
-enum Place {
-    Outside,
-    Near,
-    /// With the cosine and the sine of the angle that the tool has turned by.
-    Inside([f64; 2]),
-}
-
 impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
     /// `None` if there is no closed form.
     fn piece(&mut self, piece: &Piece) -> Option<()> {
@@ -107,7 +92,7 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     least: square * cosine * cosine,
                     radius: self.round.radius,
                 };
-                self.all(&graphs, parabola);
+                self.all(&graphs, parabola, |_, _, _| None);
             }
             Shape::Arc {
                 centre,
@@ -126,7 +111,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     least: sine * sine * (radius * radius - square / bow),
                     radius: self.round.radius,
                 };
-                self.all(&graphs, parabola);
+                let beside = self.beside();
+                self.all(&graphs, parabola, |ring, s, beyond| Some(ring.near(&beside, s, beyond)));
             }
             Shape::Arc {
                 centre,
@@ -135,7 +121,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 out,
             } => {
                 let graphs = torus::stretches(heading, centre, radius, angles, out)?;
-                let (radius, side) = (self.round.radius, self.side);
+                let beside = self.beside();
+                let Beside { radius, side, .. } = beside;
                 let halves: Option<Vec<_>> = graphs.iter().map(|torus| torus.halves_about(radius, side)).collect();
                 let halves = halves?;
                 for (graph, halves) in graphs.iter().zip(halves) {
@@ -146,10 +133,18 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     }
                     for range in halves.into_iter().flatten() {
                         let ends = range.map(|e| graph.across(e));
-                        let bend = self.bend(graph, [ends[0].min(ends[1]), ends[0].max(ends[1])]);
-                        self.sweep(graph, &bend, |s| {
-                            let p = graph.invert_about(range, radius, side, s)?;
-                            Some((p, 2.0 * s.sqrt() < radius))
+                        let turn = |p: f64| graph.square_at(&beside, if p == ends[0] { range[0] } else { range[1] });
+                        let bend = self.bend(graph, [ends[0].min(ends[1]), ends[0].max(ends[1])], turn);
+                        self.sweep(graph, &bend, |bow, s| {
+                            let near = if bow.is_near(s) {
+                                graph.near(range, &beside, s)
+                            } else {
+                                None
+                            };
+                            near.or_else(|| {
+                                let p = graph.invert_about(range, radius, side, s)?;
+                                Some(bow.seen(graph, &bend, s, (p, bow.is_near(s))))
+                            })
                         });
                     }
                 }
@@ -179,11 +174,21 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
             least: 0.0,
             radius: self.round.radius,
         };
-        self.all(&graphs, parabola);
+        let beside = self.beside();
+        self.all(&graphs, parabola, |ring, s, beyond| Some(ring.near(&beside, s, beyond)));
         Some(())
     }
 
-    fn all<G: Graph>(&mut self, graphs: &[G], parabola: Parabola) {
+    fn beside(&self) -> Beside {
+        Beside {
+            radius: self.round.radius,
+            side: self.side,
+            slack: self.heading.slack,
+        }
+    }
+
+    /// `near` gives the point of a graph at `s` where that is [near](Self::is_near), if it has more digits than from `p`.
+    fn all<G: Turned>(&mut self, graphs: &[G], parabola: Parabola, near: impl Fn(&G, f64, bool) -> Option<Seen>) {
         let side = self.side;
         let turn = parabola.turn().map(|p| side * p);
         for graph in graphs {
@@ -198,11 +203,14 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 _ => [Some([low, high]), None],
             };
             for span in spans.into_iter().flatten() {
-                let bend = self.bend(graph, span);
+                let bend = self.bend(graph, span, |_| parabola.least);
                 let beyond = turn.is_some_and(|turn| side * (0.5 * (span[0] + span[1]) - turn) > 0.0);
-                self.sweep(graph, &bend, |s| {
-                    let (p, near) = parabola.invert(s, beyond);
-                    Some((side * p, near))
+                self.sweep(graph, &bend, |bow, s| {
+                    let seen = if bow.is_near(s) { near(graph, s, beyond) } else { None };
+                    seen.or_else(|| {
+                        let (p, near) = parabola.invert(s, beyond);
+                        Some(bow.seen(graph, &bend, s, (side * p, near)))
+                    })
                 });
             }
         }
@@ -221,10 +229,14 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let [a, b] = [squares(radial), squares([back, front])];
         let margin = 8.0 * slack * (radial[1].abs() + front.abs().max(back.abs()));
         let range = [a[0] + b[0] - margin, a[1] + b[1] + margin];
+        self.leave(self.sector(radial, [back, front], range), range);
+    }
+
+    /// Leaves the lines of a sector open, with `s` in a range.
+    fn leave(&mut self, sector: Sector, range: [f64; 2]) {
         let lattice = self.lines.lines;
-        let sector = self.sector(radial, [back, front], range);
         let (round, lines) = (self.round, &mut *self.lines);
-        sector.rows(lattice, slack, |Row { i, j, x }| {
+        sector.rows(lattice, self.heading.slack, |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lattice.coordinate(1, j) - round.centre[1];
                 let s = x * x + y * y;
@@ -242,7 +254,8 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         let all = corners.iter().flatten();
         let range = all.fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| [r[0].min(*a), r[1].max(*a)]);
         // Angles of a rectangle about the centre, or behind it, are in no interval.
-        let behind = radial[0].min(radial[1]) <= 0.0 && back <= 0.0 && front >= 0.0;
+        let off = NARROW * self.heading.slack;
+        let behind = radial[0].min(radial[1]) <= off && back <= off && front >= -off;
         let start = round.from[1].atan2(round.from[0]);
         let angles = if behind {
             [0.0, 2.0 * PI]
@@ -257,63 +270,25 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
         }
     }
 
-    /// `s` at a point of a graph.
-    fn square(&self, q: f64, p: f64) -> f64 {
-        let out = self.round.radius - self.side * p;
-        out * out + q * q
-    }
-
-    /// A span over which `s` is known to be monotone.
-    fn bend<G: Graph>(&self, graph: &G, span: [f64; 2]) -> Bend {
-        let slack = self.heading.slack;
-        let whole = graph.span();
-        let own = graph.margins();
-        let end = |k: usize| {
-            let p = span[k];
-            let q = graph.at(p).q;
-            let s = self.square(q, p);
-            // Where the graph ends, it may end elsewhere.
-            let inner = span[k] + if k == 0 { 2.0 } else { -2.0 } * own[k];
-            let shift = if p == whole[k] {
-                2.0 * (s - self.square(graph.at(inner).q, inner)).abs()
-            } else {
-                0.0
-            };
-            // Where s turns, the distance from the centre is as accurate as coordinates are, also if it is almost 0.
-            let off = if p == whole[k] {
-                8.0 * slack * (self.round.radius + p.abs() + q.abs())
-            } else {
-                let near = 8.0 * slack * (1.0 + graph.at(p).slope.abs());
-                near * (2.0 * s.sqrt() + near)
-            };
-            (p, s, shift + off)
-        };
-        let ends = [end(0), end(1)];
-        let falls = ends[1].1 < ends[0].1;
-        let [a, b] = if falls { [ends[1], ends[0]] } else { ends };
-        // The left of the tool is inside for arcs that turn left.
-        let sense = if falls == (self.side > 0.0) { 1 } else { -1 };
-        Bend {
-            p: [a.0, b.0],
-            s: [a.1, b.1],
-            margins: [a.2, b.2],
-            sense,
-        }
-    }
-
-    /// The lines over what a bend sweeps. `invert` gives `p` for a value of `s`, and whether it is as accurate as `√s`.
-    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, invert: impl Fn(f64) -> Option<(f64, bool)>) {
+    /// The lines over what a bend sweeps. `find` gives the point at a value of `s`.
+    fn sweep<G: Graph>(&mut self, graph: &G, bend: &Bend, find: impl Fn(&Self, f64) -> Option<Seen>) {
         let [low, high] = bend.s;
         let margins = bend.margins;
-        if !(high - low > NARROW * (margins[0] + margins[1])) {
-            self.sliver(graph);
-            return;
-        }
         let wide = [low - margins[0], high + margins[1]];
         let sure = [low + margins[0], high - margins[1]];
         let (round, side, slack) = (self.round, self.side, self.heading.slack);
         let turn = round.angle.abs();
         let radial = bend.p.map(|p| round.radius - side * p);
+        if !(high - low > NARROW * (margins[0] + margins[1])) {
+            // Next to the centre, angles are not certain.
+            let (radial, reach) = if self.is_near(wide[1]) {
+                ([-wide[1].sqrt(), wide[1].sqrt()], [-wide[1].sqrt(), wide[1].sqrt()])
+            } else {
+                (radial, graph.reach())
+            };
+            self.leave(self.sector(radial, reach, wide), wide);
+            return;
+        }
         let sector = self.sector(radial, graph.reach(), wide);
         let lattice = self.lines.lines;
         sector.rows(lattice, slack, |Row { i, j, x }| {
@@ -324,30 +299,19 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                     continue;
                 }
                 let doubtful = s < sure[0] || s > sure[1];
-                let Some((p, near)) = invert(s.clamp(low, high)) else {
+                let Some(Seen { out, spot, error }) = find(self, s.clamp(low, high)) else {
                     self.lines.open(lattice.line(i, j));
                     continue;
                 };
-                let p = p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1]));
-                let spot = graph.at(p);
                 if spot.jump == 0 && spot.certain && !doubtful {
                     continue;
                 }
-                let out = round.radius - side * p;
                 let error = if doubtful {
-                    BLUR
+                    // Along a curve that is tangent to a circle about the centre, angles change with the square root of the distance.
+                    let margin = if s < sure[0] { margins[0] } else { margins[1] };
+                    BLUR.max(2.0 * (margin / s).sqrt())
                 } else {
-                    let far = round.radius + p.abs() + spot.q.abs();
-                    let distance = s.sqrt();
-                    // Of the point, and of s; then of p, and of the angle.
-                    let (own, square) = if near {
-                        let own = slack * (8.0 + 4.0 * spot.slope.abs());
-                        (own, own * (distance + own))
-                    } else {
-                        (4.0 * slack, 4.0 * slack * (far + distance))
-                    };
-                    let off = square / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
-                    own / distance + off * (out * spot.slope + side * spot.q).abs() / s
+                    error
                 };
                 let place = self.place([x, y], [out, spot.q], s, error);
                 let line = lattice.line(i, j);
@@ -374,24 +338,5 @@ impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
                 }
             }
         });
-    }
-
-    /// Where a line lies along the arc of a point that starts at `(out, ahead)` from the centre. `error`: of angles.
-    fn place(&self, [x, y]: [f64; 2], [out, ahead]: [f64; 2], s: f64, error: f64) -> Place {
-        let [fx, fy] = self.round.from;
-        let own = [x * fx + y * fy, self.side * (y * fx - x * fy)];
-        // The angle from the point to the line, as a complex number.
-        let c = own[0] * out + own[1] * ahead;
-        let n = own[1] * out - own[0] * ahead;
-        let (end_sine, end_cosine) = self.round.angle.abs().sin_cos();
-        let end = n * end_cosine - c * end_sine;
-        let error = error * s;
-        if n < -error || end > error {
-            Place::Outside
-        } else if n > error && end < -error {
-            Place::Inside([c / s, n / s])
-        } else {
-            Place::Near
-        }
     }
 }

@@ -116,7 +116,6 @@ impl<'a> Runs<'a> {
             segment: part.segment.part(range[0], range[1]),
             round: None,
             wheel: None,
-            inclined: None,
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],

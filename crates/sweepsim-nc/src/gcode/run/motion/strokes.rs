@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::drive::{Bend, Compensation, Corners, Item, Side, Stroke};
-use crate::gcode::motion::arc::CircularArc;
+use crate::gcode::motion::arc::{CircularArc, PlacedArc};
 use crate::gcode::motion::state::MoveEnd;
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::run::tools::ToolRow;
@@ -92,7 +92,7 @@ impl Reader {
             centre: bend.centre,
             sweep: bend.sweep,
         };
-        let Some(arc) = arc.mapped(&self.map) else {
+        let Some(arc) = PlacedArc::new(arc, &self.map) else {
             return Err(NcProblem::unsupported(
                 "arcs in coordinates with unequal scales are",
                 "expected the same scale for all axes",
@@ -101,7 +101,7 @@ impl Reader {
         if !self.kept_arcs.none() && !self.state.turns_by_axes(target.abc) {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
             let upright = self.state.abc == [0.0; 3] && target.abc == [0.0; 3];
-            if self.kept_arcs.keep(&exact, [arc.start, arc.end], upright) {
+            if self.kept_arcs.keep(&exact, arc.ends(), upright) {
                 return self.state.arc_to(target, exact);
             }
         }

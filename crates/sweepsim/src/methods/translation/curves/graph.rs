@@ -17,6 +17,24 @@ pub(crate) struct Spot {
     pub certain: bool,
 }
 
+/// A point of a curve that turns about a line beside the tool, at a distance from that line.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seen {
+    /// How far it is from the line, seen along the arm to the tip.
+    pub out: f64,
+    pub spot: Spot,
+    /// How far the angle may be off at which it is seen from the line.
+    pub error: f64,
+}
+
+/// An end of a graph.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct End {
+    pub q: f64,
+    /// By how much more than a coordinate it may be off in the plane of `q` and `p`, where this is known better than from the margin of `p`: both may turn there.
+    pub blur: Option<f64>,
+}
+
 /// A stretch of a curve fixed to the tool over which `p` is strictly monotone.
 pub(crate) trait Graph {
     /// The point at `p`, within the [span](Self::span).
@@ -63,4 +81,10 @@ pub(crate) struct Point {
     pub z: f64,
     /// As that of a [`Spot`].
     pub normal: Local,
+}
+
+/// A graph that may turn with the tool about a line beside it.
+pub(crate) trait Turned: Graph {
+    /// What is at the lower and at the upper end of `p`.
+    fn ends(&self) -> [End; 2];
 }

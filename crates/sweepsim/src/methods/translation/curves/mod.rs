@@ -6,13 +6,15 @@ mod oblique;
 mod parabola;
 pub(crate) mod quarters;
 pub(crate) mod ring;
+mod ring_about;
 pub(crate) mod slant;
 pub(crate) mod torus;
 mod torus_about;
 
-pub(crate) use graph::{Graph, Point};
+pub(crate) use graph::{Graph, Point, Seen, Turned};
 pub(crate) use heading::{Heading, SHORTEST, slack, stands};
 pub(crate) use parabola::Parabola;
+pub(crate) use ring_about::Beside;
 
 /// A vector in the coordinates `(q, p, z)` of a move.
 pub(crate) type Local = [f64; 3];

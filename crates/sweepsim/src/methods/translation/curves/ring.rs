@@ -1,6 +1,6 @@
 //! Circles: sharp edges, and the grazing curve of a ball.
 
-use super::graph::{Graph, Point, Spot};
+use super::graph::{End, Graph, Point, Spot, Turned};
 use super::{Heading, Local, along, dot};
 use crate::cutter::outline::Rim;
 use std::f64::consts::PI;
@@ -14,7 +14,7 @@ const BLURRED: f64 = 1e-2;
 
 /// What a circle bounds.
 #[derive(Clone, Copy, Debug)]
-enum Role {
+pub(super) enum Role {
     /// A ball about the circle's centre.
     Ball { jump: i8, out: f64 },
     /// An edge between two faces.
@@ -35,15 +35,17 @@ enum Role {
 pub(crate) struct Ring {
     centre: Local,
     first: Local,
-    second: Local,
-    width: f64,
+    pub(super) second: Local,
+    pub(super) width: f64,
     /// The sign of `sin θ`.
-    half: f64,
+    pub(super) half: f64,
     span: [f64; 2],
     margins: [f64; 2],
     angles: [f64; 2],
+    /// How far off these may be.
+    errors: [f64; 2],
     slack: f64,
-    role: Role,
+    pub(super) role: Role,
 }
 
 /// The circle about `centre` with these two perpendicular radii, turned such that `p` is extreme at its first.
@@ -104,10 +106,11 @@ impl Circle {
                 )
             };
             let (mut low, mut high) = (end(a, a_error), end(b, b_error));
-            let mut own = [a, b];
+            let (mut own, mut errors) = ([a, b], [a_error, b_error]);
             if low.0 > high.0 {
                 std::mem::swap(&mut low, &mut high);
                 own.swap(0, 1);
+                errors.swap(0, 1);
             }
             out.push(Ring {
                 centre: self.centre,
@@ -118,6 +121,7 @@ impl Circle {
                 span: [self.centre[1] + low.0, self.centre[1] + high.0],
                 margins: [2.0 * low.1, 2.0 * high.1],
                 angles: own,
+                errors,
                 slack,
                 role: role(half),
             });
@@ -227,8 +231,14 @@ impl Ring {
         }
     }
 
-    /// The signs of `g` on both faces of an edge, and whether they are certain.
-    fn sides(&self, [c, s]: [f64; 2]) -> ([f64; 2], bool) {
+    /// How far off the angle may be, where it follows from `p`: near the extremes of `p`, it grows with the square root.
+    fn blur(&self, s: f64) -> f64 {
+        let blur = self.slack / self.width;
+        2.0 * (blur / s.abs()).min((2.0 * blur).sqrt()) + 16.0 * f64::EPSILON
+    }
+
+    /// The signs of `g` on both faces of an edge, and whether they are certain if the angle may be off by `error`.
+    fn sides(&self, [c, s]: [f64; 2], error: f64) -> ([f64; 2], bool) {
         let Role::Rim {
             azimuth, rates, speed, ..
         } = &self.role
@@ -236,9 +246,6 @@ impl Ring {
             return ([0.0; 2], true);
         };
         let cosine = azimuth[0] * c + azimuth[1] * s;
-        // Of the angle: near the extremes of p, it grows with the square root.
-        let blur = self.slack / self.width;
-        let error = 2.0 * (blur / s.abs()).min((2.0 * blur).sqrt()) + 16.0 * f64::EPSILON;
         let mut certain = true;
         let sides = rates.map(|[ahead, up]| {
             let g = ahead * cosine + up;
@@ -250,10 +257,10 @@ impl Ring {
     }
 }
 
-impl Graph for Ring {
+impl Ring {
+    /// The point at an angle, which may be off by `error`.
     #[inline]
-    fn at(&self, p: f64) -> Spot {
-        let [c, s] = self.turn(p);
+    pub(super) fn spot(&self, [c, s]: [f64; 2], error: f64) -> Spot {
         let arm = along(&self.first.map(|x| c * x), s, &self.second);
         let slope = self.slope([c, s]);
         let (jump, normal, certain) = match &self.role {
@@ -261,7 +268,7 @@ impl Graph for Ring {
             Role::Rim {
                 normals, radius, axis, ..
             } => {
-                let ([a, b], certain) = self.sides([c, s]);
+                let ([a, b], certain) = self.sides([c, s], error);
                 let jump = self.change([a, b]);
                 // In the fan of the two faces, where g = 0.
                 let [n, m] = [0, 1].map(|k| normals[0][k] * b.abs() + normals[1][k] * a.abs());
@@ -276,6 +283,14 @@ impl Graph for Ring {
             normal,
             certain,
         }
+    }
+}
+
+impl Graph for Ring {
+    #[inline]
+    fn at(&self, p: f64) -> Spot {
+        let turn = self.turn(p);
+        self.spot(turn, self.blur(turn[1]))
     }
 
     fn span(&self) -> [f64; 2] {
@@ -304,7 +319,10 @@ impl Graph for Ring {
         if let Role::Ball { jump, .. } = self.role {
             return Some(jump);
         }
-        let [(a, a_sure), (b, b_sure)] = between.map(|p| self.sides(self.turn(p)));
+        let [(a, a_sure), (b, b_sure)] = between.map(|p| {
+            let turn = self.turn(p);
+            self.sides(turn, self.blur(turn[1]))
+        });
         let negative = |sides: [f64; 2]| sides.map(|g| g < 0.0);
         (a_sure && b_sure && negative(a) == negative(b)).then(|| self.change(a))
     }
@@ -358,5 +376,18 @@ impl Graph for Ring {
                 }
             }
         }
+    }
+}
+
+impl Turned for Ring {
+    fn ends(&self) -> [End; 2] {
+        [0, 1].map(|k| {
+            let (s, c) = self.angles[k].sin_cos();
+            let length = self.first[0].abs() + self.second[0].abs() + self.width;
+            End {
+                q: self.centre[0] + c * self.first[0] + s * self.second[0],
+                blur: Some(length * self.errors[k]),
+            }
+        })
     }
 }

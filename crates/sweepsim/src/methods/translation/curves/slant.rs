@@ -1,6 +1,6 @@
 //! The grazing curve of a cone or cylinder: two straight lines.
 
-use super::graph::{Graph, Point, Spot};
+use super::graph::{End, Graph, Point, Spot, Turned};
 use super::{Heading, Local};
 
 /// Where `sin² φ` is below this, the two lines almost coincide, and rounding would blur them.
@@ -109,6 +109,21 @@ impl Graph for Slant {
                 z: self.place(*p)[1],
                 normal: self.normal,
             };
+        }
+    }
+}
+
+impl Turned for Slant {
+    fn ends(&self) -> [End; 2] {
+        let [a, b] = &self.ends;
+        let end = |end: &Local| End {
+            q: end[0],
+            blur: Some(self.margin),
+        };
+        if a[1] <= b[1] {
+            [end(a), end(b)]
+        } else {
+            [end(b), end(a)]
         }
     }
 }

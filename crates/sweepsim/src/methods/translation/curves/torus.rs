@@ -9,7 +9,7 @@
 //!
 //! so `p` and `q` are monotone between the zeros of `e`, `f` and `w`, and two cube roots.
 
-use super::graph::{Graph, Point, Spot};
+use super::graph::{End, Graph, Point, Spot, Turned};
 use super::{Heading, middle};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -241,15 +241,12 @@ impl Torus {
     }
 }
 
-impl Graph for Torus {
+impl Torus {
+    /// The point with the radius `ρ` and the normal `(|e|, f)` of the meridian, and the sine `w`.
     #[inline]
-    fn at(&self, p: f64) -> Spot {
-        let found = self.invert(p.abs());
-        let e = found.unwrap_or(self.ends[0]);
-        let [rho, f] = self.meridian(e);
+    pub(super) fn spot(&self, rho: f64, [e, f]: [f64; 2], w: f64) -> Spot {
         let (sign, m) = (self.signs[0], self.slope);
         let cosine = -m * f / (sign * e);
-        let w = p.abs() / rho;
         let cube = self.radius * sign * e * e * e;
         let [offset, square] = [self.centre[0], m * m];
         // The quotient of both derivatives.
@@ -264,7 +261,20 @@ impl Graph for Torus {
                 self.out * sign * e * w * self.side,
                 self.out * f,
             ],
+            certain: true,
+        }
+    }
+}
+
+impl Graph for Torus {
+    #[inline]
+    fn at(&self, p: f64) -> Spot {
+        let found = self.invert(p.abs());
+        let e = found.unwrap_or(self.ends[0]);
+        let [rho, f] = self.meridian(e);
+        Spot {
             certain: found.is_some(),
+            ..self.spot(rho, [e, f], p.abs() / rho)
         }
     }
 
@@ -323,6 +333,22 @@ impl Graph for Torus {
                 z: self.centre[1] + self.radius * f,
                 normal: [-self.out * self.slope * f, across * (p / rho), self.out * f],
             };
+        }
+    }
+}
+
+impl Turned for Torus {
+    fn ends(&self) -> [End; 2] {
+        // At the widest place p turns, and q does not.
+        let end = |e: f64| End {
+            q: self.place(e)[1],
+            blur: (e == 1.0).then(|| 4.0 * f64::EPSILON * (self.centre[0].abs() + self.radius) * self.slope.abs()),
+        };
+        let [low, high] = self.ends;
+        if self.side > 0.0 {
+            [end(low), end(high)]
+        } else {
+            [end(high), end(low)]
         }
     }
 }

@@ -1,7 +1,12 @@
 //! The grazing curve of a torus that turns about a line beside the tool: where the distance from it is monotone, and its inverse.
 
+use super::graph::Seen;
 use super::middle;
+use super::ring_about::Beside;
 use super::torus::{STEPS, Torus};
+
+/// Where `|e|` is greater than this, `1 − |e|` has more digits.
+const WIDE: f64 = 0.5;
 
 impl Torus {
     /// The parts of the stretch over which the distance from a point `radius` to the left (`side = 1`) or to the right of the tip is monotone, as ranges of
@@ -48,6 +53,84 @@ impl Torus {
             }
         }
         Some([Some([low, b]), Some([b, high])])
+    }
+
+    /// How far the point at `|e| = 1 − u` is, outwards and ahead, from a line within less than `R` of it: accurate even if that is as far from the tip as the widest place of the torus is.
+    fn at_widest(&self, radius: f64, u: f64) -> [f64; 2] {
+        let bulge = self.signs[0] * self.radius;
+        let widest = self.centre[0] + bulge;
+        let (e, rho) = (1.0 - u, widest - bulge * u);
+        let cosine = self.slope.abs() * (u * (2.0 - u)).sqrt() / e;
+        let square = cosine * cosine;
+        let w = (1.0 - square).max(0.0).sqrt();
+        [(radius - widest) + bulge * u + rho * square / (1.0 + w), rho * cosine]
+    }
+
+    /// The squared distance from a line as near as that, at `|e|`.
+    pub(crate) fn square_at(&self, beside: &Beside, e: f64) -> f64 {
+        let [out, ahead] = if e > WIDE {
+            self.at_widest(beside.radius, 1.0 - e)
+        } else {
+            let [p, q] = self.place(e);
+            [beside.radius - beside.side * self.side * p, q]
+        };
+        out * out + ahead * ahead
+    }
+
+    /// The point at a squared distance from a line, over a range of `|e|` where it is monotone, if it is nearer to the line than the axis is, and to the widest place.
+    pub(crate) fn near(&self, [low, high]: [f64; 2], beside: &Beside, s: f64) -> Option<Seen> {
+        let low = low.max(WIDE);
+        if self.side * beside.side < 0.0 || !(low < high) {
+            return None;
+        }
+        let value = |u: f64| {
+            let [out, ahead] = self.at_widest(beside.radius, u);
+            out * out + ahead * ahead - s
+        };
+        let (mut a, mut b) = (1.0 - high, 1.0 - low);
+        let [first, last] = [value(a), value(b)];
+        if first * last > 0.0 {
+            return None;
+        }
+        let rising = last > first;
+        let (m, bulge) = (self.slope, self.signs[0] * self.radius);
+        let (widest, square) = (self.centre[0] + bulge, m * m);
+        let apart = beside.radius - widest;
+        // As if w and the radius were linear.
+        let rate = bulge + widest * square;
+        let half = apart * rate + widest * widest * square;
+        let distance = s.sqrt();
+        let less = (distance - apart) * (distance + apart);
+        let root = (half * half + rate * rate * less).max(0.0).sqrt();
+        let guesses = [less / (half + root), less / (half - root)];
+        let mut u = guesses.into_iter().find(|u| *u > a && *u < b).unwrap_or(f64::NAN);
+        for _ in 0..STEPS {
+            if !(u > a && u < b) {
+                u = middle(a, b);
+            }
+            let value = value(u);
+            if (value < 0.0) == rising {
+                a = u;
+            } else {
+                b = u;
+            }
+            let (e, rho) = (1.0 - u, widest - bulge * u);
+            let bend = square * u * (2.0 - u) / (e * e);
+            let turn = 2.0 * square / (e * e * e);
+            let w = (1.0 - bend).max(0.0).sqrt();
+            let [out, _] = self.at_widest(beside.radius, u);
+            let outwards = bulge * (1.0 - bend / (1.0 + w)) + 0.5 * rho * turn / w;
+            let step = value / (2.0 * out * outwards + rho * (rho * turn - 2.0 * bulge * bend));
+            let next = u - step;
+            if step.abs() <= 4.0 * f64::EPSILON * u || b - a <= 2.0 * f64::EPSILON * b {
+                let f = self.signs[1] * (u * (2.0 - u)).sqrt();
+                let spot = self.spot(rho, [e, f], w);
+                let ahead = m.abs() * (rho / (e * e) - bulge * f * f / e) * spot.q.signum();
+                return Some(beside.seen(out, spot, [outwards * f.abs(), ahead]));
+            }
+            u = next;
+        }
+        None
     }
 
     /// `p` at a value of `|e|`.

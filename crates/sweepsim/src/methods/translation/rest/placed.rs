@@ -25,7 +25,7 @@ pub(crate) enum Neighbour {
 impl Neighbour {
     /// An end of a move of a tool that does not turn, or that stands along the dexels: a turn about its own axis moves no point out of its surface.
     pub fn of(part: &PathPart, end: SegmentEnd) -> Option<Self> {
-        if part.wheel.is_some() || part.inclined.is_some() {
+        if part.wheel.is_some() {
             return Some(Self::Along(part.segment.velocity(end)[1]));
         }
         if !(part.segment.is_arc() && part.segment.turns().len() == 1 || stands(part)) {
@@ -277,7 +277,9 @@ impl Placed<'_, '_> {
             Neighbour::Along([dx, dy, dz]) => {
                 let out = ratio * (x * dx + y * dy);
                 let g = out + n_zeta * dz;
-                let error = (dx.abs() + dy.abs()) * (slack * (ratio.abs() + spot.bend) + 8.0 * f64::EPSILON)
+                // As the normal turns, its part across the axis changes with the other one: hardly where a wall is widest.
+                let turned = spot.bend * n_zeta.abs();
+                let error = (dx.abs() + dy.abs()) * (slack * (ratio.abs() + turned) + 8.0 * f64::EPSILON)
                     + dz.abs() * (slack * spot.bend + 8.0 * f64::EPSILON);
                 let sure = n_rho == 0.0 || g.abs() > error;
                 (sure, i8::from(g < 0.0))

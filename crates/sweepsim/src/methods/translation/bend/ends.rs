@@ -1,0 +1,126 @@
+//! Where the squared distance of a curve from the centre is monotone, and where a line lies along the way of a point of it.
+
+use super::Bow;
+use crate::methods::translation::curves::{Graph, Seen, Turned};
+use sweepsim_dexel::Source;
+
+/// What rounding may move a point of a curve by, in the rounding errors of a coordinate.
+const OFF: f64 = 8.0;
+
+/// A stretch of a graph over which `s` is monotone.
+pub(super) struct Bend {
+    /// `p` where `s` is least, and where it is greatest.
+    pub p: [f64; 2],
+    pub s: [f64; 2],
+    pub margins: [f64; 2],
+    /// By which the jumps of the graph are multiplied.
+    pub sense: i8,
+}
+
+/// What the sides of a line say of it.
+pub(super) enum Place {
+    Outside,
+    Near,
+    /// With the cosine and the sine of the angle that the tool has turned by.
+    Inside([f64; 2]),
+}
+
+impl<S: Fn(f64) -> Source> Bow<'_, '_, S> {
+    /// Whether lines at this squared distance are much nearer to the centre than the axis is. There, distances are as accurate as coordinates are, however small.
+    pub(super) fn is_near(&self, s: f64) -> bool {
+        2.0 * s.sqrt() < self.round.radius
+    }
+
+    /// `s` at a point of a graph.
+    fn square(&self, q: f64, p: f64) -> f64 {
+        let out = self.round.radius - self.side * p;
+        out * out + q * q
+    }
+
+    /// A span over which `s` is known to be monotone. `turn` gives `s` where it is near, and turns.
+    pub(super) fn bend<G: Turned>(&self, graph: &G, span: [f64; 2], turn: impl Fn(f64) -> f64) -> Bend {
+        let slack = self.heading.slack;
+        let whole = graph.span();
+        let own = graph.margins();
+        let squares = |near: f64, s: f64| near * (2.0 * s.sqrt() + near);
+        let end = |k: usize| {
+            let p = span[k];
+            if p == whole[k] {
+                let end = graph.ends()[k];
+                let s = self.square(end.q, p);
+                let near = self.is_near(s);
+                if let Some(blur) = end.blur.filter(|_| near) {
+                    return (p, s, squares(OFF * slack + blur, s));
+                }
+                // Where the graph ends, it may end elsewhere.
+                let inner = span[k] + if k == 0 { 2.0 } else { -2.0 } * own[k];
+                let shift = 2.0 * (s - self.square(graph.at(inner).q, inner)).abs();
+                let off = if near {
+                    squares(OFF * slack, s)
+                } else {
+                    OFF * slack * (self.round.radius + p.abs() + end.q.abs())
+                };
+                return (p, s, shift + off);
+            }
+            let spot = graph.at(p);
+            let s = self.square(spot.q, p);
+            if self.is_near(s) {
+                let s = turn(p).max(0.0);
+                (p, s, squares(OFF * slack, s))
+            } else {
+                // Where s turns, the distance from the centre is as accurate as coordinates are.
+                (p, s, squares(OFF * slack * (1.0 + spot.slope.abs()), s))
+            }
+        };
+        let ends = [end(0), end(1)];
+        let falls = ends[1].1 < ends[0].1;
+        let [a, b] = if falls { [ends[1], ends[0]] } else { ends };
+        // The left of the tool is inside for arcs that turn left.
+        let sense = if falls == (self.side > 0.0) { 1 } else { -1 };
+        Bend {
+            p: [a.0, b.0],
+            s: [a.1, b.1],
+            margins: [a.2, b.2],
+            sense,
+        }
+    }
+
+    /// The point of a graph at `p`, for a value of `s`. `near`: `p` is as accurate as the distance.
+    pub(super) fn seen<G: Graph>(&self, graph: &G, bend: &Bend, s: f64, (p, near): (f64, bool)) -> Seen {
+        let (round, side, slack) = (self.round, self.side, self.heading.slack);
+        let p = p.clamp(bend.p[0].min(bend.p[1]), bend.p[0].max(bend.p[1]));
+        let spot = graph.at(p);
+        let out = round.radius - side * p;
+        let far = round.radius + p.abs() + spot.q.abs();
+        let distance = s.sqrt();
+        // Of the point, and of s; then of p, and of the angle.
+        let (own, square) = if near {
+            let own = slack * (8.0 + 4.0 * spot.slope.abs());
+            (own, own * (distance + own))
+        } else {
+            (4.0 * slack, 4.0 * slack * (far + distance))
+        };
+        let off = square / (2.0 * (p - side * round.radius + spot.q * spot.slope)).abs();
+        let error = own / distance + off * (out * spot.slope + side * spot.q).abs() / s;
+        Seen { out, spot, error }
+    }
+
+    /// Where a line lies along the arc of a point that starts at `(out, ahead)` from the centre. `error`: of angles.
+    pub(super) fn place(&self, [x, y]: [f64; 2], [out, ahead]: [f64; 2], s: f64, error: f64) -> Place {
+        let [fx, fy] = self.round.from;
+        let own = [x * fx + y * fy, self.side * (y * fx - x * fy)];
+        // The angle from the point to the line, as a complex number.
+        let c = own[0] * out + own[1] * ahead;
+        let n = own[1] * out - own[0] * ahead;
+        let (end_sine, end_cosine) = self.round.angle.abs().sin_cos();
+        let end = n * end_cosine - c * end_sine;
+        let error = error * s;
+        if n < -error || end > error {
+            Place::Outside
+        } else if n > error && end < -error {
+            Place::Inside([c / s, n / s])
+        } else {
+            Place::Near
+        }
+    }
+}
