@@ -95,6 +95,19 @@ proptest! {
     }
 }
 
+/// A line that a ball touches at the start only, where rounding leaves gaps of less than the tolerance.
+#[test]
+fn touched_at_the_start() {
+    let case = Case {
+        radius: 2.4,
+        off: [0.0; 2],
+        from: 0.0,
+        angle: -PI,
+        rise: 0.0,
+    };
+    check(9, &case, 2e-9).expect("as by charts");
+}
+
 /// The lowest height above the tip at a distance from the axis.
 type Bottom = fn(f64) -> f64;
 

@@ -2,11 +2,20 @@
 
 use proptest::prelude::*;
 use sweepsim::{Method, Options, Sweep, sweep};
-use sweepsim_dexel::{Grid, Interval};
+use sweepsim_dexel::{End, Grid, Interval, Source};
 use sweepsim_motion::{Path, Tool};
 
-/// Whether the ends agree, each within the tolerance measured across the surface.
+/// Whether the ends agree, each within the tolerance measured across the surface. Intervals and gaps shorter than the tolerance may be missing or extra.
 pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
+    alike(a, b, tolerance)
+        || alike(
+            &without_slivers(a, tolerance),
+            &without_slivers(b, tolerance),
+            tolerance,
+        )
+}
+
+fn alike(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
     let near = |(a, b): (&Interval, &Interval)| {
         [(a.lower, b.lower), (a.upper, b.upper)].iter().all(|(a, b)| {
             let steep = f64::from(a.normal[2]).abs().max(f64::from(b.normal[2]).abs()).max(1e-3);
@@ -14,6 +23,19 @@ pub fn same(a: &[Interval], b: &[Interval], tolerance: f64) -> bool {
         })
     };
     a.len() == b.len() && a.iter().zip(b).all(near)
+}
+
+/// The intervals with gaps shorter than the tolerance closed, but for those that are themselves shorter.
+fn without_slivers(list: &[Interval], tolerance: f64) -> Vec<Interval> {
+    let mut joined: Vec<Interval> = Vec::new();
+    for next in list {
+        match joined.last_mut() {
+            Some(last) if next.lower.z - last.upper.z < tolerance => last.upper = next.upper,
+            _ => joined.push(*next),
+        }
+    }
+    joined.retain(|one| one.upper.z - one.lower.z >= tolerance);
+    joined
 }
 
 /// Compares both, and returns them. A line in a wall may be on either side of it: then it must agree with a line beside it.
@@ -56,7 +78,8 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
         if is_one {
             continue;
         }
-        // In a wall, ends of different moves may be those of different lines, since tips are displaced as well.
+        // In a wall, ends of different moves may be those of different lines, since tips are displaced as well; and next to one that touches the volume
+        // others miss it.
         others.extend(around.map(|angle| displaced([angle.cos(), angle.sin()])));
         let is_between = are_between(&a, &others, tolerance);
         prop_assert!(is_between, "{name}: {:?}: {a:?} {b:?}", (i, j));
@@ -64,13 +87,59 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
     Ok([closed, charts])
 }
 
-/// Whether every end is between those of lines displaced by no more than the tolerance, so that it is that of one between these.
+/// Whether the intervals cover what lines displaced by no more than the tolerance all have in common, and nothing that none of them has, so that every end
+/// may be that of one between these.
 fn are_between(own: &[Interval], displaced: &[Vec<Interval>], tolerance: f64) -> bool {
-    let alike: Vec<_> = displaced.iter().filter(|other| other.len() == own.len()).collect();
-    let within = |z: f64, end: &dyn Fn(&[Interval]) -> f64| {
-        alike.iter().any(|other| end(other) <= z + tolerance) && alike.iter().any(|other| end(other) >= z - tolerance)
+    let own = without_slivers(own, tolerance);
+    let covers =
+        |list: &[Interval], z: f64, by: f64| list.iter().any(|one| one.lower.z - by < z && z < one.upper.z + by);
+    let ends = |list: &[Interval]| {
+        list.iter()
+            .flat_map(|one| [one.lower.z, one.upper.z])
+            .collect::<Vec<_>>()
     };
-    own.iter()
-        .enumerate()
-        .all(|(k, own)| within(own.lower.z, &|list| list[k].lower.z) && within(own.upper.z, &|list| list[k].upper.z))
+    let mut heights = ends(&own);
+    for z in displaced.iter().flat_map(|other| ends(other)) {
+        heights.extend([z - tolerance, z, z + tolerance]);
+    }
+    heights.sort_by(f64::total_cmp);
+    let between = heights.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+    let mut others = between.map(|z| {
+        let any = displaced.iter().any(|other| covers(other, z, tolerance));
+        let all = displaced.iter().all(|other| covers(other, z, -tolerance));
+        (z, any, all)
+    });
+    others.all(|(z, any, all)| if covers(&own, z, 0.0) { any } else { !all })
+}
+
+#[test]
+fn between_displaced_lines() {
+    let list = |ends: &[[f64; 2]]| -> Vec<Interval> {
+        ends.iter()
+            .map(|&[lower, upper]| {
+                let [lower, upper] = [lower, upper].map(|z| End {
+                    z,
+                    normal: [0.0; 3],
+                    source: Source::Stock,
+                });
+                Interval { lower, upper }
+            })
+            .collect()
+    };
+    let displaced = [
+        list(&[[0.0, 2.0]]),
+        list(&[[0.5, 3.0]]),
+        list(&[[0.2, 3.0], [5.0, 6.0]]),
+    ];
+    for (own, expected) in [
+        (&[[0.3, 2.5]][..], true),
+        (&[[0.3, 2.5], [5.5, 5.6]], true),
+        (&[[-0.2, 2.5]], false),
+        (&[[0.3, 1.5]], false),
+        (&[[0.3, 1.0], [1.5, 3.0]], false),
+        (&[[0.3, 2.5], [4.0, 5.6]], false),
+        (&[], false),
+    ] {
+        assert_eq!(are_between(&list(own), &displaced, 0.1), expected, "{own:?}");
+    }
 }
