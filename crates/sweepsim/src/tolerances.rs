@@ -39,6 +39,15 @@ const REST: f64 = 1e-3;
 /// The distance from the surface at which a point is tested for being outside the volume: well above the sum of all displacements, even where the
 /// surface is steep.
 const OUTSIDE: f64 = 20.0;
+/// The directions in which tips are displaced, orthogonal to each other and almost across no axis of the grid: the usual one first.
+const WAYS: [[f64; 3]; 3] = [
+    [0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331],
+    [0.322_021_831_822, 0.751_986_956_037, -0.575_167_417_175],
+    [-0.756_016_867_947, 0.569_940_858_461, 0.321_878_724_424],
+];
+/// The part of a displacement that has to be along the tool's axis. An end of the tool that is flat slides along itself on moves across the axis: whether
+/// it cuts is decided by this part alone.
+const LEAST_RISE: f64 = 0.2;
 /// After this many poses, the displacement of tips restarts from zero.
 const PERIOD: usize = 61;
 /// The same for tolerances below [`FINE`], where a sixtieth of the displacement would be a few roundings of the coordinates.
@@ -90,24 +99,24 @@ impl Tolerances {
         [reach * angle.cos(), reach * angle.sin()]
     }
 
-    /// The displacement of the tip of a pose: a sawtooth along a fixed generic direction.
+    /// The displacement of the tip of a pose: a sawtooth along a generic direction, which depends on nothing but the tool's axis at this pose.
     ///
     /// Each translation is changed by the *same* vector, so that the sign of `g` on a patch that it decides is the same for all of them, and no
     /// kinks arise between collinear moves. The exception is every 61st, which takes all of the displacement back: before and after it there may be
     /// kinks, as thin as the displacement, which are counted like any others. The same holds at the ends of arcs of tools that lie along an axis of the
     /// grid, where one component of it is left out.
-    pub fn tip_displacement(&self, pose: usize) -> Vector3<f64> {
+    pub fn tip_displacement(&self, pose: usize, axis: Vector3<f64>) -> Vector3<f64> {
         let period = if self.tolerance < FINE * self.size {
             FINE_PERIOD
         } else {
             PERIOD
         };
-        direction() * (TIP * self.tolerance * ((pose % period) as f64 / period as f64))
+        direction(axis) * (TIP * self.tolerance * ((pose % period) as f64 / period as f64))
     }
 
-    /// A translation for a tool that stands still: as long as the largest displacement of a tip.
-    pub fn standstill(&self) -> Vector3<f64> {
-        direction() * (TIP * self.tolerance)
+    /// A translation for a tool that stands still, with this axis: as long as the largest displacement of a tip.
+    pub fn standstill(&self, axis: Vector3<f64>) -> Vector3<f64> {
+        direction(axis) * (TIP * self.tolerance)
     }
 
     /// The maximum deviation of motions from their law.
@@ -147,8 +156,13 @@ impl Tolerances {
     }
 }
 
-fn direction() -> Vector3<f64> {
-    Vector3::new(0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331).normalize()
+/// The first direction that is not almost across this axis, of any length.
+fn direction(axis: Vector3<f64>) -> Vector3<f64> {
+    let ways = WAYS.map(|way| Vector3::from(way).normalize());
+    let least = LEAST_RISE * axis.norm();
+    let rises = |way: &&Vector3<f64>| way.dot(&axis).abs() >= least;
+    // Of three orthogonal directions, one is along any axis by more than a half.
+    *ways.iter().find(rises).unwrap_or(&ways[0])
 }
 
 /// Limits that follow from the chord error of a polyline or a mesh.
@@ -215,15 +229,55 @@ mod tests {
     #[test]
     fn translations_change_alike_but_where_the_sawtooth_wraps() {
         let tolerances = Tolerances::new(1e-6, 100.0).unwrap();
-        let change = |k: usize| tolerances.tip_displacement(k + 1) - tolerances.tip_displacement(k);
+        let axis = Vector3::new(0.2, -0.3, 0.7);
+        let change = |k: usize| tolerances.tip_displacement(k + 1, axis) - tolerances.tip_displacement(k, axis);
         for k in 0..3 * PERIOD {
-            assert!(tolerances.tip_displacement(k).norm() < TIP * 1e-6);
+            assert!(tolerances.tip_displacement(k, axis).norm() < TIP * 1e-6);
             if (k + 1) % PERIOD == 0 {
                 assert!(change(k).dot(&change(0)) < 0.0, "{k}");
             } else {
                 assert!((change(k) - change(0)).norm() < 1e-12 * TIP * 1e-6, "{k}");
             }
         }
+    }
+
+    #[test]
+    fn no_axis_is_across_its_displacement() {
+        let tolerances = Tolerances::new(1e-6, 100.0).unwrap();
+        let along_grid = (0..3).map(|k| {
+            let mut axis = Vector3::zeros();
+            axis[k] = 1.0;
+            axis
+        });
+        for axis in along_grid.chain([Vector3::new(0.0, 0.3, -2.0), Vector3::new(3.0, 2.0, 9.0)]) {
+            assert_eq!(direction(axis), Vector3::from(WAYS[0]).normalize(), "{axis:?}");
+        }
+        // Around the globe, every 2°, and everywhere across the usual direction.
+        let [usual, other, third] = WAYS.map(|way| Vector3::from(way).normalize());
+        let degrees = |k: u32| f64::from(2 * k).to_radians();
+        let globe = (0..180_u32).flat_map(|k| {
+            let (east, north) = degrees(k).sin_cos();
+            (0..90_u32).map(move |l| {
+                let (across, along) = degrees(l).sin_cos();
+                Vector3::new(across * east, across * north, along)
+            })
+        });
+        let across = (0..180_u32).map(|k| other * degrees(k).cos() + third * degrees(k).sin());
+        for axis in globe.chain(across) {
+            let way = tolerances.standstill(axis) / tolerances.standstill(axis).norm();
+            assert!(way.dot(&axis).abs() >= LEAST_RISE * (1.0 - 1e-12), "{axis:?}");
+            // Neither in a plane of faces along the grid, nor halfway between two of these.
+            assert!((0..3).all(|k| way[k].abs() > 0.3 && (way[k].abs() - way[(k + 1) % 3].abs()).abs() > 0.1));
+            assert_eq!(direction(axis), direction(-axis * 7.0), "{axis:?}");
+        }
+        assert!(
+            usual
+                .dot(&other)
+                .abs()
+                .max(usual.dot(&third).abs())
+                .max(other.dot(&third).abs())
+                < 1e-9
+        );
     }
 
     #[test]

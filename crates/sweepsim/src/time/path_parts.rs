@@ -70,9 +70,10 @@ pub(crate) fn parts(
         None
     };
     let tip = |k: usize| Vector3::from(frame.from_world(poses[k - first].tip()));
+    let axis = |k: usize| Vector3::from(frame.turn_from_world(poses[k - first].axis()));
     // Ends of an arc of a tool that lies along an axis of the grid are not displaced out of its plane.
     let displaced = |k: usize, planes: [Option<usize>; 2]| {
-        let mut by = tolerances.tip_displacement(k);
+        let mut by = tolerances.tip_displacement(k, axis(k));
         planes.into_iter().flatten().for_each(|normal| by[normal] = 0.0);
         by
     };
@@ -165,8 +166,8 @@ pub(crate) fn parts(
         && let Some(pose) = poses.first()
     {
         // A tool that stands still: sweep it along the displacement.
-        let by = tolerances.tip_displacement(0);
-        let still = [by, by + tolerances.standstill()];
+        let by = tolerances.tip_displacement(0, axis(0));
+        let still = [by, by + tolerances.standstill(axis(0))];
         let segments = Segment::between(pose, pose).into_iter().map(seen);
         put(&mut parts, 0, segments.collect(), [tip(0); 2], still);
     }

@@ -102,7 +102,10 @@ impl<'a> MovingSolid<'a> {
     pub fn within(&self, number: usize, window: [f64; 2]) -> Vec<PathPart> {
         let whole = self.slice(self.parts(number..number + 1));
         let mut out = Vec::with_capacity(whole.len());
-        let drift = self.plan.tolerances.standstill() / whole.len() as f64;
+        let Some(first) = whole.first() else { return out };
+        // What slides along itself does so without turning.
+        let axis = first.segment.start().column(2).into_owned();
+        let drift = self.plan.tolerances.standstill(axis) / whole.len() as f64;
         for (n, part) in whole.iter().enumerate() {
             // The stored times are rounded; the parts of most moves are of equal duration.
             let even = 1.0 / whole.len() as f64;

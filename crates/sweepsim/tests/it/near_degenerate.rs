@@ -58,6 +58,23 @@ fn around([x, y]: [f64; 2]) -> Grid {
     Grid::new([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], [15, 15]).expect("a grid")
 }
 
+/// An axis that leans by `d` out of the plane across the direction in which the tips of upright tools are displaced.
+fn from_across_displacement(d: f64) -> [f64; 3] {
+    let way = [0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331_f64];
+    let across = [0.0, way[2], -way[1]];
+    let norm = way[2].hypot(way[1]);
+    std::array::from_fn(|k| across[k] / norm + d * way[k])
+}
+
+/// Two directions across such an axis, at right angles.
+fn across_axis(axis: [f64; 3]) -> [[f64; 3]; 2] {
+    let norm = |v: [f64; 3]| v[0].hypot(v[1]).hypot(v[2]);
+    let unit = |v: [f64; 3]| v.map(|c| c / norm(v));
+    let [x, y, z] = unit(axis);
+    let u = unit([y, -x, 0.0]);
+    [u, [y * u[2] - z * u[1], z * u[0] - x * u[2], x * u[1] - y * u[0]]]
+}
+
 /// A family of inputs by their distance from degeneracy: the path and the grid of a distance.
 type Family = (&'static str, fn(f64) -> (Path, Grid));
 
@@ -145,6 +162,30 @@ fn families() -> Vec<Family> {
             ];
             let way = Move::straight(Turning::Rotary { table, from, to });
             (Path::with_moves(poses, vec![way]).expect("a path"), around(SIDE))
+        }),
+        ("axis from across the displacement of tips, on a level move", |d| {
+            let axis = from_across_displacement(d);
+            let [[x, y, z], _] = across_axis(axis);
+            let poses = [-1.9, 2.1].map(|far| pose([far * x, far * y, far * z], axis));
+            (through(poses.into(), Law::Slerp), around(SIDE))
+        }),
+        ("axis from across the displacement of tips, on an arc across it", |d| {
+            let axis = from_across_displacement(d);
+            let [u, v] = across_axis(axis);
+            let at = |angle: f64| {
+                let (s, c) = angle.sin_cos();
+                pose(std::array::from_fn(|k| 1.3 * (c * u[k] + s * v[k])), axis)
+            };
+            let arc = TipArc::new([0.0; 3], axis, 1.745).expect("an arc");
+            let poses = vec![at(0.0), at(1.745)];
+            (
+                Path::with_moves(poses, vec![Move::arc(arc)]).expect("a path"),
+                around(SIDE),
+            )
+        }),
+        ("axis from across the displacement of tips, at rest", |d| {
+            let axis = from_across_displacement(d);
+            (through(vec![pose([0.1, 0.2, 0.0], axis)], Law::Slerp), around(SIDE))
         }),
         ("line from the wall", |d| {
             let poses = vec![pose([-2.0, 0.0, 0.0], UP), pose([2.0, 0.0, 0.0], UP)];
