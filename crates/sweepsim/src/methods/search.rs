@@ -88,7 +88,11 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     /// Settles what it can of the envelope and the edges along a move without rotation, or along an arc with which the tool turns.
     fn envelope_in_closed_form(&self, at: usize, outline: &Outline, space: &mut Workspace, harvest: &mut Harvest) {
         let PathPart {
-            segment, round, wheel, ..
+            segment,
+            round,
+            wheel,
+            inclined,
+            ..
         } = &self.parts[at];
         let mut collector = Collector {
             lines: self.lines,
@@ -96,8 +100,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         };
         let done = &mut space.done;
         let settled = [&mut done.patches[..], &mut done.edges[..]];
-        let collector = (&mut collector, self.ceiling);
         let by_share = |share: f64| self.source_after(at, share);
+        if let Some(arc) = inclined {
+            let arc = (arc, segment, translation::slack(self.size.slack), self.near);
+            translation::inclined(outline, arc, &mut collector, by_share, settled);
+            return;
+        }
+        let collector = (&mut collector, self.ceiling);
         if let Some(wheel) = wheel {
             let arc = (wheel, segment, translation::slack(self.size.slack), self.near);
             translation::along(outline, arc, collector, by_share, settled);

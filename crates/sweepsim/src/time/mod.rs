@@ -2,6 +2,7 @@
 //! boxes around what a solid sweeps, and the times at which it is over some place.
 
 pub(crate) mod arc;
+pub(crate) mod circles;
 pub(crate) mod curve;
 pub(crate) mod framed;
 pub(crate) mod joined;
@@ -10,6 +11,4 @@ pub(crate) mod over;
 pub(crate) mod path_parts;
 pub(crate) mod pieces;
 pub(crate) mod placement;
-pub(crate) mod round;
 pub(crate) mod swept_box;
-pub(crate) mod wheel;

@@ -1,8 +1,7 @@
 //! The parts of a path: its motions in a frame, in generic position (see [`Tolerances`]).
 
+use crate::time::circles::{Inclined, Round, Wheel, WheelPart};
 use crate::time::joined::Stretch;
-use crate::time::round::Round;
-use crate::time::wheel::{Wheel, WheelPart};
 use crate::tolerances::Tolerances;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::Range;
@@ -17,6 +16,8 @@ pub(crate) struct PathPart {
     pub round: Option<Round>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
     pub wheel: Option<Wheel>,
+    /// The same as a circle about the tool's axis, for any tool of revolution that does not stand along the dexels.
+    pub inclined: Option<Inclined>,
     /// Number of the move.
     pub number: u32,
     /// When it begins in the move, and the fraction of the move that it covers: moves with large turns have several parts.
@@ -112,6 +113,7 @@ pub(crate) fn parts(
                 segment,
                 round: None,
                 wheel: None,
+                inclined: None,
                 number: number as u32,
                 start: (n as f64 * share) as f32,
                 share: share as f32,
@@ -144,12 +146,21 @@ pub(crate) fn parts(
             } else {
                 None
             };
-            let wheel = match round {
-                None if symmetric => Wheel::parts(path, to - 1 - first, (frame, reach), (by, limit)),
+            let inclined = match round {
+                None if symmetric => Inclined::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit)),
                 _ => None,
             };
+            let wheel = match (&round, &inclined) {
+                (None, None) if symmetric => Wheel::parts(path, to - 1 - first, (frame, reach), (by, limit)),
+                _ => None,
+            };
+            let number = to - 1;
             match round {
-                Some(round) => parts.extend(with_shares(to - 1, round)),
+                Some(round) => parts.extend(with_shares(number, round, |part, round| part.round = Some(round))),
+                None if inclined.is_some() => {
+                    let inclined = inclined.unwrap_or_default();
+                    parts.extend(with_shares(number, inclined, |part, arc| part.inclined = Some(arc)));
+                }
                 None if wheel.is_some() => {
                     let wheel = wheel.into_iter().flatten();
                     parts.extend(wheel.map(|part| on_wheel(to - 1, part)));
@@ -232,21 +243,27 @@ fn carried_to(
 }
 
 /// The parts of one move, of equal duration.
-fn with_shares(number: usize, parts: Vec<(Round, Segment)>) -> impl Iterator<Item = PathPart> {
+fn with_shares<C>(
+    number: usize,
+    parts: Vec<(C, Segment)>,
+    put: impl Fn(&mut PathPart, C),
+) -> impl Iterator<Item = PathPart> {
     let share = 1.0 / parts.len() as f64;
-    parts
-        .into_iter()
-        .enumerate()
-        .map(move |(n, (round, segment))| PathPart {
+    parts.into_iter().enumerate().map(move |(n, (circle, segment))| {
+        let mut part = PathPart {
             segment,
-            round: Some(round),
+            round: None,
             wheel: None,
+            inclined: None,
             number: number as u32,
             start: (n as f64 * share) as f32,
             share: share as f32,
             joins: false,
             joined: Vec::new(),
-        })
+        };
+        put(&mut part, circle);
+        part
+    })
 }
 
 fn on_wheel(number: usize, part: WheelPart) -> PathPart {
@@ -254,6 +271,7 @@ fn on_wheel(number: usize, part: WheelPart) -> PathPart {
         segment: part.segment,
         round: None,
         wheel: Some(part.wheel),
+        inclined: None,
         number: number as u32,
         start: part.start as f32,
         share: part.share as f32,

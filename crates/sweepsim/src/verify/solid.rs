@@ -121,6 +121,7 @@ impl<'a> MovingSolid<'a> {
                     segment: part.segment.part(from, to).displaced(by),
                     round: None,
                     wheel: None,
+                    inclined: None,
                     number: part.number,
                     start: (start + from * share) as f32,
                     share: ((to - from) * share) as f32,

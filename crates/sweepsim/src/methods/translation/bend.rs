@@ -18,7 +18,7 @@ use super::rows::{Row, Sector};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Rim, Shape};
 use crate::methods::harvest::unit;
-use crate::time::round::Round;
+use crate::time::circles::Round;
 use ends::{Bend, Place};
 use std::f64::consts::PI;
 use sweepsim_dexel::Source;

@@ -2,7 +2,7 @@
 
 use super::Collector;
 use super::rows::numbers;
-use crate::time::round::Round;
+use crate::time::circles::Round;
 use std::f64::consts::PI;
 
 /// A disc along an arc.

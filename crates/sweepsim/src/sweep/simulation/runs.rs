@@ -116,6 +116,7 @@ impl<'a> Runs<'a> {
             segment: part.segment.part(range[0], range[1]),
             round: None,
             wheel: None,
+            inclined: None,
             number: part.number,
             start: part.start + part.share * span[0],
             share: part.share * span[1],

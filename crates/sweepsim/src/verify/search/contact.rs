@@ -78,6 +78,7 @@ impl Arena<'_> {
             segment: part.segment.moved(&Matrix3::identity(), shift),
             round: part.round.map(|round| round.moved([shift[0], shift[1]])),
             wheel: part.wheel.map(|wheel| wheel.moved(shift)),
+            inclined: part.inclined.map(|arc| arc.moved(shift)),
             ..part.clone()
         };
         let moved: Vec<PathPart> = parts.iter().map(moved).collect();

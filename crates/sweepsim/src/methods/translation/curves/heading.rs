@@ -1,8 +1,8 @@
 //! The frame of a move: along it, across it, and along the dexels.
 
 use super::Local;
+use crate::time::circles::Round;
 use crate::time::path_parts::PathPart;
-use crate::time::round::Round;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 

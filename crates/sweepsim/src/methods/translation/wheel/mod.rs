@@ -27,7 +27,7 @@ use super::rows::{Floor, Row, rows};
 use super::{Ceiling, Collector};
 use crate::cutter::outline::{Outline, Piece, Shape};
 use crate::methods::harvest::unit;
-use crate::time::wheel::Wheel;
+use crate::time::circles::Wheel;
 use ball::ball;
 use nalgebra::Vector3;
 use sheet::Sheet;

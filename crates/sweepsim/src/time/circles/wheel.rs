@@ -59,7 +59,7 @@ fn cuts(from: f64, angle: f64) -> Vec<f64> {
 }
 
 /// The motion along an arc between two points; not more than 90°: one segment, if any deviation is allowed.
-fn segment([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, reach: f64) -> Option<Segment> {
+pub(super) fn circle([a, b]: [Vector3<f64>; 2], axis: [f64; 3], arc: TipArc, reach: f64) -> Option<Segment> {
     let poses = [a, b].map(|tip| Pose::new(tip.into(), axis).ok());
     let [Some(from), Some(to)] = poses else { return None };
     let path = Path::with_moves(vec![from, to], vec![Move::arc(arc)]).ok()?;
@@ -96,7 +96,7 @@ impl Wheel {
         let flat_centre = a.xy() + ahead * offset.x;
         let centre = [flat_centre.x, flat_centre.y, a.z + offset.y];
         let arc = TipArc::new(centre, [ahead.y, -ahead.x, 0.0], angle).ok()?;
-        let segment = segment([a, b], axis, arc, reach)?;
+        let segment = circle([a, b], axis, arc, reach)?;
         let wheel = Self {
             centre,
             radius,
@@ -134,7 +134,7 @@ impl Wheel {
             angle,
             level: true,
         };
-        let segment = segment([a, b], axis, TipArc::new(centre, [0.0, 0.0, 1.0], angle).ok()?, reach)?;
+        let segment = circle([a, b], axis, TipArc::new(centre, [0.0, 0.0, 1.0], angle).ok()?, reach)?;
         (radius.is_finite() && radius > 0.0).then_some((wheel, segment))
     }
 

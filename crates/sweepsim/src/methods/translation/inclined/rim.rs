@@ -1,0 +1,165 @@
+//! A sharp edge along an arc about its axis, which stays in its plane but for the rise.
+
+use super::roots::Open;
+use super::{AXIS, Orbit, Place, Sector, Spot, View, products};
+use crate::cutter::outline::Rim;
+use sweepsim_dexel::Source;
+
+/// An angle whose cosine is closer to 1 than this many errors is in doubt.
+const GRAZING: f64 = 64.0;
+/// Edges are solved here if those of their lines whose angle is in doubt are fewer than one in thirty.
+const CLEAR: f64 = 64.0;
+
+impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
+    pub(super) fn rim(&mut self, rim: &Rim) -> Option<()> {
+        if !self.tells_angles(rim.radius, 0.0) {
+            return None;
+        }
+        self.edge(rim, None);
+        Some(())
+    }
+
+    /// By how much a line may miss its place in the plane of an edge.
+    fn blur(&self) -> f64 {
+        4.0 * self.coarse * (1.0 + self.kappa.abs().recip())
+    }
+
+    /// Whether most lines tell the angle at which an edge of this radius, whose own place is in doubt by `bent`, passes them. Those within `δ` of where it reaches farthest in or out pass it less than `√(2 ρ δ)` ahead of the tip, and
+    /// have a certain angle where that is more than `2 √(GRAZING ε R)`, with places off by `ε`.
+    pub(super) fn tells_angles(&self, radius: f64, bent: f64) -> bool {
+        self.kappa == 0.0 || (self.blur() + bent) * self.arc.radius < (radius / CLEAR).powi(2)
+    }
+
+    /// An edge; or the circle on which a torus with a tube of this radius has a normal along the axis, up or down: the curve in which it touches its envelope is
+    /// that close to it.
+    pub(super) fn edge(&mut self, rim: &Rim, level: Option<(f64, f64)>) {
+        let radii = [self.arc.radius, rim.radius];
+        for (sector, [x, y]) in self.parts() {
+            let wide = |[low, high]: [f64; 2]| [low - radii[1], high + radii[1]];
+            let [x, y] = [x, y].map(|range| wide(products([radii[0]; 2], range)));
+            self.each([x, y, [rim.height; 2]], |own, view| {
+                let mark = own.lines.mark();
+                if own.on_edge(view, sector, rim, level).is_err() {
+                    own.lines.forget(mark);
+                    own.open(view);
+                }
+            });
+        }
+    }
+
+    fn on_edge(&mut self, view: &View, sector: Sector, rim: &Rim, level: Option<(f64, f64)>) -> Result<(), Open> {
+        let (y, kappa, big) = (view.y, self.kappa, self.arc.radius);
+        let rho = rim.radius;
+        if kappa == 0.0 {
+            // In its plane all along.
+            let off = (view.base - rim.height).abs() > 2.0 * self.coarse;
+            return if off { Ok(()) } else { Err(Open) };
+        }
+        let start = (rim.height - view.base) / kappa;
+        let blur = self.blur();
+        let far = start.hypot(y);
+        if far > big + rho + blur || far < (big - rho).abs() - blur {
+            return Ok(());
+        }
+        if !(y.abs() > AXIS * self.slack && far > 16.0 * blur) {
+            return Err(Open);
+        }
+        let cosine = |far: f64| (far * far + (big - rho) * (big + rho)) / (2.0 * big * far);
+        // The circle is off by that much, too.
+        let bent = level.map_or(0.0, |(_, radius)| radius * self.slope.abs().sqrt());
+        let doubt = 2.0 * (blur + bent) * (far + rho + big) / (big * far);
+        let c = cosine(far);
+        if !((1.0 - c) * (1.0 + c) > GRAZING * doubt) {
+            if c.abs() > 1.0 + doubt {
+                return Ok(());
+            }
+            // Cosine and angle are this far from their extremes at most.
+            let wide = (2.0 * (GRAZING + 2.0) * doubt).sqrt().min(1.5);
+            let sign = 1.0_f64.copysign(c);
+            return match self.place([sign * start, sign * y], wide) {
+                Place::Outside => Ok(()),
+                _ => Err(Open),
+            };
+        }
+        for turn in [1.0, -1.0] {
+            let (mut x, mut tip, mut lift) = (start, [0.0; 2], 0.0);
+            let mut sine = 0.0;
+            for _ in 0..3 {
+                x = (rim.height + lift - view.base) / kappa;
+                let far = x.hypot(y);
+                let c = cosine(far);
+                sine = ((1.0 - c) * (1.0 + c)).sqrt();
+                // The tip is behind the line, or ahead of it.
+                tip = [x * c + turn * y * sine, y * c - turn * x * sine];
+                lift = self.lift(tip);
+            }
+            self.pass(view, sector, (rim, level), (x, tip, turn * sine, blur))?;
+        }
+        Ok(())
+    }
+
+    /// Where an edge passes a line. `sine`: of the angle from the tip to the line.
+    fn pass(
+        &mut self,
+        view: &View,
+        sector: Sector,
+        (rim, level): (&Rim, Option<(f64, f64)>),
+        (x, tip, sine, blur): (f64, [f64; 2], f64, f64),
+    ) -> Result<(), Open> {
+        let (big, rho) = (self.arc.radius, rim.radius);
+        let far = x.hypot(view.y);
+        // Of the line from the tool's axis: ahead, and away from the arc's axis.
+        let ahead = self.arc.side() * far * sine / rho;
+        let out =
+            (far * (1.0 - sine * sine).max(0.0).sqrt() * 1.0_f64.copysign(tip[0] * x + tip[1] * view.y) - big) / rho;
+        // The sine is off by the cosine's error over it.
+        let own = 2.0 * blur * (far + rho + big) / (big * far);
+        let mut askew = 4.0 * own / sine.abs();
+        let mut error = 4.0 * far / rho * own / sine.abs() + 8.0 * f64::EPSILON;
+        let mut height_error = self.fine * (1.0 + self.kappa.abs().recip());
+        if let Some((_, radius)) = level {
+            if !(ahead.abs() > 4.0 * self.slope.abs().sqrt() + error) {
+                // Whatever the signs are; but not if it is not on the arc.
+                return match self.place(tip, askew + 8.0 * self.slope.abs().sqrt() * (1.0 + radius / far)) {
+                    Place::Outside => Ok(()),
+                    _ => Err(Open),
+                };
+            }
+            let off = radius * self.slope.abs() / ahead.abs();
+            let own = 2.0 * off * (far + rho + big) / (big * far);
+            askew += 4.0 * own / sine.abs();
+            error += 4.0 * far / rho * own / sine.abs();
+            height_error += self.fine;
+        }
+        let g = |[n, m]: [f64; 2]| (n * ahead + m * self.slope, n.abs() * error);
+        let [(a, a_error), (b, b_error)] = rim.normals.map(g);
+        if !((a.abs() > a_error || a_error == 0.0) && (b.abs() > b_error || b_error == 0.0)) {
+            return match self.place(tip, askew) {
+                Place::Outside => Ok(()),
+                _ => Err(Open),
+            };
+        }
+        if (a < 0.0) == (b < 0.0) {
+            return Ok(());
+        }
+        let inwards = ahead > 0.0;
+        let orientation = if (self.arc.tilt[1] > 0.0) == inwards { -1 } else { 1 };
+        // The envelope's normal lies in the fan of the two faces, where g = 0.
+        let [[n, m], [p, q]] = rim.normals;
+        let (first, second) = (a.abs(), b.abs());
+        let (radial, along) = (n * second + p * first, m * second + q * first);
+        let normal = match level {
+            Some((up, _)) => [0.0, 0.0, up],
+            None => [radial * out, radial * ahead * self.arc.side(), along],
+        };
+        let spot = Spot {
+            x,
+            error: height_error,
+            tip,
+            askew,
+            normal,
+            jump: if a < 0.0 { -orientation } else { orientation },
+        };
+        self.settle(view, sector, &spot)
+    }
+}
