@@ -140,8 +140,8 @@ impl Reader<'_> {
         let kept = KeptArcs::new(self.options);
         if !kept.none() {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
-            let upright = [self.axis, target.axis].iter().all(|axis| *axis == [0.0, 0.0, 1.0]);
-            if kept.keep(&exact, [arc.start, arc.end], upright) {
+            let axis = Some(self.axis).filter(|axis| *axis == target.axis);
+            if kept.keep(&exact, [arc.start, arc.end], axis) {
                 let (course, turning) = (Course::Arc(exact), Turning::Even);
                 return self.push(target, Move { course, turning });
             }

@@ -53,8 +53,8 @@ impl Track {
             let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
                 .map_err(|error| NcProblem::syntax(error.to_string()))?
                 .through(from, to);
-            let upright = self.direction()? == [0.0, 0.0, 1.0];
-            if self.kept_arcs.keep(&exact, [from, to], upright) {
+            let axis = self.direction()?;
+            if self.kept_arcs.keep(&exact, [from, to], Some(axis)) {
                 return self.exact_arc(arc, exact);
             }
         }

@@ -1,7 +1,7 @@
-//! Arcs that are kept because they are cheaper than their chords: about z and in planes along z, with the tool along z.
+//! Arcs that are kept because they are cheaper than their chords: about z and in planes along z, with the tool along z, and about the axis of a tool that leans.
 
 use sweepsim_motion::Course;
-use sweepsim_nc::{Program, ReadOptions, apt, gcode, heidenhain, siemens};
+use sweepsim_nc::{Machine, Program, ReadOptions, apt, gcode, heidenhain, siemens};
 
 fn options() -> ReadOptions {
     let mut options = ReadOptions::default();
@@ -65,6 +65,51 @@ fn arcs_in_planes_along_z_are_kept_if_asked_for() {
     assert_eq!(courses(&siemens::read(text, &upright).unwrap()), [1, 0]);
     upright.arc_tolerance = 0.2;
     assert!(courses(&siemens::read(text, &upright).unwrap())[1] > 1);
+}
+
+/// In tilted planes, about the tool's axis, in any of the formats.
+#[test]
+fn arcs_about_a_leaning_tool_are_kept_if_asked_for() {
+    let mut tilted = options();
+    tilted.tilted_arcs = true;
+    tilted.arc_tolerance = 1e-5;
+    let plane = "G21 G90 G94 F100\nG68.2 X1 Y2 Z3 I20 J30 K10\nG53.1\n";
+    let upright = "G21 G90 G94 F100\nG68.2 X1 Y2 Z3 I20 J30 K10\n";
+    for machine in [None, Some("trunnion-ac"), Some("head-bc")] {
+        tilted.machine = machine.map_or_else(Machine::default, |name| Machine::named(name).unwrap());
+        for (head, text, kept) in [
+            (plane, "G17 G3 X0 Y10 I0 J5", true),
+            (plane, "G17 G2 X0 Y0 I4 J3", true),
+            // It leaves its plane; a spiral; a radius of 138 m; across the tool's axis; 50 chords.
+            (plane, "G17 G3 X0 Y10 Z1 I0 J5", false),
+            (plane, "G17 G3 X-0.002 Y0.0005 I5 J0", false),
+            (plane, "G17 G2 X10 Y0 R138000", false),
+            (plane, "G18 G3 X10 Z0 I5 K0", false),
+            (plane, "G17 G3 X0 Y0.02 I0 J0.01", false),
+            // The tool stands along z.
+            (upright, "G17 G3 X0 Y10 I0 J5", false),
+        ] {
+            let head = format!("{head}G0 X0 Y0 Z0\n");
+            let poses = |text: &str, options: &ReadOptions| gcode::read(&format!("{head}{text}M2\n"), options).unwrap();
+            let before = courses(&poses("", &tilted));
+            let after = courses(&poses(&format!("{text}\n"), &tilted));
+            let own = [after[0] - before[0], after[1] - before[1]];
+            assert_eq!(own == [1, 0], kept, "{machine:?} {text}: {own:?}");
+            assert!(kept || own[0] == 0, "{text}");
+            // Not without being asked.
+            let mut others = options();
+            others.machine = tilted.machine.clone();
+            others.upright_arcs = true;
+            assert_eq!(courses(&poses(&format!("{text}\n"), &others))[0], before[0], "{text}");
+        }
+    }
+    tilted.machine = Machine::default();
+    let text = "UNITS/MM\nGOTO/0,0,0,0,0.6,0.8\nMOVARC/5,0,0,0,0.6,0.8,5,ANGLE,180\nGOTO/10,0,0\nFINI\n";
+    assert_eq!(courses(&apt::read(text, &tilted).unwrap()), [1, 0]);
+    let text = "G90 G0 X0 Y0 Z0\nCYCLE800(0,\"\",0,57,0,0,0,30,40,0,0,0,0,1)\nG0 X0 Y0 Z0\nG3 X0 Y10 I0 J5 F100\nM30\n";
+    assert_eq!(courses(&siemens::read(text, &tilted).unwrap())[0], 1);
+    let text = "L X+0 Y+0 Z+50 FMAX\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX\nL X+0 Y+0 Z+0 FMAX\nCC X+5 Y+0\nC X+10 Y+0 DR-\n";
+    assert_eq!(courses(&heidenhain::read(text, &tilted).unwrap())[0], 1);
 }
 
 #[test]

@@ -181,6 +181,7 @@ impl JobReader<'_> {
                 };
                 options.exact_arcs = matches!(raw.arcs, Some(schema::Arcs::Exact));
                 options.upright_arcs = matches!(raw.arcs, None | Some(schema::Arcs::Upright));
+                options.tilted_arcs = options.upright_arcs;
                 options.level_arcs = options.upright_arcs || matches!(raw.arcs, Some(schema::Arcs::Level));
                 let file = self.beside(name);
                 if file

@@ -246,20 +246,34 @@ impl State {
         self.coordinates() == Coordinates::Axes && self.driver.kinematics().is_some() && abc != self.abc
     }
 
-    /// A feed move along an arc, of the axes without tip control; they do not turn then.
+    /// The tip's arc and its ends where the axes move along an arc without turning.
+    pub fn of_tip(&mut self, arc: TipArc, ends: [[f64; 3]; 2]) -> Result<(TipArc, [[f64; 3]; 2]), NcProblem> {
+        self.driver.change_tool(self.tool);
+        if !(self.coordinates() == Coordinates::Axes && self.abc != [0.0; 3] && self.driver.kinematics().is_some()) {
+            return Ok((arc, ends));
+        }
+        let tip = |xyz: [f64; 3]| self.driver.tip(&Position::new(xyz, self.abc));
+        let (centre, normal) = (arc.centre(), arc.normal());
+        let above = tip(std::array::from_fn(|k| centre[k] + normal[k]))?;
+        let centre = tip(centre)?;
+        let normal = std::array::from_fn(|k| above[k] - centre[k]);
+        let arc = TipArc::new(centre, normal, arc.angle()).map_err(|error| NcProblem::syntax(error.to_string()))?;
+        Ok((arc, [tip(ends[0])?, tip(ends[1])?]))
+    }
+
+    /// The direction from the tip to the holder until the rotary axes are at `abc`, if they stay where they are.
+    pub fn steady_axis(&mut self, abc: [f64; 3]) -> Result<Option<[f64; 3]>, NcProblem> {
+        match self.direct {
+            Some(direction) if self.coordinates() == Coordinates::Tip => Ok(Some(direction)),
+            _ if abc != self.abc => Ok(None),
+            _ if abc == [0.0; 3] => Ok(Some([0.0, 0.0, 1.0])),
+            _ => self.driver.axis(abc).map(Some),
+        }
+    }
+
+    /// A feed move of the tip along an arc.
     pub fn arc_to(&mut self, target: MoveEnd, arc: TipArc) -> Result<(), NcProblem> {
         self.driver.change_tool(self.tool);
-        let arc = match self.coordinates() {
-            Coordinates::Axes if self.abc != [0.0; 3] && self.driver.kinematics().is_some() => {
-                let (centre, normal) = (arc.centre(), arc.normal());
-                let above = std::array::from_fn(|k| centre[k] + normal[k]);
-                let centre = self.driver.tip(&Position::new(centre, self.abc))?;
-                let above = self.driver.tip(&Position::new(above, self.abc))?;
-                let normal = std::array::from_fn(|k| above[k] - centre[k]);
-                TipArc::new(centre, normal, arc.angle()).map_err(|error| NcProblem::syntax(error.to_string()))?
-            }
-            _ => arc,
-        };
         let turning = match self.driver.turning(self.abc, target.abc, self.coordinates())? {
             Turning::Slerp => Turning::Even,
             other => other,

@@ -100,8 +100,9 @@ impl Reader {
         };
         if !self.kept_arcs.none() && !self.state.turns_by_axes(target.abc) {
             let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
-            let upright = self.state.abc == [0.0; 3] && target.abc == [0.0; 3];
-            if self.kept_arcs.keep(&exact, arc.ends(), upright) {
+            let (exact, ends) = self.state.of_tip(exact, arc.ends())?;
+            let axis = self.state.steady_axis(target.abc)?;
+            if self.kept_arcs.keep(&exact, ends, axis) {
                 return self.state.arc_to(target, exact);
             }
         }
