@@ -1,7 +1,7 @@
 //! A cone or a cylinder along an arc about its axis: the cones with the radius `R ± ρ` about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Orbit, Sector, Spot, View, products, within};
+use super::{AXIS, Orbit, STILL, Sector, Spot, View, length, products, within};
 use crate::cutter::outline::Piece;
 use sweepsim_dexel::Source;
 
@@ -98,7 +98,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         }
         let growth = cone.growth * kappa;
         let value = |x: f64, lift: f64| {
-            let rho = x.hypot(y);
+            let rho = length(x, y);
             [
                 rho - cone.radius - cone.growth * (view.base + kappa * x - lift),
                 x / rho - growth,
@@ -129,16 +129,19 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let sign = if cone.beyond { -1.0 } else { 1.0 };
         let y = view.y;
         let (mut slope, mut step) = (0.0, f64::INFINITY);
+        let mut lift = self.lift([sign * x, sign * y]);
         for _ in 0..4 {
-            let lift = self.lift([sign * x, sign * y]);
             let [f, d] = value(x, lift);
             (slope, step) = (d, f / d);
             x -= step;
             if step.abs() <= 0.1 * self.slack {
                 break;
             }
+            if step.abs() > STILL * y.abs() {
+                lift = self.lift([sign * x, sign * y]);
+            }
         }
-        let rho = x.hypot(y);
+        let rho = length(x, y);
         // The second derivative is y²/ϱ³.
         let bend = y * y / (rho * rho * rho);
         let error = self.fine * (1.0 + cone.growth.abs()) / slope.abs();

@@ -37,6 +37,8 @@ const SHORTEST: f64 = 4.0;
 const BENT: f64 = 0.05;
 /// The part of what heights may be off by that those of walls are, up to their slope.
 const ROUGH: f64 = 0.02;
+/// How far the tool has risen is as good as exact where the tip's direction is off by less than this: the rise is at most a hundredth of the tolerance.
+const STILL: f64 = 1e-4;
 /// Lines that are closer than this many roundings to the arc's axis are open.
 const AXIS: f64 = 64.0;
 
@@ -160,6 +162,11 @@ fn within(value: f64, [low, high]: [f64; 2], error: f64) -> Option<bool> {
     }
 }
 
+/// The length of a vector of coordinates, which are far from overflow: `hypot` takes ten times as long.
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 /// The range of the cosine between two angles.
 fn cosines([low, high]: [f64; 2]) -> [f64; 2] {
     let passes = |angle: f64| ((high - angle) / TAU).floor() >= ((low - angle) / TAU).ceil();
@@ -258,7 +265,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let (cosine, sine) = (x * fx + y * fy, side * (y * fx - x * fy));
         let (end_sine, end_cosine) = angle.sin_cos();
         let end = sine * end_cosine - cosine * end_sine;
-        let error = (error + ROUNDING) * x.hypot(y);
+        let error = (error + ROUNDING) * length(x, y);
         if sine < -error || end > error {
             Place::Outside
         } else if sine > error && end < -error {
@@ -290,7 +297,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         if !(spot.error / s <= 0.5 * self.near) {
             return Err(Open);
         }
-        let [x, y] = spot.tip.map(|c| c / spot.tip[0].hypot(spot.tip[1]));
+        let far = length(spot.tip[0], spot.tip[1]);
+        let [x, y] = spot.tip.map(|c| c / far);
         let [radial, level, along] = spot.normal;
         let [up, right, axis] = self.arc.axes();
         let normal: Vector3<f64> = up * (x * radial - y * level) + right * (y * radial + x * level) + axis * along;

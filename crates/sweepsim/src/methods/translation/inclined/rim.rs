@@ -1,7 +1,7 @@
 //! A sharp edge along an arc about its axis, which stays in its plane but for the rise.
 
 use super::roots::Open;
-use super::{AXIS, Orbit, Place, Sector, Spot, View, products};
+use super::{AXIS, Orbit, Place, Sector, Spot, View, length, products};
 use crate::cutter::outline::Rim;
 use sweepsim_dexel::Source;
 
@@ -57,7 +57,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         }
         let start = (rim.height - view.base) / kappa;
         let blur = self.blur();
-        let far = start.hypot(y);
+        let far = length(start, y);
         if far > big + rho + blur || far < (big - rho).abs() - blur {
             return Ok(());
         }
@@ -81,18 +81,21 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
                 _ => Err(Open),
             };
         }
+        // The sine of the angle between line and tip, and the tip, which is behind the line or ahead of it.
+        let around = |x: f64, far: f64, turn: f64| {
+            let c = cosine(far);
+            let sine = ((1.0 - c) * (1.0 + c)).sqrt();
+            (sine, [x * c + turn * y * sine, y * c - turn * x * sine])
+        };
         for turn in [1.0, -1.0] {
-            let (mut x, mut tip, mut lift) = (start, [0.0; 2], 0.0);
-            let mut sine = 0.0;
-            for _ in 0..3 {
-                x = (rim.height + lift - view.base) / kappa;
-                let far = x.hypot(y);
-                let c = cosine(far);
-                sine = ((1.0 - c) * (1.0 + c)).sqrt();
-                // The tip is behind the line, or ahead of it.
-                tip = [x * c + turn * y * sine, y * c - turn * x * sine];
-                lift = self.lift(tip);
+            let (sine, tip) = around(start, far, turn);
+            // The tip moves by no more than the doubt in the cosine, over the sine.
+            if matches!(self.place(tip, 4.0 * doubt / sine), Place::Outside) {
+                continue;
             }
+            // A hundredth of the tolerance farther or less, the tool has risen by as much but for rounding.
+            let x = (rim.height + self.lift(tip) - view.base) / kappa;
+            let (sine, tip) = around(x, length(x, y), turn);
             self.pass(view, sector, (rim, level), (x, tip, turn * sine, blur))?;
         }
         Ok(())
@@ -107,7 +110,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         (x, tip, sine, blur): (f64, [f64; 2], f64, f64),
     ) -> Result<(), Open> {
         let (big, rho) = (self.arc.radius, rim.radius);
-        let far = x.hypot(view.y);
+        let far = length(x, view.y);
         // Of the line from the tool's axis: ahead, and away from the arc's axis.
         let ahead = self.arc.side() * far * sine / rho;
         let out =

@@ -1,7 +1,7 @@
 //! A ball or a torus along an arc about its axis: tubes about circles about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Orbit, Sector, Spot, View, products, within};
+use super::{AXIS, Orbit, STILL, Sector, Spot, View, length, products, within};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim_dexel::Source;
@@ -152,7 +152,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         }
         let (r, centres) = (tube.radius, tube.centres);
         let value = |x: f64, lift: f64| {
-            let rho = x.hypot(y);
+            let rho = length(x, y);
             let (out, up) = (rho - centres, view.base + kappa * x - lift - tube.height);
             [out * out + up * up - r * r, 2.0 * (out * x / rho + kappa * up)]
         };
@@ -204,17 +204,20 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     ) -> Result<(), Open> {
         let (y, kappa, r) = (view.y, self.kappa, tube.radius);
         let sign = if tube.beyond { -1.0 } else { 1.0 };
-        let (mut slope, mut step, mut lift) = (0.0, f64::INFINITY, 0.0);
+        let (mut slope, mut step) = (0.0, f64::INFINITY);
+        let mut lift = self.lift([sign * x, sign * y]);
         for _ in 0..4 {
-            lift = self.lift([sign * x, sign * y]);
             let [f, d] = value(x, lift);
             (slope, step) = (d, f / d);
             x -= step;
             if step.abs() <= 0.1 * self.slack {
                 break;
             }
+            if step.abs() > STILL * y.abs() {
+                lift = self.lift([sign * x, sign * y]);
+            }
         }
-        let rho = x.hypot(y);
+        let rho = length(x, y);
         let bend = 2.0 * (1.0 + kappa * kappa + tube.centres.abs() * y * y / (rho * rho * rho));
         let error = 2.0 * self.fine * r / slope.abs();
         if !(slope * slope > 16.0 * bend * doubt && step.abs() <= error) {
