@@ -25,6 +25,7 @@ mod sides;
 mod solver;
 mod split;
 mod trail;
+mod wanted;
 
 use crate::{Cause, Enclosure};
 pub use sides::Affine;

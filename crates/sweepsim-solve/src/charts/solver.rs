@@ -6,7 +6,8 @@ use super::linear::{Contraction, Linear};
 use super::narrow::{Narrowed, clipped, narrowed};
 use super::sides::Sides;
 use super::split::{change, collapses, largest, widest};
-use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail, UnresolvedTarget, all_of};
+use super::wanted::{Wanted, among, is_tiny, parts, worth_splitting};
+use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail};
 use crate::{Cause, Enclosure, Monitor};
 use nalgebra::{Const, DimMin, SVector, ToTypenum};
 
@@ -19,6 +20,8 @@ pub struct ChartSolver<C> {
     pub statistics: ChartStatistics,
     /// Boxes, their depth, and what to do with them.
     stack: Vec<(C, u32, Next)>,
+    /// The numbers of targets that are not searched for any further, in order.
+    given_up: Vec<usize>,
 }
 
 /// What becomes of a box on the stack.
@@ -42,8 +45,7 @@ const LIMIT: f64 = 0.85;
 const SHARE: i32 = 10;
 /// With a spectral radius beyond this, the two parts of a box are probably not charts, either: they are split without a look at their derivatives. Found by trial.
 const FAR: f64 = 1.7;
-/// After this many boxes, one in the other, in which `∂Φ` is nearly singular and the targets are few, boxes are [narrowed]: before, splitting them is cheaper. Found by
-/// trial.
+/// After this many boxes, one in the other, in which `∂Φ` is nearly singular and the targets are few, boxes are [narrowed]: before, splitting is cheaper, by trial.
 const STUCK: u32 = 3;
 /// A direction along which `K ∂Φ` changes by less than this part of the radius is not split for its length alone.
 const STRAIGHT: f64 = 1e-3;
@@ -58,12 +60,18 @@ impl<C: Clone> ChartSolver<C> {
             options,
             statistics: ChartStatistics::default(),
             stack: Vec::new(),
+            given_up: Vec::new(),
         }
+    }
+
+    /// Begins another search: for all targets, also for those that were given up.
+    pub fn start_over(&mut self) {
+        self.given_up.clear();
     }
 
     /// Finds, for every target, all its preimages in the box `root`.
     ///
-    /// Each preimage is reported to `sink` once. Boxes that may hold unreported preimages are reported as unresolved.
+    /// Each preimage is reported to `sink` once. Boxes that may hold unreported preimages are reported as unresolved; a target that rounding leaves undecided is given up in all others.
     pub fn solve<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,
@@ -78,11 +86,12 @@ impl<C: Clone> ChartSolver<C> {
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
         let domain = map.bounds(&root);
+        self.start_over();
         self.solve_part(map, root, &domain, targets, sink, monitor);
     }
 
-    /// As [`solve`](Self::solve), in one of several boxes that fill `domain` and share only faces. A preimage on a face is found only in the
-    /// box above it.
+    /// As [`solve`](Self::solve), in one of several boxes that fill `domain` and share only faces. A preimage on a face is found only in the box above it. Targets given up
+    /// in another box are left out until the search [starts over](Self::start_over).
     pub fn solve_part<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,
@@ -97,6 +106,7 @@ impl<C: Clone> ChartSolver<C> {
         S: Sink<N, M::Seen>,
         Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
     {
+        let targets = &mut Wanted::new(targets, std::mem::take(&mut self.given_up));
         let mut budget = self.options.boxes;
         self.stack.clear();
         self.stack.push((part, 0, Next::Examine(0)));
@@ -142,11 +152,8 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             let jacobian = map.jacobian(&cell);
-            // Directions in which nothing changes need no splitting: a continuum of solutions must not flood the search.
-            let small = |j: usize| bounds[j].radius() <= self.options.smallest * domain[j].radius();
-            let idle = |j: usize| (0..N).all(|i| jacobian[i][j].magnitude() == 0.0);
-            let tiny = (0..N).all(|j| small(j) || idle(j));
-            let cause = if tiny {
+            let small = std::array::from_fn(|j| bounds[j].radius() <= self.options.smallest * domain[j].radius());
+            let cause = if is_tiny(&jacobian, &small) {
                 Some(Cause::Smallest)
             } else if budget == 0 {
                 Some(Cause::Boxes)
@@ -154,15 +161,13 @@ impl<C: Clone> ChartSolver<C> {
                 monitor.cancelled().then_some(Cause::Cancelled)
             };
             if let Some(cause) = cause {
-                targets.visit(&values, &all_of, &mut |target| {
-                    let target = target.number;
-                    sink.unresolved(UnresolvedTarget { target, bounds, cause });
-                    true
-                });
+                targets.report(&values, (bounds, cause), sink);
                 continue;
             }
             budget -= 1;
-            let mut linear = Linear::new(&bounds, &jacobian, &map.rounding_in(&cell));
+            let rounding = map.rounding_in(&cell);
+            let worth = worth_splitting(&bounds, &jacobian, &rounding, &small);
+            let mut linear = Linear::new(&bounds, &jacobian, &rounding);
             if count <= FEW
                 && let Some(linear) = linear.as_mut().filter(|linear| linear.radius >= 1.0)
                 && let Some(products) = map.combined_jacobian(&cell, &linear.rows())
@@ -236,17 +241,17 @@ impl<C: Clone> ChartSolver<C> {
                         }
                     }
                 }
-                let smear = largest(&linear.smear);
+                let smear = largest(&among(&linear.smear, &worth));
                 let by_smear = depth % 3 != 2
                     || is_stuck && change(map, &bounds, &linear.inverse, axis) < STRAIGHT * linear.radius;
-                if by_smear && !collapses(&bounds, &jacobian, smear) {
+                if by_smear && worth[smear] && !collapses(&bounds, &jacobian, smear) {
                     axis = smear;
                     if linear.radius > FAR {
                         // The radii of the derivatives halve, and so does the side.
                         let mut then = linear.smear;
                         then[axis] *= 0.25;
-                        let then = largest(&then);
-                        if !collapses(&bounds, &jacobian, then) {
+                        let then = largest(&among(&then, &worth));
+                        if worth[then] && !collapses(&bounds, &jacobian, then) {
                             // The box that is not examined counts, too.
                             next = Next::Split(then, if of_parts > 0 { of_parts + 1 } else { 0 });
                         }
@@ -277,18 +282,18 @@ impl<C: Clone> ChartSolver<C> {
                     None => {}
                 }
             }
-            if bounds[axis].radius() <= self.options.smallest * domain[axis].radius() {
-                axis = (0..N)
-                    .max_by(|a, b| {
-                        let part = |j: usize| bounds[j].radius() / domain[j].radius();
-                        part(*a).total_cmp(&part(*b))
-                    })
-                    .unwrap_or(0);
+            if !worth.contains(&true) {
+                targets.give_up(&values, bounds, sink);
+                continue;
+            }
+            if !worth[axis] {
+                axis = largest(&among(&parts(&bounds, domain), &worth));
             }
             let [lower, upper] = map.split(&cell, axis);
             self.stack.push((upper, depth + 1, next));
             self.stack.push((lower, depth + 1, next));
         }
+        self.given_up = std::mem::take(&mut targets.given_up);
     }
 
     /// Solves all targets of a chart; `false` if one stayed undecided (then none was reported).

@@ -24,5 +24,6 @@ mod parallel;
 mod pieces;
 mod places;
 mod planted;
+mod poles;
 mod support;
 mod surfaces;

@@ -97,6 +97,8 @@ impl Solvers {
         self.moving.options.boxes = most(CHART_BOXES);
         self.placed.options.boxes = most(CHART_BOXES);
         self.bundles.options.boxes = most(BUNDLE_BOXES);
+        self.moving.start_over();
+        self.placed.start_over();
     }
 
     /// The statistics since the last call.

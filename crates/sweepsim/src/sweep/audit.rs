@@ -204,41 +204,53 @@ impl SweepJob<'_> {
         Ok(())
     }
 
-    /// Solves some lines again: all of them by one search at first, and one by one those that fail once more. Each may use as many boxes as if it were alone, but for its
-    /// share of the first search. Also the number of boxes.
+    /// Solves some lines again, displaced farther at each attempt: all that are left by one search, and one by one after a search that has used up a budget, which a single line
+    /// may have done. Each may use as many boxes as if it were alone, but for its shares of common searches. Also the number of boxes.
     fn repair_together(&self, chunk: &[PathPart], lines: &[u32], most: u64) -> (Vec<Repaired>, u64) {
-        let count = lines.len() as u64;
-        let mut harvest = Harvest::default();
-        // A single line that takes many boxes must not be at the expense of the others.
-        let is_done =
-            count > 1 && self.with_space(|space| self.again(chunk, lines, (1, most / 2), space, &mut harvest));
-        let spent = harvest.statistics.boxes;
-        let rest = most - (spent / count).min(most);
-        let Harvest {
-            mut crossings,
-            mut open,
-            ..
-        } = harvest;
-        crossings.sort_by_key(|(line, _)| *line);
-        open.sort_by_key(|(line, _)| *line);
-        let found = lines.par_iter().with_max_len(1).map(|line| {
-            let next = if is_done && !self.monitor.cancelled() {
+        let mut results: Vec<Repaired> = vec![Err(UnresolvedReason::Budget); lines.len()];
+        let mut left: Vec<usize> = (0..lines.len()).collect();
+        let (mut attempt, mut spent, mut share) = (1, 0, 0);
+        while left.len() > 1 && attempt <= Tolerances::REPAIRS && !self.monitor.cancelled() {
+            let own: Vec<u32> = left.iter().map(|at| lines[*at]).collect();
+            let mut harvest = Harvest::default();
+            // A single line that takes many boxes must not be at the expense of the others.
+            let is_done = self.with_space(|space| self.again(chunk, &own, (attempt, most / 2), space, &mut harvest));
+            spent += harvest.statistics.boxes;
+            share += harvest.statistics.boxes / own.len() as u64;
+            if !is_done || self.monitor.cancelled() {
+                break;
+            }
+            let Harvest {
+                mut crossings,
+                mut open,
+                ..
+            } = harvest;
+            crossings.sort_by_key(|(line, _)| *line);
+            open.sort_by_key(|(line, _)| *line);
+            left.retain(|at| {
+                let line = lines[*at];
                 let [from, to] = [0, 1].map(|after| crossings.partition_point(|(own, _)| *own < line + after));
-                let why = open.binary_search_by_key(line, |(own, _)| *own).map(|at| &open[at].1);
-                match self.judged(&crossings[from..to], why.ok()) {
-                    Ok(intervals) => return (Ok(intervals), 0),
-                    Err(reason) => Repair {
-                        attempt: 2,
-                        most: rest,
-                        reason,
-                    },
-                }
-            } else {
-                Repair::first(rest)
+                let why = open.binary_search_by_key(&line, |(own, _)| *own).map(|at| &open[at].1);
+                results[*at] = self.judged(&crossings[from..to], why.ok());
+                results[*at].is_err()
+            });
+            attempt += 1;
+            if open.iter().any(|(_, why)| *why == Cause::Boxes) {
+                break;
+            }
+        }
+        let alone = left.par_iter().with_max_len(1).map(|at| {
+            let next = Repair {
+                attempt,
+                most: most - share.min(most),
+                reason: results[*at].as_ref().err().copied().unwrap_or(UnresolvedReason::Budget),
             };
-            self.with_space(|space| self.repair(chunk, *line, next, space))
+            self.with_space(|space| self.repair(chunk, lines[*at], next, space))
         });
-        let (results, boxes): (Vec<Repaired>, Vec<u64>) = found.unzip();
+        let (found, boxes): (Vec<Repaired>, Vec<u64>) = alone.unzip();
+        for (at, found) in left.into_iter().zip(found) {
+            results[at] = found;
+        }
         (results, spent + boxes.iter().sum::<u64>())
     }
 
