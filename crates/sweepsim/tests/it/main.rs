@@ -10,6 +10,7 @@ mod cancelling;
 mod displaced;
 mod faces;
 mod far_and_fine;
+mod fine_poles;
 mod frames;
 mod freeform;
 mod grazing_curves;
