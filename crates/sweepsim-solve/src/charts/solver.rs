@@ -39,8 +39,7 @@ enum Next {
 const MANY: usize = 1000;
 /// With the spectral radius of `R` below this, one evaluation decides most targets: see [`Contraction`].
 const CLOSE: f64 = 0.4;
-/// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`, 0.63 for a hundred. Nearer to 1,
-/// targets beyond a face of the box take more evaluations than smaller boxes would. Both found by trial.
+/// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`. Nearer to 1, targets beyond a face take more evaluations than smaller boxes would. By trial.
 const LIMIT: f64 = 0.85;
 const SHARE: i32 = 10;
 /// With a spectral radius beyond this, the two parts of a box are probably not charts, either: they are split without a look at their derivatives. Found by trial.
@@ -90,8 +89,8 @@ impl<C: Clone> ChartSolver<C> {
         self.solve_part(map, root, &domain, targets, sink, monitor);
     }
 
-    /// As [`solve`](Self::solve), in one of several boxes that fill `domain` and share only faces. A preimage on a face is found only in the box above it. Targets given up
-    /// in another box are left out until the search [starts over](Self::start_over).
+    /// As [`solve`](Self::solve), in one of several boxes that fill `domain` and share only faces. A preimage on a face is found only in the box above it. Until the search
+    /// [starts over](Self::start_over), targets given up in another box are not searched for: where they may have preimages, they are reported as unresolved at once.
     pub fn solve_part<const N: usize, M, T, S>(
         &mut self,
         map: &mut M,
@@ -108,9 +107,10 @@ impl<C: Clone> ChartSolver<C> {
     {
         let targets = &mut Wanted::new(targets, std::mem::take(&mut self.given_up));
         let mut budget = self.options.boxes;
+        map.begin();
+        targets.report_given_up(map, &part, sink);
         self.stack.clear();
         self.stack.push((part, 0, Next::Examine(0)));
-        map.begin();
         loop {
             if map.is_full() {
                 let mut waiting: Vec<C> = self.stack.iter().map(|(cell, ..)| cell.clone()).collect();

@@ -3,10 +3,10 @@
 //! Ranges of values are wider than the true ones by their rounding on each side, and so are those of all parts of a box. Where a direction adds no more than that to any value, cutting across
 //! it tells no target from another; where all directions do, a target in the ranges of the box is in those of almost all its parts, of which there would be ever more. This is so at a pole, where all values
 //! of one variable are the same point: boxes would be cut across it until they are as small as the numbers allow. So a target that neither a chart nor a better bound has decided by then is *given up*:
-//! it is reported as unresolved, once, and not searched for in other boxes, since no other box can settle it.
+//! it is reported as unresolved, and not searched for in other boxes, since no other box can settle it.
 
 use super::beside::FEW;
-use super::{ChartTarget, Sink, Targets, UnresolvedTarget, all_of};
+use super::{ChartMap, ChartTarget, Sink, Targets, UnresolvedTarget, all_of};
 use crate::{Cause, Enclosure};
 
 /// The sides of a box as parts of the domain's.
@@ -85,6 +85,29 @@ impl<'a, T: ?Sized> Wanted<'a, T> {
         self.targets.visit(values, &all_of, &mut |target| {
             if let Err(place) = given_up.binary_search(&target.number) {
                 given_up.insert(place, target.number);
+            }
+            true
+        });
+    }
+
+    /// Reports the targets in the ranges of a box that were given up before.
+    pub fn report_given_up<const N: usize, M: ChartMap<N>, S: Sink<N, M::Seen>>(
+        &self,
+        map: &mut M,
+        cell: &M::Cell,
+        sink: &mut S,
+    ) where
+        T: Targets<N>,
+    {
+        if self.given_up.is_empty() {
+            return;
+        }
+        let Some(values) = map.values(cell) else { return };
+        let (bounds, cause) = (map.bounds(cell), Cause::Smallest);
+        self.targets.visit(&values, &all_of, &mut |target| {
+            let target = target.number;
+            if !self.holds(target) {
+                sink.unresolved(UnresolvedTarget { target, bounds, cause });
             }
             true
         });
