@@ -7,7 +7,7 @@ use sweepsim_motion::TipArc;
 const LARGEST: f64 = 1e4;
 /// The same in tolerances of chords, by default ten times that of the dexels: finer dexels than these coordinates have decimals for would be refused.
 const LARGEST_IN_CHORDS: f64 = 5e8;
-/// The largest difference of the distances of its ends from its centre, and of their places along the normal of a plane that is not level; and how far its radius may be from the plane across the tool.
+/// The largest difference of the distances of its ends from its centre, and of their places along the normal of a plane that is not level; and how far it may leave the plane across the axis of a tool that leans.
 const SPIRAL: f64 = 1e-9;
 /// An arc in a plane along z is cheaper than this many chords with every kind of end: with a round corner already than two. Found by trial.
 const WORTH: f64 = 8.0;

@@ -264,8 +264,8 @@ impl State {
     /// The direction from the tip to the holder until the rotary axes are at `abc`, if they stay where they are.
     pub fn steady_axis(&mut self, abc: [f64; 3]) -> Result<Option<[f64; 3]>, NcProblem> {
         match self.direct {
-            Some(direction) if self.coordinates() == Coordinates::Tip => Ok(Some(direction)),
             _ if abc != self.abc => Ok(None),
+            Some(direction) if self.coordinates() == Coordinates::Tip => Ok(Some(direction)),
             _ if abc == [0.0; 3] => Ok(Some([0.0, 0.0, 1.0])),
             _ => self.driver.axis(abc).map(Some),
         }

@@ -93,7 +93,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             if matches!(self.place(tip, 4.0 * doubt / sine), Place::Outside) {
                 continue;
             }
-            // A hundredth of the tolerance farther or less, the tool has risen by as much but for rounding.
+            // From here to there, how far the tool has risen changes by a tiny part of its rise, which is itself no more than a hundredth of the tolerance.
             let x = (rim.height + self.lift(tip) - view.base) / kappa;
             let (sine, tip) = around(x, length(x, y), turn);
             self.pass(view, sector, (rim, level), (x, tip, turn * sine, blur))?;
