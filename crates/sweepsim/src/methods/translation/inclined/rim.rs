@@ -89,8 +89,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         };
         for turn in [1.0, -1.0] {
             let (sine, tip) = around(start, far, turn);
-            // The tip moves by no more than the doubt in the cosine, over the sine.
-            if matches!(self.place(tip, 4.0 * doubt / sine), Place::Outside) {
+            // The tip moves by no more than the doubt in the cosine, over the sine; next to a torus, doubts are looked at below.
+            if level.is_none() && matches!(self.place(tip, 4.0 * doubt / sine), Place::Outside) {
                 continue;
             }
             // From here to there, how far the tool has risen changes by a tiny part of its rise, which is itself no more than a hundredth of the tolerance.
