@@ -12,7 +12,7 @@ const SPIRAL: f64 = 1e-9;
 /// An arc in a plane along z is cheaper than this many chords with every kind of end: with a round corner already than two. Found by trial.
 const WORTH: f64 = 8.0;
 /// The same for an arc about the axis of a tool that leans.
-const WORTH_TILTED: f64 = 50.0;
+const WORTH_TILTED: f64 = 30.0;
 
 /// How an arc that is not kept in any case lies to z and to the tool.
 #[derive(Clone, Copy, Debug, PartialEq)]

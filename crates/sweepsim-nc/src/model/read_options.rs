@@ -34,7 +34,7 @@ pub struct ReadOptions {
     pub level_arcs: bool,
     /// Keeps, on the same terms, arcs in planes along z (`G18`, `G19`) that do not leave their plane, where they would take 8 chords or more.
     pub upright_arcs: bool,
-    /// Keeps, on the same terms, arcs about the axis of a tool that leans, as those in tilted planes are, where they would take 50 chords or more.
+    /// Keeps, on the same terms, arcs about the axis of a tool that leans, as those in tilted planes are, where they would take 30 chords or more.
     pub tilted_arcs: bool,
     /// The format of the file. `None`: as its content says.
     pub format: Option<Format>,

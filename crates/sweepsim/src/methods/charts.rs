@@ -9,6 +9,7 @@ use sweepsim_motion::{SegmentEnd, Tool};
 use sweepsim_solve::{CancelOnly, ChartMap, Sink};
 
 /// Charts need only the maps.
+#[derive(Clone)]
 pub(crate) struct Charts;
 
 impl Charts {

@@ -21,6 +21,7 @@ use sweepsim_motion::{Segment, SegmentEnd};
 use sweepsim_solve::{CancelOnly, ChartMap, Monitor, Preimage, Sink};
 
 /// A search of some lines along some parts of a path.
+#[derive(Clone)]
 pub(crate) struct Search<'a, M> {
     pub method: &'a M,
     pub cutter: &'a Cutter,

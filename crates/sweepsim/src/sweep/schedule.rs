@@ -33,7 +33,8 @@ use sweepsim_solve::Monitor;
 /// The number of segments whose crossings are counted together. Longer chunks save caps, shorter ones save memory.
 pub(crate) const CHUNK: usize = 256;
 
-/// Lines are displaced for closed forms, too, up to this attempt: mostly, one was too close to an end of a curve. After that, charts alone have to do.
+/// Lines are displaced for closed forms, too, up to this attempt: mostly, one was too close to an end of a curve. In the last of them, charts have to do for the parts in which closed forms leave a line open, since what these
+/// cannot tell may be wider than lines are displaced. After that, they have to do for all.
 const IN_CLOSED_FORM: usize = 3;
 
 impl Plan {
@@ -259,16 +260,28 @@ impl SweepJob<'_> {
             _ => Lattice::all(self.grid, shift).masked(mask.as_ref()),
         };
         let over = self.over(&lines);
+        let by_charts = Search {
+            closed: false,
+            outline: None,
+            ..self.search(&Charts, (chunk, over), &lines)
+        };
         let search = Search {
             closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
             outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
-            ..self.search(&Charts, (chunk, over), &lines)
+            ..by_charts.clone()
         };
         for at in 0..chunk.len() {
             if self.monitor.cancelled() {
                 break;
             }
+            let (crossings, open) = (harvest.crossings.len(), harvest.open.len());
             search.part(at, space, harvest);
+            let in_both = attempt == IN_CLOSED_FORM && (search.closed || search.outline.is_some());
+            if in_both && harvest.open.len() > open {
+                harvest.crossings.truncate(crossings);
+                harvest.open.truncate(open);
+                by_charts.part(at, space, harvest);
+            }
             if harvest.statistics.boxes > most {
                 return false;
             }

@@ -12,7 +12,7 @@ const CLEAR: f64 = 64.0;
 
 impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     pub(super) fn rim(&mut self, rim: &Rim) -> Option<()> {
-        if !self.tells_angles(rim.radius, 0.0) {
+        if !self.tells_angles(rim.radius, None) {
             return None;
         }
         self.edge(rim, None);
@@ -24,10 +24,22 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         4.0 * self.coarse * (1.0 + self.kappa.abs().recip())
     }
 
-    /// Whether most lines tell the angle at which an edge of this radius, whose own place is in doubt by `bent`, passes them. Those within `δ` of where it reaches farthest in or out pass it less than `√(2 ρ δ)` ahead of the tip, and
-    /// have a certain angle where that is more than `2 √(GRAZING ε R)`, with places off by `ε`.
-    pub(super) fn tells_angles(&self, radius: f64, bent: f64) -> bool {
-        self.kappa == 0.0 || (self.blur() + bent) * self.arc.radius < (radius / CLEAR).powi(2)
+    /// Whether most lines tell the angle at which an edge of this radius passes them, next to a torus with a tube of radius `level`. Those within `δ` of where it reaches farthest in or out pass it less than `√(2 ρ δ)` ahead of the
+    /// tip, and have a certain angle where that is more than `2 √(GRAZING ε R)`, with places off by `ε`: next to a torus by [`bent`](Self::bent) there.
+    pub(super) fn tells_angles(&self, radius: f64, level: Option<f64>) -> bool {
+        let big = self.arc.radius;
+        let bent = level.map_or(0.0, |tube| {
+            let least = 8.0 * GRAZING * big * tube * self.slope.abs() / (radius * radius);
+            self.bent(tube, least.cbrt())
+        });
+        self.kappa == 0.0 || (self.blur() + bent) * big < (radius / CLEAR).powi(2)
+    }
+
+    /// How far the curve in which a torus touches its envelope may be from the circle on which its normal is along the axis, where that is so far ahead of the tip, as a share of its radius: it leaves the circle where the
+    /// normal leans by the rise over that share. Nearer to the place where the circle reaches farthest the curve is on the torus beyond doubt, and met as a tube.
+    fn bent(&self, tube: f64, ahead: f64) -> f64 {
+        let slope = self.slope.abs();
+        tube * (2.0 * slope / ahead).min(slope.sqrt())
     }
 
     /// An edge; or the circle on which a torus with a tube of this radius has a normal along the axis, up or down: the curve in which it touches its envelope is
@@ -65,10 +77,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             return Err(Open);
         }
         let cosine = |far: f64| (far * far + (big - rho) * (big + rho)) / (2.0 * big * far);
-        // The circle is off by that much, too.
-        let bent = level.map_or(0.0, |(_, radius)| radius * self.slope.abs().sqrt());
-        let doubt = 2.0 * (blur + bent) * (far + rho + big) / (big * far);
         let c = cosine(far);
+        let ahead = ((1.0 - c) * (1.0 + c)).max(0.0).sqrt() * far / rho;
+        let bent = level.map_or(0.0, |(_, tube)| self.bent(tube, ahead));
+        let doubt = 2.0 * (blur + bent) * (far + rho + big) / (big * far);
         if !((1.0 - c) * (1.0 + c) > GRAZING * doubt) {
             if c.abs() > 1.0 + doubt {
                 return Ok(());

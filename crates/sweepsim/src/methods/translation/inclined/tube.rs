@@ -63,9 +63,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             levels.push((level, at));
         }
         let whole = levels.iter().any(|(_, ends)| *ends != [true; 2]);
-        if flat && !(radius * self.slope.abs() <= self.near)
-            || whole && !self.tells_angles(centre, radius * self.slope.abs().sqrt())
-        {
+        if flat && !(radius * self.slope.abs() <= self.near) || whole && !self.tells_angles(centre, Some(radius)) {
             return None;
         }
         let part = match piece.ball() {
