@@ -80,12 +80,12 @@ fn arcs_about_a_leaning_tool_are_kept_if_asked_for() {
         for (head, text, kept) in [
             (plane, "G17 G3 X0 Y10 I0 J5", true),
             (plane, "G17 G2 X0 Y0 I4 J3", true),
-            // It leaves its plane; a spiral; a radius of 138 m; across the tool's axis; 36 chords.
+            // It leaves its plane; a spiral; a radius of 138 m; across the tool's axis; 25 chords.
             (plane, "G17 G3 X0 Y10 Z1 I0 J5", false),
             (plane, "G17 G3 X-0.002 Y0.0005 I5 J0", false),
             (plane, "G17 G2 X10 Y0 R138000", false),
             (plane, "G18 G3 X10 Z0 I5 K0", false),
-            (plane, "G17 G3 X0 Y0.02 I0 J0.01", false),
+            (plane, "G17 G3 X0 Y0.01 I0 J0.005", false),
             // The tool stands along z.
             (upright, "G17 G3 X0 Y10 I0 J5", false),
         ] {
