@@ -88,6 +88,13 @@ impl Workspace {
             self.grazing.forget(number);
         }
     }
+
+    /// The same of an edge.
+    pub fn trim_edge(&mut self, number: usize) {
+        if self.edges[number].trim() {
+            self.grazing.forget_edge(number);
+        }
+    }
 }
 
 impl Solvers {

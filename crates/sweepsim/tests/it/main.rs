@@ -24,6 +24,7 @@ mod near_degenerate;
 mod near_material;
 mod rays;
 mod sections;
+mod sharp_edges;
 mod spline_profiles;
 mod surfaces;
 mod tiles;

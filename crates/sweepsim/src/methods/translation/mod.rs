@@ -23,7 +23,7 @@ mod wheel;
 pub(crate) use bend::around;
 pub(crate) use ceiling::{Ceiling, GAP, close};
 pub(crate) use curves::{Heading, slack, stands};
-pub(crate) use grazing::{Grazed, Grazing, Resting};
+pub(crate) use grazing::{Elements, Grazed, Grazing, Resting};
 pub(crate) use inclined::inclined;
 pub(crate) use rest::{Neighbour, leaning, placements};
 pub(crate) use rows::numbers;

@@ -23,6 +23,8 @@ pub(super) struct Chart {
     slack: [f64; 2],
     /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`.
     pub jump: i8,
+    /// −1 if the normals that are evaluated point inwards.
+    pub outwards: f64,
     /// Ranges of the derivatives of `q`.
     slopes: [Range; 2],
 }
@@ -212,6 +214,7 @@ impl Chart {
             spread,
             slack,
             jump: if inverted(&mid).1 > 0.0 { 1 } else { -1 },
+            outwards: 1.0,
             slopes: [0, 1].map(|j| (slopes[j].0 * half[j], slopes[j].1 * half[j])),
         })
     }

@@ -33,6 +33,8 @@ pub(super) struct Directions {
     pub way: [f64; 3],
     /// No component of a direction that these stand for differs by more.
     pub spread: f64,
+    /// Whether the move goes the other way. A family is for both ways.
+    pub backwards: bool,
 }
 
 /// What all directions of a family have in common.
@@ -50,6 +52,7 @@ impl Directions {
             rows: [seen([x, y, 0.0]), seen([-y, x, 0.0]), seen([0.0, 0.0, 1.0])],
             way: turned_back(turn, &way.into()).into(),
             spread,
+            backwards: false,
         }
     }
 
@@ -91,7 +94,10 @@ impl Course {
             (from, way) = (to, way.map(|x| -x));
         }
         let ahead = [way[0] / length, way[1] / length];
-        let own = Directions::new(&segment.start(), ahead, way.map(|x| x / size), 0.0);
+        let own = Directions {
+            backwards: reversed,
+            ..Directions::new(&segment.start(), ahead, way.map(|x| x / size), 0.0)
+        };
         Some(Self {
             from,
             way,

@@ -4,7 +4,7 @@ use super::super::Collector;
 use super::super::rows::{Floor, Row, are_many, rows};
 use super::chart::{Chart, Region, Witness};
 use super::course::Course;
-use super::face::{Face, Sight};
+use super::face::{Curve, Sight};
 use super::knot::{Knot, Quintic, Seen};
 use super::span::{Graph, Known, Span, Spans, is_absent};
 use crate::methods::lattice::Lattice;
@@ -28,8 +28,8 @@ pub(super) struct Target {
 }
 
 /// The search of lines over charts.
-pub(super) struct Lines<'a, 'b, S> {
-    pub face: &'a Face<'a>,
+pub(super) struct Lines<'a, 'b, S, C> {
+    pub curve: &'a C,
     pub course: &'a Course,
     pub collector: &'a mut Collector<'b>,
     pub source: &'a S,
@@ -42,8 +42,8 @@ pub(super) struct Lines<'a, 'b, S> {
 }
 
 /// The lines of one chart.
-pub(super) struct Over<'a, 'b, 'c, S> {
-    pub lines: &'c mut Lines<'a, 'b, S>,
+pub(super) struct Over<'a, 'b, 'c, S, C> {
+    pub lines: &'c mut Lines<'a, 'b, S, C>,
     /// Those that are solved one by one, in the order of `p`.
     targets: Vec<Target>,
     pub chart: &'c Chart,
@@ -52,7 +52,7 @@ pub(super) struct Over<'a, 'b, 'c, S> {
     pub accept: [f64; 2],
 }
 
-impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
+impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
     pub fn floor(&self) -> Floor {
         Floor {
             tip: self.course.from,
@@ -76,7 +76,7 @@ impl<S: Fn(f64) -> Source> Lines<'_, '_, S> {
 
     /// The lines over a chart.
     pub fn chart(&mut self, chart: &Chart, window: [[f64; 2]; 2]) {
-        let centre = self.face.at(chart.point([0.0; 2]));
+        let centre = self.curve.at(chart.point([0.0; 2]));
         self.evaluations += 1;
         let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
         // As in `charts/`: `R` bounds how much the derivatives change over the chart.
@@ -126,7 +126,7 @@ pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
     !(q - lo < 0.0 || q - hi > length)
 }
 
-impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
+impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The lines of a window.
     fn window(&mut self, mut window: [[f64; 2]; 2]) {
         let (lines, floor) = (self.lines.collector.lines, self.lines.floor());
@@ -328,7 +328,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         let [x, y] = course.ahead;
         let normal = [x * q - y * p, y * q + x * p, up];
         let size = normal.iter().map(|c| c * c).sum::<f64>();
-        let scale = if size > 0.0 { size.sqrt().recip() } else { 1.0 };
+        let scale = if size > 0.0 { self.chart.outwards / size.sqrt() } else { 1.0 };
         let normal = normal.map(|c| (c * scale) as f32);
         let source = (self.lines.source)(course.time(share));
         let jump = self.chart.jump;

@@ -10,10 +10,11 @@ mod face;
 mod knot;
 mod lines;
 mod newton;
+mod rim;
 mod span;
 mod tree;
+mod walk;
 
-use super::rows::meets;
 use super::{Ceiling, Collector};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
@@ -21,13 +22,15 @@ use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
 use crate::methods::harvest::unit;
 use at_rest::{Finds, Search, Still, TooMany};
 use course::{Course, Directions, Key};
-use face::Face;
+use face::{Curve, Face};
 use lines::{Lines, Target};
 use nalgebra::{Matrix3, Vector3};
+use rim::Rim;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
-use tree::{Known, Tree};
+use tree::Tree;
+use walk::Walk;
 
 /// The number of families of directions that are kept.
 const FAMILIES: usize = 64;
@@ -35,10 +38,6 @@ const FAMILIES: usize = 64;
 const POSES: usize = 8;
 /// The number of cells of all of them.
 const CELLS: usize = 100_000;
-/// A patch that takes more looks at cells along one move is left to charts.
-const MOST: u64 = 20_000;
-/// So is one that takes more looks at cells for its own direction alone, which no other move can use.
-const MOST_OWN: u64 = 400;
 
 /// What is kept of a tool from one move to the next.
 #[derive(Debug, Default)]
@@ -50,12 +49,20 @@ pub(crate) struct Grazing {
     targets: Vec<Target>,
 }
 
-/// The cells of all patches, for directions that are almost the same.
+/// The cells of all patches and of all edges, for directions that are almost the same.
 #[derive(Debug)]
 struct Family {
     key: Key,
     directions: Directions,
-    trees: Vec<Option<Tree>>,
+    trees: [Vec<Option<Tree>>; 2],
+}
+
+/// The patches of a tool, or its edges.
+pub(crate) struct Elements<'a> {
+    pub forms: &'a [PatchForms],
+    pub cells: &'a mut [Cells],
+    /// Which of them are settled.
+    pub done: &'a mut [bool],
 }
 
 /// A search of lines along one move.
@@ -76,21 +83,28 @@ impl Grazing {
     /// Forgets a patch: to be called when its cells are dropped.
     pub fn forget(&mut self, patch: usize) {
         for family in &mut self.families {
-            family.trees[patch] = None;
+            family.trees[0][patch] = None;
         }
         for (_, trees) in &mut self.poses {
             trees[patch] = None;
         }
     }
 
+    /// Forgets an edge: to be called when its cells are dropped.
+    pub fn forget_edge(&mut self, edge: usize) {
+        for family in &mut self.families {
+            family.trees[1][edge] = None;
+        }
+    }
+
     /// The number of the family of a course, which is the last one then.
-    fn family(&mut self, course: &Course, segment: &Segment, patches: usize) -> Option<&mut Family> {
+    fn family(&mut self, course: &Course, segment: &Segment, elements: [usize; 2]) -> Option<&mut Family> {
         let (key, directions) = course.family(segment)?;
         if let Some(known) = self.families.iter().position(|family| family.key == key) {
             let family = self.families.remove(known);
             self.families.push(family);
         } else {
-            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten());
+            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten().flatten());
             if trees.map(Tree::len).sum::<usize>() > CELLS {
                 self.families.clear();
             }
@@ -100,81 +114,102 @@ impl Grazing {
             self.families.push(Family {
                 key,
                 directions,
-                trees: vec![None; patches],
+                trees: elements.map(|count| vec![None; count]),
             });
         }
         self.families.last_mut()
     }
 
-    /// Settles the patches that are not done along a move without rotation, as far as that is possible.
-    pub fn settle(
-        &mut self,
-        (elements, cells): (&[PatchForms], &mut [Cells]),
-        grazed: &mut Grazed,
-        source: &impl Fn(f64) -> Source,
-        done: &mut [bool],
-    ) {
-        if done.iter().all(|done| *done) {
+    /// Settles the patches and the edges that are not done along a move without rotation, as far as that is possible.
+    pub fn settle(&mut self, tool: [Elements; 2], grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
+        if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
             return;
         }
         let Some(course) = Course::new(grazed.segment, grazed.slack) else {
             return;
         };
         let mut targets = std::mem::take(&mut self.targets);
-        let Some(family) = self.family(&course, grazed.segment, elements.len()) else {
+        let counts = tool.each_ref().map(|elements| elements.forms.len());
+        let Some(family) = self.family(&course, grazed.segment, counts) else {
             return;
         };
-        let spacing = grazed.collector.lines.spacing();
-        let lowest = course.from[2].min(course.from[2] + course.way[2]);
-        let highest = grazed
-            .ceiling
-            .map_or(f64::INFINITY, |ceiling| ceiling.above(lowest, spacing));
         let mut trimmed = Vec::new();
-        for (number, (element, cells)) in elements.iter().zip(cells).enumerate() {
-            if done[number] {
-                continue;
-            }
-            let mark = grazed.collector.mark();
-            let face = Face::new(element, &course.own);
-            let mut walk = Walk {
-                element,
-                cells: &mut *cells,
-                course: &course,
-                highest,
-                monitor: grazed.monitor,
-                looks: 0,
-                own_looks: 0,
-                visits: 0,
-                lines: Lines {
-                    face: &face,
-                    course: &course,
-                    collector: &mut *grazed.collector,
-                    source,
-                    near: grazed.near,
-                    last: grazed.last,
-                    evaluations: 0,
-                    targets,
-                },
-            };
-            let tree = family.trees[number]
-                .get_or_insert_with(|| Tree::new(element, walk.cells, 0, &family.directions, course.slack));
-            let outcome = walk.tree(tree, &family.directions);
-            let Walk { lines, looks, .. } = walk;
-            let evaluations = lines.evaluations;
-            targets = lines.targets;
-            let statistics = &mut grazed.collector.harvest.statistics;
-            statistics.boxes += looks;
-            statistics.evaluations += evaluations;
-            match outcome {
-                Ok(()) => done[number] = true,
-                Err(TooMany) => grazed.collector.forget(mark),
-            }
-            if cells.trim() {
-                trimmed.push(number);
+        for (kind, (elements, trees)) in tool.into_iter().zip(&mut family.trees).enumerate() {
+            let all = elements.forms.iter().zip(elements.cells).zip(elements.done).zip(trees);
+            for (number, (((element, cells), done), tree)) in all.enumerate() {
+                if *done {
+                    continue;
+                }
+                let directions = &family.directions;
+                let tree = tree.get_or_insert_with(|| Tree::new(element, cells, 0, directions, course.slack));
+                let of = (element, &mut *cells);
+                *done = if element.is_edge() {
+                    let curve = &Rim::new(element, &course.own);
+                    grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
+                } else {
+                    let curve = &Face::new(element, &course.own);
+                    grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
+                };
+                if cells.trim() {
+                    trimmed.push((kind, number));
+                }
             }
         }
         self.targets = targets;
-        trimmed.into_iter().for_each(|number| self.forget(number));
+        for (kind, number) in trimmed {
+            match kind {
+                0 => self.forget(number),
+                _ => self.forget_edge(number),
+            }
+        }
+    }
+}
+
+impl Grazed<'_, '_> {
+    /// Settles one element, and returns whether that was possible.
+    fn element(
+        &mut self,
+        (element, cells): (&PatchForms, &mut Cells),
+        (curve, course): (&impl Curve, &Course),
+        (tree, directions): (&mut Tree, &Directions),
+        source: &impl Fn(f64) -> Source,
+        targets: &mut Vec<Target>,
+    ) -> bool {
+        let lowest = course.from[2].min(course.from[2] + course.way[2]);
+        let spacing = self.collector.lines.spacing();
+        let ceiling = self.ceiling.map(|ceiling| ceiling.above(lowest, spacing));
+        let mark = self.collector.mark();
+        let mut walk = Walk {
+            element,
+            cells,
+            course,
+            highest: ceiling.unwrap_or(f64::INFINITY),
+            monitor: self.monitor,
+            looks: 0,
+            own_looks: 0,
+            visits: 0,
+            lines: Lines {
+                curve,
+                course,
+                collector: &mut *self.collector,
+                source,
+                near: self.near,
+                last: self.last,
+                evaluations: 0,
+                targets: std::mem::take(targets),
+            },
+        };
+        let outcome = walk.tree(tree, directions);
+        let Walk { lines, looks, .. } = walk;
+        *targets = lines.targets;
+        let evaluations = lines.evaluations;
+        let statistics = &mut self.collector.harvest.statistics;
+        statistics.boxes += looks;
+        statistics.evaluations += evaluations;
+        if let Err(TooMany) = outcome {
+            self.collector.forget(mark);
+        }
+        outcome.is_ok()
     }
 }
 
@@ -266,80 +301,5 @@ impl Grazing {
             }
         }
         trimmed.into_iter().for_each(|number| self.forget(number));
-    }
-}
-
-/// What comes next in a walk.
-enum Next {
-    Visit(u32),
-    /// Release the cells made since.
-    Release(usize),
-}
-
-/// The walk through the cells of one patch.
-struct Walk<'a, 'b, S> {
-    element: &'a PatchForms,
-    cells: &'a mut Cells,
-    course: &'a Course,
-    /// Cells that are all this high above the tip are above the ceiling.
-    highest: f64,
-    monitor: &'a dyn Monitor,
-    looks: u64,
-    /// Of these, those for the direction alone.
-    own_looks: u64,
-    visits: u64,
-    lines: Lines<'a, 'b, S>,
-}
-
-impl<S: Fn(f64) -> Source> Walk<'_, '_, S> {
-    fn tree(&mut self, tree: &mut Tree, directions: &Directions) -> Result<(), TooMany> {
-        let slack = self.course.slack;
-        let mut stack = vec![Next::Visit(0)];
-        while let Some(next) = stack.pop() {
-            let number = match next {
-                Next::Visit(number) => number,
-                Next::Release(mark) => {
-                    self.cells.release(mark);
-                    continue;
-                }
-            };
-            let node = tree.node(number);
-            let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
-            self.visits += 1;
-            if node.lowest > self.highest || !meets(self.lines.collector.lines, &self.lines.floor(), window) {
-                continue;
-            }
-            if self.monitor.cancelled() {
-                return Ok(());
-            }
-            if self.visits > 4 * MOST || self.looks > MOST || self.own_looks > MOST_OWN {
-                return Err(TooMany);
-            }
-            let of = (self.element, &mut *self.cells);
-            let before = self.looks;
-            let known = tree.known(number, of, (directions, slack), &mut self.looks);
-            if directions.spread == 0.0 {
-                self.own_looks += self.looks - before;
-            }
-            match known {
-                Known::Empty => {}
-                Known::Chart(chart) => self.lines.chart(chart, window),
-                Known::Parts(parts) => stack.extend(parts.into_iter().rev().map(Next::Visit)),
-                Known::Rest(rest) => {
-                    // Such cells are kept for a family. All that are made until it is visited again are its parts.
-                    if directions.spread == 0.0 {
-                        stack.push(Next::Release(tree.node(rest).cell as usize));
-                    }
-                    stack.push(Next::Visit(rest));
-                }
-                Known::Mixed => {
-                    let own = &self.course.own;
-                    let mut tree = Tree::new(self.element, self.cells, cell, own, slack);
-                    self.tree(&mut tree, own)?;
-                }
-                Known::Least => self.lines.leave(window),
-            }
-        }
-        Ok(())
     }
 }

@@ -1,6 +1,7 @@
 //! One point of a grazing curve by Newton's method, and what it decides.
 
 use super::chart::{Region, Witness, solved};
+use super::face::Curve;
 use super::knot::{Knot, Seen};
 use super::lines::{Over, meets, witness};
 use sweepsim_dexel::Source;
@@ -20,7 +21,7 @@ enum Verdict {
     Unsure,
 }
 
-impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
+impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The point of the curve, if it has one in the chart, and the line that is there. `latest`: where that was evaluated last.
     pub fn solve(
         &mut self,
@@ -68,7 +69,7 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
         };
         for _ in 0..STEPS {
             s = within.clamp(s);
-            let sight = self.lines.face.at(chart.point(s));
+            let sight = self.lines.curve.at(chart.point(s));
             self.lines.evaluations += 1;
             let here = witness(s, &sight);
             *latest = Some(here);
@@ -100,12 +101,15 @@ impl<S: Fn(f64) -> Source> Over<'_, '_, '_, S> {
                     }
                 }
             }
+            let own = chart.slack();
+            let least = own.map(|own| ON_FACE + 4.0 * own);
+            // The point was in that region already: where the map is almost linear, one look from far away leaves as little.
+            let is_least = within.is_within(least);
             within = chart.region(&here, [p, 0.0], &within);
             if within.is_empty() {
                 return None;
             }
-            let own = chart.slack();
-            if within.is_within(own.map(|own| ON_FACE + 4.0 * own)) {
+            if is_least {
                 // As close as rounding allows.
                 if let Some(step) = step {
                     let next = [s[0] + step[0], s[1] + step[1]];

@@ -2,15 +2,16 @@
 
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::course::Directions;
+use super::rim::{Look, look};
 use crate::algebra::ranges::{ROUNDING, Triples, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{at_pole, pole};
 
 /// Cells with sides smaller than this are not divided.
-const SMALLEST: f64 = 1e-14;
+pub(super) const SMALLEST: f64 = 1e-14;
 /// Nor are those over which `p` changes by fewer roundings than this.
-const FLAT: f64 = 8.0;
+pub(super) const FLAT: f64 = 8.0;
 
 /// A cell, and where it is in the coordinates `(q, p, z)` from the tip.
 #[derive(Clone, Debug)]
@@ -63,11 +64,11 @@ pub(super) struct Tree {
 
 /// How much the values may differ over the directions of a family.
 #[derive(Clone, Debug, Default)]
-struct Blur {
+pub(super) struct Blur {
     place: f64,
     /// Of derivatives of the place, and of those of `g`, in each variable.
-    slopes: [f64; 2],
-    g: f64,
+    pub slopes: [f64; 2],
+    pub g: f64,
     g_slopes: [f64; 2],
 }
 
@@ -92,7 +93,7 @@ fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|k| a[k].abs() * b[k]).sum()
 }
 
-fn widened((lo, hi): Range, by: f64) -> Range {
+pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
     (lo - by, hi + by)
 }
 
@@ -105,6 +106,14 @@ impl Blur {
         let one = [spread; 3];
         let missing = cells.missing(cell);
         let [_, largest] = element.largest;
+        if element.is_edge() {
+            return Self {
+                place: total(&one, &sizes(&cells.position(element, cell))),
+                slopes: [total(&one, &sizes(&cells.slope(element, cell, 0))), 0.0],
+                g: total(&one, &largest),
+                g_slopes: [0.0; 2],
+            };
+        }
         Self {
             place: total(&one, &sizes(&cells.position(element, cell))),
             slopes: [0, 1].map(|axis| {
@@ -124,9 +133,9 @@ pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
     ROUNDING * total(&directions.way, &element.rounding[1])
 }
 
-/// The range of `g` on a cell, but for rounding.
-fn g(element: &PatchForms, cells: &Cells, cell: u32, directions: &Directions) -> Range {
-    let [normals, _] = cells.field(element, cell, 0);
+/// The range of `g` on a cell, but for rounding; of an edge, on one of its two sides.
+pub(super) fn g(element: &PatchForms, cells: &Cells, cell: u32, side: usize, directions: &Directions) -> Range {
+    let [normals, _] = cells.field(element, cell, side);
     let missing = total(&directions.way, &cells.missing(cell).value[1]);
     widened(products(&[directions.way], &normals), missing)
 }
@@ -221,7 +230,16 @@ impl Tree {
         slack: f64,
     ) -> State {
         let Node { cell, depth, p, .. } = self.nodes[number as usize];
-        let (lo, hi) = g(element, cells, cell, directions);
+        if element.is_edge() {
+            return match look((element, &mut *cells, cell), p, directions, &self.blur, slack) {
+                Look::Empty => State::Empty,
+                Look::Chart(chart) => self.chart(chart),
+                Look::Mixed => State::Mixed,
+                Look::Least => State::Least,
+                Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, slack),
+            };
+        }
+        let (lo, hi) = g(element, cells, cell, 0, directions);
         let error = error(element, directions);
         let within = error + self.blur.g;
         // Where g is exactly 0, it counts as not negative.
@@ -251,15 +269,12 @@ impl Tree {
         let blur = [*place_slopes, *g_slopes];
         let ahead = [of_place(0, 0), of_place(0, 1)];
         let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], ahead) {
-            Ok(chart) => {
-                self.charts.push(chart);
-                return State::Chart(self.charts.len() as u32 - 1);
-            }
+            Ok(chart) => return self.chart(chart),
             Err(rough) => rough,
         };
         let rest = at_pole(&element.poles, bounds, (widened((lo, hi), within), of_g), |[u, v]| {
             let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
-            let (lo, hi) = g(element, cells, part, directions);
+            let (lo, hi) = g(element, cells, part, 0, directions);
             let found = (lo <= within && hi >= -within).then(|| {
                 cells.prepare(element, part);
                 (widened((lo, hi), within), slopes(cells, part, directions, g_slopes))
@@ -281,6 +296,21 @@ impl Tree {
             return State::Least;
         }
         let axis = towards_pole(element, bounds).unwrap_or_else(|| divided(&jacobian, sides, depth, &rough));
+        self.divide((element, cells), (cell, depth, axis), directions, slack)
+    }
+
+    fn chart(&mut self, chart: Chart) -> State {
+        self.charts.push(chart);
+        State::Chart(self.charts.len() as u32 - 1)
+    }
+
+    fn divide(
+        &mut self,
+        (element, cells): (&PatchForms, &mut Cells),
+        (cell, depth, axis): (u32, u32, usize),
+        directions: &Directions,
+        slack: f64,
+    ) -> State {
         let parts = cells.split(element, cell, axis);
         let first = self.nodes.len() as u32;
         for part in parts {

@@ -1,0 +1,148 @@
+//! Sharp edges, seen in the coordinates of a move.
+//!
+//! An edge `C(r)` bounds the sweep where exactly one of its two faces moves inwards. Its curve takes the place of a grazing curve: `p(C(r)) = p of the line` is one equation in one unknown.
+//! With a second unknown `w`, and `w = 0` in place of `g = 0`, it has the form of the equations of a patch, and is solved as these are. Both signs of `g` are the same on all of a chart.
+
+use super::chart::{Chart, Range, magnitude};
+use super::course::Directions;
+use super::face::{Curve, Sight};
+use super::tree::{Blur, FLAT, SMALLEST, error, g, widened};
+use crate::algebra::table::position;
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::time::placement::Placing;
+use nalgebra::{Matrix3, Vector3};
+
+/// A family's cells are left to each direction where ranges are narrower than so many times what the directions differ by.
+const BLURRED: f64 = 8.0;
+
+/// An edge as it is seen along a direction.
+pub(super) struct Rim<'a> {
+    element: &'a PatchForms,
+    placing: Placing,
+    /// The parts of the unit vector along the way, ahead and up.
+    way: [f64; 2],
+}
+
+impl<'a> Rim<'a> {
+    pub fn new(element: &'a PatchForms, directions: &Directions) -> Self {
+        let rows = directions.rows.map(Vector3::from);
+        let way = Vector3::from(directions.way);
+        Self {
+            element,
+            placing: Placing::new(&Matrix3::from_columns(&rows).transpose(), &Vector3::zeros(), None),
+            way: [rows[0].dot(&way), rows[2].dot(&way)],
+        }
+    }
+}
+
+impl Curve for Rim<'_> {
+    /// The normal is `C′ × d`, across the strip, to either side: see [`Chart::outwards`].
+    #[inline]
+    fn at(&self, [r, w]: [f64; 2]) -> Sight {
+        let point = position(&self.element.places.along::<4>(r));
+        let [place, slope] = point.map(|v| {
+            let [q, p, z, _] = self.placing.turned(&v);
+            [q, p, z]
+        });
+        let ([ahead, up], [q, p, z]) = (self.way, slope);
+        Sight {
+            place,
+            slopes: [slope, [0.0; 3]],
+            g: [w, 0.0, 1.0],
+            normal: [p * up, z * ahead - q * up, -p * ahead],
+        }
+    }
+}
+
+/// What a look at a cell of an edge tells.
+pub(super) enum Look {
+    /// Both faces move to the same side.
+    Empty,
+    Chart(Chart),
+    /// Not the same for all directions of a family.
+    Mixed,
+    /// It cannot be divided any further.
+    Least,
+    /// It has to be divided.
+    Rough,
+}
+
+/// The sign of `g` beyond an error: −1, 0 (exactly) or 1.
+fn sign((lo, hi): Range, error: f64) -> Option<i8> {
+    if lo > error {
+        Some(1)
+    } else if hi < -error {
+        Some(-1)
+    } else {
+        (lo == 0.0 && hi == 0.0).then_some(0)
+    }
+}
+
+/// A look at a cell over which `p` has a range.
+pub(super) fn look(
+    (element, cells, cell): (&PatchForms, &mut Cells, u32),
+    p: Range,
+    directions: &Directions,
+    blur: &Blur,
+    slack: f64,
+) -> Look {
+    let error = error(element, directions);
+    let is_family = directions.spread > 0.0;
+    let ranges = [0, 1].map(|side| g(element, cells, cell, side, directions));
+    let (lower, upper) = cells.bounds(cell, 0);
+    // Exactly 0 in one direction says nothing of others.
+    let alike = |sign: &i8| !(is_family && *sign == 0);
+    let signs = ranges.map(|range| sign(range, error + blur.g).filter(alike));
+    let rough = if upper - lower < SMALLEST {
+        if is_family { Look::Mixed } else { Look::Least }
+    } else if p.1 - p.0 - 2.0 * slack < FLAT * slack {
+        Look::Least
+    } else {
+        Look::Rough
+    };
+    let [Some(before), Some(after)] = signs else {
+        let blurs = |(range, known): (&Range, &Option<i8>)| {
+            let narrow = range.1 - range.0 <= BLURRED * blur.g;
+            known.is_none() && (narrow || sign(*range, error).is_some())
+        };
+        let is_mixed = is_family && ranges.iter().zip(&signs).any(blurs);
+        return if is_mixed { Look::Mixed } else { rough };
+    };
+    // What is exactly 0 is not negative, whichever way the tip goes.
+    let negative = |sign: i8| if directions.backwards { sign > 0 } else { sign < 0 };
+    if negative(before) == negative(after) {
+        return Look::Empty;
+    }
+    cells.prepare(element, cell);
+    let along = |k: usize| {
+        let range = cells.slope_products(element, cell, 0, &[directions.rows[k]]);
+        widened(range, blur.slopes[0])
+    };
+    let [ahead, across] = [along(0), along(1)];
+    const NOTHING: Range = (0.0, 0.0);
+    let half = 0.5 * (upper - lower);
+    let jacobian = [[across, NOTHING], [NOTHING, (1.0, 1.0)]];
+    let blurs = [[blur.slopes[0], 0.0], [0.0; 2]];
+    let bounds = [[lower, -half], [upper, half]];
+    match Chart::new(bounds, &jacobian, &blurs, [slack, 0.0], [ahead, NOTHING]) {
+        Ok(mut chart) => {
+            // The determinant of ∂(X, Y)/∂(r, t) has the opposite sign of p′, and one more sign is that of the jump.
+            chart.jump *= if after > before { 1 } else { -1 };
+            chart.outwards = outwards(element, 0.5 * (lower + upper), directions);
+            Look::Chart(chart)
+        }
+        Err(rough) if is_family && (rough.blurred || magnitude(across) <= BLURRED * blur.slopes[0]) => Look::Mixed,
+        Err(_) => rough,
+    }
+}
+
+/// Whether `C′ × d` points outwards at a point (1), or inwards (−1).
+fn outwards(element: &PatchForms, r: f64, directions: &Directions) -> f64 {
+    let [_, slope] = position(&element.places.along::<4>(r));
+    let (_, [[n, _], [m, _]]) = element.rim(r);
+    let way = Vector3::from(directions.way);
+    // The envelope's normal lies in the fan of the two faces, where g = 0.
+    let normal = n * m.dot(&way).abs() + m * n.dot(&way).abs();
+    if slope.cross(&way).dot(&normal) < 0.0 { -1.0 } else { 1.0 }
+}
