@@ -328,7 +328,11 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         let [x, y] = course.ahead;
         let normal = [x * q - y * p, y * q + x * p, up];
         let size = normal.iter().map(|c| c * c).sum::<f64>();
-        let scale = if size > 0.0 { self.chart.outwards / size.sqrt() } else { 1.0 };
+        let scale = if size > 0.0 {
+            self.chart.outwards / size.sqrt()
+        } else {
+            1.0
+        };
         let normal = normal.map(|c| (c * scale) as f32);
         let source = (self.lines.source)(course.time(share));
         let jump = self.chart.jump;

@@ -104,7 +104,10 @@ impl Grazing {
             let family = self.families.remove(known);
             self.families.push(family);
         } else {
-            let trees = self.families.iter().flat_map(|family| family.trees.iter().flatten().flatten());
+            let trees = self
+                .families
+                .iter()
+                .flat_map(|family| family.trees.iter().flatten().flatten());
             if trees.map(Tree::len).sum::<usize>() > CELLS {
                 self.families.clear();
             }

@@ -144,5 +144,69 @@ fn outwards(element: &PatchForms, r: f64, directions: &Directions) -> f64 {
     let way = Vector3::from(directions.way);
     // The envelope's normal lies in the fan of the two faces, where g = 0.
     let normal = n * m.dot(&way).abs() + m * n.dot(&way).abs();
-    if slope.cross(&way).dot(&normal) < 0.0 { -1.0 } else { 1.0 }
+    if slope.cross(&way).dot(&normal) < 0.0 {
+        -1.0
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::course::Course;
+    use super::super::tree::Tree;
+    use super::*;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Pose, Segment, Tool};
+
+    /// `p′`, and `g` of both faces.
+    fn at(element: &PatchForms, r: f64, directions: &Directions) -> (f64, [f64; 2]) {
+        let [_, slope] = position(&element.places.along::<4>(r));
+        let (_, normals) = element.rim(r);
+        let across = Vector3::from(directions.rows[1]).dot(&slope);
+        (across, normals.map(|[n, _]| n.dot(&Vector3::from(directions.way))))
+    }
+
+    proptest! {
+        /// What is said of a cell for a family of directions holds for each of them, at all of its points.
+        #[test]
+        fn looks_hold_for_all_of_a_family(
+            tool in 0..3_usize, axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0], way in [-2.0..2.0, -2.0..2.0, -1.0..1.0], shift in [-1e-7..1e-7, -1e-7..1e-7, -1e-7..1e-7], shares in [0.0..1.0, 0.0..1.0],
+        ) {
+            let tool = [Tool::flat(3.0, 9.0), Tool::bull(3.0, 1.0, 9.0), Tool::ball(3.0, 9.0)][tool].clone().unwrap();
+            let pose = |tip| Pose::new(tip, axis).unwrap();
+            let segment = |way| Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
+            let first = segment(way);
+            let second = segment([0, 1, 2].map(|k: usize| way[k] + shift[k]));
+            let (Some(course), Some(other)) = (Course::new(&first, 1e-13), Course::new(&second, 1e-13)) else { return Ok(()) };
+            let Some((key, family)) = course.family(&first) else { return Ok(()) };
+            let mut all = vec![&course];
+            // A different family for a few of them.
+            all.extend(other.family(&second).is_some_and(|(own, _)| own == key).then_some(&other));
+            for element in PatchForms::all(&tool).1 {
+                let mut cells = Cells::new(&element);
+                let blur = Tree::new(&element, &mut cells, 0, &family, 1e-13).blur;
+                let mut stack = vec![(0_u32, 0)];
+                while let Some((cell, depth)) = stack.pop() {
+                    let (lower, upper) = cells.bounds(cell, 0);
+                    let look = look((&element, &mut cells, cell), (-1.0, 1.0), &family, &blur, 1e-13);
+                    for (share, course) in shares.iter().flat_map(|share| all.iter().map(move |course| (share, course))) {
+                        let (across, [a, b]) = at(&element, lower + share * (upper - lower), &course.own);
+                        let is_edge = (a < 0.0) != (b < 0.0);
+                        match &look {
+                            Look::Empty => prop_assert!(!is_edge),
+                            Look::Chart(chart) => {
+                                let jump = if (across > 0.0) == (a < 0.0) { 1 } else { -1 };
+                                prop_assert!(is_edge && across != 0.0 && chart.jump == jump);
+                            }
+                            _ => {}
+                        }
+                    }
+                    if matches!(look, Look::Rough) && depth < 24 {
+                        stack.extend(cells.split(&element, cell, 0).map(|part| (part, depth + 1)));
+                    }
+                }
+            }
+        }
+    }
 }

@@ -59,7 +59,7 @@ pub(super) enum Known<'a> {
 pub(super) struct Tree {
     nodes: Vec<Node>,
     charts: Vec<Chart>,
-    blur: Blur,
+    pub blur: Blur,
 }
 
 /// How much the values may differ over the directions of a family.
