@@ -21,9 +21,9 @@ pub(super) struct Chart {
     /// `R(I − R)⁻¹`, and the rounding error of a prediction times `(I − R)⁻¹`.
     spread: Square,
     slack: [f64; 2],
-    /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`.
+    /// Of all points of the curve: the sign of `∂(p, g)/∂(u, v)`, or the jump at an edge.
     pub jump: i8,
-    /// −1 if the normals that are evaluated point inwards.
+    /// −1 if the normals that are evaluated point inwards, as those of an edge may.
     pub outwards: f64,
     /// Ranges of the derivatives of `q`.
     slopes: [Range; 2],

@@ -5,7 +5,7 @@ use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
 
-/// What a move sweeps a curve of: the points at which `g` is 0.
+/// A patch or an edge of which a move sweeps a curve: the points at which `g` is 0.
 pub(super) trait Curve {
     fn at(&self, at: [f64; 2]) -> Sight;
 }

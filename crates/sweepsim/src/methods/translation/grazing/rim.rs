@@ -16,6 +16,9 @@ use nalgebra::{Matrix3, Vector3};
 /// A family's cells are left to each direction where ranges are narrower than so many times what the directions differ by.
 const BLURRED: f64 = 8.0;
 
+/// The range of derivatives that vanish.
+const NOTHING: Range = (0.0, 0.0);
+
 /// An edge as it is seen along a direction.
 pub(super) struct Rim<'a> {
     element: &'a PatchForms,
@@ -59,7 +62,7 @@ impl Curve for Rim<'_> {
 pub(super) enum Look {
     /// Both faces move to the same side.
     Empty,
-    Chart(Chart),
+    Chart(Box<Chart>),
     /// Not the same for all directions of a family.
     Mixed,
     /// It cannot be divided any further.
@@ -120,7 +123,6 @@ pub(super) fn look(
         widened(range, blur.slopes[0])
     };
     let [ahead, across] = [along(0), along(1)];
-    const NOTHING: Range = (0.0, 0.0);
     let half = 0.5 * (upper - lower);
     let jacobian = [[across, NOTHING], [NOTHING, (1.0, 1.0)]];
     let blurs = [[blur.slopes[0], 0.0], [0.0; 2]];
@@ -130,7 +132,7 @@ pub(super) fn look(
             // The determinant of ∂(X, Y)/∂(r, t) has the opposite sign of p′, and one more sign is that of the jump.
             chart.jump *= if after > before { 1 } else { -1 };
             chart.outwards = outwards(element, 0.5 * (lower + upper), directions);
-            Look::Chart(chart)
+            Look::Chart(Box::new(chart))
         }
         Err(rough) if is_family && (rough.blurred || magnitude(across) <= BLURRED * blur.slopes[0]) => Look::Mixed,
         Err(_) => rough,

@@ -1,4 +1,4 @@
-//! The cells of a patch along the grazing curves of a family of directions, divided as far as lines have asked for.
+//! The cells of a patch, or of an edge, along the grazing curves of a family of directions, divided as far as lines have asked for.
 
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::course::Directions;
@@ -233,7 +233,7 @@ impl Tree {
         if element.is_edge() {
             return match look((element, &mut *cells, cell), p, directions, &self.blur, slack) {
                 Look::Empty => State::Empty,
-                Look::Chart(chart) => self.chart(chart),
+                Look::Chart(chart) => self.chart(*chart),
                 Look::Mixed => State::Mixed,
                 Look::Least => State::Least,
                 Look::Rough => self.divide((element, cells), (cell, depth, 0), directions, slack),
