@@ -33,7 +33,7 @@ fn list(job: &Job, paths: &[usize]) -> String {
     format!("{}{rest}", names.join(", "))
 }
 
-/// Paths without a move: a pose alone cuts nothing.
+/// Paths without a move: the tool removes no more than what it covers where it stands.
 pub(super) fn still(job: &Job) -> Option<String> {
     if job.moves() == 0 {
         return Some("the job moves nothing: no path has a move".to_owned());
@@ -43,8 +43,9 @@ pub(super) fn still(job: &Job) -> Option<String> {
         .collect();
     (!still.is_empty()).then(|| {
         format!(
-            "{} of a single pose cut nothing: {}",
+            "{} of a single pose {} only what the tool covers there: {}",
             counted(still.len() as u64, "path"),
+            if still.len() == 1 { "removes" } else { "remove" },
             list(job, &still)
         )
     })

@@ -118,7 +118,7 @@ fn paths_that_do_nothing() {
     let still = format!("{PATH} Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1))]),");
     assert_one(
         &warnings("simulate", PATH, &still),
-        &["1 path of a single pose", "path 1"],
+        &["1 path of a single pose removes only", "path 1"],
     );
     let only = "Path(tool: 1, poses: [((0, 5, 3), (0, 0, 1))]),";
     assert_one(&warnings("simulate", PATH, only), &["moves nothing"]);

@@ -245,6 +245,8 @@ pub(super) struct Solids<'a> {
 impl<'a> Solids<'a> {
     /// Along some moves of a toolpath.
     pub(super) fn new(toolpath: &ToolPath<'a>, moves: Range<usize>, work: &Work) -> Result<Self, SweepError> {
+        // The run of a path of one pose counts a move that the path does not have.
+        let moves = moves.start..moves.end.min(toolpath.path.moves());
         let mut grids = vec![work.remaining.grid().whole()];
         grids.extend(work.fixtures.iter().map(|(dexels, _)| dexels.grid().whole()));
         let solid = |tool: &'a Tool| MovingSolid::new(tool, (toolpath.path, moves.clone()), &grids, &work.options);

@@ -6,6 +6,7 @@ mod deviation;
 mod regions;
 mod removal;
 mod setups;
+mod standing;
 mod threads;
 mod tiles;
 
