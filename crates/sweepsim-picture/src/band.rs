@@ -1,5 +1,6 @@
 //! A band of rows: which triangle each sample sees, and the colours of its pixels.
 
+use crate::base::columns;
 use crate::base::vector::{Vector, add, along, dot, mix, scale, smooth_step, unit};
 use crate::camera::Camera;
 use crate::frame::{BAND, ImagePoint, RIM, SAMPLES, STEP, area};
@@ -112,21 +113,23 @@ impl Band {
             let grow = [c[1] - b[1], a[1] - c[1], b[1] - a[1]].map(|d| d * step);
             // A sample on an edge belongs to one of its two triangles only: the one to the right, or below.
             let own = [[b, c], [c, a], [a, b]].map(|[p, q]| q[1] > p[1] || (q[1] == p[1] && q[0] < p[0]));
+            let [from, to] = columns::inside(right + 1 - left, weights, grow);
+            for k in 0..3 {
+                weights[k] += from * grow[k];
+            }
             let start = row as usize * self.width;
-            for column in left..=right {
-                if weights.iter().all(|w| *w >= 0) {
-                    let near = scale * (0..3).map(|k| weights[k] as f32 * points[k].near).sum::<f32>();
-                    let index = start + column as usize;
-                    if !back && near > self.near[index] {
-                        self.near[index] = near;
-                        self.triangles[index] = number;
-                    }
-                    if !is_tool
-                        && (0..3).all(|k| weights[k] > 0 || own[k])
-                        && let Some(depth) = self.depth.get_mut(index)
-                    {
-                        *depth += if back { 1 } else { -1 };
-                    }
+            for column in left + from..left + to {
+                let near = scale * (0..3).map(|k| weights[k] as f32 * points[k].near).sum::<f32>();
+                let index = start + column as usize;
+                if !back && near > self.near[index] {
+                    self.near[index] = near;
+                    self.triangles[index] = number;
+                }
+                if !is_tool
+                    && (0..3).all(|k| weights[k] > 0 || own[k])
+                    && let Some(depth) = self.depth.get_mut(index)
+                {
+                    *depth += if back { 1 } else { -1 };
                 }
                 for k in 0..3 {
                     weights[k] += grow[k];

@@ -1,5 +1,6 @@
 //! Depth maps: how far light from distant sources gets.
 
+use crate::base::columns;
 use crate::base::steps::Steps;
 use crate::base::vector::{Vector, cross, dot, unit};
 use crate::scene::Scene;
@@ -9,6 +10,8 @@ use rayon::prelude::*;
 const TILE: usize = 16;
 /// Maps that are looked up together.
 const LANES: usize = 8;
+/// In rows of triangles over more texels than this it pays to look for those that are inside.
+const NARROW: usize = 16;
 
 /// Depth maps seen from several directions.
 pub(crate) struct DepthMaps {
@@ -158,8 +161,31 @@ impl DepthMap {
         let (bx, by) = ((c[1] - a[1]) * scale, -(c[0] - a[0]) * scale);
         let (cx, cy) = (-(b[1] - a[1]) * scale, (b[0] - a[0]) * scale);
         for row in top..=bottom {
-            for column in left..=right {
-                let (x, y) = (column as f32 - a[0], row as f32 - a[1]);
+            let y = row as f32 - a[1];
+            let (mut from, mut to) = (left, right);
+            if right - left > NARROW {
+                // In exact numbers, with more than the rounding errors of what is computed below.
+                let [bx, by, cx, cy] = [bx, by, cx, cy].map(f64::from);
+                let widest = (left as f32 - a[0]).abs().max((right as f32 - a[0]).abs());
+                let error = |slope: f64, other: f64| {
+                    8.0 * f64::from(f32::EPSILON) * ((slope * f64::from(widest)).abs() + (other * f64::from(y)).abs())
+                };
+                let [in_b, in_c] = [(bx, by), (cx, cy)].map(|(slope, other)| {
+                    let value = other * f64::from(y) - slope * f64::from(a[0]);
+                    (value, slope, error(slope, other))
+                });
+                let both = (1.0001 - in_b.0 - in_c.0, -in_b.1 - in_c.1, in_b.2 + in_c.2 + 1e-6);
+                let mut range = [left as f64, right as f64];
+                for (value, slope, error) in [(in_b.0 + 1e-4, in_b.1, in_b.2), (in_c.0 + 1e-4, in_c.1, in_c.2), both] {
+                    range = columns::narrowed(range, value + error, slope);
+                }
+                if range[0] > range[1] {
+                    continue;
+                }
+                [from, to] = range.map(|column| column as usize);
+            }
+            for column in from..=to {
+                let x = column as f32 - a[0];
                 let (wb, wc) = (bx * x + by * y, cx * x + cy * y);
                 if wb >= -1e-4 && wc >= -1e-4 && wb + wc <= 1.0001 {
                     let z = a[2] + wb * (b[2] - a[2]) + wc * (c[2] - a[2]);

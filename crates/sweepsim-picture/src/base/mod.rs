@@ -1,5 +1,6 @@
-//! What all else builds on: vectors, pixels, strokes, and the steps of the work.
+//! What all else builds on: vectors, pixels, strokes, columns of triangles, and the steps of the work.
 
+pub(crate) mod columns;
 pub(crate) mod glyphs;
 pub(crate) mod image;
 pub(crate) mod steps;
