@@ -5,6 +5,7 @@
 //! This gives the right sign for every closed surface that does not intersect itself, even where the nearest point is on a sharp
 //! edge (Bærentzen, Aanæs: *Signed Distance Computation Using the Angle Weighted Pseudonormal*, 2005).
 
+use super::parts::{self, Part};
 use super::{MeshError, TriangleSoup};
 use crate::vector::{cross, dot, sub};
 use std::collections::HashMap;
@@ -28,6 +29,8 @@ const LEAF: usize = 4;
 pub struct DistanceTo {
     vertices: Vec<[f64; 3]>,
     faces: Vec<Face>,
+    /// The faces of the leaves, one leaf after another; a face is in several if it has been looked at in parts.
+    order: Vec<u32>,
     nodes: Vec<TreeNode>,
 }
 
@@ -72,7 +75,7 @@ struct Face {
 struct TreeNode {
     low: [f64; 3],
     high: [f64; 3],
-    /// Faces `first..first + count`; of an inner node the second child is at `first`, the first right behind it.
+    /// The places `first..first + count` in the order of faces; of an inner node the second child is at `first`, the first right behind it.
     first: u32,
     count: u32,
 }
@@ -153,6 +156,40 @@ impl TreeNode {
     }
 }
 
+/// Builds the tree over some parts of faces, the first of which has the place `first` in the order of all.
+fn split(nodes: &mut Vec<TreeNode>, parts: &mut [Part], first: usize) {
+    let number = nodes.len();
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for part in &*parts {
+        for k in 0..3 {
+            (low[k], high[k]) = (low[k].min(part.low[k]), high[k].max(part.high[k]));
+        }
+    }
+    nodes.push(TreeNode {
+        low,
+        high,
+        first: first as u32,
+        count: parts.len() as u32,
+    });
+    if parts.len() <= LEAF {
+        return;
+    }
+    // Not of the boxes: what is long along an axis may all have one place there.
+    let extent = [0, 1, 2].map(|k| {
+        let places = parts.iter().map(|part| part.place[k]);
+        let ends = places.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], c| [a.min(c), b.max(c)]);
+        ends[1] - ends[0]
+    });
+    let axis = (0..3).fold(0, |a, k| if extent[k] > extent[a] { k } else { a });
+    let middle = parts.len() / 2;
+    parts.select_nth_unstable_by(middle, |a, b| a.place[axis].total_cmp(&b.place[axis]));
+    let (lower, upper) = parts.split_at_mut(middle);
+    split(nodes, lower, first);
+    let second = nodes.len() as u32;
+    split(nodes, upper, first + middle);
+    (nodes[number].first, nodes[number].count) = (second, 0);
+}
+
 impl DistanceTo {
     /// Prepares a surface. Triangles without area are ignored; a closed surface is closed without them.
     ///
@@ -203,46 +240,29 @@ impl DistanceTo {
                 sum.copied().unwrap_or(face.normal).map(|c| c as f32)
             });
         }
-        let mut tree = Self {
-            vertices: mesh.vertices,
-            faces: Vec::new(),
-            nodes: Vec::new(),
-        };
-        if !faces.is_empty() {
-            tree.split(&mut faces, 0);
-            tree.faces = faces;
+        let mut parts = parts::of(faces.iter().map(|f| f.corners.map(|v| mesh.vertices[v as usize])));
+        let mut nodes = Vec::new();
+        if !parts.is_empty() {
+            split(&mut nodes, &mut parts, 0);
         }
-        Ok(tree)
-    }
-
-    /// Builds the tree over some faces, the first of which has the number `first` in all.
-    fn split(&mut self, faces: &mut [Face], first: usize) {
-        let number = self.nodes.len();
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for p in faces.iter().flat_map(|f| f.corners).map(|v| self.vertices[v as usize]) {
-            for k in 0..3 {
-                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+        // In the order of the leaves, so that what is looked at together lies together.
+        let mut numbers = vec![u32::MAX; faces.len()];
+        let mut sorted = Vec::with_capacity(faces.len());
+        let mut order = Vec::with_capacity(parts.len());
+        for part in parts {
+            let number = &mut numbers[part.face as usize];
+            if *number == u32::MAX {
+                *number = sorted.len() as u32;
+                sorted.push(faces[part.face as usize].clone());
             }
+            order.push(*number);
         }
-        self.nodes.push(TreeNode {
-            low,
-            high,
-            first: first as u32,
-            count: faces.len() as u32,
-        });
-        if faces.len() <= LEAF {
-            return;
-        }
-        let axis = (0..3).fold(0, |a, k| if high[k] - low[k] > high[a] - low[a] { k } else { a });
-        let middle = faces.len() / 2;
-        let vertices = &self.vertices;
-        let place = |f: &Face| f.corners.iter().map(|v| vertices[*v as usize][axis]).sum::<f64>();
-        faces.select_nth_unstable_by(middle, |a, b| place(a).total_cmp(&place(b)));
-        let (lower, upper) = faces.split_at_mut(middle);
-        self.split(lower, first);
-        let second = self.nodes.len() as u32;
-        self.split(upper, first + middle);
-        (self.nodes[number].first, self.nodes[number].count) = (second, 0);
+        Ok(Self {
+            vertices: mesh.vertices,
+            faces: sorted,
+            order,
+            nodes,
+        })
     }
 
     /// The point of the surface nearest to `p`. `None` if there are no triangles, or `p` is not finite.
@@ -296,8 +316,8 @@ impl DistanceTo {
                 open.extend(children);
                 continue;
             }
-            for number in node.first..node.first + node.count {
-                let face = &self.faces[number as usize];
+            for number in &self.order[node.first as usize..(node.first + node.count) as usize] {
+                let face = &self.faces[*number as usize];
                 if !wanted(face) {
                     continue;
                 }
@@ -306,7 +326,7 @@ impl DistanceTo {
                 let square = dot(off, off);
                 if square < best || (square == best && found.is_none()) {
                     best = square;
-                    found = Some((number as usize, place, part));
+                    found = Some((*number as usize, place, part));
                 }
             }
         }
@@ -343,7 +363,8 @@ impl DistanceTo {
                 open.extend([node.first, number + 1]);
                 continue;
             }
-            for face in &self.faces[node.first as usize..(node.first + node.count) as usize] {
+            for number in &self.order[node.first as usize..(node.first + node.count) as usize] {
+                let face = &self.faces[*number as usize];
                 let corners = face.corners.map(|v| self.vertices[v as usize]);
                 let slope = dot(face.normal, direction);
                 let away = dot(face.normal, sub(corners[0], p)) / slope;

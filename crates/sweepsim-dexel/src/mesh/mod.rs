@@ -5,6 +5,7 @@ mod decimate;
 mod distance;
 mod furthest;
 mod near;
+mod parts;
 mod thicken;
 
 use crate::grid::Frame;
