@@ -41,6 +41,17 @@ pub(super) fn all_beside<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>
     absent
 }
 
+/// The target in a range, if there is just one.
+pub(super) fn only<const N: usize, T: Targets<N> + ?Sized>(targets: &T, values: &[Enclosure; N]) -> Option<[f64; N]> {
+    let (mut found, mut count) = (None, 0);
+    targets.visit(values, &all_of, &mut |target| {
+        found = Some(target.value);
+        count += 1;
+        count == 1
+    });
+    found.filter(|_| count == 1)
+}
+
 /// The least box that holds all targets in a range.
 pub(super) fn hull<const N: usize, T: Targets<N> + ?Sized>(
     targets: &T,

@@ -1,6 +1,6 @@
 //! One chart: Newton's method in it, and where preimages can be.
 
-use super::ChartMap;
+use super::about::Points;
 use super::linear::{Contraction, Linear};
 use crate::Enclosure;
 use nalgebra::{SMatrix, SVector, Vector3};
@@ -126,15 +126,15 @@ impl<'a, const N: usize> Chart<'a, N> {
     /// where in the box a preimage can be; when nothing is left, there is none.
     #[allow(clippy::too_many_arguments)]
     #[inline(always)]
-    pub fn solve<M: ChartMap<N>>(
+    pub fn solve<P: Points<N>>(
         &self,
-        map: &M,
+        map: &P,
         guess: SVector<f64, N>,
         mut region: Region<N>,
         q: &[f64; N],
         witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-        found: &mut impl FnMut(SVector<f64, N>, [f64; N], M::Seen),
+        found: &mut impl FnMut(SVector<f64, N>, [f64; N], P::Seen),
     ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;

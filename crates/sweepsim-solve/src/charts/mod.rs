@@ -15,6 +15,7 @@
 //! No preimage is lost: boxes too small to split further are reported as [`UnresolvedTarget`] with their targets.
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
+mod about;
 mod beside;
 mod chart;
 mod linear;
@@ -121,6 +122,22 @@ pub trait ChartMap<const N: usize> {
     /// other. Asked for boxes that hold few targets and where `∂Φ` is nearly singular. Rounding may be left out.
     fn combined_jacobian(&mut self, _cell: &Self::Cell, _matrix: &[[f64; N]; N]) -> Option<[[Enclosure; N]; N]> {
         None
+    }
+
+    /// Encloses the derivatives over the box of another function with the same zeros as `Φ − q` for one target `q`, if they are known more closely: of `C(x) (Φ(x) − q)`, where `C` has a positive
+    /// determinant all over the box, and is the identity at the point `at` of it. Asked for boxes that hold one target and where `∂Φ` may be singular.
+    fn jacobian_about(
+        &mut self,
+        _cell: &Self::Cell,
+        _target: &[f64; N],
+        _at: &[f64; N],
+    ) -> Option<[[Enclosure; N]; N]> {
+        None
+    }
+
+    /// `q + C(x) (Φ(x) − q)` at a point, with its derivatives: see [`jacobian_about`](Self::jacobian_about).
+    fn evaluate_about(&self, x: &[f64; N], _target: &[f64; N], _at: &[f64; N]) -> Sample<N, Self::Seen> {
+        self.evaluate(x)
     }
 
     /// `Φ` at a point, if it costs much less without derivatives. As accurate as by [`evaluate`](Self::evaluate).

@@ -1,6 +1,7 @@
 //! The subdivision, and the charts on it.
 
-use super::beside::{FEW, all_beside, hull, part_is_empty, remaining};
+use super::about::{About, Points};
+use super::beside::{FEW, all_beside, hull, only, part_is_empty, remaining};
 use super::chart::{Chart, Outcome, Region, Witness};
 use super::linear::{Contraction, Linear};
 use super::narrow::{Narrowed, clipped, narrowed};
@@ -264,6 +265,37 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             if is_stuck {
+                if let Some(target) = only(targets, &values)
+                    && let Some(slopes) = map.jacobian_about(&cell, &target, &bounds.map(Enclosure::mid))
+                    && let Some(linear) =
+                        Linear::new(&bounds, &slopes, &rounding).filter(|linear| linear.radius < LIMIT)
+                    && let Some(contraction) = linear.contraction()
+                {
+                    let about = About {
+                        map: &*map,
+                        target,
+                        at: linear.centre,
+                    };
+                    let value = about.evaluate(&linear.centre).value;
+                    self.statistics.evaluations += 1;
+                    let is_settled = self.chart(
+                        &about,
+                        None,
+                        &linear,
+                        &contraction,
+                        &bounds,
+                        domain,
+                        &value,
+                        &values,
+                        targets,
+                        sink,
+                        monitor,
+                    );
+                    if is_settled {
+                        self.statistics.charts += 1;
+                        continue;
+                    }
+                }
                 let range = hull(targets, &values);
                 let found = range.and_then(|range| {
                     let evaluations = &mut self.statistics.evaluations;
@@ -298,9 +330,9 @@ impl<C: Clone> ChartSolver<C> {
 
     /// Solves all targets of a chart; `false` if one stayed undecided (then none was reported).
     #[allow(clippy::too_many_arguments)]
-    fn chart<const N: usize, M, T, S>(
+    fn chart<const N: usize, P, T, S>(
         &mut self,
-        map: &M,
+        map: &P,
         sides: Option<&Sides<N>>,
         linear: &Linear<N>,
         contraction: &Contraction<N>,
@@ -313,9 +345,9 @@ impl<C: Clone> ChartSolver<C> {
         monitor: &dyn Monitor,
     ) -> bool
     where
-        M: ChartMap<N, Cell = C>,
+        P: Points<N>,
         T: Targets<N> + ?Sized,
-        S: Sink<N, M::Seen>,
+        S: Sink<N, P::Seen>,
     {
         let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
         let centre = Witness {

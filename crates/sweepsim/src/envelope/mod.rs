@@ -10,6 +10,7 @@
 //! over weight), and so are its derivatives. `g = ⟨Ω, M⟩ + ⟨Aᵀb′, N⟩`, times a positive factor, is a polynomial in `t` (of degree 2 for an arc:
 //! `⟨κ A₀ᵀk, M⟩ + ⟨Âᵀb′, N⟩`) and has the degree of `N` in `(u, v)`. Everywhere, `g = 0` counts as `g ≥ 0`.
 
+mod about_a_line;
 mod absent;
 mod any_box;
 mod clipped;

@@ -4,6 +4,7 @@ use crate::algebra::quad::vector;
 use crate::algebra::ranges::{envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
+use crate::envelope::about_a_line::{about_a_line, turn_back};
 use crate::envelope::absent::is_absent;
 use crate::envelope::any_box::AnyBox;
 use crate::envelope::clipped::clipped;
@@ -147,6 +148,25 @@ impl ChartMap<3> for PatchMap<'_> {
         let lines = [0, 1].map(|k| (range[k].lo(), range[k].hi()));
         let [u, v] = clipped((self.element, self.cells), (self.times, &self.size), *cell, lines)?.map(interval);
         Some([u, v, interval(self.times.bounds(cell.1))])
+    }
+
+    fn jacobian_about(&mut self, cell: &Brick, target: &[f64; 3], at: &[f64; 3]) -> Option<[[Enclosure; 3]; 3]> {
+        let [_, _, of_g] = self.jacobian(cell);
+        let [x, y, _] = *target;
+        let [of_x, of_y] = about_a_line(
+            (self.element, self.cells),
+            (self.times, &self.size),
+            *cell,
+            [x, y],
+            at[2],
+        )?;
+        Some([of_x, of_y, of_g])
+    }
+
+    fn evaluate_about(&self, x: &[f64; 3], target: &[f64; 3], at: &[f64; 3]) -> Sample<3, OnPatch> {
+        let mut sample = self.evaluate(x);
+        turn_back(&mut sample, self.times, [x[2], at[2]], target);
+        sample
     }
 
     fn narrowed(&mut self, _: &Brick, part: &[Enclosure; 3]) -> Option<Brick> {

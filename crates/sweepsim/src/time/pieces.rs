@@ -136,6 +136,14 @@ impl Times {
         }
     }
 
+    /// The angular velocity in space, as a vector and the range of the factor by which it must still be multiplied; `None` if its direction changes.
+    pub fn spin(&self, piece: u32) -> Option<(Vector3<f64>, (f64, f64))> {
+        match self {
+            Self::Arc(times) => Some((times.pace(), times.spin_rows(piece, 0).1)),
+            Self::Curve(_) => None,
+        }
+    }
+
     /// Coefficients of the angular velocity in the tool's frame (only one if it is constant) and of `Aᵀ b′`, times a common
     /// positive factor.
     pub fn twist(&self, piece: u32) -> (Rows<'_>, Rows<'_>) {

@@ -356,6 +356,14 @@ fn so_it_does_by_all_methods_at_all_distances() {
     all_are_cheap(&METHODS[1..], &DISTANCES);
 }
 
+/// Between the distances above, too: where a move is as long as a line's chord in the tool, say.
+#[test]
+#[ignore = "takes minutes"]
+fn so_it_does_at_all_scales() {
+    let scales: Vec<f64> = (0..90).map(|k| 0.2 * 0.75_f64.powi(k)).collect();
+    all_are_cheap(&METHODS, &scales);
+}
+
 #[test]
 fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     let (mut wrong, tool) = (Vec::new(), ("bud", bud()));
