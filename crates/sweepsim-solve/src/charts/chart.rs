@@ -171,7 +171,7 @@ impl<'a, const N: usize> Chart<'a, N> {
             let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
-                if step <= self.accept[usize::from(near_face)] && self.owns(&next) {
+                if step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step) && self.owns(&next) {
                     found(next, from, sample.seen);
                     return Outcome::Settled;
                 }
@@ -209,6 +209,12 @@ impl<'a, const N: usize> Chart<'a, N> {
             &(self.linear.rest * far + self.linear.slack),
         ));
         predicted
+    }
+
+    /// Whether a point that is reached by a step of this length is certainly on the right side of each face: its error is less than the square of the step. Two boxes, of patches that meet smoothly, say, would both own a
+    /// point near their common face, or neither, if each came to it from its own side.
+    fn tells_sides(&self, next: &SVector<f64, N>, step: f64) -> bool {
+        (0..N).all(|i| (1.0 - next[i].abs()).abs() > step * step || step <= self.linear.slack[i])
     }
 
     /// Whether a point is in the box. Only its lower faces, and upper faces on the domain's boundary, belong to it.

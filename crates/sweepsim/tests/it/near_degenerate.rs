@@ -29,17 +29,17 @@ const IN_GENERAL: [&str; 2] = [
     "tool on an arc about its axis from lying",
 ];
 
-fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
+pub fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
 }
 
 /// An axis `angle` away from z, in a direction not aligned with the grid.
-fn leaning(angle: f64) -> [f64; 3] {
+pub fn leaning(angle: f64) -> [f64; 3] {
     let (s, c) = angle.sin_cos();
     [0.6_f64.cos() * s, 0.6_f64.sin() * s, c]
 }
 
-fn through(poses: Vec<Pose>, law: Law) -> Path {
+pub fn through(poses: Vec<Pose>, law: Law) -> Path {
     Path::with_law(poses, law).expect("a path")
 }
 
@@ -54,13 +54,13 @@ fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
 
 /// A turn about a line along the dexels, `d` from the nearest one, while the tip moves along it by `rise`; the axis leans by `tilt` out of the plane
 /// across the line.
-fn about_a_line(d: f64, rise: f64, tilt: f64) -> (Path, Grid) {
+pub fn about_a_line(d: f64, rise: f64, tilt: f64) -> (Path, Grid) {
     let poses = [0.2, -0.2].map(|side| pose([0.0, 0.0, rise * side], [side, 1.0, tilt]));
     (through(poses.into(), Law::Slerp), around([0.8 * d, 0.6 * d]))
 }
 
 /// 15 × 15 lines, the middle one at a place.
-fn around([x, y]: [f64; 2]) -> Grid {
+pub fn around([x, y]: [f64; 2]) -> Grid {
     Grid::new([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], [15, 15]).expect("a grid")
 }
 
@@ -100,7 +100,7 @@ fn across(normal: [f64; 3], axis: [f64; 3], radius: f64, rise: f64) -> Path {
 /// A family of inputs by their distance from degeneracy: the path and the grid of a distance.
 pub type Family = (&'static str, fn(f64) -> (Path, Grid));
 
-fn families() -> Vec<Family> {
+pub fn families() -> Vec<Family> {
     const SIDE: [f64; 2] = [0.0137, -0.0211];
     vec![
         ("line from the centre of a level arc", |d| {
@@ -232,7 +232,7 @@ fn families() -> Vec<Family> {
     ]
 }
 
-fn tools() -> Vec<(&'static str, Tool)> {
+pub fn tools() -> Vec<(&'static str, Tool)> {
     let drill = Apt {
         d: 4.0,
         r: 0.0,
@@ -250,7 +250,7 @@ fn tools() -> Vec<(&'static str, Tool)> {
     ]
 }
 
-fn cost(method: Method, tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
+pub fn cost(method: Method, tool: &Tool, (path, grid): &(Path, Grid)) -> Statistics {
     sweep(tool, path, grid, &Options::default().method(method), &())
         .expect("a sweep")
         .statistics
@@ -354,14 +354,6 @@ fn so_it_does_by_all_methods() {
 #[ignore = "takes half a minute"]
 fn so_it_does_by_all_methods_at_all_distances() {
     all_are_cheap(&METHODS[1..], &DISTANCES);
-}
-
-/// Between the distances above, too: where a move is as long as a line's chord in the tool, say.
-#[test]
-#[ignore = "takes minutes"]
-fn so_it_does_at_all_scales() {
-    let scales: Vec<f64> = (0..90).map(|k| 0.2 * 0.75_f64.powi(k)).collect();
-    all_are_cheap(&METHODS, &scales);
 }
 
 #[test]

@@ -22,7 +22,6 @@ const MOST: u64 = 20_000;
 /// As along moves.
 const STEPS: usize = 32;
 const ON_FACE: f64 = 1e-11;
-const NEAR_FACE: f64 = 1e-4;
 const LONGEST: f64 = 1e-3;
 
 /// What is known of the cells of a patch in one orientation.
@@ -305,8 +304,7 @@ impl Over<'_, '_> {
                 finds.found(line, chart.point(s), chart.point(next), &sample.seen, chart.jump);
             };
             if let (Some(step), Some(next)) = (step, next) {
-                let near_face = next[0].abs().max(next[1].abs()) > 1.0 - NEAR_FACE;
-                if step[0].abs().max(step[1].abs()) <= self.accept[usize::from(near_face)] && chart.owns(next) {
+                if chart.is_close(step, next, self.accept) && chart.owns(next) {
                     return found(next, finds);
                 }
             }

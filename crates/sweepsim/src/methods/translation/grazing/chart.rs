@@ -7,6 +7,9 @@ type Square = [[f64; 2]; 2];
 /// A cell is a chart if the spectral radius of `|I − K J|` is below this.
 const LIMIT: f64 = 0.7;
 
+/// This close to a side of the chart, Newton's method is as accurate as if the chart were all of the patch.
+const NEAR_FACE: f64 = 1e-4;
+
 /// A cell in which a value of `p` has at most one point of the grazing curve, in coordinates `s ∈ [−1, 1]²`.
 #[derive(Clone, Debug)]
 pub(super) struct Chart {
@@ -288,6 +291,15 @@ impl Chart {
     /// How much `q` may change over these distances.
     pub fn change(&self, distances: [f64; 2]) -> f64 {
         distances[0] * magnitude(self.slopes[0]) + distances[1] * magnitude(self.slopes[1])
+    }
+
+    /// Whether a step is a last one: as short as accuracy asks (inside, and near a side), and so short that its error, which is less than its square, leaves no doubt on which side of each side of the chart it ends.
+    pub fn is_close(&self, step: [f64; 2], next: [f64; 2], accept: [f64; 2]) -> bool {
+        let near_face = next[0].abs().max(next[1].abs()) > 1.0 - NEAR_FACE;
+        let long = step[0].abs().max(step[1].abs());
+        let slack = self.slack();
+        let tells_sides = (0..2).all(|i| (1.0 - next[i].abs()).abs() > long * long || long <= slack[i]);
+        long <= accept[usize::from(near_face)] && tells_sides
     }
 
     /// The rounding error of a position.

@@ -10,8 +10,6 @@ use sweepsim_dexel::Source;
 const STEPS: usize = 32;
 /// As in `charts/`: if a point can only be in a part of the chart no larger than this (besides rounding), Newton's result decides whether it is there.
 const ON_FACE: f64 = 1e-11;
-/// This close to a side of the chart, Newton's method is as accurate as if the chart were all of the patch.
-const NEAR_FACE: f64 = 1e-4;
 /// The last step to a point between which and others the curve is interpolated.
 const POLISHED: f64 = 1e-8;
 
@@ -143,8 +141,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
 
     /// Whether a step is a last one.
     fn is_close(&self, step: [f64; 2], next: [f64; 2]) -> bool {
-        let near_face = next[0].abs().max(next[1].abs()) > 1.0 - NEAR_FACE;
-        step[0].abs().max(step[1].abs()) <= self.accept[usize::from(near_face)]
+        self.chart.is_close(step, next, self.accept)
     }
 
     /// Puts a crossing if the line, if any, is met at the place `(q, z)` of the curve, reached from a witness. Unsure if the witness is too far away to tell.
