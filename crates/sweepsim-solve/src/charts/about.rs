@@ -1,6 +1,11 @@
 //! Evaluations of a map in a chart: of the map itself, or of another one with the same solutions for one target.
 
-use super::{ChartMap, Sample};
+use super::beside::only;
+use super::linear::Linear;
+use super::solver::LIMIT;
+use super::{ChartMap, ChartSolver, Sample, Sink, Targets};
+use crate::{Enclosure, Monitor};
+use nalgebra::{Const, DimMin, ToTypenum};
 
 /// What Newton's method in a chart asks for.
 pub(super) trait Points<const N: usize> {
@@ -45,5 +50,58 @@ impl<const N: usize, M: ChartMap<N>> Points<N> for About<'_, N, M> {
 
     fn evaluate(&self, x: &[f64; N]) -> Sample<N, M::Seen> {
         self.map.evaluate_about(x, &self.target, &self.at)
+    }
+}
+
+impl<C: Clone> ChartSolver<C> {
+    /// Solves the only target of a box in a chart of the other system; `false` if there are more targets, if the box is no such chart, or if the target stays undecided.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn about<const N: usize, M, T, S>(
+        &mut self,
+        map: &mut M,
+        cell: &C,
+        bounds: &[Enclosure; N],
+        domain: &[Enclosure; N],
+        values: &[Enclosure; N],
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) -> bool
+    where
+        M: ChartMap<N, Cell = C>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, M::Seen>,
+        Const<N>: DimMin<Const<N>, Output = Const<N>> + ToTypenum,
+    {
+        let Some(target) = only(targets, values) else {
+            return false;
+        };
+        let at = bounds.map(Enclosure::mid);
+        let Some(slopes) = map.jacobian_about(cell, &target, &at) else {
+            return false;
+        };
+        let linear = Linear::new(bounds, &slopes, &map.rounding_in(cell)).filter(|linear| linear.radius < LIMIT);
+        let Some((linear, contraction)) = linear.and_then(|linear| linear.contraction().map(|own| (linear, own)))
+        else {
+            return false;
+        };
+        let points = About { map: &*map, target, at };
+        let value = points.evaluate(&at).value;
+        self.statistics.evaluations += 1;
+        let is_settled = self.chart(
+            &points,
+            None,
+            &linear,
+            &contraction,
+            bounds,
+            domain,
+            &value,
+            values,
+            targets,
+            sink,
+            monitor,
+        );
+        self.statistics.charts += u64::from(is_settled);
+        is_settled
     }
 }

@@ -2,7 +2,10 @@
 
 use super::about::Points;
 use super::linear::{Contraction, Linear};
-use crate::Enclosure;
+use super::sides::Sides;
+use super::solver::{BETWEEN, CLOSE};
+use super::{ChartSolver, Preimage, Sink, Targets, Trail};
+use crate::{Enclosure, Monitor};
 use nalgebra::{SMatrix, SVector, Vector3};
 
 /// Steps in a chart before the box is split instead.
@@ -224,6 +227,110 @@ impl<'a, const N: usize> Chart<'a, N> {
             let (side, end) = (&self.bounds[i], self.domain[i].hi());
             x[i] >= side.lo() && (x[i] < side.hi() || (x[i] <= side.hi() && side.hi() == end))
         })
+    }
+}
+
+impl<C: Clone> ChartSolver<C> {
+    /// Solves all targets of a chart; `false` if one stayed undecided (then none was reported).
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn chart<const N: usize, P, T, S>(
+        &mut self,
+        map: &P,
+        sides: Option<&Sides<N>>,
+        linear: &Linear<N>,
+        contraction: &Contraction<N>,
+        bounds: &[Enclosure; N],
+        domain: &[Enclosure; N],
+        value: &[f64; N],
+        values: &[Enclosure; N],
+        targets: &T,
+        sink: &mut S,
+        monitor: &dyn Monitor,
+    ) -> bool
+    where
+        P: Points<N>,
+        T: Targets<N> + ?Sized,
+        S: Sink<N, P::Seen>,
+    {
+        let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
+        let centre = Witness {
+            at: SVector::zeros(),
+            value: *value,
+        };
+        let whole = Region::around(&centre.at, &SVector::repeat(1.0));
+        let close = linear.radius < CLOSE;
+        let mark = sink.mark();
+        let mut trail = Trail::new();
+        let mut clear = true;
+        let Self {
+            options, statistics, ..
+        } = self;
+        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
+        // Of the last target examined, and of the first one found in the row.
+        let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
+        let mut row = usize::MAX;
+        let mut asked = 0_usize;
+        let strips = linear.strips(value);
+        let window = |q: &[f64; N]| {
+            let own = strips.window(q)?;
+            match sides {
+                Some(sides) => own.intersection(sides.window(linear, value, q)?),
+                None => Some(own),
+            }
+        };
+        targets.visit(values, &window, &mut |target| {
+            asked += 1;
+            if asked.is_multiple_of(BETWEEN) && monitor.cancelled() {
+                clear = false;
+                return false;
+            }
+            let q = &target.value;
+            if target.place[0] != row {
+                row = target.place[0];
+                last = first.take().or(last);
+            }
+            let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
+            region.intersect(&whole);
+            // A close guess needs no second prediction.
+            if (!close || last.is_none()) && !region.is_empty() {
+                let start = linear.predict(&centre.at, value, q);
+                region.intersect(&Region::around(&start, &reach));
+            }
+            if region.is_empty() || sides.is_some_and(|sides| sides.agree(&region)) {
+                return true;
+            }
+            let guess = trail.guess(target.place).map_or(near, SVector::from);
+            let (mut witness, mut hit) = (None, false);
+            let outcome = chart.solve(
+                map,
+                guess,
+                region,
+                q,
+                &mut witness,
+                &mut statistics.evaluations,
+                &mut |s, from, seen| {
+                    trail.push(target.place, s.into());
+                    sink.found(Preimage {
+                        target: target.number,
+                        x: linear.point(&s),
+                        from,
+                        seen,
+                        orientation: linear.orientation,
+                    });
+                    hit = true;
+                },
+            );
+            if hit {
+                first = first.or(witness);
+            }
+            last = witness.or(last);
+            clear = outcome == Outcome::Settled;
+            clear
+        });
+        if !clear {
+            sink.forget(mark);
+        }
+        clear
     }
 }
 

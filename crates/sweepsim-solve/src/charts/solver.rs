@@ -1,16 +1,14 @@
 //! The subdivision, and the charts on it.
 
-use super::about::{About, Points};
-use super::beside::{FEW, all_beside, hull, only, part_is_empty, remaining};
-use super::chart::{Chart, Outcome, Region, Witness};
-use super::linear::{Contraction, Linear};
+use super::beside::{FEW, all_beside, hull, part_is_empty, remaining};
+use super::linear::Linear;
 use super::narrow::{Narrowed, clipped, narrowed};
 use super::sides::Sides;
 use super::split::{change, collapses, largest, widest};
 use super::wanted::{Wanted, among, is_tiny, parts, worth_splitting};
-use super::{ChartMap, ChartOptions, ChartStatistics, Preimage, Sink, Targets, Trail};
+use super::{ChartMap, ChartOptions, ChartStatistics, Sink, Targets};
 use crate::{Cause, Enclosure, Monitor};
-use nalgebra::{Const, DimMin, SVector, ToTypenum};
+use nalgebra::{Const, DimMin, ToTypenum};
 
 /// The chart solver. It reuses its stack from one call to the next.
 #[derive(Debug)]
@@ -39,9 +37,9 @@ enum Next {
 /// A box whose range holds this many targets is a chart only if it is [`CLOSE`] to linear.
 const MANY: usize = 1000;
 /// With the spectral radius of `R` below this, one evaluation decides most targets: see [`Contraction`].
-const CLOSE: f64 = 0.4;
+pub(super) const CLOSE: f64 = 0.4;
 /// A box is a chart if the spectral radius of `R` is below this, and with `n` targets below `n` to the power −1/`SHARE`. Nearer to 1, targets beyond a face take more evaluations than smaller boxes would. By trial.
-const LIMIT: f64 = 0.85;
+pub(super) const LIMIT: f64 = 0.85;
 const SHARE: i32 = 10;
 /// With a spectral radius beyond this, the two parts of a box are probably not charts, either: they are split without a look at their derivatives. Found by trial.
 const FAR: f64 = 1.7;
@@ -265,36 +263,8 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             if is_stuck {
-                if let Some(target) = only(targets, &values)
-                    && let Some(slopes) = map.jacobian_about(&cell, &target, &bounds.map(Enclosure::mid))
-                    && let Some(linear) =
-                        Linear::new(&bounds, &slopes, &rounding).filter(|linear| linear.radius < LIMIT)
-                    && let Some(contraction) = linear.contraction()
-                {
-                    let about = About {
-                        map: &*map,
-                        target,
-                        at: linear.centre,
-                    };
-                    let value = about.evaluate(&linear.centre).value;
-                    self.statistics.evaluations += 1;
-                    let is_settled = self.chart(
-                        &about,
-                        None,
-                        &linear,
-                        &contraction,
-                        &bounds,
-                        domain,
-                        &value,
-                        &values,
-                        targets,
-                        sink,
-                        monitor,
-                    );
-                    if is_settled {
-                        self.statistics.charts += 1;
-                        continue;
-                    }
+                if self.about(map, &cell, &bounds, domain, &values, targets, sink, monitor) {
+                    continue;
                 }
                 let range = hull(targets, &values);
                 let found = range.and_then(|range| {
@@ -326,107 +296,5 @@ impl<C: Clone> ChartSolver<C> {
             self.stack.push((lower, depth + 1, next));
         }
         self.given_up = std::mem::take(&mut targets.given_up);
-    }
-
-    /// Solves all targets of a chart; `false` if one stayed undecided (then none was reported).
-    #[allow(clippy::too_many_arguments)]
-    fn chart<const N: usize, P, T, S>(
-        &mut self,
-        map: &P,
-        sides: Option<&Sides<N>>,
-        linear: &Linear<N>,
-        contraction: &Contraction<N>,
-        bounds: &[Enclosure; N],
-        domain: &[Enclosure; N],
-        value: &[f64; N],
-        values: &[Enclosure; N],
-        targets: &T,
-        sink: &mut S,
-        monitor: &dyn Monitor,
-    ) -> bool
-    where
-        P: Points<N>,
-        T: Targets<N> + ?Sized,
-        S: Sink<N, P::Seen>,
-    {
-        let reach = SVector::<f64, N>::from_fn(|i, _| linear.reach(i));
-        let centre = Witness {
-            at: SVector::zeros(),
-            value: *value,
-        };
-        let whole = Region::around(&centre.at, &SVector::repeat(1.0));
-        let close = linear.radius < CLOSE;
-        let mark = sink.mark();
-        let mut trail = Trail::new();
-        let mut clear = true;
-        let Self {
-            options, statistics, ..
-        } = self;
-        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
-        // Of the last target examined, and of the first one found in the row.
-        let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
-        let mut row = usize::MAX;
-        let mut asked = 0_usize;
-        let strips = linear.strips(value);
-        let window = |q: &[f64; N]| {
-            let own = strips.window(q)?;
-            match sides {
-                Some(sides) => own.intersection(sides.window(linear, value, q)?),
-                None => Some(own),
-            }
-        };
-        targets.visit(values, &window, &mut |target| {
-            asked += 1;
-            if asked.is_multiple_of(BETWEEN) && monitor.cancelled() {
-                clear = false;
-                return false;
-            }
-            let q = &target.value;
-            if target.place[0] != row {
-                row = target.place[0];
-                last = first.take().or(last);
-            }
-            let (near, mut region) = chart.region(last.as_ref().unwrap_or(&centre), q);
-            region.intersect(&whole);
-            // A close guess needs no second prediction.
-            if (!close || last.is_none()) && !region.is_empty() {
-                let start = linear.predict(&centre.at, value, q);
-                region.intersect(&Region::around(&start, &reach));
-            }
-            if region.is_empty() || sides.is_some_and(|sides| sides.agree(&region)) {
-                return true;
-            }
-            let guess = trail.guess(target.place).map_or(near, SVector::from);
-            let (mut witness, mut hit) = (None, false);
-            let outcome = chart.solve(
-                map,
-                guess,
-                region,
-                q,
-                &mut witness,
-                &mut statistics.evaluations,
-                &mut |s, from, seen| {
-                    trail.push(target.place, s.into());
-                    sink.found(Preimage {
-                        target: target.number,
-                        x: linear.point(&s),
-                        from,
-                        seen,
-                        orientation: linear.orientation,
-                    });
-                    hit = true;
-                },
-            );
-            if hit {
-                first = first.or(witness);
-            }
-            last = witness.or(last);
-            clear = outcome == Outcome::Settled;
-            clear
-        });
-        if !clear {
-            sink.forget(mark);
-        }
-        clear
     }
 }
