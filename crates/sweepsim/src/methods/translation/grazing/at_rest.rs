@@ -303,10 +303,11 @@ impl Over<'_, '_> {
             let found = |next: [f64; 2], finds: &mut dyn Finds| {
                 finds.found(line, chart.point(s), chart.point(next), &sample.seen, chart.jump);
             };
-            if let (Some(step), Some(next)) = (step, next) {
-                if chart.is_close(step, next, self.accept) && chart.owns(next) {
-                    return found(next, finds);
-                }
+            if let (Some(step), Some(next)) = (step, next)
+                && chart.is_close(step, next, self.accept)
+                && chart.owns(next)
+            {
+                return found(next, finds);
             }
             within = chart.region(&here, place, &within);
             let own = chart.slack();
