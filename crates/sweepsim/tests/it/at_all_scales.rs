@@ -22,7 +22,7 @@ fn a_ball_that_rises_by_a_chord_while_it_turns_about_a_line() {
     for method in METHODS {
         let boxes = |rise: f64| {
             let (path, grid) = about_a_line(0.0, rise, 0.0);
-            let found = cost(method, &tool, &(path, grid.clone()));
+            let found = cost(method, &tool, &(path, grid));
             assert!(found.unresolved.is_empty() && found.repaired == 0, "{method}, {rise}");
             work(method, &found, &grid)
         };
