@@ -56,9 +56,15 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
     prop::collection::vec(arc, 1..=count)
 }
 
-/// Axes that lean by more than a hundredth, and do not lie.
+/// Axes that lean, by next to nothing among them, and do not lie.
 fn axes() -> impl Strategy<Value = [f64; 3]> {
-    (-PI..PI, prop_oneof![0.02..1.5_f64, 1.6..3.1_f64]).prop_map(|(turn, lean)| {
+    let lean = prop_oneof![
+        2 => 0.02..1.5_f64,
+        1 => 1.6..3.1_f64,
+        1 => (-16.0..-1.0_f64).prop_map(|size| 10.0_f64.powf(size)),
+        1 => (-16.0..-1.0_f64).prop_map(|size| PI - 10.0_f64.powf(size)),
+    ];
+    (-PI..PI, lean).prop_map(|(turn, lean)| {
         let (s, c) = lean.sin_cos();
         [s * turn.cos(), s * turn.sin(), c]
     })
@@ -73,10 +79,9 @@ fn check(number: usize, path: &Path) -> TestCaseResult {
     prop_assert!(own.repaired <= other.repaired + few, "{name}: {own:?} {other:?}");
     let off = own.crossings.abs_diff(other.crossings);
     prop_assert!(off <= 6 + other.crossings / 50, "{name}: {own:?} {other:?}");
-    // Walls almost along the dexels have too few digits at this tolerance; tori at rest are left to charts.
-    let [x, y, _] = path.pose(0).axis();
+    // Tori at rest are left to charts.
     prop_assert!(
-        !whole || x.hypot(y) < 0.07 || own.boxes <= other.boxes / 2 + 2000,
+        !whole || own.boxes <= other.boxes / 2 + 2000,
         "{name}: {own:?} {other:?}"
     );
     Ok(())

@@ -1,7 +1,7 @@
 //! A cone or a cylinder along an arc about its axis: the cones with the radius `R ± ρ` about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Orbit, STILL, Sector, Spot, View, length, products, within};
+use super::{AXIS, Along, Orbit, STILL, Sector, Spot, View, between, length, products, within};
 use crate::cutter::outline::Piece;
 use sweepsim_dexel::Source;
 
@@ -71,24 +71,26 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
 
     /// A line and one of the cones.
     fn on_cone(&mut self, view: &View, sector: Sector, cone: &Cone) -> Result<(), Open> {
-        let (y, kappa, mark) = (view.y, self.kappa, self.lines.mark());
+        let (y, mark) = (view.y, self.lines.mark());
+        let Along {
+            x: across, z: along, ..
+        } = self.along;
         if !(y.abs() > AXIS * self.slack) {
             return Err(Open);
         }
         let far = cone.reach + 4.0 * self.coarse + 1e-3 * cone.reach;
-        let [mut a, mut b] = [-far, far];
+        let [mut a, mut b] = between(view.x, across, [-far, far]);
         let doubt = 4.0 * self.coarse * (1.0 + cone.growth.abs());
         let mut ends = [doubt; 2];
-        if kappa == 0.0 {
-            match within(view.base, cone.heights, self.coarse) {
+        if along == 0.0 {
+            match within(view.z, cone.heights, self.coarse) {
                 Some(false) => return Ok(()),
                 None => return Err(Open),
                 Some(true) => {}
             }
         } else {
-            let limits = cone.heights.map(|z| (z - view.base) / kappa);
-            let [low, high] = [limits[0].min(limits[1]), limits[0].max(limits[1])];
-            let blur = doubt + self.coarse / kappa.abs() * (1.0 + (cone.growth * kappa).abs());
+            let [low, high] = between(view.z, along, cone.heights);
+            let blur = doubt + self.coarse * (self.along.shear() + cone.growth.abs());
             if low > a {
                 (a, ends[0]) = (low, blur);
             }
@@ -96,22 +98,23 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
                 (b, ends[1]) = (high, blur);
             }
         }
-        let growth = cone.growth * kappa;
-        let value = |x: f64, lift: f64| {
+        let growth = cone.growth * along;
+        let value = |w: f64, lift: f64| {
+            let x = view.x + across * w;
             let rho = length(x, y);
             [
-                rho - cone.radius - cone.growth * (view.base + kappa * x - lift),
-                x / rho - growth,
+                rho - cone.radius - cone.growth * (view.z + along * w - lift),
+                across * x / rho - growth,
             ]
         };
         let arch = Arch {
-            function: |x| value(x, 0.0),
+            function: |w| value(w, 0.0),
             ends: [a, b],
             convex: true,
             doubt: [ends[0], ends[1], doubt],
             enough: 1e-6 * far,
         };
-        let found = arch.zeros(|x| self.point_of_cone(view, sector, cone, (x, doubt), &value));
+        let found = arch.zeros(|w| self.point_of_cone(view, sector, cone, (w, doubt), &value));
         if found.is_err() {
             self.lines.forget(mark);
         }
@@ -123,27 +126,28 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         view: &View,
         sector: Sector,
         cone: &Cone,
-        (mut x, doubt): (f64, f64),
+        (mut w, doubt): (f64, f64),
         value: &impl Fn(f64, f64) -> [f64; 2],
     ) -> Result<(), Open> {
         let sign = if cone.beyond { -1.0 } else { 1.0 };
-        let y = view.y;
+        let (y, across) = (view.y, self.along.x);
+        let tip = |w: f64| [sign * (view.x + across * w), sign * y];
         let (mut slope, mut step) = (0.0, f64::INFINITY);
-        let mut lift = self.lift([sign * x, sign * y]);
+        let mut lift = self.lift(tip(w));
         for _ in 0..4 {
-            let [f, d] = value(x, lift);
+            let [f, d] = value(w, lift);
             (slope, step) = (d, f / d);
-            x -= step;
+            w -= step;
             if step.abs() <= 0.1 * self.slack {
                 break;
             }
-            if step.abs() > STILL * y.abs() {
-                lift = self.lift([sign * x, sign * y]);
+            if (across * step).abs() > STILL * y.abs() {
+                lift = self.lift(tip(w));
             }
         }
+        let x = view.x + across * w;
         let rho = length(x, y);
-        // The second derivative is y²/ϱ³.
-        let bend = y * y / (rho * rho * rho);
+        let bend = (across * y).powi(2) / (rho * rho * rho);
         let error = self.fine * (1.0 + cone.growth.abs()) / slope.abs();
         if !(slope * slope > 16.0 * bend * doubt && step.abs() <= error) {
             return Err(Open);
@@ -155,10 +159,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let up = lean[1] * m + lean[0] * cone.side * n * sign * x / rho;
         let falls = (n > 0.0) != cone.beyond;
         let spot = Spot {
-            x,
+            w,
             error,
-            tip: [sign * x, sign * y],
-            askew: (self.fine + 2.0 * error + 2.0 * offset) / rho,
+            tip: tip(w),
+            askew: (self.fine + 2.0 * across.abs() * error + 2.0 * offset) / rho,
             normal: [cone.side * n, 0.0, m],
             jump: if (up > 0.0) == falls { -1 } else { 1 },
         };

@@ -2,10 +2,11 @@
 //!
 //! The tool turns with the arc about the arc's axis, which is parallel to its own. Its surfaces touch their envelope in the plane of both axes, but for a tiny rise: where a tool of radius `ρ(ζ)` goes along
 //! an arc of radius `R`, that is a surface of revolution about the arc's axis with the radius `R ± ρ(ζ)`. In coordinates `(x, y, z)` about this axis, `z` along it, `x` steepest upwards across it and `y`
-//! horizontal, a dexel line has one `y`, and `z = base + κ x`. With `ϱ² = x² + y²`, it meets
+//! horizontal, a dexel line has one `y`; `x` and `z` are linear along it, with the slopes `a` and `b` in a parameter `w`: `z` itself if the axis is closer to the dexels than to the horizontal plane, otherwise `x`. So both are as accurate as
+//! coordinates are, however little the tool leans. With `ϱ² = x² + y²`, a line meets
 //!
-//! - a cylinder or a cone where `ϱ = ± (R ± ρ(base + κ x))`, convex in `x`;
-//! - a ball or a torus where `(ϱ − R′)² + (z − ζ_c)² = r²` with the circle of centres of radius `R′ = R ± ρ_c`: the second derivative by `x` is `2 (1 + κ² − R′ y²/ϱ³)`, whose sign changes at no more than two places;
+//! - a cylinder or a cone where `ϱ = ± (R ± ρ(z))`, convex in `w`;
+//! - a ball or a torus where `(ϱ − R′)² + (z − ζ_c)² = r²` with the circle of centres of radius `R′ = R ± ρ_c`: the second derivative is `2 (a² + b² − a² R′ y²/ϱ³)`, whose sign changes at no more than two places;
 //! - a sharp edge in its plane, where the law of cosines gives the angles of the arc;
 //! - a disc nowhere.
 //!
@@ -35,8 +36,6 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 const SHORTEST: f64 = 4.0;
 /// The part of what heights may be off by that the rise may bend surfaces of revolution.
 const BENT: f64 = 0.05;
-/// The part of what heights may be off by that those of walls are, up to their slope.
-const ROUGH: f64 = 0.02;
 /// How far the tool has risen is as good as exact where the tip's direction is off by less than this: the rise is at most a hundredth of the tolerance.
 const STILL: f64 = 1e-4;
 /// Lines that are closer than this many roundings to the arc's axis are open.
@@ -54,12 +53,12 @@ pub(crate) fn inclined(
     let far = arc.centre.iter().fold(arc.radius, |far, c| far.max(c.abs()));
     let slack = slack.max(16.0 * f64::EPSILON * far);
     let rise = Heading::along_axis(&segment.start(), segment.travel());
-    let [s, k] = arc.tilt;
-    let slope = rise / (arc.radius * arc.angle.abs());
-    let fine = slack / s;
-    if !(fine / s < ROUGH * near && rise.abs() > SHORTEST * slack) {
+    if !(rise.abs() > SHORTEST * slack) {
         return;
     }
+    let slope = rise / (arc.radius * arc.angle.abs());
+    let along = Along::tilted(arc.tilt);
+    let fine = slack * along.height.abs();
     let ends = || outline.pieces.iter().flat_map(|piece| [piece.from[0], piece.to[0]]);
     let widest = ends().fold(0.0, f64::max);
     let mut orbit = Orbit {
@@ -68,7 +67,7 @@ pub(crate) fn inclined(
         fine,
         coarse: fine + 2.0 * rise.abs(),
         near,
-        kappa: k / s,
+        along,
         rise,
         slope,
         sectors: sectors(arc, widest),
@@ -103,7 +102,7 @@ struct Orbit<'a, 'b, S> {
     coarse: f64,
     /// Heights may be off by this much.
     near: f64,
-    kappa: f64,
+    along: Along,
     rise: f64,
     /// The rise over the length of the arc.
     slope: f64,
@@ -113,14 +112,45 @@ struct Orbit<'a, 'b, S> {
     source: S,
 }
 
+/// How fast `x`, `z` and the height grow along a line with its parameter.
+#[derive(Clone, Copy, Debug)]
+struct Along {
+    x: f64,
+    z: f64,
+    height: f64,
+}
+
+impl Along {
+    fn tilted([s, k]: [f64; 2]) -> Self {
+        if s < k.abs() {
+            Self {
+                x: s / k,
+                z: 1.0,
+                height: k.recip(),
+            }
+        } else {
+            Self {
+                x: 1.0,
+                z: k / s,
+                height: s.recip(),
+            }
+        }
+    }
+
+    /// By how much `x` in a given height `z` is off for each unit that `z` is.
+    fn shear(self) -> f64 {
+        (self.x / self.z).abs()
+    }
+}
+
 /// A line about the arc's axis.
 #[derive(Clone, Copy, Debug)]
 struct View {
     place: (usize, usize),
     y: f64,
-    /// `z` where `x = 0`,
-    base: f64,
-    /// and the height there.
+    /// Where the parameter is 0: `x` or `z` is 0 there.
+    x: f64,
+    z: f64,
     height: f64,
 }
 
@@ -132,8 +162,9 @@ struct Sector {
 
 /// Where a line meets the envelope.
 struct Spot {
-    x: f64,
-    /// Of `x`.
+    /// The parameter of the line,
+    w: f64,
+    /// and its error.
     error: f64,
     /// The direction from the arc's axis to the tip, of any length, and the error of its angle.
     tip: [f64; 2],
@@ -165,6 +196,12 @@ fn within(value: f64, [low, high]: [f64; 2], error: f64) -> Option<bool> {
 /// The length of a vector of coordinates, which are far from overflow: `hypot` takes ten times as long.
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
+}
+
+/// Where a number that starts from here and grows so fast is between two others: nowhere in doubt if it does not grow.
+fn between(start: f64, growth: f64, [low, high]: [f64; 2]) -> [f64; 2] {
+    let [a, b] = [low, high].map(|end| (end - start) / growth);
+    [a.min(b), a.max(b)]
 }
 
 /// The range of the cosine between two angles.
@@ -222,11 +259,12 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
 
     /// Visits the lines that pass through a box about the arc's axis.
     fn each(&mut self, [x, y, z]: [[f64; 2]; 3], mut visit: impl FnMut(&mut Self, &View)) {
-        let (arc, kappa) = (self.arc, self.kappa);
+        let (arc, steep) = (self.arc, self.along.z == 1.0);
         let [s, k] = arc.tilt;
         let margin = 2.0 * self.coarse;
-        let along = products([kappa; 2], x);
-        let base = [z[0] - along[1] - margin, z[1] - along[0] + margin].map(|base| s * base);
+        // Horizontally, along the axis.
+        let ([up, down], back) = (z.map(|z| s * z), products([k; 2], x));
+        let ahead = [up - back[1] - margin, down - back[0] + margin];
         let [ux, uy] = arc.ahead;
         let floor = Floor {
             tip: arc.centre,
@@ -235,18 +273,24 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         };
         let lattice = self.lines.lines;
         let right = [-y[1] - margin, margin - y[0]];
-        rows(lattice, &floor, [right, base], |Row { i, j, x }| {
+        rows(lattice, &floor, [right, ahead], |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lattice.coordinate(1, j) - arc.centre[1];
-                let q = ux * x + uy * y;
-                if q < base[0] || q > base[1] || !lattice.asks(i, j) {
+                let (q, right_of) = (ux * x + uy * y, uy * x - ux * y);
+                if q < ahead[0] || q > ahead[1] || !lattice.asks(i, j) {
                     continue;
                 }
+                let (x, z, up) = if steep {
+                    (-q / k, 0.0, -s * q / k)
+                } else {
+                    (0.0, q / s, k * q / s)
+                };
                 let view = View {
                     place: (i, j),
-                    y: uy * x - ux * y,
-                    base: q / s,
-                    height: arc.centre[2] + k * q / s,
+                    y: right_of,
+                    x,
+                    z,
+                    height: arc.centre[2] + up,
                 };
                 visit(self, &view);
             }
@@ -292,9 +336,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         if share < sector.shares[0] || share >= sector.shares[1] {
             return Ok(());
         }
-        let [s, _] = self.arc.tilt;
         // NaN is in doubt.
-        if !(spot.error / s <= 0.5 * self.near) {
+        if !(spot.error * self.along.height.abs() <= 0.5 * self.near) {
             return Err(Open);
         }
         let far = length(spot.tip[0], spot.tip[1]);
@@ -304,7 +347,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let normal: Vector3<f64> = up * (x * radial - y * level) + right * (y * radial + x * level) + axis * along;
         let (i, j) = view.place;
         let line = self.lines.lines.line(i, j);
-        let height = view.height + spot.x / s;
+        let height = view.height + spot.w * self.along.height;
         self.lines
             .crossing(line, height, spot.jump, unit(normal), (self.source)(share));
         Ok(())

@@ -1,7 +1,7 @@
 //! A sharp edge along an arc about its axis, which stays in its plane but for the rise.
 
 use super::roots::Open;
-use super::{AXIS, Orbit, Place, Sector, Spot, View, length, products};
+use super::{AXIS, Along, Orbit, Place, Sector, Spot, View, length, products};
 use crate::cutter::outline::Rim;
 use sweepsim_dexel::Source;
 
@@ -21,7 +21,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
 
     /// By how much a line may miss its place in the plane of an edge.
     fn blur(&self) -> f64 {
-        4.0 * self.coarse * (1.0 + self.kappa.abs().recip())
+        4.0 * (self.fine + self.coarse * self.along.shear())
     }
 
     /// Whether most lines tell the angle at which an edge of this radius passes them, next to a torus with a tube of radius `level`. Those within `δ` of where it reaches farthest in or out pass it less than `√(2 ρ δ)` ahead of the
@@ -32,7 +32,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             let least = 8.0 * GRAZING * big * tube * self.slope.abs() / (radius * radius);
             self.bent(tube, least.cbrt())
         });
-        self.kappa == 0.0 || (self.blur() + bent) * big < (radius / CLEAR).powi(2)
+        self.along.z == 0.0 || (self.blur() + bent) * big < (radius / CLEAR).powi(2)
     }
 
     /// How far the curve in which a torus touches its envelope may be from the circle on which its normal is along the axis, where that is so far ahead of the tip, as a share of its radius: it leaves the circle where the
@@ -60,14 +60,17 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     }
 
     fn on_edge(&mut self, view: &View, sector: Sector, rim: &Rim, level: Option<(f64, f64)>) -> Result<(), Open> {
-        let (y, kappa, big) = (view.y, self.kappa, self.arc.radius);
+        let (y, big) = (view.y, self.arc.radius);
+        let Along {
+            x: across, z: along, ..
+        } = self.along;
         let rho = rim.radius;
-        if kappa == 0.0 {
+        if along == 0.0 {
             // In its plane all along.
-            let off = (view.base - rim.height).abs() > 2.0 * self.coarse;
+            let off = (view.z - rim.height).abs() > 2.0 * self.coarse;
             return if off { Ok(()) } else { Err(Open) };
         }
-        let start = (rim.height - view.base) / kappa;
+        let start = view.x + across * ((rim.height - view.z) / along);
         let blur = self.blur();
         let far = length(start, y);
         if far > big + rho + blur || far < (big - rho).abs() - blur {
@@ -106,9 +109,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
                 continue;
             }
             // From here to there, how far the tool has risen changes by a tiny part of its rise, which is itself no more than a hundredth of the tolerance.
-            let x = (rim.height + self.lift(tip) - view.base) / kappa;
+            let w = (rim.height + self.lift(tip) - view.z) / along;
+            let x = view.x + across * w;
             let (sine, tip) = around(x, length(x, y), turn);
-            self.pass(view, sector, (rim, level), (x, tip, turn * sine, blur))?;
+            self.pass(view, sector, (rim, level), (w, tip, turn * sine, blur))?;
         }
         Ok(())
     }
@@ -119,8 +123,9 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         view: &View,
         sector: Sector,
         (rim, level): (&Rim, Option<(f64, f64)>),
-        (x, tip, sine, blur): (f64, [f64; 2], f64, f64),
+        (w, tip, sine, blur): (f64, [f64; 2], f64, f64),
     ) -> Result<(), Open> {
+        let x = view.x + self.along.x * w;
         let (big, rho) = (self.arc.radius, rim.radius);
         let far = length(x, view.y);
         // Of the line from the tool's axis: ahead, and away from the arc's axis.
@@ -131,7 +136,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let own = 2.0 * blur * (far + rho + big) / (big * far);
         let mut askew = 4.0 * own / sine.abs();
         let mut error = 4.0 * far / rho * own / sine.abs() + 8.0 * f64::EPSILON;
-        let mut height_error = self.fine * (1.0 + self.kappa.abs().recip());
+        let mut height_error = self.fine * (1.0 + self.along.z.abs().recip());
         if let Some((_, radius)) = level {
             if !(ahead.abs() > 4.0 * self.slope.abs().sqrt() + error) {
                 // Whatever the signs are; but not if it is not on the arc.
@@ -168,7 +173,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
             None => [radial * out, radial * ahead * self.arc.side(), along],
         };
         let spot = Spot {
-            x,
+            w,
             error: height_error,
             tip,
             askew,

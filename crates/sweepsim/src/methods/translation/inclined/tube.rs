@@ -1,7 +1,7 @@
 //! A ball or a torus along an arc about its axis: tubes about circles about the arc's axis.
 
 use super::roots::{Arch, Open};
-use super::{AXIS, Orbit, STILL, Sector, Spot, View, length, products, within};
+use super::{AXIS, Along, Orbit, STILL, Sector, Spot, View, between, length, products, within};
 use crate::cutter::outline::{Piece, Rim, Shape};
 use std::f64::consts::{FRAC_PI_2, PI};
 use sweepsim_dexel::Source;
@@ -144,32 +144,36 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
 
     /// A line and one of the tubes.
     fn on_tube(&mut self, view: &View, sector: Sector, tube: &Tube) -> Result<(), Open> {
-        let (y, kappa, mark) = (view.y, self.kappa, self.lines.mark());
+        let (y, mark) = (view.y, self.lines.mark());
+        let Along {
+            x: across, z: along, ..
+        } = self.along;
         if !(y.abs() > AXIS * self.slack) {
             return Err(Open);
         }
         let (r, centres) = (tube.radius, tube.centres);
-        let value = |x: f64, lift: f64| {
+        let value = |w: f64, lift: f64| {
+            let x = view.x + across * w;
             let rho = length(x, y);
-            let (out, up) = (rho - centres, view.base + kappa * x - lift - tube.height);
-            [out * out + up * up - r * r, 2.0 * (out * x / rho + kappa * up)]
+            let (out, up) = (rho - centres, view.z + along * w - lift - tube.height);
+            [out * out + up * up - r * r, 2.0 * (out * across * x / rho + along * up)]
         };
         // Beyond the tube.
         let far = centres.abs() + 2.0 * r;
-        let [mut a, mut b] = [-far, far];
-        if kappa != 0.0 {
-            let middle = (tube.height - view.base) / kappa;
-            let half = 2.0 * r / kappa.abs();
-            (a, b) = (a.max(middle - half), b.min(middle + half));
+        let [mut a, mut b] = between(view.x, across, [-far, far]);
+        if along != 0.0 {
+            let [low, high] = between(view.z, along, [tube.height - 2.0 * r, tube.height + 2.0 * r]);
+            (a, b) = (a.max(low), b.min(high));
         }
         if !(a < b) {
             return Ok(());
         }
         let doubt = 8.0 * self.coarse * (r + self.coarse);
         // Where it is concave.
-        let square = (centres.max(0.0) * y * y / (1.0 + kappa * kappa)).cbrt().powi(2) - y * y;
+        let share = across * across / (across * across + along * along);
+        let square = (centres.max(0.0) * y * y * share).cbrt().powi(2) - y * y;
         let inner = if square > 0.0 { square.sqrt() } else { 0.0 };
-        let [low, high] = [(-inner).clamp(a, b), inner.clamp(a, b)];
+        let [low, high] = between(view.x, across, [-inner, inner]).map(|w| w.clamp(a, b));
         let spans = if inner > 0.0 && low < high {
             [([a, low], true), ([low, high], false), ([high, b], true)]
         } else {
@@ -177,13 +181,13 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         };
         for (ends, convex) in spans {
             let arch = Arch {
-                function: |x| value(x, 0.0),
+                function: |w| value(w, 0.0),
                 ends,
                 convex,
                 doubt: [doubt; 3],
                 enough: 1e-6 * r,
             };
-            let found = arch.zeros(|x| self.point_of_tube(view, sector, tube, (x, doubt), &value));
+            let found = arch.zeros(|w| self.point_of_tube(view, sector, tube, (w, doubt), &value));
             if found.is_err() {
                 self.lines.forget(mark);
                 return found;
@@ -197,33 +201,38 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         view: &View,
         sector: Sector,
         tube: &Tube,
-        (mut x, doubt): (f64, f64),
+        (mut w, doubt): (f64, f64),
         value: &impl Fn(f64, f64) -> [f64; 2],
     ) -> Result<(), Open> {
-        let (y, kappa, r) = (view.y, self.kappa, tube.radius);
+        let (y, r) = (view.y, tube.radius);
+        let Along {
+            x: across, z: along, ..
+        } = self.along;
         let sign = if tube.beyond { -1.0 } else { 1.0 };
+        let tip = |w: f64| [sign * (view.x + across * w), sign * y];
         let (mut slope, mut step) = (0.0, f64::INFINITY);
-        let mut lift = self.lift([sign * x, sign * y]);
+        let mut lift = self.lift(tip(w));
         for _ in 0..4 {
-            let [f, d] = value(x, lift);
+            let [f, d] = value(w, lift);
             (slope, step) = (d, f / d);
-            x -= step;
+            w -= step;
             if step.abs() <= 0.1 * self.slack {
                 break;
             }
-            if step.abs() > STILL * y.abs() {
-                lift = self.lift([sign * x, sign * y]);
+            if (across * step).abs() > STILL * y.abs() {
+                lift = self.lift(tip(w));
             }
         }
+        let x = view.x + across * w;
         let rho = length(x, y);
-        let bend = 2.0 * (1.0 + kappa * kappa + tube.centres.abs() * y * y / (rho * rho * rho));
+        let bend = 2.0 * (along * along + across * across * (1.0 + tube.centres.abs() * y * y / (rho * rho * rho)));
         let error = 2.0 * self.fine * r / slope.abs();
         if !(slope * slope > 16.0 * bend * doubt && step.abs() <= error) {
             return Err(Open);
         }
         // From the tube's centre: away from the arc's axis in the direction of the tip, and along it.
-        let (out, up) = (sign * (rho - tube.centres), view.base + kappa * x - lift - tube.height);
-        let off = 4.0 * (error * (1.0 + kappa.abs()) + self.coarse);
+        let (out, up) = (sign * (rho - tube.centres), view.z + along * w - lift - tube.height);
+        let off = 4.0 * (error * (across.abs() + along.abs()) + self.coarse);
         let inside = match tube.part {
             Part::Heights(ends) => within(up, ends, off),
             Part::Angles([middle, half], flat) => {
@@ -254,10 +263,10 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let rises = lean[1] * normal[1] + lean[0] * normal[0] * sign * x / rho;
         let falls = inwards == tube.beyond;
         let spot = Spot {
-            x,
+            w,
             error,
-            tip: [sign * x, sign * y],
-            askew: (self.fine + 2.0 * error + 2.0 * r * self.slope.abs()) / rho,
+            tip: tip(w),
+            askew: (self.fine + 2.0 * across.abs() * error + 2.0 * r * self.slope.abs()) / rho,
             normal: [normal[0], 0.0, normal[1]],
             jump: if (rises > 0.0) == falls { -1 } else { 1 },
         };
