@@ -56,13 +56,16 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
     prop::collection::vec(arc, 1..=count)
 }
 
-/// Axes that lean, by next to nothing among them, and do not lie.
+/// Axes that lean: some by next to nothing, and some so much that they almost lie.
 fn axes() -> impl Strategy<Value = [f64; 3]> {
+    let tiny = || (-16.0..-1.0_f64).prop_map(|size| 10.0_f64.powf(size));
     let lean = prop_oneof![
         2 => 0.02..1.5_f64,
         1 => 1.6..3.1_f64,
-        1 => (-16.0..-1.0_f64).prop_map(|size| 10.0_f64.powf(size)),
-        1 => (-16.0..-1.0_f64).prop_map(|size| PI - 10.0_f64.powf(size)),
+        1 => tiny(),
+        1 => tiny().prop_map(|lean| PI - lean),
+        1 => tiny().prop_map(|lean| FRAC_PI_2 - lean),
+        1 => tiny().prop_map(|lean| FRAC_PI_2 + lean),
     ];
     (-PI..PI, lean).prop_map(|(turn, lean)| {
         let (s, c) = lean.sin_cos();

@@ -69,11 +69,8 @@ fn almost_degenerate_input_is_cheap_at_all_scales() {
 
 /// The members of a family that cost too much or are not resolved.
 fn dear(method: Method, (what, family): Family, (name, tool): (&str, &Tool)) -> Vec<String> {
-    // The closed forms of others are compared with the general search in `near_degenerate`.
-    let by_default = method == Method::Charts && (what.starts_with("lean of") || what.ends_with("from lying"));
-    let neighbour = if by_default { Method::General } else { method };
     let input = family(GENERIC);
-    let generic = work(neighbour, &cost(neighbour, tool, &input), &input.1);
+    let generic = work(method, &cost(method, tool, &input), &input.1);
     let most = if what == "line from the wall" { WALL } else { MOST };
     scales(0.2, 0.75, 90)
         .filter_map(|distance| {

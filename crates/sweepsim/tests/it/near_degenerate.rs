@@ -23,12 +23,6 @@ pub const METHODS: [Method; 5] = [
     Method::Lines,
 ];
 
-/// By default, arcs about the axis of a tool that is upright or lies but for 0.6° are left to the general search: they are compared with its generic neighbour.
-const IN_GENERAL: [&str; 2] = [
-    "lean of a tool on an arc about its axis",
-    "tool on an arc about its axis from lying",
-];
-
 pub fn pose(tip: [f64; 3], axis: [f64; 3]) -> Pose {
     Pose::new(tip, axis).expect("a pose")
 }
@@ -294,13 +288,8 @@ fn is_cheap(
     (name, tool): &(&'static str, Tool),
     distances: &[f64],
 ) -> Result<(), String> {
-    let neighbour = if method == Method::Charts && IN_GENERAL.contains(&what) {
-        Method::General
-    } else {
-        method
-    };
     let input = family(GENERIC);
-    let generic = work(neighbour, &cost(neighbour, tool, &input), &input.1);
+    let generic = work(method, &cost(method, tool, &input), &input.1);
     let ratio = |d: &f64| {
         let input = family(*d);
         let found = cost(method, tool, &input);

@@ -8,8 +8,6 @@ use sweepsim_motion::{Course, Path, Segment, TipArc, Turning};
 
 /// Arcs shorter than this many tip displacements are not taken as circles: their centres would be far off.
 const SHORTEST: f64 = 1e3;
-/// Closed forms divide by the component of the axis along the dexels.
-const LEAST: f64 = 0.01;
 /// An axis is perpendicular to the dexels if its component along them is no more than a few roundings.
 const LEVEL: f64 = 4.0 * f64::EPSILON;
 
@@ -76,10 +74,10 @@ impl Inclined {
             return None;
         }
         let own = frame.turn_from_world(ends[0].axis());
-        let (lean, rise) = (own[0].hypot(own[1]), own[2].abs());
+        let lean = own[0].hypot(own[1]);
         // Along an axis of the grid, planes are kept to the last digit.
         let along_the_grid = own[2] == 0.0 && (own[0] == 0.0 || own[1] == 0.0);
-        if !(lean > 0.0 && (rise > LEAST || rise <= LEVEL)) || along_the_grid {
+        if !(lean > 0.0) || along_the_grid {
             return None;
         }
         let axis = Vector3::from(own);

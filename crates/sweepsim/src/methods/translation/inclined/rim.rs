@@ -25,14 +25,16 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
     }
 
     /// Whether most lines tell the angle at which an edge of this radius passes them, next to a torus with a tube of radius `level`. Those within `δ` of where it reaches farthest in or out pass it less than `√(2 ρ δ)` ahead of the
-    /// tip, and have a certain angle where that is more than `2 √(GRAZING ε R)`, with places off by `ε`: next to a torus by [`bent`](Self::bent) there.
+    /// tip, and have a certain angle where that is more than `2 √(GRAZING ε R)`, with places off by `ε`: next to a torus by [`bent`](Self::bent) there. Lines that are almost parallel to its plane tell nothing; but hardly any meet
+    /// it, so they may be open.
     pub(super) fn tells_angles(&self, radius: f64, level: Option<f64>) -> bool {
         let big = self.arc.radius;
         let bent = level.map_or(0.0, |tube| {
             let least = 8.0 * GRAZING * big * tube * self.slope.abs() / (radius * radius);
             self.bent(tube, least.cbrt())
         });
-        self.along.z == 0.0 || (self.blur() + bent) * big < (radius / CLEAR).powi(2)
+        let beside = (big + radius) * self.along.z.abs() + 4.0 * self.coarse;
+        beside * CLEAR < self.lines.lines.spacing() || (self.blur() + bent) * big < (radius / CLEAR).powi(2)
     }
 
     /// How far the curve in which a torus touches its envelope may be from the circle on which its normal is along the axis, where that is so far ahead of the tip, as a share of its radius: it leaves the circle where the

@@ -23,6 +23,8 @@ use sweepsim_dexel::Source;
 
 /// A face of which a dexel is a tangent, but for this angle, is left to the general method.
 pub(super) const PARALLEL: f64 = 1e-6;
+/// But for planes as narrow as this part of the spacing, as they are seen: lines that meet them are open.
+const CLEAR: f64 = 64.0;
 /// Cones that are flatter than this, but no planes, are left to it, too.
 const FLAT: f64 = 1e-3;
 
@@ -117,22 +119,26 @@ impl Leaning<'_, '_> {
         let heights = [from[1].min(to[1]), from[1].max(to[1])];
         match piece.shape {
             Shape::Line { normal: [0.0, up] } => {
+                let reach = radii[1];
+                let middle = s * from[1];
+                let range = [middle - k.abs() * reach, middle + k.abs() * reach];
                 if k == 0.0 {
                     // Lines in its plane only.
-                    let place = s * from[1];
-                    self.visit([[-radii[1], radii[1]], [place; 2]], |_, _| Points::Tangent);
+                    self.visit([[-reach, reach], range], |_, _| Points::Tangent);
                     return Some(());
-                }
-                if k.abs() < PARALLEL {
-                    return None;
                 }
                 let [before, after] = [0, 1].map(|n| self.negative(n, [0.0, 0.0, up], [0.0; 2]));
                 if before == after {
                     return Some(());
                 }
-                let reach = radii[1];
-                let middle = s * from[1];
-                let range = [middle - k.abs() * reach, middle + k.abs() * reach];
+                if k.abs() < PARALLEL {
+                    // Hardly a line meets it, if any.
+                    if !((k.abs() * reach + slack) * CLEAR < self.lines.lines.spacing()) {
+                        return None;
+                    }
+                    self.visit([[-reach, reach], range], |_, _| Points::Tangent);
+                    return Some(());
+                }
                 let error = 8.0 * slack / k.abs();
                 self.visit([[-reach, reach], range], |q, b| {
                     let a = (s * from[1] - q) / k;
