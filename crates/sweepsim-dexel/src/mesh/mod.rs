@@ -47,6 +47,14 @@ pub enum MeshError {
         /// Its number, from 0.
         triangle: usize,
     },
+    /// A coordinate is so large that areas and volumes could not be computed.
+    #[error(
+        "triangle {triangle} of the mesh has a coordinate beyond 1e12: expected lengths in millimetres, or in the unit of the job"
+    )]
+    TooLarge {
+        /// Its number, from 0.
+        triangle: usize,
+    },
     /// Some edges are not shared by two triangles of opposite direction: the surface has holes or flipped triangles.
     #[error("the mesh is not closed: {edges} edges lack a partner of opposite direction, the first from ({}, {}, {}) to ({}, {}, {})",
         .from[0], .from[1], .from[2], .to[0], .to[1], .to[2])]
@@ -245,6 +253,9 @@ impl TriangleSoup {
         for (triangle, corners) in self.triangles.iter().enumerate() {
             if !corners.iter().flatten().all(|c| c.is_finite()) {
                 return Err(MeshError::NotFinite { triangle });
+            }
+            if corners.iter().flatten().any(|c| c.abs() > crate::stock::LARGEST) {
+                return Err(MeshError::TooLarge { triangle });
             }
             for k in 0..3 {
                 let (a, b) = (key(corners[k]), key(corners[(k + 1) % 3]));

@@ -11,6 +11,14 @@ pub(crate) use from_mesh::mesh_dexels;
 use std::sync::Arc;
 use thiserror::Error;
 
+/// Coordinates and lengths are no larger than this in any unit: areas, volumes and squares of distances are finite, with room for sums.
+pub(crate) const LARGEST: f64 = 1e12;
+
+/// Whether a coordinate is one that can be computed with.
+fn fits(c: f64) -> bool {
+    c.abs() <= LARGEST
+}
+
 /// A piece of stock.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -59,7 +67,7 @@ pub enum Stock {
 #[non_exhaustive]
 pub enum StockError {
     /// The block has no volume.
-    #[error("the block from ({}, {}, {}) to ({}, {}, {}) is empty or not finite", .min[0], .min[1], .min[2], .max[0], .max[1], .max[2])]
+    #[error("the block from ({}, {}, {}) to ({}, {}, {}) is empty, or beyond 1e12", .min[0], .min[1], .min[2], .max[0], .max[1], .max[2])]
     Block {
         /// Lower corner.
         min: [f64; 3],
@@ -67,7 +75,7 @@ pub enum StockError {
         max: [f64; 3],
     },
     /// The cylinder has no volume or no axis.
-    #[error("the cylinder of radius {radius} and height {height} is empty, or has no axis, or is not finite")]
+    #[error("the cylinder of radius {radius} and height {height} is empty, or has no axis, or is beyond 1e12")]
     Cylinder {
         /// Its radius.
         radius: f64,
@@ -75,7 +83,7 @@ pub enum StockError {
         height: f64,
     },
     /// The ball has no volume.
-    #[error("the ball of radius {radius} is empty or not finite")]
+    #[error("the ball of radius {radius} is empty, or beyond 1e12")]
     Ball {
         /// Its radius.
         radius: f64,
@@ -232,7 +240,7 @@ impl Stock {
 }
 
 fn ball(grid: &Grid, centre: [f64; 3], radius: f64) -> Result<Dexels, StockError> {
-    if !(centre.iter().all(|c| c.is_finite()) && radius > 0.0 && radius.is_finite()) {
+    if !(centre.iter().all(|c| fits(*c)) && radius > 0.0 && fits(radius)) {
         return Err(StockError::Ball { radius });
     }
     let centre = grid.frame().from_world(centre);
@@ -259,7 +267,7 @@ fn all(grid: &Grid, mut dexels: Dexels, operation: Operation, parts: &[Stock]) -
 }
 
 fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError> {
-    if !(0..3).all(|k| min[k].is_finite() && max[k].is_finite() && min[k] < max[k]) {
+    if !(0..3).all(|k| fits(min[k]) && fits(max[k]) && min[k] < max[k]) {
         return Err(StockError::Block { min, max });
     }
     let frame = grid.frame();
@@ -299,7 +307,7 @@ fn block(grid: &Grid, min: [f64; 3], max: [f64; 3]) -> Result<Dexels, StockError
 
 fn cylinder(grid: &Grid, base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Result<Dexels, StockError> {
     let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
-    let finite = base.iter().chain(&axis).all(|c| c.is_finite()) && radius.is_finite() && height.is_finite();
+    let finite = axis.iter().all(|c| c.is_finite()) && base.iter().chain([&radius, &height]).all(|c| fits(*c));
     if !(finite && length > 0.0 && radius > 0.0 && height > 0.0) {
         return Err(StockError::Cylinder { radius, height });
     }

@@ -237,3 +237,49 @@ fn reversed_unsorted_and_overlapping_intervals_are_refused() {
     assert_eq!(grid.index(1, 0), None);
     assert_eq!(grid.index(0, usize::MAX), None);
 }
+
+/// Of what is 1e300 wide the squares and volumes are infinite, and their differences no numbers.
+#[test]
+fn a_stock_of_any_size_is_refused_before_its_volume_is_infinite() {
+    let grid = Grid::new([0.0; 2], [1.0, 1.0], [2, 2]).unwrap();
+    let triangles = |size: f64| {
+        let [o, x, y, z] = [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
+        TriangleSoup {
+            triangles: vec![[o, y, x], [o, x, z], [o, z, y], [x, y, z]],
+        }
+    };
+    for size in [1.0, 1e3, 1e12, 1.1e12, 1e160, 1e300, f64::INFINITY] {
+        let stocks = [
+            Stock::Ball {
+                centre: [0.0; 3],
+                radius: size,
+            },
+            Stock::Block {
+                min: [-size; 3],
+                max: [1.0; 3],
+            },
+            Stock::Cylinder {
+                base: [0.0, 0.0, -size],
+                axis: [0.0, 0.0, 1.0],
+                radius: 5.0,
+                height: size,
+            },
+            Stock::Cylinder {
+                base: [0.0; 3],
+                axis: [0.0, 0.0, 1.0],
+                radius: size,
+                height: 1.0,
+            },
+            Stock::Mesh(triangles(size)),
+        ];
+        for stock in stocks {
+            match stock.dexels(&grid) {
+                Ok(dexels) => assert!(size <= 1e12 && dexels.volume().is_finite(), "{stock:?}"),
+                Err(error) => assert!(
+                    size > 1e12 && error.to_string().contains(if size.is_finite() { "1e12" } else { "" }),
+                    "{error}"
+                ),
+            }
+        }
+    }
+}
