@@ -57,6 +57,7 @@ pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
 pub use read::read_file;
 pub use sweepsim_motion::RotaryTable;
-pub use text::error::{NcError, NcProblem, TextPosition};
+pub use text::error::{NcError, NcProblem, TextPosition, shortened};
+pub use text::lines::end_lines_at_returns;
 pub use text::numbers::shortest;
 pub use tools::{BuiltTool, ToolProblem};

@@ -33,6 +33,7 @@ mod words;
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcError;
+use crate::text::lines;
 
 /// Reads a CL file.
 ///
@@ -55,5 +56,5 @@ use crate::text::error::NcError;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    reader::read(text, options)
+    reader::read(&lines::kept(text), options)
 }

@@ -7,6 +7,7 @@ mod contour;
 mod driver;
 mod excursions;
 mod rapids;
+mod recorded;
 mod track;
 mod turns;
 

@@ -7,15 +7,12 @@ use super::beside::Contour;
 use super::contour::Place;
 use super::driver::{Coordinates, Driver, Sense};
 use crate::machines::{Position, WorkFrame};
-use crate::model::event::{Event, EventKind};
+use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
 use crate::model::positions::ProgramPositions;
-use crate::model::program::{Call, FeedMode, NoteList, Program, ProgramPose};
+use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{NcError, NcProblem, TextPosition};
-
-/// The most events and calls: bounds the memory that a file of a few bytes can demand.
-const MOST_EVENTS: usize = 5_000_000;
 
 /// The course of a tool.
 pub(crate) struct Track {
@@ -41,6 +38,8 @@ pub(crate) struct Track {
     pub(super) arc_tolerance: f64,
     pub(super) kept_arcs: KeptArcs,
     pub(super) contour: Contour,
+    /// The bytes of the messages so far.
+    pub(super) text: usize,
 }
 
 impl Track {
@@ -73,6 +72,7 @@ impl Track {
             arc_tolerance: options.arc_tolerance,
             kept_arcs: KeptArcs::new(options),
             contour: Contour::default(),
+            text: 0,
         }
     }
 
@@ -116,35 +116,6 @@ impl Track {
             Some(kind) => self.record(kind),
             None => Ok(()),
         }
-    }
-
-    pub(super) fn record(&mut self, kind: EventKind) -> Result<(), NcProblem> {
-        if self.program.events.len() >= MOST_EVENTS {
-            return Err(NcProblem::value(
-                "the number of events",
-                MOST_EVENTS,
-                "smaller: divide the program",
-            ));
-        }
-        let mut event = Event::new(self.program.poses.len(), self.place.line, kind);
-        (event.file, event.call) = (self.place.file, self.place.call);
-        self.program.events.push(event);
-        Ok(())
-    }
-
-    /// A call from the current place: what follows is part of it until [`returns`](Self::returns).
-    pub fn calls(&mut self) -> Result<(), NcProblem> {
-        if self.program.calls.len() >= MOST_EVENTS {
-            return Err(NcProblem::value(
-                "the number of calls",
-                MOST_EVENTS,
-                "smaller: divide the program",
-            ));
-        }
-        let call = Call::new(self.place.file, self.place.line, self.place.call);
-        self.place.call = Some(self.program.calls.len() as u32);
-        self.program.calls.push(call);
-        Ok(())
     }
 
     /// Returns to the calling place.

@@ -38,6 +38,7 @@ use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcError;
+use crate::text::lines;
 use crate::tools::comments;
 
 /// Reads a program.
@@ -58,7 +59,7 @@ use crate::tools::comments;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    read_at(&Rc::new(text.to_owned()), None, options)
+    read_at(&lines::kept(text), None, options)
 }
 
 /// Reads the text of a file; subprograms may be in files beside it.
@@ -84,7 +85,7 @@ pub(crate) fn read_at(text: &Rc<String>, file: Option<&Path>, options: &ReadOpti
 /// ```
 #[must_use]
 pub fn canonical(text: &str, file: Option<&Path>, options: &ReadOptions) -> (Vec<String>, Option<NcError>) {
-    let text = &Rc::new(text.to_owned());
+    let text = &lines::kept(text);
     let outcome = interpreter::read(&Input { text, file }, options, true);
     let commands = outcome.trace.iter().map(ToString::to_string).collect();
     (commands, outcome.program.err())

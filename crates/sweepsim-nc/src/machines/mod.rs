@@ -23,3 +23,6 @@ pub use kinematics::Kinematics;
 pub use machine::Machine;
 
 pub(crate) use rotaries::Rotaries;
+
+/// A vector of a program whose components are all smaller than this gives no direction: their squares would vanish.
+pub(crate) const SHORTEST: f64 = 1e-9;

@@ -1,5 +1,8 @@
 //! What a program does besides moving.
 
+/// The most bytes of a program's messages: a loop of a few lines may repeat a long one without end.
+pub(crate) const MOST_TEXT: usize = 64 << 20;
+
 /// Something that a program does between two moves.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]

@@ -58,6 +58,8 @@ pub struct ToolDescription {
     pub holder_name: Option<String>,
     /// The line of the file where it is described, from 1; 0 if it has none.
     pub line: usize,
+    /// What was ignored or assumed when its description was read.
+    pub notes: Vec<String>,
 }
 
 /// What kind of cutter a tool is.

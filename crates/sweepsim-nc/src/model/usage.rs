@@ -1,5 +1,7 @@
 //! How far and how long each tool of a program moves.
 
+use std::f64::consts::{PI, TAU};
+
 use sweepsim_motion::Course;
 
 use crate::model::event::{EventKind, Spindle};
@@ -90,6 +92,74 @@ impl Program {
     }
 }
 
+impl Program {
+    /// The box around the tip in all moves, along arcs as well, and at all poses: the smallest and the largest coordinates, in millimetres.
+    ///
+    /// ```
+    /// use sweepsim_nc::{ReadOptions, gcode};
+    /// let mut options = ReadOptions::default();
+    /// options.exact_arcs = true;
+    /// let circle = gcode::read("G21\nG0 X0 Y0 Z0\nG2 X0 Y0 I5 J0 F100\n", &options)?;
+    /// assert_eq!(circle.extent(), Some([[0.0, -5.0, 0.0], [10.0, 5.0, 0.0]]));
+    /// # Ok::<(), sweepsim_nc::NcError>(())
+    /// ```
+    #[must_use]
+    pub fn extent(&self) -> Option<[[f64; 3]; 2]> {
+        let mut last: Option<ProgramPose> = None;
+        self.poses.in_order().fold(None, |all, pose| {
+            let from = last.take().filter(|_| pose.joined);
+            let found = from.map_or([pose.pose.tip(); 2], |from| course_extent(&from, &pose));
+            last = Some(pose);
+            Some(all.map_or(found, |all| joined(all, found)))
+        })
+    }
+}
+
+/// The box around two boxes.
+fn joined([low, high]: [[f64; 3]; 2], [a, b]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    [
+        [0, 1, 2].map(|k| low[k].min(a[k])),
+        [0, 1, 2].map(|k| high[k].max(b[k])),
+    ]
+}
+
+/// The box around the tip in a move.
+///
+/// On an arc a coordinate is `m + R cos(θ − φ) + g θ`, with `g` from the rise of a helix. Its extremes are at the ends and where `sin(θ − φ) = g / R`: of
+/// those a full turn apart the first and the last are enough.
+fn course_extent(from: &ProgramPose, to: &ProgramPose) -> [[f64; 3]; 2] {
+    let (a, b) = (from.pose.tip(), to.pose.tip());
+    let ends = joined([a; 2], [b; 2]);
+    let Course::Arc(arc) = to.way().course else {
+        return ends;
+    };
+    let (n, angle) = (arc.normal(), arc.angle());
+    let dot = |v: [f64; 3]| v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
+    let radial = [0, 1, 2].map(|k| a[k] - arc.centre()[k]);
+    let along = dot(radial);
+    let u = [0, 1, 2].map(|k| radial[k] - along * n[k]);
+    let v = [0, 1, 2].map(|k| n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3]);
+    let rise = dot([0, 1, 2].map(|k| b[k] - a[k])) / angle;
+    let (first, last) = (angle.min(0.0), angle.max(0.0));
+    let mut all = ends;
+    for k in 0..3 {
+        let (r, phase, g) = (u[k].hypot(v[k]), v[k].atan2(u[k]), rise * n[k]);
+        if !(g.abs() < r) {
+            continue;
+        }
+        let off = (g / r).asin();
+        for root in [phase + off, phase + PI - off] {
+            let up = root + TAU * ((first - root) / TAU).ceil();
+            let down = root + TAU * ((last - root) / TAU).floor();
+            for turn in [up, down].into_iter().filter(|turn| (first..=last).contains(turn)) {
+                let value = a[k] + u[k] * (turn.cos() - 1.0) + v[k] * turn.sin() + g * turn;
+                (all[0][k], all[1][k]) = (all[0][k].min(value), all[1][k].max(value));
+            }
+        }
+    }
+    all
+}
+
 impl ToolUsage {
     /// Adds a move that takes at least so many seconds.
     fn add(&mut self, from: &ProgramPose, to: &ProgramPose, (unit, rpm): (f64, Option<f64>), least: f64) {
@@ -102,13 +172,8 @@ impl ToolUsage {
         self.feed_moves += 1;
         self.feed_length += length;
         self.arcs += usize::from(matches!(to.way().course, Course::Arc(_)));
-        for tip in [from.pose.tip(), to.pose.tip()] {
-            let [low, high] = self.extent.get_or_insert([tip; 2]);
-            for k in 0..3 {
-                low[k] = low[k].min(tip[k]);
-                high[k] = high[k].max(tip[k]);
-            }
-        }
+        let found = course_extent(from, to);
+        self.extent = Some(self.extent.map_or(found, |all| joined(all, found)));
         let widen = |range: &mut Option<[f64; 2]>, value: f64| {
             let [low, high] = range.get_or_insert([value; 2]);
             (*low, *high) = (low.min(value), high.max(value));
@@ -147,5 +212,63 @@ pub(crate) fn length(from: &ProgramPose, to: &ProgramPose) -> f64 {
             let radius = across[0].hypot(across[1]).hypot(across[2]);
             (radius * arc.angle()).hypot(dot(chord))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::read_options::ReadOptions;
+
+    /// Arcs and helices in all planes, turned too, against points along chords.
+    #[test]
+    fn boxes_hold_arcs_and_touch_them() {
+        let mut options = ReadOptions::default();
+        options.exact_arcs = true;
+        let mut bulges = 0;
+        for turn in ["", "G68 X0 Y0 R33\n", "G68.2 X1 Y2 Z3 I20 J35 K10\n"] {
+            for arc in [
+                "G17 G2 X0 Y0 I5 J2 F100",
+                "G17 G3 X4 Y4 I4 J0 F100",
+                "G17 G3 X4 Y4 Z7 I4 J0 P3 F100",
+                "G17 G2 X1 Y2 Z-30 I-3 J1 P2 F100",
+                "G18 G2 X6 Z5 I3 K0 F100",
+                "G18 G3 X6 Z5 Y2 I3 K0 P2 F100",
+                "G19 G3 Y0 Z5 J1 K-4 F100",
+            ] {
+                let arc = if arc.contains("X1 Y2") {
+                    "G17 G2 X0 Y0 Z-30 I-3 J1 P2 F100"
+                } else {
+                    arc
+                };
+                let text = format!("G21\nM428\nG0 X0 Y0 Z5 A0 B0\n{turn}G0 X0 Y0 Z5\n{arc}\n");
+                let program = crate::gcode::read(&text, &options).unwrap_or_else(|error| panic!("{text}{error}"));
+                let [low, high] = program.extent().unwrap();
+                options.exact_arcs = false;
+                options.arc_tolerance = 1e-5;
+                let chords = crate::gcode::read(&text, &options).unwrap();
+                options.exact_arcs = true;
+                let tips = || chords.poses.in_order().map(|pose| pose.pose.tip());
+                for k in 0..3 {
+                    let range = tips().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], tip| {
+                        [a.min(tip[k]), b.max(tip[k])]
+                    });
+                    assert!(
+                        (low[k] - range[0]).abs() < 2e-5 && (high[k] - range[1]).abs() < 2e-5,
+                        "{text}{k}: {low:?} {high:?} {range:?}"
+                    );
+                    let ends = [0, 1].map(|n| {
+                        program
+                            .poses
+                            .in_order()
+                            .nth(program.poses.len() - 1 - n)
+                            .unwrap()
+                            .pose
+                            .tip()[k]
+                    });
+                    bulges += usize::from(range[1] > ends[0].max(ends[1]) + 0.1);
+                }
+            }
+        }
+        assert!(bulges > 15, "{bulges}");
     }
 }

@@ -11,6 +11,30 @@ use thiserror::Error;
 /// Longer lines are cut in excerpts.
 const MAX_EXCERPT: usize = 160;
 
+/// The most characters of a value that a message shows, and of a whole message.
+const MAX_VALUE: usize = 600;
+const MAX_MESSAGE: usize = 8000;
+
+/// A text for a message: of more than `most` characters, the beginning and the end.
+///
+/// ```
+/// assert_eq!(sweepsim_nc::shortened("7".repeat(1000), 10), "77777 … 77777");
+/// assert_eq!(sweepsim_nc::shortened("7.25".to_owned(), 10), "7.25");
+/// ```
+#[must_use]
+pub fn shortened(text: String, most: usize) -> String {
+    let length = text.chars().count();
+    if length <= most {
+        return text;
+    }
+    let part = most / 2;
+    let (start, end): (String, String) = (
+        text.chars().take(part).collect(),
+        text.chars().skip(length - part).collect(),
+    );
+    format!("{start} … {end}")
+}
+
 /// A position in a text. Lines and columns count from 1, columns in characters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -98,21 +122,21 @@ pub enum NcProblem {
 impl NcProblem {
     pub(crate) fn syntax(message: impl Into<String>) -> Self {
         Self::Syntax {
-            message: message.into(),
+            message: shortened(message.into(), MAX_MESSAGE),
         }
     }
 
     pub(crate) fn value(what: impl Into<String>, found: impl fmt::Display, expected: impl Into<String>) -> Self {
         Self::Value {
-            what: what.into(),
-            found: found.to_string(),
+            what: shortened(what.into(), MAX_VALUE),
+            found: shortened(found.to_string(), MAX_VALUE),
             expected: expected.into(),
         }
     }
 
     pub(crate) fn unsupported(what: impl Into<String>, instead: impl Into<String>) -> Self {
         Self::Unsupported {
-            what: what.into(),
+            what: shortened(what.into(), MAX_VALUE),
             instead: instead.into(),
         }
     }

@@ -1,6 +1,7 @@
 //! Lines of bounded length, so that no input takes memory without end.
 
 use std::io::BufRead;
+use std::rc::Rc;
 
 use crate::text::error::{NcError, NcProblem, TextPosition};
 
@@ -83,8 +84,9 @@ impl<R: BufRead> Lines<R> {
 /// [`NcError`]: the reader fails, a line is longer than [`LONGEST`] bytes, or there is more than 2 GB; nothing beyond it is read.
 pub(crate) fn all(reader: impl BufRead) -> Result<Vec<u8>, NcError> {
     let mut lines = Lines::new(reader);
-    let mut bytes = Vec::new();
+    let (mut bytes, mut lone) = (Vec::new(), false);
     while lines.next_line()? {
+        lone |= lines.line().ends_with(b"\r");
         if bytes.len() + lines.line().len() > MOST {
             return Err(NcError::new(
                 NcProblem::value("the size of a program", format!("over {MOST} bytes"), "less than 2 GB"),
@@ -93,7 +95,34 @@ pub(crate) fn all(reader: impl BufRead) -> Result<Vec<u8>, NcError> {
         }
         bytes.extend_from_slice(lines.line());
     }
+    if lone {
+        end_lines_at_returns(&mut bytes);
+    }
     Ok(bytes)
+}
+
+/// Makes `\n` of each `\r` that ends a line by itself, as old controls and Macs wrote them. Those beside a `\n` are part of its line's end (`\r\n`, `\r\r\n`,
+/// `\n\r`) and stay. All readers of programs take lines to end so; other bytes keep their places.
+///
+/// ```
+/// let mut text = *b"G0 X0\r\nG0 X1 (first)\rY2\r";
+/// sweepsim_nc::end_lines_at_returns(&mut text);
+/// assert_eq!(&text, b"G0 X0\r\nG0 X1 (first)\nY2\n");
+/// ```
+pub fn end_lines_at_returns(bytes: &mut [u8]) {
+    let ends = |byte: u8| matches!(byte, b'\r' | b'\n');
+    for run in bytes.chunk_by_mut(|a, b| ends(*a) == ends(*b)) {
+        if run[0] == b'\r' && !run.contains(&b'\n') {
+            run.fill(b'\n');
+        }
+    }
+}
+
+/// A text whose lines end as the readers expect it.
+pub(crate) fn kept(text: &str) -> Rc<String> {
+    let mut bytes = text.as_bytes().to_vec();
+    end_lines_at_returns(&mut bytes);
+    Rc::new(String::from_utf8(bytes).unwrap_or_else(|_| text.to_owned()))
 }
 
 #[cfg(test)]
@@ -113,10 +142,12 @@ mod tests {
                 assert_eq!(lines.number, number + 1);
             }
             assert!(!lines.next_line().unwrap());
-            assert_eq!(all(BufReader::with_capacity(size, &text[..])).unwrap(), text);
+            let ended = b"a\nbc\r\n\r\n\rd\ne\n\nlast";
+            assert_eq!(all(BufReader::with_capacity(size, &text[..])).unwrap(), ended);
         }
         assert_eq!(all(&b""[..]).unwrap(), b"");
-        assert_eq!(all(&b"x\r"[..]).unwrap(), b"x\r");
+        assert_eq!(all(&b"x\r"[..]).unwrap(), b"x\n");
+        assert_eq!(all(&b"a\r\r\nb\n\rc\r\rd"[..]).unwrap(), b"a\r\r\nb\n\rc\n\nd");
     }
 
     #[test]

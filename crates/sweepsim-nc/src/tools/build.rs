@@ -108,7 +108,7 @@ impl ToolDescription {
     /// # Errors
     /// [`ToolProblem`]: what is missing, by name, and measures that make no solid.
     pub fn build(&self) -> Result<BuiltTool, ToolProblem> {
-        let mut notes = Vec::new();
+        let mut notes = self.notes.clone();
         let cutter = match self.cutter()? {
             Cutter::Flat { radius, length } => Tool::flat(radius, length)?,
             Cutter::Ball { radius, length } => Tool::ball(radius, length)?,

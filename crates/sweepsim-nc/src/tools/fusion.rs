@@ -23,11 +23,18 @@ const EXPRESSIONS: [(&str, &str); 12] = [
     ("neck-diameter", "tool_neckDiameter"),
 ];
 
-/// Millimetres per unit of a library.
-fn unit_of(value: &Value) -> f64 {
-    match value.get("unit").and_then(Value::as_str) {
-        Some("inches" | "inch" | "in") => 25.4,
-        _ => 1.0,
+/// Millimetres per unit of a library, and a note if it is none that is known.
+fn unit_of(value: &Value) -> (f64, Option<String>) {
+    match value.get("unit") {
+        Some(Value::String(unit)) => match unit.as_str() {
+            "inches" | "inch" | "in" => (25.4, None),
+            "millimeters" | "millimeter" | "millimetres" | "mm" => (1.0, None),
+            unit => (
+                1.0,
+                Some(format!("the unit {unit:?} is not known: taken as millimeters")),
+            ),
+        },
+        _ => (1.0, None),
     }
 }
 
@@ -41,7 +48,10 @@ pub(super) fn read(value: &Value) -> ToolLibrary {
             continue;
         }
         let process = entry.get("post-process");
-        let mut tool = one(entry, &kind, &mut library.notes);
+        let mut tool = one(entry, &kind);
+        library
+            .notes
+            .extend(tool.notes.iter().map(|note| Note::new(0, note.clone())));
         tool.name = tool.name.or_else(|| string(entry, "product-id"));
         let number = process
             .and_then(|process| process.get("number"))
@@ -58,8 +68,9 @@ pub(super) fn read(value: &Value) -> ToolLibrary {
     library
 }
 
-fn one(entry: &Value, kind: &str, notes: &mut Vec<Note>) -> ToolDescription {
-    let unit = unit_of(entry);
+fn one(entry: &Value, kind: &str) -> ToolDescription {
+    let (unit, note) = unit_of(entry);
+    let mut notes = Vec::from_iter(note);
     let empty = Value::Null;
     let geometry = entry.get("geometry").unwrap_or(&empty);
     let expressions = entry.get("expressions").unwrap_or(&empty);
@@ -72,9 +83,8 @@ fn one(entry: &Value, kind: &str, notes: &mut Vec<Note>) -> ToolDescription {
         if let Some(text) = expression {
             match measure(&text, factor) {
                 Some(value) => return Some(value),
-                None => notes.push(Note::new(
-                    0,
-                    format!("the expression {text:?} is not evaluated: the library's number is used"),
+                None => notes.push(format!(
+                    "the expression {text:?} is not evaluated: the library's number is used"
                 )),
             }
         }
@@ -105,7 +115,8 @@ fn one(entry: &Value, kind: &str, notes: &mut Vec<Note>) -> ToolDescription {
         tool.diameter = Some(tip);
     }
     if let Some(holder) = entry.get("holder") {
-        let unit = unit_of(holder);
+        let (unit, note) = unit_of(holder);
+        notes.extend(note.map(|note| format!("its holder: {note}")));
         tool.holder_name = string(holder, "description");
         let segments = holder.get("segments").and_then(Value::as_array);
         tool.holder = segments
@@ -121,6 +132,7 @@ fn one(entry: &Value, kind: &str, notes: &mut Vec<Note>) -> ToolDescription {
             })
             .collect();
     }
+    tool.notes = notes;
     tool
 }
 

@@ -38,9 +38,13 @@ impl ToolLibrary {
     /// Adds a tool. The first one of a number is kept.
     pub(super) fn add(&mut self, number: u32, tool: ToolDescription) {
         match self.tools.entry(number) {
-            Entry::Occupied(_) => {
+            Entry::Occupied(mut first) => {
                 let note = format!("a second tool {number}: ignored");
                 self.notes.push(Note::new(tool.line, note));
+                let note = "described again in the same file: the first description is used";
+                if !first.get().notes.iter().any(|known| known == note) {
+                    first.get_mut().notes.push(note.to_owned());
+                }
             }
             Entry::Vacant(place) => {
                 place.insert(tool);

@@ -60,7 +60,7 @@ pub(super) fn read(text: &str, unit: f64) -> Result<ToolLibrary, NcError> {
             ..ToolDescription::default()
         };
         tool.diameter = (offset.diameter > 0.0).then_some(offset.diameter);
-        offsets.insert(number, offset);
+        offsets.entry(number).or_insert(offset);
         library.add(number, tool);
     }
     library.offsets = offsets;

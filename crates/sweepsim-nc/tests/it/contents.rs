@@ -157,3 +157,49 @@ proptest! {
         let _ = read(name, &bytes);
     }
 }
+
+#[test]
+fn a_return_by_itself_ends_a_line() {
+    let lines = [
+        ("a.nc", "G21 G90 ; first~G0 X0 Y0 Z5~G1 X1 F100 ; on~G1 X2~Y2~M30~"),
+        ("a.mpf", "G710 G90 ; first~G0 X0 Y0 Z5~G1 X1 F100 ;on~G1 X2~Y2~M30~"),
+        (
+            "a.h",
+            "BEGIN PGM A MM~L X+0 Y+0 Z+5 R0 FMAX~L X+1 ~~ F100 ;on~L X+2~L Y+2~END PGM A MM~",
+        ),
+        (
+            "a.cls",
+            "PARTNO A~UNITS/MM~GOTO/0,0,5~PPRINT on~GOTO/1,$~0,5~GOTO/2,0,5~GOTO/2,2,5~FINI~",
+        ),
+        ("a.csv", "x,y,z,i,j,k~0,0,5,0,0,1~1,0,5,0,0,1~2,0,5,0,0,1~2,2,5,0,0,1~"),
+    ];
+    for (name, text) in lines {
+        // Klartext continues a line by `~` itself.
+        let ended = |end: &str| {
+            text.replace("~~", "\0")
+                .replace('~', end)
+                .replace('\0', &format!("~{end}"))
+        };
+        let read = |text: String| {
+            let program = read(name, text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+            let poses: Vec<_> = program.poses.iter().map(|pose| (pose.pose.tip(), pose.line)).collect();
+            poses
+        };
+        let expected = read(ended("\n"));
+        let tips: Vec<_> = expected.iter().map(|(tip, _)| *tip).collect();
+        assert_eq!(
+            tips,
+            [[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [2.0, 0.0, 5.0], [2.0, 2.0, 5.0]],
+            "{name}"
+        );
+        for end in ["\r\n", "\r"] {
+            assert_eq!(read(ended(end)), expected, "{name} {end:?}");
+        }
+        // Among other ends, too.
+        let mixed = ended("\n").replacen('\n', "\r", 3);
+        assert_eq!(read(mixed), expected, "{name}");
+    }
+    // What belongs to the end of a line does not end another.
+    let program = read("a.nc", b"G21\r\r\nG0 X0 Y0 Z5\n\rG0 X1\r\r\n").unwrap();
+    assert_eq!(program.poses.last().unwrap().line, 3);
+}

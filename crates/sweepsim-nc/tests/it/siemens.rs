@@ -327,3 +327,26 @@ fn long_loops_and_archives_run_as_if_written_out() {
     let wrong = archive.replace("N00700 ", "N00700 ?");
     assert!(error(&wrong).starts_with("710:8:"), "{}", error(&wrong));
 }
+
+/// They were left out, or rounded, and the second vector gave a tip that was no number.
+#[test]
+fn repeats_and_vectors_that_mean_nothing_are_refused() {
+    let repeated = |times: &str| format!("G0 X0 Y0 Z0\nA:\nG91 G1 X1 F100\nREPEAT A P={times}\n");
+    assert_eq!(tips(&read(&repeated("2"))).len(), 4);
+    assert_eq!(tips(&read(&repeated("0"))).len(), 2);
+    for times in ["-1", "2.5"] {
+        let message = format!("the number of repeats P is {times}, but must be a whole number from 0 on");
+        assert!(
+            error(&repeated(times)).contains(&message),
+            "{}",
+            error(&repeated(times))
+        );
+    }
+    for vector in ["A3=0 B3=0 C3=0", "A3=1EX-300"] {
+        let found = error(&format!("TRAORI\nG0 X0 Y0 Z0\nG1 X1 {vector} F100\n"));
+        assert!(
+            found.ends_with("the tool vector is (0, 0, 0): expected a direction"),
+            "{found}"
+        );
+    }
+}

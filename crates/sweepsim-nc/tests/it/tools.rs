@@ -320,3 +320,30 @@ fn libraries_and_machines_without_end_are_errors() {
         "{told}"
     );
 }
+
+/// What a library says twice, or in a unit of its own, is said where the tool is used.
+#[test]
+fn what_was_taken_from_a_library_is_said_with_the_tool() {
+    let entry = |unit: &str, diameter: f64| {
+        format!(
+            r#"{{"type": "flat end mill", "unit": "{unit}", "geometry": {{"DC": {diameter}, "LCF": 20}}, "post-process": {{"number": 1}},
+                 "expressions": {{"tool_fluteLength": "2 * x"}}}}"#
+        )
+    };
+    let text = format!(r#"{{"data": [{}, {}]}}"#, entry("parsecs", 6.0), entry("inches", 8.0));
+    let library = tools::parse(&text, Path::new("t.json"), false).unwrap();
+    let expected = [
+        "the unit \"parsecs\" is not known: taken as millimeters",
+        "the expression \"2 * x\" is not evaluated: the library's number is used",
+        "described again in the same file: the first description is used",
+    ];
+    assert_eq!(library.tools[&1].build().unwrap().notes, expected);
+    let library = tools::parse("T1 P1 D6\nT1 P2 D8\nT2 D3\n", Path::new("t.tbl"), false).unwrap();
+    assert_eq!(library.tools[&1].notes, expected[2..]);
+    // The first one counts for the control, too.
+    assert_eq!(
+        (library.offsets[&1].diameter, library.tools[&1].diameter),
+        (6.0, Some(6.0))
+    );
+    assert_eq!(library.tools[&2].notes, [""; 0]);
+}

@@ -3,6 +3,7 @@
 use super::interpreter::Reader;
 use super::line::{Line, Located};
 use crate::drive::{Corners, Side};
+use crate::machines::SHORTEST;
 use crate::text::error::NcProblem;
 
 /// The words of a move.
@@ -276,7 +277,7 @@ impl Reader<'_> {
         let whole = |problem| (problem, line.all());
         if line.word(0) == "LN" && words.tool.iter().any(Option::is_some) {
             let vector = words.tool.map(|c| c.unwrap_or(0.0));
-            if vector == [0.0; 3] {
+            if vector.iter().all(|c| c.abs() < SHORTEST) {
                 return Err(whole(NcProblem::syntax(
                     "the tool vector TX TY TZ is (0, 0, 0): expected a direction",
                 )));

@@ -339,6 +339,10 @@ impl Reader<'_> {
                     None => index,
                 };
                 let times = times.as_ref().map_or(Ok(1.0), |times| self.number(times))?;
+                if !(times >= 0.0 && times.fract() == 0.0) {
+                    let problem = NcProblem::value("the number of repeats P", times, "a whole number from 0 on");
+                    return Err((problem, self.whole(unit, index)));
+                }
                 if times >= 1.0 && start < end {
                     self.track
                         .calls()

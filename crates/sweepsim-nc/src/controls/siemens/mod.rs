@@ -24,11 +24,10 @@ mod words;
 pub use interpreter::Library;
 pub(crate) use interpreter::read as read_kept;
 
-use std::rc::Rc;
-
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;
 use crate::text::error::NcError;
+use crate::text::lines;
 
 /// Reads a program without subprograms in other files.
 ///
@@ -53,5 +52,5 @@ pub fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
 /// # Errors
 /// As [`read`].
 pub fn read_with(text: &str, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
-    read_kept(&Rc::new(text.to_owned()), options, library)
+    read_kept(&lines::kept(text), options, library)
 }

@@ -3,6 +3,7 @@
 use super::interpreter::Reader;
 use super::language::cursor::Located;
 use super::words::{Action, Meaning, Modal, Motion, Word, Words};
+use crate::machines::SHORTEST;
 use crate::text::error::NcProblem;
 
 const LINEAR: [&str; 3] = ["X", "Y", "Z"];
@@ -149,7 +150,7 @@ impl Reader<'_> {
             return Err((problem, word.span.clone()));
         }
         let vector = VECTOR.map(|name| words.plain(name).unwrap_or(0.0));
-        if vector == [0.0; 3] {
+        if vector.iter().all(|c| c.abs() < SHORTEST) {
             return Err((
                 NcProblem::syntax("the tool vector is (0, 0, 0): expected a direction"),
                 word.span.clone(),

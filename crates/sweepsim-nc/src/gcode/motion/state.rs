@@ -43,6 +43,8 @@ pub(crate) struct State {
     pub units: Option<Units>,
     pub notes: NoteList,
     pub events: Vec<Event>,
+    /// The bytes of the messages so far.
+    pub text: usize,
     pub calls: Vec<Call>,
     most_poses: usize,
     pub driver: Driver,
@@ -73,6 +75,7 @@ impl State {
             units: None,
             notes: NoteList::default(),
             events: Vec::new(),
+            text: 0,
             calls: Vec::new(),
             most_poses: options.most_poses,
             driver: Driver::new(

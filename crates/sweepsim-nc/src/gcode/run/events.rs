@@ -5,7 +5,7 @@ use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::{Values, Variables};
 use crate::gcode::trace::Canonical;
-use crate::model::event::EventKind;
+use crate::model::event::{EventKind, MOST_TEXT};
 use crate::text::error::NcProblem;
 
 /// Longer texts for the operator are cut.
@@ -50,8 +50,12 @@ impl Reader {
         };
         if kind.eq_ignore_ascii_case("MSG") {
             let text: String = text.trim().chars().take(LONGEST).collect();
-            // Texts beyond the limit of events are no loss.
-            let _ = self.event(EventKind::Message(text));
+            self.state.text += text.len();
+            // Texts beyond the limit, of bytes or of events, are no loss.
+            if self.state.text > MOST_TEXT || self.event(EventKind::Message(text)).is_err() {
+                self.state
+                    .note("a message beyond 64 MiB of them, or among too many events: left out");
+            }
             return;
         }
         if self.trace.is_none() {

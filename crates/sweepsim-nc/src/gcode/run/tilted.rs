@@ -5,7 +5,7 @@ use crate::drive::{Coordinates, Sense};
 use crate::gcode::codes::{Code, MotionMode};
 use crate::gcode::motion::map::Map;
 use crate::gcode::syntax::block::Block;
-use crate::machines::{Position, WorkFrame};
+use crate::machines::{Position, SHORTEST, WorkFrame};
 use crate::text::error::NcProblem;
 
 /// A frame as a map from the program's coordinates.
@@ -158,7 +158,7 @@ impl Reader {
             return Ok(abc);
         }
         let vector = ['I', 'J', 'K'].map(|letter| block.get(letter).unwrap_or(0.0));
-        if vector == [0.0; 3] {
+        if vector.iter().all(|c| c.abs() < SHORTEST) {
             return Err(NcProblem::syntax(
                 "the tool vector I J K is (0, 0, 0): expected a direction",
             ));

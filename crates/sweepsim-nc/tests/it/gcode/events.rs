@@ -102,3 +102,19 @@ fn settings_of_grbl() {
     assert_eq!(found.sections().count(), 2);
     assert!(gcode::read("G0 X0 Y0 Z0\n$J=G91 X5 F10", &ReadOptions::default()).is_err());
 }
+
+/// A loop of a few lines may repeat a long text as often as blocks may be executed.
+#[test]
+fn the_text_of_messages_is_bounded() {
+    let text = format!(
+        "G0 X0 Y0 Z0\n#1=0\nN1 (MSG, {})\n#1=[#1+1]\nIF [#1 LT 160000] GOTO 1\n",
+        "a".repeat(480)
+    );
+    let program = gcode::read(&text, &ReadOptions::default()).unwrap();
+    assert_eq!(program.events.len(), (64 << 20) / 480);
+    let notes: Vec<String> = program.notes.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        notes,
+        ["line 3: a message beyond 64 MiB of them, or among too many events: left out (20190 times, first here)"]
+    );
+}

@@ -250,3 +250,20 @@ fn modal_macros_are_called_after_each_move() {
     );
     assert!(error("O1\nG0 X0 Y0 Z0\nG66 P7\nX1\nM30\n").contains("O7"));
 }
+
+/// Each turn of a loop looks through those that are open.
+#[test]
+fn loops_within_loops_without_end_are_refused() {
+    let nested = |deep: usize| {
+        let opened: String = (1..=deep).map(|k| format!("WHILE [#1 LT 1] DO {k}\n")).collect();
+        let closed: String = (1..=deep).rev().map(|k| format!("END {k}\n")).collect();
+        format!("G0 X0 Y0 Z0\n#1=0\n{opened}#1=1\nG1 X5 F100\n{closed}")
+    };
+    let read = |deep| gcode::read(&nested(deep), &ReadOptions::default());
+    assert_eq!(read(100).unwrap().poses.len(), 2);
+    let error = read(100_000).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "103:1: loops within loops are more than 100 deep: Fanuc allows 3"
+    );
+}

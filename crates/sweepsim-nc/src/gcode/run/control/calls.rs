@@ -11,7 +11,7 @@ use crate::model::program::Call;
 use crate::text::error::NcProblem;
 
 /// Calls within calls, at most.
-const DEEPEST: usize = 100;
+pub(super) const DEEPEST: usize = 100;
 
 /// A line of one of the texts, both from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

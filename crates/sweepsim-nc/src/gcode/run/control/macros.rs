@@ -3,7 +3,7 @@
 //! Source: Fanuc Series 30i operator's manual B-63944EN, *Custom macro*.
 
 use super::super::interpreter::{Reader, Step};
-use super::calls::Spot;
+use super::calls::{DEEPEST, Spot};
 use crate::gcode::flow::labels::loop_number;
 use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;
@@ -95,6 +95,12 @@ impl Reader {
             .position(|&(open, line)| open == number || line == here.line)
         {
             loops.truncate(open);
+        }
+        if holds && loops.len() >= DEEPEST {
+            let problem = NcProblem::syntax(format!(
+                "loops within loops are more than {DEEPEST} deep: Fanuc allows 3"
+            ));
+            return Err((problem, span));
         }
         if holds {
             loops.push((number, here.line));
