@@ -8,8 +8,12 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use sweepsim_dexel::{FrameError, GridError};
 use sweepsim_motion::{MotionError, PathError, PoseError, ProfileError};
 pub use sweepsim_nc::TextPosition;
-use sweepsim_nc::{NcError, NcProblem};
+use sweepsim_nc::{NcError, NcProblem, shortened};
 use thiserror::Error;
+
+/// The most characters of a value that a message shows, and of a whole message.
+const MAX_VALUE: usize = 600;
+const MAX_MESSAGE: usize = 8000;
 
 /// A file that cannot be read, understood or written.
 ///
@@ -141,14 +145,14 @@ fn list(numbers: &[u32]) -> String {
 impl Problem {
     pub(crate) fn syntax(message: impl Into<String>) -> Self {
         Self::Syntax {
-            message: message.into(),
+            message: shortened(message.into(), MAX_MESSAGE),
         }
     }
 
     pub(crate) fn value(what: impl Into<String>, found: impl fmt::Display, expected: impl Into<String>) -> Self {
         Self::Value {
             what: what.into(),
-            found: found.to_string(),
+            found: shortened(found.to_string(), MAX_VALUE),
             expected: expected.into(),
         }
     }

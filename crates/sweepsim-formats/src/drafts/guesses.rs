@@ -65,6 +65,8 @@ impl Drafter<'_> {
             self.complete(number, &mut tool, top);
             match tool.build() {
                 Ok(_) => {
+                    let notes = tool.notes.iter().map(|note| format!("tool {number}: {note}"));
+                    self.guessed.extend(notes);
                     tools.insert(number, tool);
                 }
                 Err(problem) => missing.push(format!("tool {number}: {problem}")),

@@ -12,6 +12,8 @@ use crate::text::{self, SpanTree};
 
 /// The default tolerance, in units of the job.
 const TOLERANCE: f64 = 1e-6;
+/// The largest number of a job, in millimetres where it is a length: squares and volumes of anything larger could be infinite.
+const LARGEST: f64 = 1e12;
 
 /// Reads the text of a job. `file` is, or would be, its file.
 pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
@@ -56,8 +58,12 @@ impl JobReader<'_> {
         expected: &str,
         steps: &[Step],
     ) -> Result<(), FormatError> {
-        if good && (value * self.unit).is_finite() {
+        let size = (value * self.unit).abs();
+        if good && size <= LARGEST {
             Ok(())
+        } else if good && size > LARGEST && value.is_finite() {
+            let expected = format!("{expected}, and at most {LARGEST:e}");
+            Err(self.error(Problem::value(what, value, expected), steps))
         } else {
             Err(self.error(Problem::value(what, value, expected), steps))
         }

@@ -194,14 +194,20 @@ pub(crate) fn coloured_ply(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError>
         let cut = place("cut");
         let channels = [place("red"), place("green"), place("blue")];
         let mut scalars = vec![0.0; element.properties.len()];
-        for _ in 0..element.count {
-            let mut corners: Vec<f64> = Vec::new();
+        for number in 0..element.count {
+            let (mut corners, mut is_face) = (Vec::<f64>::new(), false);
             for (index, property) in element.properties.iter().enumerate() {
                 match property.count {
                     None => scalars[index] = body.number(property.scalar)?,
                     Some(count) => {
                         let count = body.number(count)?;
+                        if !(count >= 0.0 && count.fract() == 0.0) {
+                            return fail(format!(
+                                "a list of {count} values in this PLY: expected a whole number from 0 on"
+                            ));
+                        }
                         let keep = matches!(property.name.as_str(), "vertex_indices" | "vertex_index");
+                        is_face |= keep;
                         let mut left = count;
                         while left >= 1.0 {
                             let value = body.number(property.scalar)?;
@@ -230,6 +236,12 @@ pub(crate) fn coloured_ply(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError>
                 }
                 mesh.cut.extend(cut.map(|at| scalars[at] != 0.0));
             }
+            if is_face && corners.len() < 3 {
+                let found = corners.len();
+                return fail(format!(
+                    "face {number} of this PLY has {found} corners: expected at least 3"
+                ));
+            }
             for k in 2..corners.len() {
                 let corner = |value: f64| match value {
                     v if v >= 0.0 && v < mesh.vertices.len() as f64 && v.fract() == 0.0 => Ok(v as u32),
@@ -244,6 +256,13 @@ pub(crate) fn coloured_ply(bytes: &[u8]) -> Result<(Mesh, Colours), FormatError>
                 colours.push(colour.or(a.filter(|_| a == b && b == c)));
             }
         }
+    }
+    let rest = body.bytes.trim_ascii();
+    if !rest.is_empty() {
+        let rest = rest.len();
+        return fail(format!(
+            "{rest} bytes follow the data that the header of this PLY announces: expected none"
+        ));
     }
     Ok((mesh, colours))
 }

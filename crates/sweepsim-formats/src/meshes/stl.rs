@@ -6,12 +6,15 @@ use std::io::Write;
 use std::path::Path;
 
 use sweepsim_dexel::TriangleSoup;
+use sweepsim_nc::shortened;
 
 use crate::error::{FormatError, Problem, TextPosition};
 use crate::text::whole;
 
 /// Bytes before the first triangle of a binary file: 80 arbitrary ones, and the number of triangles.
 const HEADER: usize = 84;
+/// The most characters of a line that a message shows.
+const SHOWN: usize = 80;
 /// Bytes per triangle: normal, three corners, two more.
 const TRIANGLE: usize = 50;
 
@@ -109,7 +112,10 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
                     [x, y, z] if words.len() == 4 && [x, y, z].iter().all(|c| c.is_finite()) => {
                         corners.push([x, y, z]);
                     }
-                    _ => return fail(format!("`{}`: expected `vertex` and three finite numbers", line.trim())),
+                    _ => {
+                        let found = shortened(line.trim().to_owned(), SHOWN);
+                        return fail(format!("`{found}`: expected `vertex` and three finite numbers"));
+                    }
                 }
             }
             Some("endloop") => match corners[..] {

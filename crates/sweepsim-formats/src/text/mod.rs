@@ -11,7 +11,11 @@ use crate::error::{FormatError, Problem, TextPosition};
 
 /// Reads a text file of at most 128 MiB.
 pub(crate) fn read(file: &Path) -> Result<String, FormatError> {
-    let bytes = whole::read(file, whole::TEXT)?;
+    let mut bytes = whole::read(file, whole::TEXT)?;
+    // Some editors write a mark before the first character, which is no part of the text.
+    if bytes.starts_with("\u{feff}".as_bytes()) {
+        bytes.drain(.."\u{feff}".len());
+    }
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let text = String::from_utf8_lossy(error.as_bytes());

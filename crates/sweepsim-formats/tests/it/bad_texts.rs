@@ -56,3 +56,36 @@ proptest! {
         }
     }
 }
+
+/// The mark of Unicode that some editors write first is no part of a job; numbers whose squares or volumes are infinite are refused where they are.
+#[test]
+fn marks_and_sizes() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        std::fs::write(&file, text).unwrap();
+        Job::read(&file).map_err(|error| {
+            let message = error.to_string();
+            message[folder.path().to_str().unwrap().len() + 1..].to_owned()
+        })
+    };
+    let job = |stock: &str| {
+        format!("Job(grid: Grid(min: (0, 0), max: (1, 1), cells: (2, 2)),\nstock: {stock},\ntools: {{}}, paths: [])")
+    };
+    let good = job("Ball(centre: (0, 0, 0), radius: 1e12)");
+    assert!(read("good.ron", &good).is_ok());
+    assert!(read("mark.ron", &format!("\u{feff}{good}")).is_ok());
+    for (stock, message) in [
+        (
+            "Ball(centre: (0, 0, 0), radius: 1.5e12)",
+            "large.ron:2:40: radius is 1500000000000, but must be positive, and at most 1e12",
+        ),
+        (
+            "Block(min: (0, 0, -1e300), max: (1, 1, 1))",
+            "but must be finite, and at most 1e12",
+        ),
+    ] {
+        let error = read("large.ron", &job(stock)).unwrap_err();
+        assert!(error.ends_with(message), "{error}");
+    }
+}

@@ -253,3 +253,65 @@ proptest! {
         }
     }
 }
+
+/// A PLY file whose faces or lists are not what its header says: nothing of it is left out.
+#[test]
+fn what_a_ply_cannot_mean_is_refused() {
+    let ply = |count: &str, faces: usize, lines: &str| {
+        let text = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face {faces}\n\
+             property list {count} int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n{lines}"
+        );
+        read_ply(text.as_bytes())
+            .map(|mesh| mesh.triangles.len())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(ply("uchar", 1, "3 0 1 2\n \n"), Ok(1));
+    for (count, faces, lines, message) in [
+        (
+            "uchar",
+            1,
+            "3 0 1 2\n3 2 1 0\n",
+            "7 bytes follow the data that the header of this PLY announces: expected none",
+        ),
+        (
+            "uchar",
+            2,
+            "3 0 1 2\n2 0 1\n",
+            "face 1 of this PLY has 2 corners: expected at least 3",
+        ),
+        (
+            "char",
+            2,
+            "3 0 1 2\n-3\n",
+            "a list of -3 values in this PLY: expected a whole number from 0 on",
+        ),
+        (
+            "float",
+            1,
+            "NaN 0 1 2\n",
+            "a list of NaN values in this PLY: expected a whole number from 0 on",
+        ),
+        (
+            "float",
+            1,
+            "3.5 0 1 2\n",
+            "a list of 3.5 values in this PLY: expected a whole number from 0 on",
+        ),
+    ] {
+        assert_eq!(ply(count, faces, lines), Err(message.to_owned()), "{lines}");
+    }
+}
+
+#[test]
+fn a_long_line_of_an_stl_is_not_shown_whole() {
+    let text = format!(
+        "solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3{}\n",
+        " 4".repeat(100_000)
+    );
+    let error = parse_stl(text.as_bytes()).unwrap_err();
+    assert!(
+        error.to_string().starts_with("4:1: `vertex 1 2 3 4") && error.to_string().len() < 200,
+        "{error}"
+    );
+}
