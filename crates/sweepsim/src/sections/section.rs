@@ -223,7 +223,10 @@ fn of_part(
             if curve.ends.is_none() {
                 points.push(points[0]);
             }
-            let points = refined(&moving, piece, &points, chord.of_step());
+            let Some(points) = refined(&moving, piece, &points, chord.of_step()) else {
+                open.push((cut, piece, number));
+                continue;
+            };
             let points: Vec<&[f64]> = points.iter().map(Vec::as_slice).collect();
             for points in kept(&moving, piece, &points) {
                 curves.push(SectionCurve {
@@ -256,10 +259,12 @@ fn system(
 
 /// The maximum number of halvings of a step of a polyline.
 const HALVINGS: u32 = 12;
+/// The most points of a curve. If the chord error takes more, the curve is left open.
+const POINTS: usize = 200_000;
 
 /// The polyline with as many more points as needed to keep the midpoints of its steps within `off` of the curve: a curve that is straight in the
-/// parameters may be round in space.
-fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -> Vec<Vec<f64>> {
+/// parameters may be round in space. `None` if these are more than [`POINTS`].
+fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -> Option<Vec<Vec<f64>>> {
     let place = |x: &[f64]| Vector3::from(moving.see(piece, x).point.position);
     let mut all: Vec<Vec<f64>> = Vec::with_capacity(points.len());
     all.extend(points.first().map(|x| x.to_vec()));
@@ -267,9 +272,13 @@ fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -
         // The points still to be reached, the nearest last.
         let mut ahead: Vec<(Vec<f64>, u32)> = vec![(pair[1].to_vec(), 0)];
         let mut from = pair[0].to_vec();
-        while let Some((to, depth)) = ahead.last_mut() {
-            let middle: Vec<f64> = from.iter().zip(&*to).map(|(a, b)| 0.5 * (a + b)).collect();
+        while let Some((to, _)) = ahead.last() {
+            let middle: Vec<f64> = from.iter().zip(to).map(|(a, b)| 0.5 * (a + b)).collect();
             let sag = (place(&middle) - 0.5 * (place(&from) + place(to))).norm();
+            if all.len() + ahead.len() > POINTS {
+                return None;
+            }
+            let Some((_, depth)) = ahead.last_mut() else { break };
             if sag > off && *depth < HALVINGS {
                 *depth += 1;
                 let depth = *depth;
@@ -280,7 +289,7 @@ fn refined(moving: &Moving, piece: BoundaryPiece, points: &[&[f64]], off: f64) -
             }
         }
     }
-    all
+    Some(all)
 }
 
 /// The runs of a polyline that belong to the boundary of their move, cut where a condition changes its sign.

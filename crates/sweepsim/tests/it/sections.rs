@@ -99,3 +99,17 @@ fn a_plane_of_any_direction() {
     let svg = found.svg();
     assert!(svg.starts_with("<svg") && svg.contains("stroke-width=\"2.4\"") && svg.ends_with("</svg>\n"));
 }
+
+/// A chord error of nothing would take points without end: the curve is left open, and named.
+#[test]
+fn a_chord_error_that_takes_too_many_points_leaves_curves_open() {
+    let pose = |x: f64| Pose::new([x, 0.3, 1.0], [0.1, 0.2, 1.0]).unwrap();
+    let path = Path::new(vec![pose(-9.0), pose(9.0)]).unwrap();
+    let tool = Tool::ball(5.0, 30.0).unwrap();
+    let cut = [Cut::new(&tool, &path)];
+    let of = |chord: f64| section(&cut, &Plane::x(0.5).unwrap(), chord, &Options::default(), &()).unwrap();
+    assert_eq!(of(1e-3).open.len(), 0);
+    let fine = of(1e-300);
+    assert!(!fine.open.is_empty());
+    assert!(fine.curves.iter().all(|curve| curve.points.len() <= 400_000));
+}
