@@ -31,7 +31,7 @@ pub(crate) fn program(text: &mut Lines, program: &Program) {
             counted(pieces(program) as u64, "piece")
         ),
     );
-    text.labelled_bounds("extent", program.poses.in_order().map(|pose| pose.pose.tip()));
+    text.labelled_bounds("extent", program.extent().into_iter().flatten());
     let cuts = usage.iter().filter_map(|tool| tool.extent).flatten();
     text.labelled_bounds("cutting", cuts);
     text.line("tool axis", &directions(program));

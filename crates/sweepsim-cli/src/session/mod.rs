@@ -3,6 +3,7 @@
 mod failure;
 mod job;
 mod lines;
+mod memory;
 mod outputs;
 mod placement;
 mod progress;
@@ -14,6 +15,7 @@ pub(crate) mod words;
 pub(crate) use failure::Failure;
 pub(crate) use job::{JobRead, JobSession, phase, read_job};
 pub(crate) use lines::{Lines, print};
+pub(crate) use memory::check_room;
 pub(crate) use outputs::{Outputs, output_folder};
 pub(crate) use placement::{Place, distance, placements};
 pub(crate) use progress::Progress;

@@ -1,7 +1,7 @@
 //! Parts from files, as meshes or dexels, and pictures of them.
 
-use super::Failure;
 use super::words::length;
+use super::{Failure, check_room};
 use crate::arguments::{GridOptions, ViewOptions};
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -104,6 +104,7 @@ impl Solid {
 
     /// A mesh as dexels on a grid; dexels are returned as they are, of three sets the one along z.
     pub fn dexels(&self, file: &Path, grid: &Grid) -> Result<Dexels, Failure> {
+        check_room(grid, "")?;
         match self {
             Self::Dexels(dexels) => Ok(dexels.clone()),
             Self::TriDexels(solid) => Ok(solid.sets()[2].clone()),

@@ -33,8 +33,8 @@ M30
 const PLATE_SAID: &str = r#"   program  G-code, of any control, in millimetres
      title  O12
      moves  8 feed moves (1 arc) and 14 rapids, in 2 pieces
-    extent  (0, 0, −12.000) … (20.000, 10.000, 30.000) mm
-   cutting  (0, 0, −12.000) … (20.000, 10.000, 5.0000) mm
+    extent  (0, −10.000, −12.000) … (20.000, 10.000, 30.000) mm
+   cutting  (0, −10.000, −12.000) … (20.000, 10.000, 5.0000) mm
  tool axis  z all along
       time  18.9 s: 18.0 s of cutting, 858 ms of rapids at 10 m/min
       tool  1: ball end mill, diameter 6.0000, corner 3.0000, "ball end mill" — the flute length is missing

@@ -1,6 +1,7 @@
 //! Programs in place of jobs.
 
 use crate::support::{Workdir, text};
+use std::fs;
 
 const CL: &str = "PARTNO plate\nUNITS/MM\nINSERT/Stock Size X30. Y20. Z6.\nINSERT/10MM MILL\nCUTTER/10,0,5,0,0,0,60\nLOAD/TOOL,3\n\
 CSI_SET_FLUTE_LENGTH/25\nSPINDL/3000,RPM,CLW\nRAPID\nGOTO/-10,10,5\nFEDRAT/500,MMPM\nGOTO/-10,10,-2\nGOTO/40,10,-2\nRAPID\nGOTO/40,10,20\nFINI\n";
@@ -293,4 +294,108 @@ fn all_problems_of_a_program_in_a_job_are_reported() {
             "{message}"
         );
     }
+}
+
+/// Old controls end lines by a return alone: comments end there, too, and findings show the line that they are about.
+#[test]
+fn lines_may_end_with_a_return_alone() {
+    let program = "G21 G90 ; first\nT1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F100 ; down\nG1 X10\nG0 X20\nG0 Z5\nM30\n";
+    let workdir = Workdir::new("");
+    fs::write(workdir.path("tools.tbl"), "T1 D6\n").unwrap();
+    let run = |name: &str, text: &str| {
+        fs::write(workdir.path(name), text).unwrap();
+        let stock = "block:-10,-10,-5,30,10,0";
+        let options = [
+            "--cells",
+            "40x20",
+            "--directions",
+            "z",
+            "--only",
+            "dexels,report",
+            "--out",
+            "out",
+        ];
+        let output = workdir.run(
+            &[
+                &["verify", name, "--tools", "tools.tbl", "--stock", stock],
+                &options[..],
+            ]
+            .concat(),
+        );
+        assert_eq!(output.status.code(), Some(1), "{name}");
+        let report = fs::read_to_string(workdir.path("out/report.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let finding = &report["findings"][0];
+        (
+            fs::read(workdir.path("out/dexels.csv")).unwrap(),
+            finding["line"].clone(),
+            finding["text"].clone(),
+        )
+    };
+    let expected = run("a.nc", program);
+    assert_eq!((&expected.1, &expected.2), (&6.into(), &"G0 X20".into()));
+    assert_eq!(run("b.nc", &program.replace('\n', "\r")), expected);
+    assert_eq!(run("c.nc", &program.replacen('\n', "\r", 4)), expected);
+}
+
+#[test]
+fn what_was_ignored_in_a_library_is_said_where_its_tool_is_used() {
+    let workdir = Workdir::new("");
+    fs::write(
+        workdir.path("a.nc"),
+        "G21 G90\nT1 M6\nG0 X0 Y0 Z5\nG1 Z-1 F100\nX10\nM30\n",
+    )
+    .unwrap();
+    let tool = |unit: &str| {
+        format!(
+            r#"{{"type": "flat end mill", "unit": "{unit}", "geometry": {{"DC": 6, "LCF": 20}}, "post-process": {{"number": 1}}}}"#
+        )
+    };
+    let library = format!(r#"{{"data": [{}, {}]}}"#, tool("parsecs"), tool("inches"));
+    fs::write(workdir.path("tools.json"), library).unwrap();
+    let options = [
+        "--tools",
+        "tools.json",
+        "--cells",
+        "20x20",
+        "--directions",
+        "z",
+        "--only",
+        "dexels",
+    ];
+    let said = workdir.good(&[&["simulate", "a.nc"], &options[..]].concat());
+    for note in [
+        "the unit \"parsecs\" is not known: taken as millimeters",
+        "tool 1: described again in the same file: the first description is used",
+    ] {
+        assert!(said.contains(note), "{said}");
+    }
+}
+
+/// The system would end the process, without a word.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_grid_that_does_not_fit_into_memory_is_refused() {
+    let workdir = Workdir::new("Job(stock: Block(min: (0, 0, 0), max: (1, 1, 1)), tools: {}, paths: [])");
+    let limited = |command: &str| {
+        let script = format!("ulimit -v 4000000; exec {} {command}", env!("CARGO_BIN_EXE_sweepsim"));
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", &script]).current_dir(workdir.path(""));
+        let output = shell.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let error = limited("simulate job.ron --cells 60000x60000");
+    let message = "a grid of 60000 x 60000 dexels takes at least 86.4 GB, but ";
+    assert!(
+        error.contains(message) && error.contains("or a run in parts (--shard)"),
+        "{error}"
+    );
+    let mesh = "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    fs::write(workdir.path("a.stl"), mesh).unwrap();
+    let error = limited("convert a.stl a.dexels --cells 60000x60000");
+    assert!(
+        error.contains(message) && error.contains("expected fewer cells"),
+        "{error}"
+    );
 }

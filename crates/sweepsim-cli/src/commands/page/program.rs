@@ -104,7 +104,8 @@ fn text(file: &PathBuf) -> Vec<String> {
     if std::fs::metadata(file).is_ok_and(|data| data.len() > LARGEST) {
         return Vec::new();
     }
-    let bytes = std::fs::read(file).unwrap_or_default();
+    let mut bytes = std::fs::read(file).unwrap_or_default();
+    sweepsim_nc::end_lines_at_returns(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
     text.lines().map(|line| line.trim_end().to_owned()).collect()
 }

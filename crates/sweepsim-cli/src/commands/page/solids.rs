@@ -63,7 +63,18 @@ fn meshes(stock: &Stock) -> Vec<Triangles> {
             let mesh = dexels.surface().ok().filter(|mesh| mesh.triangles.len() <= LARGEST);
             mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
         }
-        Stock::Union(parts) => parts.iter().flat_map(meshes).collect(),
+        Stock::Union(parts) => {
+            let (mut all, mut count) = (Vec::new(), 0);
+            for part in parts {
+                let found = meshes(part);
+                count += found.iter().map(|(_, triangles)| triangles.len()).sum::<usize>();
+                if count > LARGEST {
+                    return Vec::new();
+                }
+                all.extend(found);
+            }
+            all
+        }
         Stock::Intersection(parts) => parts.first().map_or(Vec::new(), meshes),
         Stock::Difference(whole, _) => meshes(whole),
         // Kinds to come.
@@ -186,5 +197,22 @@ fn shape(tool: &Tool) -> ToolShape {
             let (vertices, triangles) = shape::patches(tool);
             ToolShape::Mesh { vertices, triangles }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_union_is_shown_up_to_a_number_of_triangles() {
+        let balls = |count: usize| {
+            let ball = Stock::Ball {
+                centre: [0.0; 3],
+                radius: 1.0,
+            };
+            meshes(&Stock::Union(vec![ball; count])).len()
+        };
+        assert_eq!([balls(10), balls(70), balls(1000)], [10, 70, 0]);
     }
 }

@@ -14,7 +14,7 @@ use crate::commands::task::{Task, reported, sweeping};
 use crate::commands::tri_surface;
 use crate::commands::verify::{Verified, setups, verified};
 use crate::frames::Frames;
-use crate::session::{Failure, JobRead, JobSession, phase, print, read_job};
+use crate::session::{Failure, JobRead, JobSession, check_room, phase, print, read_job};
 use crate::shards::{Gathered, PieceFile};
 use crate::warnings;
 use std::io::Write as _;
@@ -112,6 +112,12 @@ fn whole(
     let mut report = Report::default();
     let read = phase(&mut report, "read", || read(options))?;
     check_directions(&read, options)?;
+    let shards = if task == Task::Sweep {
+        ""
+    } else {
+        ", or a run in parts (--shard)"
+    };
+    check_room(&read.job.grid, shards)?;
     if options.frames.is_some() && task == Task::Sweep {
         return Err(Failure::message("--frames: expected `simulate` or `verify`"));
     }

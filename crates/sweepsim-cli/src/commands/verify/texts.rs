@@ -3,7 +3,7 @@
 use crate::session::JobSession;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Result, Seek as _, SeekFrom};
+use std::io::{BufRead, BufReader, Cursor, Result, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// So many lines have one entry in the index of a file.
@@ -34,9 +34,14 @@ impl ProgramTexts {
     }
 }
 
+/// Bytes that can be read from any place on.
+trait Text: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Text for T {}
+
 /// A file, and where every so many lines begin.
 struct Index {
-    reader: BufReader<File>,
+    reader: Box<dyn Text>,
     starts: Vec<u64>,
     /// Of the whole file.
     length: u64,
@@ -44,14 +49,28 @@ struct Index {
 
 impl Index {
     fn of(file: &Path) -> Result<Self> {
-        let mut reader = BufReader::new(File::open(file)?);
+        let (index, lone) = Self::of_text(Box::new(BufReader::new(File::open(file)?)))?;
+        if !lone {
+            return Ok(index);
+        }
+        // Rare, and small where it occurs.
+        let mut bytes = std::fs::read(file)?;
+        sweepsim_nc::end_lines_at_returns(&mut bytes);
+        Ok(Self::of_text(Box::new(Cursor::new(bytes)))?.0)
+    }
+
+    /// The index, and whether there is a `\r` without its `\n`.
+    fn of_text(mut reader: Box<dyn Text>) -> Result<(Self, bool)> {
         let (mut starts, mut at, mut lines) = (vec![0], 0, 0);
+        let (mut lone, mut returned) = (false, false);
         loop {
             let bytes = reader.fill_buf()?;
             if bytes.is_empty() {
                 break;
             }
             for (k, byte) in bytes.iter().enumerate() {
+                lone |= returned && *byte != b'\n';
+                returned = *byte == b'\r';
                 if *byte == b'\n' {
                     lines += 1;
                     if lines % INDEXED == 0 {
@@ -63,11 +82,12 @@ impl Index {
             at += taken as u64;
             reader.consume(taken);
         }
-        Ok(Self {
+        let index = Self {
             reader,
             starts,
             length: at,
-        })
+        };
+        Ok((index, lone || returned))
     }
 
     /// A line, counted from 0; `None` beyond the end.
@@ -108,8 +128,8 @@ mod tests {
     fn any_line_is_found() {
         let file = std::env::temp_dir().join(format!("sweepsim-lines-{}", std::process::id()));
         let lines: Vec<String> = (0..5000).map(|k| "x".repeat(k % 13) + &k.to_string()).collect();
-        for end in ["", "\n"] {
-            std::fs::write(&file, lines.join("\r\n") + end).unwrap();
+        for (between, end) in [("\r\n", ""), ("\r\n", "\n"), ("\r", "\r"), ("\n", "")] {
+            std::fs::write(&file, lines.join(between) + end).unwrap();
             let mut index = Index::of(&file).unwrap();
             let mut found = |k: usize| {
                 index
