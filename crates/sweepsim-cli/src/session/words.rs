@@ -63,7 +63,8 @@ pub(crate) fn bytes(value: u64) -> String {
     match value {
         0..1_000 => format!("{value} B"),
         1_000..1_000_000 => format!("{:.1} kB", value as f64 / 1e3),
-        _ => format!("{:.1} MB", value as f64 / 1e6),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", value as f64 / 1e6),
+        _ => format!("{:.1} GB", value as f64 / 1e9),
     }
 }
 
@@ -104,5 +105,6 @@ mod tests {
         );
         assert_eq!(seconds(0.0123), "12 ms");
         assert_eq!(bytes(1_500_000), "1.5 MB");
+        assert_eq!(bytes(86_400_000_000), "86.4 GB");
     }
 }

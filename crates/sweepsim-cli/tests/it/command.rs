@@ -323,3 +323,31 @@ fn a_folder_that_cannot_be_written_is_found_before_the_work() {
         "nothing else, and nothing half-written"
     );
 }
+
+/// The system would end the process, without a word.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_grid_that_does_not_fit_into_memory_is_refused() {
+    let workdir = Workdir::new("Job(stock: Block(min: (0, 0, 0), max: (1, 1, 1)), tools: {}, paths: [])");
+    let limited = |command: &str| {
+        let script = format!("ulimit -v 4000000; exec {} {command}", env!("CARGO_BIN_EXE_sweepsim"));
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", &script]).current_dir(workdir.path(""));
+        let output = shell.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let error = limited("simulate job.ron --cells 60000x60000");
+    let message = "a grid of 60000 x 60000 dexels takes at least 86.4 GB, but ";
+    assert!(
+        error.contains(message) && error.contains("or a run in parts (--shard)"),
+        "{error}"
+    );
+    let mesh = "solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    fs::write(workdir.path("a.stl"), mesh).unwrap();
+    let error = limited("convert a.stl a.dexels --cells 60000x60000");
+    assert!(
+        error.contains(message) && error.contains("expected fewer cells"),
+        "{error}"
+    );
+}

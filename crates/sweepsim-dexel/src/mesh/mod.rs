@@ -254,7 +254,7 @@ impl TriangleSoup {
             if !corners.iter().flatten().all(|c| c.is_finite()) {
                 return Err(MeshError::NotFinite { triangle });
             }
-            if corners.iter().flatten().any(|c| c.abs() > crate::stock::LARGEST) {
+            if corners.iter().flatten().any(|c| c.abs() > crate::vector::LARGEST) {
                 return Err(MeshError::TooLarge { triangle });
             }
             for k in 0..3 {

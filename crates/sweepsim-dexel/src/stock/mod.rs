@@ -7,12 +7,10 @@ use crate::dexels::{Dexels, GridMismatch, Operation};
 use crate::grid::Grid;
 use crate::intervals::{End, Interval, Source};
 use crate::mesh::{MeshError, TriangleSoup};
+use crate::vector::LARGEST;
 pub(crate) use from_mesh::mesh_dexels;
 use std::sync::Arc;
 use thiserror::Error;
-
-/// Coordinates and lengths are no larger than this in any unit: areas, volumes and squares of distances are finite, with room for sums.
-pub(crate) const LARGEST: f64 = 1e12;
 
 /// Whether a coordinate is one that can be computed with.
 fn fits(c: f64) -> bool {
