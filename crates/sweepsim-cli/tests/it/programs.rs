@@ -10,8 +10,8 @@ const GCODE: &str = "G21 G90\nT1 M6\nS9000 M3\nG0 X0 Y0 Z5\nG1 Z-2 F300\nX20\nG3
 
 fn folder() -> Workdir {
     let folder = Workdir::new("");
-    std::fs::write(folder.path("plate.cls"), CL).unwrap();
-    std::fs::write(folder.path("slot.nc"), GCODE).unwrap();
+    fs::write(folder.path("plate.cls"), CL).unwrap();
+    fs::write(folder.path("slot.nc"), GCODE).unwrap();
     folder
 }
 
@@ -57,7 +57,7 @@ fn new_writes_the_job_that_simulate_runs() {
     ] {
         assert!(said.contains(line), "{said}");
     }
-    let job = std::fs::read_to_string(folder.path("plate.ron")).unwrap();
+    let job = fs::read_to_string(folder.path("plate.ron")).unwrap();
     assert!(
         job.contains("// guessed: grid") && job.contains("Path(file: \"plate.cls\")"),
         "{job}"
@@ -74,7 +74,7 @@ fn new_writes_the_job_that_simulate_runs() {
     );
     folder.good(&["new", "plate.cls", "--force", "--quiet"]);
     folder.good(&["new", "plate.cls", "--out", "jobs", "--quiet"]);
-    let elsewhere = std::fs::read_to_string(folder.path("jobs/plate.ron")).unwrap();
+    let elsewhere = fs::read_to_string(folder.path("jobs/plate.ron")).unwrap();
     assert!(
         elsewhere.contains(&format!("{}", folder.path("plate.cls").display())),
         "{elsewhere}"
@@ -91,7 +91,7 @@ fn tools_stock_and_dialect_are_options() {
         ),
         "{message}"
     );
-    std::fs::write(
+    fs::write(
         folder.path("tools.json"),
         r#"{"data": [{"type": "flat end mill", "unit": "millimeters", "geometry": {"DC": 4, "LCF": 12}, "post-process": {"number": 1}}]}"#,
     )
@@ -174,7 +174,7 @@ fn inspect_says_what_a_program_does() {
     }
     let said = folder.good(&["inspect", "slot.nc"]);
     assert!(said.contains("tool  1: not described"), "{said}");
-    std::fs::write(folder.path("t.tbl"), "T1 P1 D6 ;mill\n").unwrap();
+    fs::write(folder.path("t.tbl"), "T1 P1 D6 ;mill\n").unwrap();
     let said = folder.good(&["inspect", "t.tbl"]);
     assert!(
         said.contains("tool  1: tool, diameter 6.0000, \"mill\" — the shape is missing"),
@@ -191,16 +191,16 @@ fn convert_writes_programs_and_tools() {
         ("a.txt", "# plate\ntool 3"),
     ] {
         folder.good(&["convert", "plate.cls", output, "--quiet"]);
-        let written = std::fs::read_to_string(folder.path(output)).unwrap();
+        let written = fs::read_to_string(folder.path(output)).unwrap();
         assert!(written.starts_with(begin), "{written}");
     }
     // CLSF holds what the program says: converting it again changes nothing.
     folder.good(&["convert", "a.cls", "b.cls", "--quiet"]);
-    let read = |name: &str| std::fs::read_to_string(folder.path(name)).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
     assert_eq!(read("a.cls"), read("b.cls"));
     let said = folder.good(&["convert", "slot.nc", "s.cls"]);
     assert!(said.contains("not written: tool 1 is not described"), "{said}");
-    std::fs::write(
+    fs::write(
         folder.path("p.camotics"),
         r#"{"tools": {"1": {"units": "metric", "shape": "cylindrical", "length": 9, "diameter": 3}, "2": {"shape": "blob"}}, "files": ["slot.nc"]}"#,
     )
@@ -240,7 +240,7 @@ fn convert_writes_programs_and_tools() {
 #[test]
 fn convert_writes_gcode() {
     let folder = folder();
-    let read = |name: &str| std::fs::read_to_string(folder.path(name)).unwrap();
+    let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
     folder.good(&["convert", "plate.cls", "plate.csv", "--quiet"]);
     let moves = |table: &str| -> Vec<String> {
         let rows = read(table);
@@ -266,7 +266,7 @@ fn convert_writes_gcode() {
         folder.good(&[&["convert", output, "again.csv", "--quiet"], control].concat());
         assert_eq!(moves("again.csv")[2..], moves("plate.csv")[2..], "{}", read(output));
     }
-    std::fs::write(
+    fs::write(
         folder.path("tilted.cls"),
         "UNITS/MM\nGOTO/0,0,0,0,0,1\nGOTO/1,2,3,0.6,0,0.8\n",
     )
@@ -285,7 +285,7 @@ fn all_problems_of_a_program_in_a_job_are_reported() {
         "Job(tolerance: 1e-6, grid: Grid(min: (-5, -5), max: (5, 5), cells: (10, 10)), stock: Block(min: (-5, -5, -5), max: (5, 5, 0)), \
          tools: {1: Flat(radius: 1, length: 9)}, paths: [Path(tool: 1, file: \"bad.nc\")])",
     );
-    std::fs::write(folder.path("bad.nc"), "G0 X0 Y0 Z0\nG12 X5\nG1 X1 F9\nG31 X5\n").unwrap();
+    fs::write(folder.path("bad.nc"), "G0 X0 Y0 Z0\nG12 X5\nG1 X1 F9\nG31 X5\n").unwrap();
     let (in_job, alone) = (folder.bad(&["simulate", "job.ron"]), folder.bad(&["inspect", "bad.nc"]));
     for message in [&in_job, &alone] {
         assert_eq!(message.matches("error").count(), 2, "{message}");
