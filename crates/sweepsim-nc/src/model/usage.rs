@@ -222,8 +222,10 @@ mod tests {
     /// Arcs and helices in all planes, turned too, against points along chords.
     #[test]
     fn boxes_hold_arcs_and_touch_them() {
-        let mut options = ReadOptions::default();
-        options.exact_arcs = true;
+        let mut options = ReadOptions {
+            exact_arcs: true,
+            ..ReadOptions::default()
+        };
         let mut bulges = 0;
         for turn in ["", "G68 X0 Y0 R33\n", "G68.2 X1 Y2 Z3 I20 J35 K10\n"] {
             for arc in [
