@@ -11,7 +11,7 @@ use crate::methods::workspace::Workspace;
 use crate::time::over::Part;
 use crate::time::path_parts::PathPart;
 use crate::time::pieces::back_size;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::{Crossing, Source};
 use sweepsim_motion::{Segment, SegmentEnd, turned_back};
 use sweepsim_solve::Preimage;
@@ -19,9 +19,12 @@ use sweepsim_solve::Preimage;
 /// Charts of a tool at rest are made to be kept for other joints if so many parts are counted together.
 const SEVERAL: usize = 4;
 
+/// A turn, and the tip.
+type Pose = (Matrix3<f64>, Vector3<f64>);
+
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
-    let [spin, travel] = segment.velocity(end).map(nalgebra::Vector3::from);
+    let [spin, travel] = segment.velocity(end).map(Vector3::from);
     Side::Moving(Twist {
         sizes: [spin, travel].map(|v| back_size(&[*turn], &v, segment.turns().len() > 1)),
         spin: turned_back(turn, &spin).into(),
@@ -103,11 +106,42 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
     }
 
-    /// Whether the tool turns neither before nor after a placement.
-    fn is_between_translations(&self, at: usize, end: SegmentEnd) -> bool {
-        let still = |part: &PathPart| part.segment.is_arc() && part.segment.turns().len() == 1;
-        let before = (end == SegmentEnd::Start).then(|| at.checked_sub(1)).flatten();
-        still(&self.parts[at]) && before.is_none_or(|k| still(&self.parts[k]))
+    /// The pose and the motions before and after a placement at which the tool turns on neither side, or only with an arc as it may about its own axis.
+    fn between_translations(
+        &self,
+        at: usize,
+        end: SegmentEnd,
+        pose: Pose,
+        sides: [Side; 2],
+    ) -> Option<(Pose, [Side; 2])> {
+        let part = &self.parts[at];
+        let before = match end {
+            SegmentEnd::Start => at.checked_sub(1).map(|k| &self.parts[k]),
+            SegmentEnd::Finish => None,
+        };
+        let all = |is: fn(&PathPart) -> bool| is(part) && before.is_none_or(is);
+        if all(|part| part.segment.is_arc() && part.segment.turns().len() == 1) {
+            return Some((pose, sides));
+        }
+        if self.outline.is_none() || !all(translation::stands) {
+            return None;
+        }
+        // Charts of one orientation serve all of these placements.
+        let along = |neighbour: Option<Neighbour>, beyond: bool| match neighbour {
+            Some(Neighbour::Along(travel)) => Side::Moving(Twist {
+                spin: [0.0; 3],
+                travel,
+                sizes: [[0.0; 3], travel.map(f64::abs)],
+            }),
+            _ => Side::Beyond(beyond),
+        };
+        let own = Neighbour::of(part, end);
+        let last = before.and_then(|part| Neighbour::of(part, SegmentEnd::Finish));
+        let sides = match end {
+            SegmentEnd::Start => [along(last, false), along(own, false)],
+            SegmentEnd::Finish => [along(own, false), Side::Beyond(true)],
+        };
+        Some(((Matrix3::identity(), pose.1), sides))
     }
 
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
@@ -128,7 +162,10 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             }
         }
         let sides = sides(self.parts, at, end);
-        if self.closed && self.parts.len() >= SEVERAL && self.is_between_translations(at, end) {
+        if self.closed
+            && self.parts.len() >= SEVERAL
+            && let Some((pose, sides)) = self.between_translations(at, end, pose, sides)
+        {
             let mut resting = Resting {
                 pose,
                 sides,

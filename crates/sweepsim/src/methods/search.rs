@@ -124,11 +124,12 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         }
     }
 
-    /// Settles the patches and edges that have no closed form along a move without rotation.
+    /// Settles the patches and edges that have no closed form along a move without rotation, or along an arc with which the tool turns.
     fn envelope_by_curves(&self, at: usize, space: &mut Workspace, harvest: &mut Harvest) {
-        let PathPart { segment, .. } = &self.parts[at];
+        let PathPart { segment, round, .. } = &self.parts[at];
         let mut grazed = Grazed {
             segment,
+            round: round.as_ref(),
             collector: &mut Collector {
                 lines: self.lines,
                 harvest,
@@ -149,7 +150,11 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             cells: &mut space.edges,
             done: &mut space.done.edges,
         };
-        let source = |t: f64| self.source(at, t);
+        let source = |t: f64| match round {
+            // Arcs have constant speed.
+            Some(_) => self.source_after(at, t),
+            None => self.source(at, t),
+        };
         space.grazing.settle([patches, edges], &mut grazed, &source);
     }
 

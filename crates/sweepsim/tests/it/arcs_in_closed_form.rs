@@ -9,10 +9,10 @@ use sweepsim_dexel::{Grid, Stock};
 use sweepsim_motion::{Move, Path, Pose, TipArc, Tool};
 
 /// An arc of the path: radius, angle of its start, angle, rise.
-type Arc = [f64; 4];
+pub type Arc = [f64; 4];
 
 /// Arcs one after the other from a point, joined by straight moves of this vector; each begins at its angle.
-fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3]) -> Path {
+pub fn path(start: [f64; 3], arcs: &[Arc], way: [f64; 3]) -> Path {
     let mut tip = start;
     let mut poses = vec![Pose::new(tip, UP).unwrap()];
     let mut moves = Vec::new();
@@ -55,6 +55,11 @@ pub fn check_in_general(number: usize, path: &Path) -> TestCaseResult {
 
 /// Compares a block after the path with one from which all of the path's volume, by the general method, is removed.
 pub fn check_near_material(number: usize, path: &Path) -> TestCaseResult {
+    let (name, tool, _) = &tools()[number];
+    check_tool_near_material(name, tool, path)
+}
+
+pub fn check_tool_near_material(name: &str, tool: &Tool, path: &Path) -> TestCaseResult {
     let lines = grid([31, 29]);
     let block = Stock::Block {
         min: [-9.0, -9.0, -6.0],
@@ -62,7 +67,6 @@ pub fn check_near_material(number: usize, path: &Path) -> TestCaseResult {
     }
     .dexels(&lines)
     .unwrap();
-    let (name, tool, _) = &tools()[number];
     let cut = [Cut::new(tool, path)];
     let part = simulate(block.clone(), &cut, &Options::new(TOLERANCE), &()).unwrap();
     prop_assert!(part.statistics.unresolved.is_empty(), "{name}: {:?}", part.statistics);

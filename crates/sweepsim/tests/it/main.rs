@@ -6,6 +6,7 @@ mod arcs_in_closed_form;
 mod arcs_in_tilted_planes;
 mod arcs_of_lying_axes;
 mod arcs_of_lying_tools;
+mod arcs_of_spline_profiles;
 mod at_all_scales;
 mod cancelling;
 mod displaced;

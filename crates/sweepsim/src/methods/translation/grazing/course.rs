@@ -1,6 +1,14 @@
 //! The direction of a move, seen from the tool.
 
 use super::super::curves::SHORTEST;
+use super::super::rows::{Floor, Ground, Ring};
+use super::chart::Range;
+use super::polar::{Centre, Wedge};
+use super::tree::widened;
+use crate::algebra::ranges::{Triples, products};
+use crate::cutter::cells::Cells;
+use crate::cutter::patch_forms::PatchForms;
+use crate::time::circles::Round;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_motion::{Segment, turned_back};
 
@@ -9,19 +17,27 @@ const FINENESS: f64 = 1_048_576.0;
 /// So no component of a direction is farther than this from the one that stands for it: rounded, and made a unit vector again.
 const SPREAD: f64 = 4.0 / FINENESS;
 
-/// A move without rotation, in the direction in which its family goes.
+/// The direction of travel at the start of an arc, in the coordinates of a tool of revolution that stands along the dexels: how such a tool has turned about its own axis is arbitrary. Not
+/// along the seams of its patches, nor across them.
+const START: [f64; 2] = [0.761_245_135, 0.648_464_164];
+
+/// A move without rotation, or an arc with which a tool of revolution turns, in the direction in which its family goes: arcs turn left.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
-    /// Of the tip.
-    pub from: [f64; 3],
-    pub way: [f64; 3],
-    /// The horizontal direction of the way, and how far it goes.
-    pub ahead: [f64; 2],
+    /// The height of the tip, and its rise.
+    pub from: f64,
+    pub rise: f64,
+    /// Of the way, in `q`.
     pub length: f64,
+    pub ground: Ground,
     /// Whether it is traversed backwards: then the time runs from 1 to 0.
-    pub reversed: bool,
+    reversed: bool,
     pub slack: f64,
     pub own: Directions,
+    /// The tool's turn, and the directions of `q` at the start and of the way, in space.
+    turn: Matrix3<f64>,
+    ahead: [f64; 2],
+    way: [f64; 3],
 }
 
 /// Directions, in the tool's coordinates.
@@ -35,6 +51,8 @@ pub(super) struct Directions {
     pub spread: f64,
     /// Whether the move goes the other way. A family is for both ways.
     pub backwards: bool,
+    /// Of an arc.
+    pub centre: Option<Centre>,
 }
 
 /// What all directions of a family have in common.
@@ -43,6 +61,8 @@ pub(super) struct Key {
     turn: [u64; 9],
     ahead: [i32; 2],
     way: [i32; 3],
+    /// Of an arc.
+    radius: Option<u64>,
 }
 
 impl Directions {
@@ -53,16 +73,57 @@ impl Directions {
             way: turned_back(turn, &way.into()).into(),
             spread,
             backwards: false,
+            centre: None,
         }
     }
 
     /// Whether these stand for others.
     fn are_near(&self, others: &Self) -> bool {
         let pairs = self.rows.iter().zip(&others.rows).chain([(&self.way, &others.way)]);
-        pairs
-            .flat_map(|(a, b)| a.iter().zip(b))
-            .all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
+        let radii = match (&self.centre, &others.centre) {
+            (Some(a), Some(b)) => (a.radius - b.radius).abs() <= 0.5 * a.spread,
+            (a, b) => a.is_none() && b.is_none(),
+        };
+        let mut numbers = pairs.flat_map(|(a, b)| a.iter().zip(b));
+        radii && numbers.all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
     }
+
+    /// A cell as it is seen from the centre of an arc, if its points may be off by so much.
+    pub fn wedge(&self, position: &Triples, off: f64) -> Option<Wedge> {
+        Some(self.centre.as_ref()?.wedge(&self.rows, position, off))
+    }
+
+    /// The ranges of `q` and `p` over a cell with these control points, which may be off by so much, with the rounding error of coordinates.
+    pub fn ranges(&self, position: &Triples, off: f64, slack: f64) -> [Range; 2] {
+        match (&self.centre, self.wedge(position, off)) {
+            (Some(centre), Some(wedge)) => [wedge.q(slack), widened(wedge.p(centre.spread), slack)],
+            _ => [0, 1].map(|k| widened(products(&[self.rows[k]], position), off + slack)),
+        }
+    }
+
+    /// The ranges of the derivatives of `q` and `p` along one variable over a prepared cell, where those of its points may be off by so much; and by how much that of `p`
+    /// may differ over a family.
+    pub fn slopes(
+        &self,
+        (element, cells, cell): (&PatchForms, &Cells, u32),
+        wedge: Option<&Wedge>,
+        (axis, off): (usize, f64),
+    ) -> ([Range; 2], f64) {
+        let along = |row: &[f64; 3]| widened(cells.slope_products(element, cell, axis, &[*row]), off);
+        match wedge {
+            None => ([along(&self.rows[0]), along(&self.rows[1])], off),
+            Some(wedge) => {
+                let axes = wedge.axes.each_ref().map(along);
+                (wedge.slopes(axes), off + wedge.blur(axes))
+            }
+        }
+    }
+}
+
+/// A radius to 20 bits.
+fn rounded_radius(radius: f64) -> f64 {
+    const REST: u64 = (1 << 32) - 1;
+    f64::from_bits((radius.to_bits() + (1 << 31)) & !REST)
 }
 
 fn unit<const N: usize>(v: [f64; N]) -> [f64; N] {
@@ -79,9 +140,8 @@ impl Course {
         let [mut from, to] = segment.tips();
         let mut way = segment.travel();
         let length = way[0].hypot(way[1]);
-        let size = length.hypot(way[2]);
         // NaN is refused, too.
-        if !(length > SHORTEST * slack && size.is_finite()) {
+        if !(length > SHORTEST * slack && length.hypot(way[2]).is_finite()) {
             return None;
         }
         // The first component that is not almost 0 is positive.
@@ -93,37 +153,95 @@ impl Course {
         if reversed {
             (from, way) = (to, way.map(|x| -x));
         }
-        let ahead = [way[0] / length, way[1] / length];
-        let own = Directions {
-            backwards: reversed,
-            ..Directions::new(&segment.start(), ahead, way.map(|x| x / size), 0.0)
+        let (turn, ahead) = (segment.start(), [way[0] / length, way[1] / length]);
+        let floor = Floor {
+            tip: from,
+            ahead,
+            slack,
+        };
+        Some(Self {
+            from: from[2],
+            rise: way[2],
+            length,
+            ground: Ground::Floor(floor),
+            reversed,
+            slack,
+            own: Directions {
+                backwards: reversed,
+                ..Directions::new(&turn, ahead, unit(way), 0.0)
+            },
+            turn,
+            ahead,
+            way,
+        })
+    }
+
+    /// An arc of a tool of revolution that stands along the dexels, which is the end of a segment of its path. `None` if it is too short.
+    ///
+    /// In the frame that turns with the arc, the velocity is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point out of its surface:
+    /// `g` is that of the translation.
+    pub fn around(round: &Round, segment: &Segment, slack: f64) -> Option<Self> {
+        let (radius, angle) = (round.radius, round.angle.abs());
+        let [first, last] = segment.tips();
+        let climb = segment.travel()[2];
+        if !(round.length() > SHORTEST * slack && round.length().hypot(climb).is_finite()) {
+            return None;
+        }
+        let reversed = round.angle < 0.0;
+        let (from, rise, out) = if reversed {
+            (last[2], -climb, round.out(1.0))
+        } else {
+            (first[2], climb, round.from)
+        };
+        let (turn, ahead) = (Matrix3::identity(), unit(START));
+        let way = [ahead[0] * radius * angle, ahead[1] * radius * angle, rise];
+        let ring = Ring {
+            centre: round.centre,
+            radius,
+            from: out,
+            slack,
         };
         Some(Self {
             from,
-            way,
-            ahead,
-            length,
+            rise,
+            length: angle,
+            ground: Ground::Ring(ring),
             reversed,
             slack,
-            own,
+            own: Directions {
+                backwards: reversed,
+                centre: Some(Centre { radius, spread: 0.0 }),
+                ..Directions::new(&turn, ahead, unit(way), 0.0)
+            },
+            turn,
+            ahead,
+            way,
         })
     }
 
     /// The family of a course: a function of its own direction alone, so that results do not depend on which courses were taken before.
-    pub fn family(&self, segment: &Segment) -> Option<(Key, Directions)> {
-        let turn = segment.start();
+    pub fn family(&self) -> Option<(Key, Directions)> {
         let rounded = |x: f64| (x * FINENESS).round();
         let (ahead, way) = (self.ahead.map(rounded), unit(self.way).map(rounded));
         let mut bits = [0; 9];
-        for (bits, x) in bits.iter_mut().zip(turn.iter()) {
+        for (bits, x) in bits.iter_mut().zip(self.turn.iter()) {
             *bits = x.to_bits();
         }
+        let centre = self.own.centre.map(|centre| {
+            let radius = rounded_radius(centre.radius);
+            let spread = SPREAD * radius;
+            Centre { radius, spread }
+        });
         let key = Key {
             turn: bits,
             ahead: ahead.map(|x| x as i32),
             way: way.map(|x| x as i32),
+            radius: centre.map(|centre| centre.radius.to_bits()),
         };
-        let directions = Directions::new(&turn, unit(ahead), unit(way), SPREAD);
+        let directions = Directions {
+            centre,
+            ..Directions::new(&self.turn, unit(ahead), unit(way), SPREAD)
+        };
         directions.are_near(&self.own).then_some((key, directions))
     }
 

@@ -1,6 +1,7 @@
 //! A patch, seen in the coordinates of a move.
 
 use super::course::Directions;
+use super::polar::Centre;
 use crate::cutter::patch_forms::PatchForms;
 use crate::time::placement::{Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
@@ -15,9 +16,10 @@ pub(super) struct Face<'a> {
     element: &'a PatchForms,
     placing: Placing,
     way: Twisted,
+    centre: Option<Centre>,
 }
 
-/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip.
+/// A point of a patch: everything in the coordinates `(q, p, z)`, from the tip, or [about a centre](super::polar).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight {
     pub place: [f64; 3],
@@ -35,6 +37,7 @@ impl<'a> Face<'a> {
             element,
             placing: Placing::new(&Matrix3::from_rows(&[q, p, z]), &Vector3::zeros(), frame),
             way: Twisted::new(&Vector3::zeros(), &directions.way.into(), frame),
+            centre: directions.centre,
         }
     }
 }
@@ -53,11 +56,15 @@ impl Curve for Face<'_> {
             }
         };
         let three = |[q, p, z, _]: [f64; 4]| [q, p, z];
-        Sight {
+        let sight = Sight {
             place: three(spot.place),
             slopes: spot.slopes.map(three),
             g,
             normal: three(spot.normal),
+        };
+        match &self.centre {
+            Some(centre) => centre.seen(&sight),
+            None => sight,
         }
     }
 }

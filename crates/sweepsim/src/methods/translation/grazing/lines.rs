@@ -1,13 +1,11 @@
 //! The lines over a chart: one unknown, `p`, for all of them.
 
 use super::super::Collector;
-use super::super::rows::{Floor, Row, are_many, rows};
 use super::chart::{Chart, Region, Witness};
 use super::course::Course;
 use super::face::{Curve, Sight};
 use super::knot::{Knot, Quintic, Seen};
 use super::span::{Graph, Known, Span, Spans, is_absent};
-use crate::methods::lattice::Lattice;
 use sweepsim_dexel::Source;
 
 /// The last step is never longer than this.
@@ -38,6 +36,8 @@ pub(super) struct Lines<'a, 'b, S, C> {
     /// The longest last step of Newton's method, in parts of the patch.
     pub last: f64,
     pub evaluations: u64,
+    /// Angles of the present chart are within half a turn of this one.
+    pub middle: f64,
     pub targets: Vec<Target>,
 }
 
@@ -53,14 +53,6 @@ pub(super) struct Over<'a, 'b, 'c, S, C> {
 }
 
 impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
-    pub fn floor(&self) -> Floor {
-        Floor {
-            tip: self.course.from,
-            ahead: self.course.ahead,
-            slack: self.course.slack,
-        }
-    }
-
     /// The ranges of `p` and `q` of the lines that a cell may meet on its way.
     pub fn reach(&self, [p, q]: [(f64, f64); 2]) -> [[f64; 2]; 2] {
         [[p.0, p.1], [q.0, q.1 + self.course.length]]
@@ -68,55 +60,44 @@ impl<S: Fn(f64) -> Source, C: Curve> Lines<'_, '_, S, C> {
 
     /// Leaves the lines of a window open.
     pub fn leave(&mut self, window: [[f64; 2]; 2]) {
-        let (lines, floor) = (self.collector.lines, self.floor());
-        visit(lines, &floor, window, |target| {
-            self.collector.open(target.line as usize)
-        });
+        let lines = self.collector.lines;
+        self.course
+            .ground
+            .each(lines, window, |line, _| self.collector.open(line));
+    }
+
+    /// A point of a chart.
+    pub fn sight(&mut self, chart: &Chart, at: [f64; 2]) -> (Sight, Witness) {
+        let mut sight = self.curve.at(chart.point(at));
+        self.evaluations += 1;
+        let q = self.course.ground.near(sight.place[0], self.middle);
+        sight.place[0] = q;
+        let witness = Witness {
+            at,
+            value: [sight.place[1], sight.g[0]],
+            q,
+        };
+        (sight, witness)
     }
 
     /// The lines over a chart.
     pub fn chart(&mut self, chart: &Chart, window: [[f64; 2]; 2]) {
-        let centre = self.curve.at(chart.point([0.0; 2]));
-        self.evaluations += 1;
+        let [_, [q_low, q_high]] = window;
+        self.middle = 0.5 * (q_low + q_high - self.course.length);
+        let (_, centre) = self.sight(chart, [0.0; 2]);
         let part = chart.half.map(|half| 2.0 * half).into_iter().fold(0.0, f64::max);
         // As in `charts/`: `R` bounds how much the derivatives change over the chart.
         let inside = self.last / (part * part.max(chart.norm())).sqrt();
         let mut over = Over {
             targets: std::mem::take(&mut self.targets),
             chart,
-            centre: witness([0.0; 2], &centre),
+            centre,
             accept: [inside.min(LONGEST).max(self.last), self.last],
             lines: self,
         };
         over.window(window);
         let targets = over.targets;
         self.targets = targets;
-    }
-}
-
-/// Calls `each` with the lines of a window.
-fn visit(lines: &Lattice, floor: &Floor, window: [[f64; 2]; 2], mut each: impl FnMut(Target)) {
-    let [[p_low, p_high], [q_low, q_high]] = window;
-    let [ux, uy] = floor.ahead;
-    rows(lines, floor, window, |Row { i, j, x }| {
-        for j in j[0]..=j[1] {
-            let y = lines.coordinate(1, j) - floor.tip[1];
-            let (p, q) = (ux * y - uy * x, ux * x + uy * y);
-            // NaN is inside.
-            let outside = p < p_low || p > p_high || q < q_low || q > q_high;
-            if !outside && lines.asks(i, j) {
-                let line = lines.line(i, j) as u32;
-                each(Target { p, q, line });
-            }
-        }
-    });
-}
-
-pub(super) fn witness(at: [f64; 2], sight: &Sight) -> Witness {
-    Witness {
-        at,
-        value: [sight.place[1], sight.g[0]],
-        q: sight.place[0],
     }
 }
 
@@ -129,16 +110,18 @@ pub(super) fn meets((lo, hi): (f64, f64), q: f64, length: f64) -> bool {
 impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The lines of a window.
     fn window(&mut self, mut window: [[f64; 2]; 2]) {
-        let (lines, floor) = (self.lines.collector.lines, self.lines.floor());
+        let (lines, ground) = (self.lines.collector.lines, &self.lines.course.ground);
         self.targets.clear();
         let mut spans = None;
-        if are_many(lines, &floor, window, MANY) {
+        if ground.are_many(lines, window, MANY) {
             let found = Spans::new(self.spans(window));
             let Some(reach) = found.reach() else { return };
             window[0] = reach;
             spans = Some(found);
         }
-        visit(lines, &floor, window, |target| {
+        ground.each(lines, window, |line, [p, q]| {
+            let line = line as u32;
+            let target = Target { p, q, line };
             let span = spans.as_mut().and_then(|spans| spans.find(target.p));
             if span.is_some_and(|span| self.over(span, target)) {
                 return;
@@ -156,7 +139,8 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     /// The curve over a window of many lines.
     fn spans(&mut self, [p, [q_low, q_high]]: [[f64; 2]; 2]) -> Vec<Span> {
         let lines = self.lines.collector.lines;
-        let density = lines.scale(0).1 * lines.scale(1).1 * (q_high - q_low);
+        let across = (q_high - q_low) * self.lines.course.ground.scale(0.5 * (p[0] + p[1]));
+        let density = lines.scale(0).1 * lines.scale(1).1 * across;
         let least = f64::max(FEW as f64 / density, (p[1] - p[0]) / SPANS);
         let mut spans = Vec::new();
         self.divide(p, [&Seen::default(); 2], None, least, &mut spans);
@@ -217,7 +201,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (knot, range) = graph.near(p);
         if let Some((lo, hi)) = range {
-            let (length, margin) = (self.lines.course.length, 4.0 * self.lines.course.slack);
+            let (length, margin) = (self.lines.course.length, self.lines.course.ground.error(p));
             if q - lo < -margin || q - hi > length + margin {
                 return true;
             }
@@ -285,8 +269,9 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         const LESS: f64 = 12.0;
         let [[q, _], [z, _]] = larger.at(found.p);
         let course = self.lines.course;
-        let steepness = course.way[2].abs() / course.length;
-        let off = (z - found.place[1]).abs() + (1.0 + steepness) * (q - found.place[0]).abs();
+        let steepness = course.rise.abs() / course.length;
+        let scale = course.ground.scale(found.p);
+        let off = (z - found.place[1]).abs() + (scale + steepness) * (q - found.place[0]).abs();
         off <= LESS * self.lines.near
     }
 
@@ -297,7 +282,8 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             return true;
         }
         let range = self.chart.q(&nearest.witness, &region);
-        let (course, margin) = (self.lines.course, 4.0 * self.lines.course.slack);
+        let course = self.lines.course;
+        let margin = course.ground.error(p);
         if !meets((range.0 - margin, range.1 + margin), q, course.length) {
             return true;
         }
@@ -313,20 +299,20 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
     fn follow(&mut self, curve: &Quintic, (p, q, line): (f64, f64, u32), outside: [f64; 3]) {
         let course = self.lines.course;
         let [[own, dq], [z, dz]] = curve.at(p);
-        let [length, rise] = [course.length, course.way[2]];
+        let scale = course.ground.scale(p);
+        let [length, rise] = [course.length, course.rise];
         // Across the curve and the way.
-        let normal = [-rise, rise * dq - length * dz, length];
+        let normal = [-rise, scale * (rise * dq - length * dz), scale * length];
         let is_outwards = (0..3).map(|k| normal[k] * outside[k]).sum::<f64>() >= 0.0;
         let normal = if is_outwards { normal } else { normal.map(|x| -x) };
-        self.put(line, q - own, z, normal);
+        self.put((line, q), q - own, z, normal);
     }
 
-    pub fn put(&mut self, line: u32, ahead: f64, z: f64, [q, p, up]: [f64; 3]) {
+    pub fn put(&mut self, (line, q): (u32, f64), ahead: f64, z: f64, normal: [f64; 3]) {
         let course = self.lines.course;
         let share = (ahead / course.length).clamp(0.0, 1.0);
-        let z = course.from[2] + share * course.way[2] + z;
-        let [x, y] = course.ahead;
-        let normal = [x * q - y * p, y * q + x * p, up];
+        let z = course.from + share * course.rise + z;
+        let normal = course.ground.in_space(q, normal);
         let size = normal.iter().map(|c| c * c).sum::<f64>();
         let scale = if size > 0.0 {
             self.chart.outwards / size.sqrt()

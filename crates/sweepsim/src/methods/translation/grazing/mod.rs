@@ -1,6 +1,6 @@
 //! Grazing curves of any patch: see `docs/algorithms/translations.md`.
 //!
-//! `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
+//! On moves without rotation, and on arcs about the dexels' direction of a tool that turns with them, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
 //! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it. Sharp edges are solved in the same way, with their own curve in the place of the grazing curve.
 
 mod at_rest;
@@ -10,6 +10,7 @@ mod face;
 mod knot;
 mod lines;
 mod newton;
+mod polar;
 mod rim;
 mod span;
 mod tree;
@@ -20,6 +21,7 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{Near, OnPlaced, PlacedMap, Side, Size};
 use crate::methods::harvest::unit;
+use crate::time::circles::Round;
 use at_rest::{Finds, Search, Still, TooMany};
 use course::{Course, Directions, Key};
 use face::{Curve, Face};
@@ -68,6 +70,8 @@ pub(crate) struct Elements<'a> {
 /// A search of lines along one move.
 pub(crate) struct Grazed<'a, 'b> {
     pub segment: &'a Segment,
+    /// The same as an arc with which a tool of revolution turns.
+    pub round: Option<&'a Round>,
     pub collector: &'a mut Collector<'b>,
     pub ceiling: Option<&'a Ceiling>,
     /// The rounding error of coordinates.
@@ -98,8 +102,8 @@ impl Grazing {
     }
 
     /// The number of the family of a course, which is the last one then.
-    fn family(&mut self, course: &Course, segment: &Segment, elements: [usize; 2]) -> Option<&mut Family> {
-        let (key, directions) = course.family(segment)?;
+    fn family(&mut self, course: &Course, elements: [usize; 2]) -> Option<&mut Family> {
+        let (key, directions) = course.family()?;
         if let Some(known) = self.families.iter().position(|family| family.key == key) {
             let family = self.families.remove(known);
             self.families.push(family);
@@ -123,17 +127,19 @@ impl Grazing {
         self.families.last_mut()
     }
 
-    /// Settles the patches and the edges that are not done along a move without rotation, as far as that is possible.
+    /// Settles the patches and the edges that are not done along a move without rotation or an arc with which the tool turns, as far as that is possible.
     pub fn settle(&mut self, tool: [Elements; 2], grazed: &mut Grazed, source: &impl Fn(f64) -> Source) {
         if tool.iter().flat_map(|elements| &*elements.done).all(|done| *done) {
             return;
         }
-        let Some(course) = Course::new(grazed.segment, grazed.slack) else {
-            return;
+        let course = match grazed.round {
+            Some(round) => Course::around(round, grazed.segment, grazed.slack),
+            None => Course::new(grazed.segment, grazed.slack),
         };
+        let Some(course) = course else { return };
         let mut targets = std::mem::take(&mut self.targets);
         let counts = tool.each_ref().map(|elements| elements.forms.len());
-        let Some(family) = self.family(&course, grazed.segment, counts) else {
+        let Some(family) = self.family(&course, counts) else {
             return;
         };
         let mut trimmed = Vec::new();
@@ -178,7 +184,7 @@ impl Grazed<'_, '_> {
         source: &impl Fn(f64) -> Source,
         targets: &mut Vec<Target>,
     ) -> bool {
-        let lowest = course.from[2].min(course.from[2] + course.way[2]);
+        let lowest = course.from.min(course.from + course.rise);
         let spacing = self.collector.lines.spacing();
         let ceiling = self.ceiling.map(|ceiling| ceiling.above(lowest, spacing));
         let mark = self.collector.mark();
@@ -199,6 +205,7 @@ impl Grazed<'_, '_> {
                 near: self.near,
                 last: self.last,
                 evaluations: 0,
+                middle: 0.0,
                 targets: std::mem::take(targets),
             },
         };

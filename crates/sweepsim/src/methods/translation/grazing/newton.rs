@@ -3,7 +3,7 @@
 use super::chart::{Region, Witness, solved};
 use super::face::Curve;
 use super::knot::{Knot, Seen};
-use super::lines::{Over, meets, witness};
+use super::lines::{Over, meets};
 use sweepsim_dexel::Source;
 
 /// The most steps of Newton's method, which takes two to four.
@@ -43,7 +43,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
             [Some(a), Some(b)] if (b.p - p).abs() < (a.p - p).abs() => Some(b),
             [a, b] => a.or(b),
         };
-        let slack = 4.0 * self.lines.course.slack;
+        let slack = self.lines.course.ground.error(p);
         if let (Some(knot), Some((q, _))) = (nearest, line) {
             let (lo, hi) = chart.q(&knot.witness, &within);
             // A knot is of use to other lines.
@@ -67,9 +67,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         for _ in 0..STEPS {
             s = within.clamp(s);
-            let sight = self.lines.curve.at(chart.point(s));
-            self.lines.evaluations += 1;
-            let here = witness(s, &sight);
+            let (sight, here) = self.lines.sight(chart, s);
             *latest = Some(here);
             let scaled = |row: [f64; 2]| [row[0] * chart.half[0], row[1] * chart.half[1]];
             let [in_u, in_v] = sight.slopes;
@@ -159,7 +157,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         };
         let (predicted, reach) = self.chart.prediction(witness, [p, 0.0]);
         let off = [0, 1].map(|i: usize| (predicted[i] - next[i]).abs() + reach[i]);
-        let error = self.chart.change(off) + 4.0 * self.lines.course.slack;
+        let error = self.chart.change(off) + self.lines.course.ground.error(p);
         let ahead = q - place[0];
         let length = self.lines.course.length;
         if ahead < -error || ahead > length + error {
@@ -169,7 +167,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
         if !(ahead > error && ahead < length - error) {
             return Verdict::Unsure;
         }
-        self.put(line, ahead, place[1], normal);
+        self.put((line, q), ahead, place[1], normal);
         Verdict::Settled
     }
 }

@@ -6,7 +6,8 @@
 use super::chart::{Chart, Range, magnitude};
 use super::course::Directions;
 use super::face::{Curve, Sight};
-use super::tree::{Blur, FLAT, SMALLEST, error, g, widened};
+use super::polar::Centre;
+use super::tree::{Blur, FLAT, SMALLEST, error, g};
 use crate::algebra::table::position;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
@@ -25,6 +26,7 @@ pub(super) struct Rim<'a> {
     placing: Placing,
     /// The parts of the unit vector along the way, ahead and up.
     way: [f64; 2],
+    centre: Option<Centre>,
 }
 
 impl<'a> Rim<'a> {
@@ -35,12 +37,13 @@ impl<'a> Rim<'a> {
             element,
             placing: Placing::new(&Matrix3::from_columns(&rows).transpose(), &Vector3::zeros(), None),
             way: [rows[0].dot(&way), rows[2].dot(&way)],
+            centre: directions.centre,
         }
     }
 }
 
 impl Curve for Rim<'_> {
-    /// The normal is `C′ × d`, across the strip, to either side: see [`Chart::outwards`].
+    /// The normal is `C′ × d`, across the strip, to either side: see [`Chart::outwards`]. About a centre, `d` is the velocity of the point itself.
     #[inline]
     fn at(&self, [r, w]: [f64; 2]) -> Sight {
         let point = position(&self.element.places.along::<4>(r));
@@ -48,12 +51,25 @@ impl Curve for Rim<'_> {
             let [q, p, z, _] = self.placing.turned(&v);
             [q, p, z]
         });
-        let ([ahead, up], [q, p, z]) = (self.way, slope);
-        Sight {
+        let across = |[q, p, z]: [f64; 3], [ahead, up]: [f64; 2]| [p * up, z * ahead - q * up, -p * ahead];
+        let sight = Sight {
             place,
             slopes: [slope, [0.0; 3]],
             g: [w, 0.0, 1.0],
-            normal: [p * up, z * ahead - q * up, -p * ahead],
+            normal: slope,
+        };
+        let [ahead, up] = self.way;
+        match &self.centre {
+            None => Sight {
+                normal: across(slope, self.way),
+                ..sight
+            },
+            Some(centre) => {
+                let seen = centre.seen(&sight);
+                let distance = centre.radius - seen.place[1];
+                let normal = across(seen.normal, [distance * ahead, centre.radius * up]);
+                Sight { normal, ..seen }
+            }
         }
     }
 }
@@ -118,14 +134,11 @@ pub(super) fn look(
         return Look::Empty;
     }
     cells.prepare(element, cell);
-    let along = |k: usize| {
-        let range = cells.slope_products(element, cell, 0, &[directions.rows[k]]);
-        widened(range, blur.slopes[0])
-    };
-    let [ahead, across] = [along(0), along(1)];
+    let wedge = directions.wedge(&cells.position(element, cell), blur.place);
+    let ([ahead, across], differs) = directions.slopes((element, cells, cell), wedge.as_ref(), (0, blur.slopes[0]));
     let half = 0.5 * (upper - lower);
     let jacobian = [[across, NOTHING], [NOTHING, (1.0, 1.0)]];
-    let blurs = [[blur.slopes[0], 0.0], [0.0; 2]];
+    let blurs = [[differs, 0.0], [0.0; 2]];
     let bounds = [[lower, -half], [upper, half]];
     match Chart::new(bounds, &jacobian, &blurs, [slack, 0.0], [ahead, NOTHING]) {
         Ok(mut chart) => {
@@ -134,7 +147,14 @@ pub(super) fn look(
             chart.outwards = outwards(element, 0.5 * (lower + upper), directions);
             Look::Chart(Box::new(chart))
         }
-        Err(rough) if is_family && (rough.blurred || magnitude(across) <= BLURRED * blur.slopes[0]) => Look::Mixed,
+        Err(own)
+            if is_family
+                && (own.blurred
+                    || wedge.is_some_and(|wedge| wedge.is_blurred)
+                    || magnitude(across) <= BLURRED * differs) =>
+        {
+            Look::Mixed
+        }
         Err(_) => rough,
     }
 }
@@ -181,10 +201,10 @@ mod tests {
             let first = segment(way);
             let second = segment([0, 1, 2].map(|k: usize| way[k] + shift[k]));
             let (Some(course), Some(other)) = (Course::new(&first, 1e-13), Course::new(&second, 1e-13)) else { return Ok(()) };
-            let Some((key, family)) = course.family(&first) else { return Ok(()) };
+            let Some((key, family)) = course.family() else { return Ok(()) };
             let mut all = vec![&course];
             // A different family for a few of them.
-            all.extend(other.family(&second).is_some_and(|(own, _)| own == key).then_some(&other));
+            all.extend(other.family().is_some_and(|(own, _)| own == key).then_some(&other));
             for element in PatchForms::all(&tool).1 {
                 let mut cells = Cells::new(&element);
                 let blur = Tree::new(&element, &mut cells, 0, &family, 1e-13).blur;

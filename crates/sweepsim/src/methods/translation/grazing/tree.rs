@@ -65,7 +65,7 @@ pub(super) struct Tree {
 /// How much the values may differ over the directions of a family.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blur {
-    place: f64,
+    pub place: f64,
     /// Of derivatives of the place, and of those of `g`, in each variable.
     pub slopes: [f64; 2],
     pub g: f64,
@@ -187,13 +187,14 @@ impl Tree {
         slack: f64,
     ) {
         let position = cells.position(element, cell);
-        let range = |k: usize| widened(products(&[directions.rows[k]], &position), self.blur.place + slack);
+        let [q, p] = directions.ranges(&position, self.blur.place, slack);
+        let (lowest, _) = products(&[directions.rows[2]], &position);
         let node = Node {
             cell,
             depth,
-            q: range(0),
-            p: range(1),
-            lowest: range(2).0,
+            q,
+            p,
+            lowest: lowest - self.blur.place - slack,
             state: State::Fresh,
         };
         self.nodes.push(node);
@@ -256,19 +257,16 @@ impl Tree {
             g_slopes,
             ..
         } = &self.blur;
-        let of_place = |k: usize, axis: usize| {
-            widened(
-                cells.slope_products(element, cell, axis, &[directions.rows[k]]),
-                place_slopes[axis],
-            )
-        };
+        let wedge = directions.wedge(&cells.position(element, cell), self.blur.place);
+        let of_place =
+            [0, 1].map(|axis| directions.slopes((element, cells, cell), wedge.as_ref(), (axis, place_slopes[axis])));
+        let [([q_u, p_u], in_u), ([q_v, p_v], in_v)] = of_place;
         let of_g = slopes(cells, cell, directions, g_slopes);
-        let jacobian = [[of_place(1, 0), of_place(1, 1)], of_g];
+        let jacobian = [[p_u, p_v], of_g];
         let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
-        let blur = [*place_slopes, *g_slopes];
-        let ahead = [of_place(0, 0), of_place(0, 1)];
-        let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], ahead) {
+        let blur = [[in_u, in_v], *g_slopes];
+        let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], [q_u, q_v]) {
             Ok(chart) => return self.chart(chart),
             Err(rough) => rough,
         };
@@ -289,7 +287,8 @@ impl Tree {
         }
         let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
         let small = sides.iter().all(|side| *side < SMALLEST);
-        if directions.spread > 0.0 && (rough.blurred || small) {
+        let is_blurred = rough.blurred || wedge.is_some_and(|wedge| wedge.is_blurred);
+        if directions.spread > 0.0 && (is_blurred || small) {
             return State::Mixed;
         }
         if small || p.1 - p.0 - 2.0 * slack < FLAT * slack {

@@ -1,6 +1,5 @@
 //! A walk through the cells of a patch or an edge along one move: those with lines on their way are looked at, and divided where no move has asked for that before.
 
-use super::super::rows::meets;
 use super::at_rest::TooMany;
 use super::course::{Course, Directions};
 use super::face::Curve;
@@ -53,7 +52,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Walk<'_, '_, S, C> {
             let node = tree.node(number);
             let (cell, window) = (node.cell, self.lines.reach([node.p, node.q]));
             self.visits += 1;
-            if node.lowest > self.highest || !meets(self.lines.collector.lines, &self.lines.floor(), window) {
+            if node.lowest > self.highest || !self.course.ground.meets(self.lines.collector.lines, window) {
                 continue;
             }
             if self.monitor.cancelled() {

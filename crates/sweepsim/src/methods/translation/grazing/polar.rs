@@ -1,0 +1,157 @@
+//! Patches and edges about the centre of an arc that turns left.
+//!
+//! Seen from the centre, a point `(q, p)` from the tip (ahead, and to the left) lies at `(out, ahead) = (R − p, q)`. What a tool keeps while it turns with the arc is its distance
+//! from the centre, so `R − √(out² + ahead²)` takes the place of `p`, and the angle that of `q`. For a point ahead of the centre like the tip, and far from it, both are as along a straight way. Vectors are
+//! seen ahead, to the left (towards the centre) and up, as at the point's own angle.
+
+use super::chart::{Range, magnitude};
+use super::face::Sight;
+use super::tree::widened;
+use crate::algebra::ranges::{Triples, products};
+
+/// The centre of an arc, to the left of the tip.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Centre {
+    /// `R`, the distance of the tip.
+    pub radius: f64,
+    /// No radius that this one stands for differs by more.
+    pub spread: f64,
+}
+
+/// Wider cells, as angles to either side of their middle, are no charts.
+const WIDE: f64 = 0.8;
+
+/// Cells that are narrower than so many times what the centres of a family differ by are left to each centre itself, if they may be one.
+const BLURRED: f64 = 16.0;
+
+const UNKNOWN: Range = (f64::NEG_INFINITY, f64::INFINITY);
+
+/// A cell as it is seen from the centre.
+pub(super) struct Wedge {
+    /// The directions outwards and ahead in the middle, in the tool's coordinates.
+    pub axes: [[f64; 3]; 2],
+    radius: f64,
+    distance: Range,
+    middle: f64,
+    /// Angles from the middle, of cells beside the centre.
+    turns: Option<Range>,
+    /// By how much these may differ for others that the centre stands for.
+    blur: f64,
+    /// Whether it is so close to the centre that one of those may be in it.
+    pub is_blurred: bool,
+}
+
+fn sum(a: Range, b: Range) -> Range {
+    (a.0 + b.0, a.1 + b.1)
+}
+
+fn negative(a: Range) -> Range {
+    (-a.1, -a.0)
+}
+
+fn product(a: Range, b: Range) -> Range {
+    let all = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
+    (
+        all.into_iter().fold(f64::INFINITY, f64::min),
+        all.into_iter().fold(f64::NEG_INFINITY, f64::max),
+    )
+}
+
+impl Centre {
+    /// A point in the coordinates `(q, p, z)` from the tip, seen from the centre.
+    #[inline]
+    pub fn seen(&self, sight: &Sight) -> Sight {
+        let [ahead, left, z] = sight.place;
+        let out = self.radius - left;
+        let distance = out.hypot(ahead);
+        let inverse = distance.recip();
+        let [c, s] = [out * inverse, ahead * inverse];
+        let turned = |[a, l, up]: [f64; 3]| [a * c + l * s, l * c - a * s, up];
+        let nearer = (2.0 * self.radius * left - left * left - ahead * ahead) / (self.radius + distance);
+        Sight {
+            place: [ahead.atan2(out), nearer, z],
+            slopes: sight.slopes.map(|slope| {
+                let [a, l, up] = turned(slope);
+                [a * inverse, l, up]
+            }),
+            g: sight.g,
+            normal: turned(sight.normal),
+        }
+    }
+
+    /// A cell with these control points, displaced by no more than `off`, and the directions of `q` and `p`.
+    pub fn wedge(&self, [q, p, _]: &[[f64; 3]; 3], position: &Triples, off: f64) -> Wedge {
+        let middle_of = |row: &[f64; 3]| {
+            let (lo, hi) = products(&[*row], position);
+            0.5 * lo + 0.5 * hi
+        };
+        let angle = middle_of(q).atan2(self.radius - middle_of(p));
+        let middle = if angle.is_finite() { angle } else { 0.0 };
+        let (s, c) = middle.sin_cos();
+        let axes = [
+            [0, 1, 2].map(|k| s * q[k] - c * p[k]),
+            [0, 1, 2].map(|k| c * q[k] + s * p[k]),
+        ];
+        let off = off + self.spread;
+        let seen = |k: usize, shift: f64| {
+            let (lo, hi) = products(&[axes[k]], position);
+            widened((lo + shift, hi + shift), off)
+        };
+        let (near, far) = seen(0, c * self.radius);
+        let (back, front) = seen(1, -s * self.radius);
+        let beside = |ahead: f64, within: bool| ahead.atan2(if within { near } else { far });
+        Wedge {
+            axes,
+            radius: self.radius,
+            distance: (
+                near.max(0.0),
+                near.abs().max(far.abs()).hypot(back.abs().max(front.abs())),
+            ),
+            middle,
+            is_blurred: far - near < BLURRED * off && near < off,
+            // NaN is none.
+            turns: (near > 0.0).then(|| (beside(back, back < 0.0), beside(front, front > 0.0))),
+            blur: self.spread / near.max(0.0),
+        }
+    }
+}
+
+impl Wedge {
+    /// The range of `p`, without rounding. `spread`: of the radius.
+    pub fn p(&self, spread: f64) -> Range {
+        let (near, far) = self.distance;
+        widened((self.radius - far, self.radius - near), spread)
+    }
+
+    /// The range of `q`, with a rounding error of coordinates. Within a turn, or unbounded.
+    pub fn q(&self, slack: f64) -> Range {
+        let (near, _) = self.distance;
+        let error = slack / near;
+        self.turns
+            .filter(|_| error < 0.01)
+            .map_or(UNKNOWN, |turns| widened(sum((self.middle, self.middle), turns), error))
+    }
+
+    /// The ranges of the derivatives of `q` and of `p`, from those of the coordinates along the [`axes`](Self::axes).
+    pub fn slopes(&self, [out, ahead]: [Range; 2]) -> [Range; 2] {
+        let most = magnitude(out).hypot(magnitude(ahead));
+        let Some((back, front)) = self.turns.filter(|(back, front)| *back > -WIDE && *front < WIDE) else {
+            return [UNKNOWN, (-most, most)];
+        };
+        let (cosines, sines) = ((back.cos().min(front.cos()), 1.0), (back.sin(), front.sin()));
+        let left = negative(sum(product(out, cosines), product(ahead, sines)));
+        let along = sum(product(ahead, cosines), negative(product(out, sines)));
+        let (near, far) = self.distance;
+        let q = product(along, (far.recip(), near.recip()));
+        if [left, q].iter().all(|(lo, hi)| lo.is_finite() && hi.is_finite()) {
+            [q, left]
+        } else {
+            [UNKNOWN, (-most, most)]
+        }
+    }
+
+    /// By how much derivatives of `p` may differ for others that the centre stands for.
+    pub fn blur(&self, axes: [Range; 2]) -> f64 {
+        self.blur * axes.map(magnitude).iter().sum::<f64>()
+    }
+}
