@@ -61,6 +61,8 @@ pub(crate) struct Outline {
     pub(crate) complete: bool,
     pub(crate) pieces: Vec<Piece>,
     pub(crate) rims: Vec<Rim>,
+    /// The patches, and the edges, that are parts of one surface or circle about the axis, in ascending order: with a closed form or without.
+    pub(crate) rings: [Vec<Range<usize>>; 2],
 }
 
 /// The normal of a direction: to the right.
@@ -87,7 +89,16 @@ impl Outline {
         };
         let rims = curves.windows(2).filter_map(rim).collect();
         let complete = pieces.len() == curves.len();
-        Some(Self { complete, pieces, rims })
+        let rings = [
+            curves.iter().map(|curve| curve.patches.clone()).collect(),
+            curves.iter().map(|curve| curve.edges.clone()).collect(),
+        ];
+        Some(Self {
+            complete,
+            pieces,
+            rims,
+            rings,
+        })
     }
 }
 

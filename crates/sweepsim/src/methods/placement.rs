@@ -19,9 +19,6 @@ use sweepsim_solve::Preimage;
 /// Charts of a tool at rest are made to be kept for other joints if so many parts are counted together.
 const SEVERAL: usize = 4;
 
-/// A turn, and the tip.
-type Pose = (Matrix3<f64>, Vector3<f64>);
-
 /// The velocity at one end of a segment, in the coordinates of a tool turned by `turn`.
 pub(super) fn twist(segment: &Segment, end: SegmentEnd, turn: &Matrix3<f64>) -> Side {
     let [spin, travel] = segment.velocity(end).map(Vector3::from);
@@ -106,49 +103,45 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         turning::placement(outline, sides, source, &mut searching, &mut space.done.placed);
     }
 
-    /// The pose and the motions before and after a placement at which the tool turns on neither side, or only with an arc as it may about its own axis.
-    fn between_translations(
-        &self,
-        at: usize,
-        end: SegmentEnd,
-        pose: Pose,
-        sides: [Side; 2],
-    ) -> Option<(Pose, [Side; 2])> {
-        let part = &self.parts[at];
-        let before = match end {
-            SegmentEnd::Start => at.checked_sub(1).map(|k| &self.parts[k]),
-            SegmentEnd::Finish => None,
-        };
-        let all = |is: fn(&PathPart) -> bool| is(part) && before.is_none_or(is);
-        if all(|part| part.segment.is_arc() && part.segment.turns().len() == 1) {
-            return Some((pose, sides));
-        }
-        if self.outline.is_none() || !all(translation::stands) {
+    /// Whether the tool turns neither before nor after a placement.
+    fn is_between_translations(&self, at: usize, end: SegmentEnd) -> bool {
+        self.neighbours(at, end)
+            .all(|part| part.segment.is_arc() && part.segment.turns().len() == 1)
+    }
+
+    /// The parts before and after a placement.
+    fn neighbours(&self, at: usize, end: SegmentEnd) -> impl Iterator<Item = &PathPart> {
+        let before = (end == SegmentEnd::Start).then(|| at.checked_sub(1)).flatten();
+        before.into_iter().chain([at]).map(|k| &self.parts[k])
+    }
+
+    /// The turn and the motions of a tool of revolution at a placement between parts along which it stands: turned about its own axis, it is the same, so that one orientation serves all of
+    /// these, and turns about that axis move none of its points out of its surface.
+    fn standing(&self, at: usize, end: SegmentEnd) -> Option<(Matrix3<f64>, [Side; 2])> {
+        if !self.closed || self.outline.is_none() || !self.neighbours(at, end).all(translation::stands) {
             return None;
         }
-        // Charts of one orientation serve all of these placements.
-        let along = |neighbour: Option<Neighbour>, beyond: bool| match neighbour {
-            Some(Neighbour::Along(travel)) => Side::Moving(Twist {
+        let along = |part: usize, end: SegmentEnd| match Neighbour::of(&self.parts[part], end) {
+            Some(Neighbour::Along(travel)) => Some(Side::Moving(Twist {
                 spin: [0.0; 3],
                 travel,
                 sizes: [[0.0; 3], travel.map(f64::abs)],
-            }),
-            _ => Side::Beyond(beyond),
+            })),
+            _ => None,
         };
-        let own = Neighbour::of(part, end);
-        let last = before.and_then(|part| Neighbour::of(part, SegmentEnd::Finish));
-        let sides = match end {
-            SegmentEnd::Start => [along(last, false), along(own, false)],
-            SegmentEnd::Finish => [along(own, false), Side::Beyond(true)],
+        let sides = match (end, at.checked_sub(1)) {
+            (SegmentEnd::Finish, _) => [along(at, end)?, Side::Beyond(true)],
+            (SegmentEnd::Start, None) => [Side::Beyond(false), along(at, end)?],
+            (SegmentEnd::Start, Some(before)) => [along(before, SegmentEnd::Finish)?, along(at, end)?],
         };
-        Some(((Matrix3::identity(), pose.1), sides))
+        Some((Matrix3::identity(), sides))
     }
 
     /// The tool at rest: it bounds the sweep where it moves inwards either just before or just after, but not both.
     pub fn placed(&self, at: usize, end: SegmentEnd, space: &mut Workspace, harvest: &mut Harvest) {
         space.done.placed.fill(false);
         let segment = &self.parts[at].segment;
-        let (pose, source) = match end {
+        let (mut pose, source) = match end {
             SegmentEnd::Start => ((segment.start(), segment.tips()[0].into()), self.source(at, 0.0)),
             SegmentEnd::Finish => ((segment.end(), segment.tips()[1].into()), self.source(at, 1.0)),
         };
@@ -161,11 +154,13 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
                 return;
             }
         }
-        let sides = sides(self.parts, at, end);
-        if self.closed
-            && self.parts.len() >= SEVERAL
-            && let Some((pose, sides)) = self.between_translations(at, end, pose, sides)
-        {
+        let mut sides = sides(self.parts, at, end);
+        let standing = self.standing(at, end);
+        let is_still = standing.is_some() || self.is_between_translations(at, end);
+        if let Some(standing) = standing {
+            (pose.0, sides) = standing;
+        }
+        if self.closed && self.parts.len() >= SEVERAL && is_still {
             let mut resting = Resting {
                 pose,
                 sides,

@@ -140,15 +140,19 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
             last: space.solvers.moving.options.accept,
             monitor: self.monitor,
         };
+        let rings = self.outline.filter(|_| round.is_some()).map(|outline| &outline.rings);
+        let [of_patches, of_edges] = rings.map_or([&[][..]; 2], |rings| rings.each_ref().map(|list| &list[..]));
         let patches = Elements {
             forms: &self.cutter.patches,
             cells: &mut space.patches,
             done: &mut space.done.patches,
+            rings: of_patches,
         };
         let edges = Elements {
             forms: &self.cutter.edges,
             cells: &mut space.edges,
             done: &mut space.done.edges,
+            rings: of_edges,
         };
         let source = |t: f64| match round {
             // Arcs have constant speed.

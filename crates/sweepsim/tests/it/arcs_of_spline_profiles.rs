@@ -197,7 +197,6 @@ fn few_boxes() {
     for (name, tool) in &tools() {
         let [curves, charts] = agree(name, tool, &path, &grid([41, 43]), TOLERANCE).expect("the same");
         let [own, other] = [&curves.statistics, &charts.statistics];
-        println!("{name}: {own:?} {other:?}");
         assert!(4 * own.boxes < other.boxes, "{name}: {own:?} {other:?}");
     }
 }
@@ -223,4 +222,15 @@ fn the_same_bytes_whatever_came_before() {
         })
     };
     assert_eq!(on(1), on(4));
+}
+
+/// A line so near to where a level part of the profile bounds the sweep that its patch is left to charts: then all patches around the axis are.
+#[test]
+fn patches_about_the_axis_are_left_to_charts_together() {
+    let path = path(
+        [1.544_972_653, -1.976_608_945, 0.0],
+        &[[1.381_662_296, -1.854_257_28, -1.702_973_669, 0.0]],
+        [0.0; 3],
+    );
+    check(2, &path, &grid([23, 21])).expect("the same");
 }

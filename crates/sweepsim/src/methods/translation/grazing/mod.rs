@@ -28,6 +28,7 @@ use face::{Curve, Face};
 use lines::{Lines, Target};
 use nalgebra::{Matrix3, Vector3};
 use rim::Rim;
+use std::ops::Range;
 use sweepsim_dexel::Source;
 use sweepsim_motion::Segment;
 use sweepsim_solve::Monitor;
@@ -65,6 +66,9 @@ pub(crate) struct Elements<'a> {
     pub cells: &'a mut [Cells],
     /// Which of them are settled.
     pub done: &'a mut [bool],
+    /// Those that are settled together or not at all, in ascending order: along an arc a tool of revolution is turned about its own axis as charts do not have it, and its
+    /// seams are elsewhere.
+    pub rings: &'a [Range<usize>],
 }
 
 /// A search of lines along one move.
@@ -144,21 +148,37 @@ impl Grazing {
         };
         let mut trimmed = Vec::new();
         for (kind, (elements, trees)) in tool.into_iter().zip(&mut family.trees).enumerate() {
-            let all = elements.forms.iter().zip(elements.cells).zip(elements.done).zip(trees);
-            for (number, (((element, cells), done), tree)) in all.enumerate() {
-                if *done {
+            let Elements {
+                forms,
+                cells,
+                done,
+                rings,
+            } = elements;
+            let (mut mark, mut next) = (grazed.collector.mark(), 0);
+            for number in 0..forms.len() {
+                if done[number] || number < next {
                     continue;
                 }
-                let directions = &family.directions;
-                let tree = tree.get_or_insert_with(|| Tree::new(element, cells, 0, directions, course.slack));
+                let (element, cells, directions) = (&forms[number], &mut cells[number], &family.directions);
+                let ring = rings.iter().find(|ring| ring.contains(&number)).cloned();
+                let ring = ring.unwrap_or(number..number + 1);
+                if number == ring.start {
+                    mark = grazed.collector.mark();
+                }
+                let tree = trees[number].get_or_insert_with(|| Tree::new(element, cells, 0, directions, course.slack));
                 let of = (element, &mut *cells);
-                *done = if element.is_edge() {
+                done[number] = if element.is_edge() {
                     let curve = &Rim::new(element, &course.own);
                     grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
                 } else {
                     let curve = &Face::new(element, &course.own);
                     grazed.element(of, (curve, &course), (tree, directions), source, &mut targets)
                 };
+                if !done[number] {
+                    grazed.collector.forget(mark);
+                    next = ring.end;
+                    done[ring].fill(false);
+                }
                 if cells.trim() {
                     trimmed.push((kind, number));
                 }
@@ -175,7 +195,7 @@ impl Grazing {
 }
 
 impl Grazed<'_, '_> {
-    /// Settles one element, and returns whether that was possible.
+    /// Settles one element, and returns whether that was possible; otherwise what was found is of no use.
     fn element(
         &mut self,
         (element, cells): (&PatchForms, &mut Cells),
@@ -187,7 +207,6 @@ impl Grazed<'_, '_> {
         let lowest = course.from.min(course.from + course.rise);
         let spacing = self.collector.lines.spacing();
         let ceiling = self.ceiling.map(|ceiling| ceiling.above(lowest, spacing));
-        let mark = self.collector.mark();
         let mut walk = Walk {
             element,
             cells,
@@ -216,9 +235,6 @@ impl Grazed<'_, '_> {
         let statistics = &mut self.collector.harvest.statistics;
         statistics.boxes += looks;
         statistics.evaluations += evaluations;
-        if let Err(TooMany) = outcome {
-            self.collector.forget(mark);
-        }
         outcome.is_ok()
     }
 }

@@ -155,3 +155,88 @@ impl Wedge {
         self.blur * axes.map(magnitude).iter().sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::course::Course;
+    use super::super::face::{Curve, Face};
+    use super::super::tree::Tree;
+    use crate::cutter::cells::Cells;
+    use crate::cutter::patch_forms::PatchForms;
+    use crate::time::circles::Round;
+    use proptest::prelude::*;
+    use sweepsim_motion::{Pose, Profile, ProfileSegment, Segment, Tool};
+
+    fn tools() -> [Tool; 3] {
+        let spline = ProfileSegment::Spline {
+            degree: 3,
+            knots: None,
+            points: vec![[0.0, 0.0], [2.6, 0.4], [1.2, 2.5], [3.0, 4.0], [2.2, 6.0]],
+            weights: None,
+        };
+        let closed = vec![spline, ProfileSegment::Line { to: [0.0, 6.0] }];
+        let waist = Tool::from_profile(Profile::new([0.0, 0.0], closed).unwrap());
+        [Tool::bull(3.0, 1.0, 9.0).unwrap(), Tool::ball(3.0, 9.0).unwrap(), waist]
+    }
+
+    proptest! {
+        /// The ranges over a cell hold the values and derivatives at all of its points, for the arc itself and for its family.
+        #[test]
+        fn ranges_hold_all_points(
+            tool in 0..3_usize, number in 0..100_usize, logarithm in -4.0..5.0_f64, slope in -1.0..1.0_f64, left in any::<bool>(),
+            corner in [0.0..1.0_f64, 0.0..1.0], sides in [-12.0..0.0_f64, -12.0..0.0], shares in [0.0..1.0_f64, 0.0..1.0],
+        ) {
+            let radius = logarithm.exp();
+            let angle = if left { 1.2 } else { -1.2 };
+            let round = Round { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle };
+            let pose = |z: f64| Pose::new([0.0, 0.0, z], [0.0, 0.0, 1.0]).unwrap();
+            let segment = Segment::between(&pose(0.0), &pose(slope * radius)).remove(0);
+            let course = Course::around(&round, &segment, 1e-13).unwrap();
+            let Some((_, family)) = course.family() else { return Ok(()) };
+            let forms = PatchForms::of_patches(tools()[tool].patches());
+            let element = &forms[number % forms.len()];
+            let sides = sides.map(f64::exp2);
+            let lower = [0, 1].map(|k: usize| corner[k] * (1.0 - sides[k]));
+            let upper = [0, 1].map(|k: usize| lower[k] + sides[k]);
+            let at = [0, 1].map(|k: usize| lower[k] + shares[k] * sides[k]);
+            let face = Face::new(element, &course.own);
+            let sight = face.at(at);
+            let mut cells = Cells::new(element);
+            let cell = cells.place(element, lower, upper);
+            cells.prepare(element, cell);
+            for directions in [&course.own, &family] {
+                let blur = Tree::new(element, &mut cells, 0, directions, 1e-13).blur;
+                let position = cells.position(element, cell);
+                let [q, p] = directions.ranges(&position, blur.place, 1e-13 * (1.0 + radius));
+                let wedge = directions.wedge(&position, blur.place);
+                let near = if q.0.is_finite() { course.ground.near(sight.place[0], 0.5 * (q.0 + q.1)) } else { sight.place[0] };
+                prop_assert!(q.0 <= near && near <= q.1 && q.1 - q.0 < 3.3 || q.0 == f64::NEG_INFINITY, "{q:?} {near}");
+                prop_assert!(p.0 <= sight.place[1] && sight.place[1] <= p.1, "{p:?} {:?}", sight.place);
+                for axis in 0..2 {
+                    let of = (element, &cells, cell);
+                    let (ranges, _) = directions.slopes(of, wedge.as_ref(), (axis, blur.slopes[axis]));
+                    for (k, (lo, hi)) in ranges.into_iter().enumerate() {
+                        let own = sight.slopes[axis][k];
+                        let margin = 1e-11 * (1.0 + own.abs());
+                        prop_assert!(lo - margin <= own && own <= hi + margin, "{axis} {k}: {own} in {lo} {hi}");
+                    }
+                }
+            }
+            // The derivatives are those of the values.
+            const STEP: f64 = 1e-6;
+            prop_assume!(at.iter().all(|x| *x > STEP && *x < 1.0 - STEP) && radius - sight.place[1] > 1e-2);
+            for axis in 0..2 {
+                let [a, b] = [-STEP, STEP].map(|step| {
+                    let mut at = at;
+                    at[axis] += step;
+                    face.at(at).place
+                });
+                for k in 0..3 {
+                    let change = if k == 0 { course.ground.near(b[0], a[0]) - a[0] } else { b[k] - a[k] };
+                    let expected = sight.slopes[axis][k];
+                    prop_assert!((change / (2.0 * STEP) - expected).abs() < 1e-3 * (1.0 + expected.abs()), "{axis} {k} {expected}");
+                }
+            }
+        }
+    }
+}

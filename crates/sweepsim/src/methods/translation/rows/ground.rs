@@ -216,5 +216,39 @@ mod tests {
             prop_assume!(least.abs() > 1e-13);
             prop_assert_eq!(ground.meets(&lines, window), least < 0.0);
         }
+
+        /// The lines about a centre are visited once each, with their distance and angle.
+        #[test]
+        fn windows_about_a_centre_hold_their_lines(
+            centre in [-3.0..4.0_f64, -3.0..4.0], start in -3.1..3.1_f64, radius in 0.01..6.0_f64, p in -4.0..6.0_f64, width in 0.0..3.0_f64, q in -3.1..3.1_f64, length in 0.0..4.7_f64,
+            unbounded in any::<bool>(),
+        ) {
+            let grid = Grid::new([-3.0, -2.0], [4.0, 3.0], [7, 9]).unwrap();
+            let lines = Lattice::all(&grid, [0.01, -0.02]);
+            let ring = Ring { centre, radius, from: [f64::cos(start), f64::sin(start)], slack: 1e-14 };
+            let ground = Ground::Ring(ring);
+            let window = [[p, p + width], if unbounded { [f64::NEG_INFINITY, f64::INFINITY] } else { [q, q + length] }];
+            let mut expected = Vec::new();
+            for (i, j) in (0..7).flat_map(|i| (0..9).map(move |j| (i, j))) {
+                let [x, y] = [lines.coordinate(0, i) - centre[0], lines.coordinate(1, j) - centre[1]];
+                let own: f64 = radius - f64::hypot(x, y);
+                let mut angle: f64 = f64::atan2(y, x) - start;
+                while angle > q { angle -= TAU; }
+                while angle < q { angle += TAU; }
+                prop_assume!((own - p).abs() > 1e-9 && (own - p - width).abs() > 1e-9);
+                prop_assume!(unbounded || (angle - q).abs() > 1e-9 && (angle - q - length).abs() > 1e-9);
+                if own > p && own < p + width && (unbounded || angle < q + length) {
+                    expected.push((lines.line(i, j), own, angle));
+                }
+            }
+            let mut found = Vec::new();
+            ground.each(&lines, window, |line, [p, q]| found.push((line, p, q)));
+            prop_assert_eq!(found.len(), expected.len());
+            for (a, b) in found.iter().zip(&expected) {
+                prop_assert!(a.0 == b.0 && (a.1 - b.1).abs() < 1e-12, "{:?} {:?}", a, b);
+                prop_assert!(unbounded || (a.2 - b.2).abs() < 1e-12, "{:?} {:?}", a, b);
+            }
+            prop_assert_eq!(ground.meets(&lines, window), !expected.is_empty());
+        }
     }
 }
