@@ -1,7 +1,7 @@
 //! Level arcs and helices of tools whose profile is a spline, by their grazing curves, against charts.
 
 use crate::arcs_in_closed_form::{Arc, check_tool_near_material, grid, path, small};
-use crate::translations::{TOLERANCE, UP, agree};
+use crate::translations::{TOLERANCE, UP, agree, cases};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use std::f64::consts::PI;
@@ -112,7 +112,7 @@ fn tangent(start: [f64; 3], steps: &[(f64, f64, f64)]) -> Path {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]

@@ -140,8 +140,9 @@ impl Course {
         let [mut from, to] = segment.tips();
         let mut way = segment.travel();
         let length = way[0].hypot(way[1]);
+        let size = length.hypot(way[2]);
         // NaN is refused, too.
-        if !(length > SHORTEST * slack && length.hypot(way[2]).is_finite()) {
+        if !(length > SHORTEST * slack && size.is_finite()) {
             return None;
         }
         // The first component that is not almost 0 is positive.
@@ -168,7 +169,7 @@ impl Course {
             slack,
             own: Directions {
                 backwards: reversed,
-                ..Directions::new(&turn, ahead, unit(way), 0.0)
+                ..Directions::new(&turn, ahead, way.map(|x| x / size), 0.0)
             },
             turn,
             ahead,
@@ -176,7 +177,7 @@ impl Course {
         })
     }
 
-    /// An arc of a tool of revolution that stands along the dexels, which is the end of a segment of its path. `None` if it is too short.
+    /// An arc of a tool of revolution that stands along the dexels, and the same as a segment. `None` if it is too short.
     ///
     /// In the frame that turns with the arc, the velocity is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point out of its surface:
     /// `g` is that of the translation.
