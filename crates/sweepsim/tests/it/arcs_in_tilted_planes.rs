@@ -180,7 +180,7 @@ fn sampled(number: usize) -> (Tool, fn(f64, f64) -> f64) {
 fn check_samples(number: usize, start: [f64; 3], arc: Arc, axis: [f64; 3], frame: Frame) -> TestCaseResult {
     let (tool, depth) = sampled(number);
     let path = path(start, &[arc], [0.0; 3], axis);
-    let lines = grid([23, 21]).in_frame(frame);
+    let lines = grid([15, 13]).in_frame(frame);
     let found = sweep(&tool, &path, &lines, &Options::new(TOLERANCE), &()).unwrap();
     prop_assert!(found.statistics.unresolved.is_empty(), "{:?}", found.statistics);
     let unit = Unit::new_normalize(Vector3::from(axis));

@@ -106,7 +106,7 @@ fn sections_surfaces_and_probes_stop_within_a_move() {
         section(&cuts, &plane, 1e-2, &options, monitor).map(drop)
     });
     check("surfaces", &|monitor| {
-        envelope_surfaces(&cuts, 0.1, &options, monitor).map(drop)
+        envelope_surfaces(&cuts, 0.5, &options, monitor).map(drop)
     });
     let rays: Vec<Ray> = (0..40)
         .map(|k| Ray::new([0.3 * f64::from(k), 0.1, 0.0], [0.1, 0.2, 1.0]).unwrap())
