@@ -198,7 +198,7 @@ fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Where a number that starts from here and grows so fast is between two others: nowhere in doubt if it does not grow.
+/// The parameters between which a number with this value at 0 and this slope goes from one bound to the other. The slope is not 0.
 fn between(start: f64, growth: f64, [low, high]: [f64; 2]) -> [f64; 2] {
     let [a, b] = [low, high].map(|end| (end - start) / growth);
     [a.min(b), a.max(b)]
@@ -263,8 +263,8 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         let [s, k] = arc.tilt;
         let margin = 2.0 * self.coarse;
         // Horizontally, along the axis.
-        let ([up, down], back) = (z.map(|z| s * z), products([k; 2], x));
-        let ahead = [up - back[1] - margin, down - back[0] + margin];
+        let back = products([k; 2], x);
+        let ahead = [s * z[0] - back[1] - margin, s * z[1] - back[0] + margin];
         let [ux, uy] = arc.ahead;
         let floor = Floor {
             tip: arc.centre,
@@ -276,7 +276,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
         rows(lattice, &floor, [right, ahead], |Row { i, j, x }| {
             for j in j[0]..=j[1] {
                 let y = lattice.coordinate(1, j) - arc.centre[1];
-                let (q, right_of) = (ux * x + uy * y, uy * x - ux * y);
+                let (q, level) = (ux * x + uy * y, uy * x - ux * y);
                 if q < ahead[0] || q > ahead[1] || !lattice.asks(i, j) {
                     continue;
                 }
@@ -287,7 +287,7 @@ impl<S: Fn(f64) -> Source> Orbit<'_, '_, S> {
                 };
                 let view = View {
                     place: (i, j),
-                    y: right_of,
+                    y: level,
                     x,
                     z,
                     height: arc.centre[2] + up,
