@@ -202,7 +202,8 @@ proptest! {
             let nearest = least(|share| tip(share).0);
             let lowest = least(|share| match tip(share) {
                 (rho, z) if rho <= outer => z + bottom(pointed, rho),
-                _ => f64::INFINITY,
+                // Beside the tool, the search is led to it.
+                (rho, _) => 1e6 + rho,
             });
             let own = found.volume.at(index).to_vec();
             let Some(first) = own.first() else {

@@ -2,7 +2,7 @@
 
 use crate::arcs_along_dexels::{angles, least, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
-use crate::arcs_of_lying_tools::width;
+use crate::arcs_of_lying_tools::below;
 use crate::translations::{TOLERANCE, agree, cases, tools};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -194,15 +194,11 @@ fn lowest(lie: Lie, pointed: bool, start: [f64; 3], [radius, from, angle]: Arc, 
             let out = lie.out(radius, from + angle * share);
             let tip: [f64; 3] = std::array::from_fn(|k| start[k] + out[k] - before[k]);
             let [x, y] = [lines.x(i) - tip[0], lines.y(j) - tip[1]];
-            let (along, across) = (ax * x + ay * y, ax * y - ay * x);
-            let wide = width(pointed, along)?;
-            let inside = wide - across.abs();
-            // Beside the line, the search is led to where the tool is over it, however short the time.
-            let low = tip[2] - (wide * wide - across * across).max(0.0).sqrt();
-            Some((inside, if inside < 0.0 { 1e6 - inside } else { low }))
+            let [inside, reach] = below(pointed, ax * x + ay * y, ax * y - ay * x);
+            [inside, tip[2] - reach]
         };
-        let deepest = -least(|share| at(share).map_or(f64::INFINITY, |(inside, _)| -inside));
-        let lowest = least(|share| at(share).map_or(f64::INFINITY, |(_, z)| z));
+        let deepest = -least(|share| -at(share)[0]);
+        let lowest = least(|share| at(share)[1]);
         let own = found.volume.at(index).to_vec();
         let Some(first) = own.first() else {
             prop_assert!(deepest < 1e-6, "{:?} {deepest}", (i, j));

@@ -102,15 +102,23 @@ fn hardly_a_box() {
     check_boxes(some.map(|(_, tool, _)| tool), &path);
 }
 
-/// Its radius at a height, if it has one.
-pub fn width(pointed: bool, height: f64) -> Option<f64> {
-    let [end, wide] = if pointed {
-        [8.0, 2.5_f64.min(height / 0.6)]
+/// How far a line, seen along the dexels, is inside the lying tool, and how far the tool reaches below its axis on it. Beside the tool and beyond its ends both are led by the distance, so that
+/// a search finds the time over the line, however short.
+pub fn below(pointed: bool, along: f64, across: f64) -> [f64; 2] {
+    let (end, wide) = if pointed {
+        (8.0, 2.5_f64.min(along / 0.6))
     } else {
-        let below = (0.8 - height).max(0.0);
-        [10.0, 2.2 + (0.64 - below * below).max(0.0).sqrt()]
+        let out = (0.8 - along).max(0.0);
+        (10.0, 2.2 + (0.64 - out * out).max(0.0).sqrt())
     };
-    (height >= 0.0 && height <= end).then_some(wide)
+    let beyond = (-along).max(along - end);
+    let inside = if beyond > 0.0 { -beyond } else { wide - across.abs() };
+    let reach = if inside < 0.0 {
+        inside - 1e6
+    } else {
+        (wide * wide - across * across).sqrt()
+    };
+    [inside, reach]
 }
 
 proptest! {
@@ -135,14 +143,11 @@ proptest! {
                 let place = [start[0] + ahead * ux, start[1] + ahead * uy];
                 let [x, y] = [lines.x(i) - place[0], lines.y(j) - place[1]];
                 let z = start[2] + radius * (at.sin() - from.sin());
-                let (along, across) = (ax * x + ay * y, ax * y - ay * x);
-                let wide = width(pointed, along)?;
-                let inside = wide - across.abs();
-                // Beside the line, the search is led to where the tool is over it, however short the time.
-                Some((inside, if inside < 0.0 { 1e6 - inside } else { z - (wide * wide - across * across).sqrt() }))
+                let [inside, reach] = below(pointed, ax * x + ay * y, ax * y - ay * x);
+                [inside, z - reach]
             };
-            let deepest = -least(|share| at(share).map_or(f64::INFINITY, |(inside, _)| -inside));
-            let lowest = least(|share| at(share).map_or(f64::INFINITY, |(_, z)| z));
+            let deepest = -least(|share| -at(share)[0]);
+            let lowest = least(|share| at(share)[1]);
             let own = found.volume.at(index).to_vec();
             let Some(first) = own.first() else {
                 prop_assert!(deepest < 1e-6, "{:?} {deepest}", (i, j));
