@@ -58,14 +58,19 @@ fn arcs(count: usize, radius: std::ops::Range<f64>) -> impl Strategy<Value = Vec
 
 /// Axes that lean: some by next to nothing, and some so much that they almost lie.
 fn axes() -> impl Strategy<Value = [f64; 3]> {
-    let tiny = || (-16.0..-1.0_f64).prop_map(|size| 10.0_f64.powf(size));
+    axes_from(-16.0)
+}
+
+/// Axes that lie but for at least this power of ten, if they almost do.
+fn axes_from(lying: f64) -> impl Strategy<Value = [f64; 3]> {
+    let tiny = |from: f64| (from..-1.0_f64).prop_map(|size| 10.0_f64.powf(size));
     let lean = prop_oneof![
         2 => 0.02..1.5_f64,
         1 => 1.6..3.1_f64,
-        1 => tiny(),
-        1 => tiny().prop_map(|lean| PI - lean),
-        1 => tiny().prop_map(|lean| FRAC_PI_2 - lean),
-        1 => tiny().prop_map(|lean| FRAC_PI_2 + lean),
+        1 => tiny(-16.0),
+        1 => tiny(-16.0).prop_map(|lean| PI - lean),
+        1 => tiny(lying).prop_map(|lean| FRAC_PI_2 - lean),
+        1 => tiny(lying).prop_map(|lean| FRAC_PI_2 + lean),
     ];
     (-PI..PI, lean).prop_map(|(turn, lean)| {
         let (s, c) = lean.sin_cos();
@@ -134,10 +139,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2 * cases()))]
 
     /// Lines beside the place where a circle of the tool reaches farthest from the arc's axis or least far: an edge, or where a torus meets a flat bottom.
+    /// The reference takes minutes where lines so close are in the plane of a flat face, as of an axis that hardly leaves the level.
     #[test]
     fn where_circles_reach_farthest(
         number in 0_usize..13, circle in prop::sample::select(&CIRCLES[..]), radius in 0.3..9.0_f64, turns in [-PI..PI, 0.0..1.0, -6.0..6.0],
-        axis in axes(), sides in [any::<bool>(), any::<bool>()], sizes in [-9.0..0.0_f64, -9.0..0.0_f64], tolerance in prop::sample::select(&[1e-3, 1e-5, TOLERANCE][..]),
+        axis in axes_from(-4.0), sides in [any::<bool>(), any::<bool>()], sizes in [-9.0..0.0_f64, -9.0..0.0_f64], tolerance in prop::sample::select(&[1e-3, 1e-5, TOLERANCE][..]),
     ) {
         let [from, share, angle] = turns;
         let unit = Vector3::from(axis).normalize();

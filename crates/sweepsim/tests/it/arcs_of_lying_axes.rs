@@ -2,7 +2,7 @@
 
 use crate::arcs_along_dexels::{angles, least, starts, tool};
 use crate::arcs_in_closed_form::{check, check_boxes, check_in_general, check_near_material, grid, small};
-use crate::arcs_of_lying_tools::below;
+use crate::arcs_of_lying_tools::seen;
 use crate::translations::{TOLERANCE, agree, cases, tools};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -194,8 +194,7 @@ fn lowest(lie: Lie, pointed: bool, start: [f64; 3], [radius, from, angle]: Arc, 
             let out = lie.out(radius, from + angle * share);
             let tip: [f64; 3] = std::array::from_fn(|k| start[k] + out[k] - before[k]);
             let [x, y] = [lines.x(i) - tip[0], lines.y(j) - tip[1]];
-            let [inside, reach] = below(pointed, ax * x + ay * y, ax * y - ay * x);
-            [inside, tip[2] - reach]
+            seen(pointed, tip[2], ax * x + ay * y, ax * y - ay * x)
         };
         let deepest = -least(|share| -at(share)[0]);
         let lowest = least(|share| at(share)[1]);

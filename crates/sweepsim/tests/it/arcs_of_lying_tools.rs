@@ -102,23 +102,24 @@ fn hardly_a_box() {
     check_boxes(some.map(|(_, tool, _)| tool), &path);
 }
 
-/// How far a line, seen along the dexels, is inside the lying tool, and how far the tool reaches below its axis on it. Beside the tool and beyond its ends both are led by the distance, so that
-/// a search finds the time over the line, however short.
-pub fn below(pointed: bool, along: f64, across: f64) -> [f64; 2] {
-    let (end, wide) = if pointed {
-        (8.0, 2.5_f64.min(along / 0.6))
+/// How far a line is inside the lying tool, as seen along the dexels, and the tool's lowest point on it if its axis is at `z`. Beside the tool and beyond its ends this is led by the distance alone, so
+/// that a search finds the time over the line, however short.
+pub fn seen(pointed: bool, z: f64, along: f64, across: f64) -> [f64; 2] {
+    let end = if pointed { 8.0 } else { 10.0 };
+    let height = along.clamp(0.0, end);
+    let wide = if pointed {
+        2.5_f64.min(height / 0.6)
     } else {
-        let out = (0.8 - along).max(0.0);
-        (10.0, 2.2 + (0.64 - out * out).max(0.0).sqrt())
+        let out = (0.8 - height).max(0.0);
+        2.2 + (0.64 - out * out).max(0.0).sqrt()
     };
-    let beyond = (-along).max(along - end);
-    let inside = if beyond > 0.0 { -beyond } else { wide - across.abs() };
-    let reach = if inside < 0.0 {
-        inside - 1e6
+    let inside = (wide - across.abs()).min(along).min(end - along);
+    let lowest = if inside < 0.0 {
+        1e6 - inside
     } else {
-        (wide * wide - across * across).sqrt()
+        z - (wide * wide - across * across).sqrt()
     };
-    [inside, reach]
+    [inside, lowest]
 }
 
 proptest! {
@@ -143,8 +144,7 @@ proptest! {
                 let place = [start[0] + ahead * ux, start[1] + ahead * uy];
                 let [x, y] = [lines.x(i) - place[0], lines.y(j) - place[1]];
                 let z = start[2] + radius * (at.sin() - from.sin());
-                let [inside, reach] = below(pointed, ax * x + ay * y, ax * y - ay * x);
-                [inside, z - reach]
+                seen(pointed, z, ax * x + ay * y, ax * y - ay * x)
             };
             let deepest = -least(|share| -at(share)[0]);
             let lowest = least(|share| at(share)[1]);
