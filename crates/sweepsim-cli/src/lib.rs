@@ -20,6 +20,7 @@ use std::process::ExitCode;
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
+    session::interruption::handle();
     let done = match Arguments::parse().command {
         Command::Simulate(options) => commands::run(commands::Task::Simulate, &options, &Default::default()),
         Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, &Default::default()),

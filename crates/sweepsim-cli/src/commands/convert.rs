@@ -2,14 +2,13 @@
 
 use super::tri_surface::lattice;
 use crate::arguments::ConvertOptions;
-use crate::session::{Failure, Kind, Lines, Solid, bounds, decimated, picture, soup, words};
+use crate::session::interruption::writing;
+use crate::session::{Failure, Kind, Lines, Solid, bounds, decimated, picture, save, soup, words};
 use std::borrow::Cow;
 use std::io::Write as _;
 use std::ops::ControlFlow;
 use sweepsim_dexel::{Dexels, Grid, Stock, TriDexels};
-use sweepsim_formats::{
-    DexelFormat, MeshFormat, write_atomically, write_dexels_file, write_mesh_file, write_tri_dexels,
-};
+use sweepsim_formats::{DexelFormat, MeshFormat, write_dexels_file, write_mesh_file, write_tri_dexels};
 use sweepsim_nc::tools::{read_library, to_ron};
 use sweepsim_nc::{Program, read_file, table, write};
 
@@ -59,7 +58,7 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
         if let Some(first) = missed.into_iter().next() {
             return Err(Failure::message(first));
         }
-        return Ok(write_atomically(output, |file| file.write_all(&png))?);
+        return save(output, |file| file.write_all(&png));
     }
     if let Some(format) = MeshFormat::of(output) {
         let surface = match solid {
@@ -81,7 +80,7 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
                 &format!("{format} stores coordinates as 32-bit floats: they are rounded"),
             );
         }
-        return Ok(write_mesh_file(&mesh, output)?);
+        return writing(Some(&output.to_string_lossy()), || Ok(write_mesh_file(&mesh, output)?));
     }
     if DexelFormat::of(output).is_none() {
         return Err(Failure::message(format!(
@@ -107,7 +106,9 @@ fn write_solid(solid: &Solid, options: &ConvertOptions, line: &mut impl FnMut(&s
     if DexelFormat::of(output) == Some(DexelFormat::Csv) {
         line("note", "a table contains neither the grid nor normals and sources");
     }
-    Ok(write_dexels_file(&dexels, output)?)
+    writing(Some(&output.to_string_lossy()), || {
+        Ok(write_dexels_file(&dexels, output)?)
+    })
 }
 
 /// Writes dexels along three axes.
@@ -136,7 +137,7 @@ fn write_tri(
     let [nx, ny, nz] = made.cells().map(|n| words::count(n as u64));
     let intervals = words::counted(intervals as u64, "interval");
     line("dexels", &format!("{nx} × {ny} × {nz}, {intervals}"));
-    Ok(write_atomically(&options.output, |out| write_tri_dexels(&made, out))?)
+    save(&options.output, |out| write_tri_dexels(&made, out))
 }
 
 /// Reads a program as its output needs it: tables have no arcs.
@@ -151,16 +152,16 @@ fn path(program: &Program, options: &ConvertOptions, extension: &str) -> Result<
     let output = &*options.output;
     let mut lost = Vec::new();
     match extension {
-        "csv" => write_atomically(output, |file| table::write(&program.poses, file))?,
-        "cls" | "clsf" | "apt" | "ncl" => write_atomically(output, |file| {
+        "csv" => save(output, |file| table::write(&program.poses, file))?,
+        "cls" | "clsf" | "apt" | "ncl" => save(output, |file| {
             lost = write::clsf(program, file)?;
             Ok(())
         })?,
-        "txt" => write_atomically(output, |file| write::canonical(program, file))?,
+        "txt" => save(output, |file| write::canonical(program, file))?,
         "nc" | "ngc" | "tap" | "gcode" | "mpf" | "spf" | "h" => {
             let writing = options.writing.options(extension).map_err(Failure::message)?;
             let written = write::gcode(program, &writing).map_err(|error| Failure::message(error.to_string()))?;
-            write_atomically(output, |file| file.write_all(written.text.as_bytes()))?;
+            save(output, |file| file.write_all(written.text.as_bytes()))?;
             lost = written.lost;
         }
         _ => {
@@ -198,7 +199,7 @@ fn tools(options: &ConvertOptions, line: &mut impl FnMut(&str, &str)) -> Result<
             input.display()
         )));
     }
-    write_atomically(output, |file| file.write_all(text.as_bytes()))?;
+    save(output, |file| file.write_all(text.as_bytes()))?;
     line("tools", &words::count((library.tools.len() - problems.len()) as u64));
     for (number, problem) in problems {
         line("note", &format!("tool {number} is left out: {problem}"));

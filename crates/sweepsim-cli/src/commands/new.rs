@@ -1,10 +1,10 @@
 //! `new`: writes a job for a program.
 
 use crate::arguments::NewOptions;
-use crate::session::{Failure, Lines};
+use crate::session::{Failure, Lines, save};
 use std::io::Write as _;
 use std::path::Path;
-use sweepsim_formats::{Job, draft, write_atomically};
+use sweepsim_formats::{Job, draft};
 
 /// Writes the job, and says what was found and what was guessed.
 pub(crate) fn new(options: &NewOptions) -> Result<(), Failure> {
@@ -32,7 +32,7 @@ pub(crate) fn new(options: &NewOptions) -> Result<(), Failure> {
         std::fs::create_dir_all(folder)
             .map_err(|error| Failure::message(format!("cannot make the folder {}: {error}", folder.display())))?;
     }
-    write_atomically(&file, |writer| writer.write_all(draft.text.as_bytes()))?;
+    save(&file, |writer| writer.write_all(draft.text.as_bytes()))?;
     if options.quiet {
         return Ok(());
     }

@@ -78,7 +78,6 @@ impl<'a> Frames<'a> {
         };
         let mut tools: BTreeMap<u32, Mesh> = BTreeMap::new();
         for number in 0..self.count {
-            progress.check()?;
             let moment = moments.get(number).copied();
             let sets = match moment {
                 Some(moment) => course.at(moment)?,

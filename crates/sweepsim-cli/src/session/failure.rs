@@ -1,6 +1,6 @@
 //! Failures of a command, and its exit status.
 
-use super::Outputs;
+use super::interruption::{EXIT_STATUS, complete};
 use std::fmt;
 use std::process::ExitCode;
 use sweepsim_formats::FormatError;
@@ -17,7 +17,7 @@ pub(crate) enum Failure {
     /// The user, or the system, interrupted the run.
     Interrupted {
         /// The output files that were complete by then.
-        written: Vec<String>,
+        complete: Vec<String>,
     },
 }
 
@@ -28,24 +28,15 @@ impl Failure {
         Self::Bad(format!("{bold}error{reset}: {text}"))
     }
 
-    /// An interruption, with nothing written yet.
+    /// An interruption of this run.
     pub fn interrupted() -> Self {
-        Self::Interrupted { written: Vec::new() }
-    }
-
-    /// Names the outputs that were complete when the run was interrupted.
-    pub fn after(mut self, outputs: &Outputs) -> Self {
-        if let Self::Interrupted { written } = &mut self {
-            *written = outputs.written.iter().map(|(name, _)| name.clone()).collect();
-        }
-        self
+        Self::Interrupted { complete: complete() }
     }
 
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Bad(_) => 2,
-            // What shells report for a process ended by SIGINT.
-            Self::Interrupted { .. } => 130,
+            Self::Interrupted { .. } => EXIT_STATUS,
         })
     }
 }
@@ -82,11 +73,11 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Bad(text) => f.write_str(text),
-            Self::Interrupted { written } if written.is_empty() => f.write_str("interrupted: nothing was written"),
-            Self::Interrupted { written } => write!(
+            Self::Interrupted { complete } if complete.is_empty() => f.write_str("interrupted: nothing was written"),
+            Self::Interrupted { complete } => write!(
                 f,
                 "interrupted: {} complete, nothing else was written",
-                match written.as_slice() {
+                match complete.as_slice() {
                     [one] => format!("{one} is"),
                     several => format!("{} are", several.join(", ")),
                 }

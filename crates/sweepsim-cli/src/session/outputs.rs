@@ -1,6 +1,6 @@
 //! The output files of a run. Their folder is checked before the work begins, and each is written completely or not at all.
 
-use super::progress::interrupted;
+use super::interruption::{interrupted, writing};
 use super::{Failure, words};
 use crate::arguments::Output;
 use std::fs;
@@ -29,7 +29,10 @@ impl Outputs {
         };
         fs::create_dir_all(&folder).map_err(refused)?;
         // Dropped without a commit, it leaves no file.
-        drop(AtomicFile::create(&folder.join("report.json"))?);
+        writing(None, || {
+            drop(AtomicFile::create(&folder.join("report.json"))?);
+            Ok(())
+        })?;
         let all = [Output::Dexels, Output::Mesh, Output::Picture, Output::Report];
         let wanted = if only.is_empty() { all.to_vec() } else { only.to_vec() };
         Ok(Self {
@@ -50,12 +53,8 @@ impl Outputs {
         write: impl FnOnce(&mut Interruptible<'_>) -> io::Result<()>,
     ) -> Result<(), Failure> {
         let path = self.folder.join(name);
-        write_atomically(&path, |file| write(&mut Interruptible(file))).map_err(|error| {
-            if interrupted() {
-                Failure::interrupted()
-            } else {
-                error.into()
-            }
+        writing(Some(name), || {
+            Ok(write_atomically(&path, |file| write(&mut Interruptible(file)))?)
         })?;
         let size = fs::metadata(&path).map_or(0, |data| data.len());
         self.written.push((name.to_owned(), size));
@@ -87,6 +86,11 @@ impl Outputs {
             .collect();
         format!("{}: {}", self.folder.display(), files.join(", "))
     }
+}
+
+/// Writes a file outside of an output folder.
+pub(crate) fn save(file: &Path, write: impl FnOnce(&mut AtomicFile) -> io::Result<()>) -> Result<(), Failure> {
+    writing(Some(&file.to_string_lossy()), || Ok(write_atomically(file, write)?))
 }
 
 /// A file whose writing fails once the run is interrupted.

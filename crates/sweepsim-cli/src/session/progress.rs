@@ -1,14 +1,10 @@
-//! The progress bar, and interruption by Ctrl-C or by the system (SIGTERM, SIGHUP).
+//! The progress bar.
 
-use super::Failure;
+use super::interruption::{interrupted, remove_at_end};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use sweepsim::Monitor;
-
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// How a phase is drawn whose steps are moves, and one that tells only its share.
 const MOVES: &str = "{msg:>10} {bar:40} {human_pos}/{human_len} moves, {eta} left";
@@ -16,12 +12,7 @@ const SHARE: &str = "{msg:>10} {bar:40} {percent} %";
 /// The length of the bar of a phase that tells only its share.
 const WHOLE: u64 = 1000;
 
-/// Whether the user, or the system, has interrupted the run.
-pub(crate) fn interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
-}
-
-/// Draws a progress bar on a terminal, and cancels the run when the user presses Ctrl-C.
+/// A progress bar, drawn on a terminal.
 pub(crate) struct Progress {
     bar: ProgressBar,
     moves: u64,
@@ -30,15 +21,6 @@ pub(crate) struct Progress {
 impl Progress {
     /// A bar for a number of moves; nothing is drawn if `quiet`.
     pub fn new(moves: usize, quiet: bool) -> Self {
-        // A second Ctrl-C ends the process at once. If the handler cannot be set, the first one does.
-        static HANDLER: OnceLock<()> = OnceLock::new();
-        HANDLER.get_or_init(|| {
-            let _ = ctrlc::set_handler(|| {
-                if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                    std::process::exit(130);
-                }
-            });
-        });
         let target = if quiet {
             ProgressDrawTarget::hidden()
         } else {
@@ -47,6 +29,7 @@ impl Progress {
         let bar = ProgressBar::with_draw_target(Some(moves as u64), target);
         bar.set_style(style(MOVES));
         bar.enable_steady_tick(Duration::from_millis(200));
+        remove_at_end(bar.clone());
         Self {
             bar,
             moves: moves as u64,
@@ -80,15 +63,6 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
-    }
-
-    /// Fails if the user has interrupted the run.
-    pub fn check(&self) -> Result<(), Failure> {
-        if self.cancelled() {
-            self.finish();
-            return Err(Failure::interrupted());
-        }
-        Ok(())
     }
 }
 

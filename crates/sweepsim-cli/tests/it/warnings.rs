@@ -311,21 +311,21 @@ fn signals_end_a_run_with_130() {
     }
 }
 
+/// Interrupts a run once one of its files is there, 300 ms later: it ends within moments, with that file alone.
 #[cfg(unix)]
-#[test]
-fn a_picture_ends_with_the_run() {
+fn interrupt(job: &str, options: &str, first: &str) {
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
-    // The sweep takes a moment, the picture a minute or so.
-    let workdir = Workdir::new(JOB);
+    let workdir = Workdir::new(job);
     let mut child = Command::new(env!("CARGO_BIN_EXE_sweepsim"))
-        .args("simulate job.ron --out out --size 8000x6000 --only dexels,picture".split(' '))
+        .args(["simulate", "job.ron", "--out", "out"])
+        .args(options.split(' '))
         .current_dir(workdir.path(""))
         .stderr(Stdio::piped())
         .stdout(Stdio::null())
         .spawn()
         .expect("the command starts");
-    while !workdir.path("out/dexels.csv").exists() {
+    while !workdir.path(&format!("out/{first}")).exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
     std::thread::sleep(Duration::from_millis(300));
@@ -336,7 +336,52 @@ fn a_picture_ends_with_the_run() {
     let mut words = String::new();
     std::io::Read::read_to_string(&mut child.stderr.take().expect("piped"), &mut words).expect("text");
     assert_eq!(child.wait().expect("it ends").code(), Some(130), "{words}");
-    assert!(words.starts_with("interrupted: dexels.csv is complete"), "{words}");
-    assert!(start.elapsed() < Duration::from_secs(10), "{:?}", start.elapsed());
-    assert_eq!(workdir.written(), ["dexels.csv"]);
+    let complete = format!("interrupted: {first} is complete, nothing else was written");
+    assert_eq!(words.trim_end(), complete);
+    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+    assert_eq!(workdir.written(), [first]);
+}
+
+/// The sweep takes a moment, the picture a minute or so.
+#[cfg(unix)]
+#[test]
+fn a_picture_ends_with_the_run() {
+    interrupt(
+        JOB,
+        "--size 8000x6000 --only dexels,picture --directions z",
+        "dexels.csv",
+    );
+}
+
+/// The surface of dexels along three axes takes ten seconds or so.
+#[cfg(unix)]
+#[test]
+fn a_surface_ends_with_the_run() {
+    let job = JOB.replace("cells: (40, 20)", "cells: (600, 300)");
+    interrupt(&job, "--only binary,mesh", "part.dexels");
+}
+
+/// Whatever waits or computes outside of a run ends, too.
+#[cfg(unix)]
+#[test]
+fn waiting_for_input_ends_with_130() {
+    use std::process::{Command, Stdio};
+    let workdir = Workdir::new(JOB);
+    let made = Command::new("mkfifo").arg(workdir.path("pipe.nc")).status();
+    assert!(made.expect("mkfifo").success());
+    let child = Command::new(env!("CARGO_BIN_EXE_sweepsim"))
+        .args(["inspect", "pipe.nc"])
+        .current_dir(workdir.path(""))
+        .stderr(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let id = child.id().to_string();
+    let sent = Command::new("kill").args(["-s", "INT", &id]).status().expect("kill");
+    assert!(sent.success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130));
+    assert_eq!(text(&output.stderr).trim_end(), "interrupted: nothing was written");
+    assert_eq!(text(&output.stdout), "");
 }

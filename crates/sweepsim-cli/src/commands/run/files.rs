@@ -100,7 +100,6 @@ pub(super) fn write_mesh(
         })?;
         report.warnings.extend(note);
     }
-    progress.check()?;
     if !outputs.wants(Output::Picture) {
         return Ok(None);
     }

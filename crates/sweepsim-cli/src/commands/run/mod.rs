@@ -126,10 +126,7 @@ fn whole(
     let pool = pool(options.threads)?;
     let threads = pool.current_num_threads();
     let outcome = pool.install(|| work(task, &mut session, (options, judging), pieces, &mut report));
-    let outcome = outcome.map_err(|failure| {
-        session.progress.finish();
-        failure.after(&session.outputs)
-    })?;
+    let outcome = outcome.inspect_err(|_| session.progress.finish())?;
     if session.outputs.wants(Output::Report) {
         let source = PageSource {
             task,
@@ -212,7 +209,6 @@ fn work(
         Some(pieces) => merge::gathered(task, session, (options, judging), pieces, report)?,
         None => compute(task, session, options, judging, report)?,
     };
-    session.progress.check()?;
     describe(task, report, session, options, &outcome);
     files::write_dexels(&outcome, session, report)?;
     if judging.moves {

@@ -4,6 +4,7 @@ use super::{along_three_axes, check_directions, pool, read};
 use crate::arguments::{JudgeOptions, Output, RunOptions, ShardNumber};
 use crate::commands::task::{Task, reported, sweeping};
 use crate::commands::{tri_surface, verify};
+use crate::session::interruption::writing;
 use crate::session::{Failure, JobSession, output_folder, print, words};
 use crate::shards::{Piece, PieceTile, Purpose, TileNotes, Tiling, TilingSet, identity, is_done};
 use std::process::ExitCode;
@@ -109,8 +110,7 @@ pub(super) fn run(
         shards: number.count,
         tiles,
     };
-    session.progress.check()?;
-    let size = piece.write(&file)?;
+    let size = writing(Some(&file.to_string_lossy()), || Ok(piece.write(&file)?))?;
     session.progress.finish();
     if !options.quiet {
         print(&format!(
