@@ -53,7 +53,7 @@ pub(crate) fn remove_at_end(bar: ProgressBar) {
     run().bar = Some(bar);
 }
 
-/// Writes a file of a name, if it has one that an interruption should mention. The run ends after it if it has been interrupted meanwhile.
+/// Writes a file, and names it among those that are complete. Fails if the run has been interrupted meanwhile, so that it ends.
 pub(crate) fn writing<T>(name: Option<&str>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     run().writing = true;
     let written = write();

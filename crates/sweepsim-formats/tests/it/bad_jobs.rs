@@ -61,6 +61,12 @@ fn one_message_with_its_place() {
             "job.ron:7:12: Unexpected variant named `Cone`",
         ),
         ("    ],\n)", "    ],".into(), "job.ron:11:7: Unexpected end of RON"),
+        // Sizes.
+        (
+            tool,
+            profile(&"Line((1, 1)), ".repeat(2049)),
+            "job.ron:7:45: tool 1: the profile has 2049 segments, counting the points of splines, but at most 2048 are supported",
+        ),
         // Values.
         (
             "1e-6",

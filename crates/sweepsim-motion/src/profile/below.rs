@@ -37,6 +37,6 @@ impl Profile {
         let radius = line.from.x + share * (line.to.x - line.from.x);
         let mut segments = self.segments[..line.segment].to_vec();
         segments.extend([[radius, height], [0.0, height]].map(|to| ProfileSegment::Line { to }));
-        Self::new(self.start, segments).ok()
+        Self::checked(self.start, segments).ok()
     }
 }

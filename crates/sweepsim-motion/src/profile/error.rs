@@ -18,6 +18,16 @@ pub enum ProfileError {
     /// There are no segments.
     #[error("a profile needs at least one segment")]
     Empty,
+    /// There are too many segments.
+    #[error(
+        "the profile has {found} segments, counting the points of splines, but at most {most} are supported: expected fewer, perhaps arcs in place of short lines"
+    )]
+    TooManySegments {
+        /// How many were given.
+        found: usize,
+        /// The most that are supported.
+        most: usize,
+    },
     /// A number is not finite.
     #[error("profile segment {segment} has a number that is not finite")]
     NotFinite {

@@ -59,10 +59,21 @@ pub enum ProfileSegment {
     },
 }
 
+impl ProfileSegment {
+    /// As how many segments it counts.
+    fn size(&self) -> usize {
+        match self {
+            Self::Line { .. } | Self::Arc { .. } => 1,
+            Self::Spline { points, .. } => points.len(),
+        }
+    }
+}
+
 /// The outline of a solid of revolution, made of lines, arcs and splines: from the tip on the axis to the top on the axis, with the material on its left.
 ///
 /// Invariants: finite; `ρ ≥ 0`, with `ρ = 0` only at the two ends; the end lies above the start; no segment
-/// is degenerate; the profile does not cross or touch itself.
+/// is degenerate; the profile does not cross or touch itself. What a move costs grows with the number of segments:
+/// at most [`MOST_SEGMENTS`](Self::MOST_SEGMENTS) can be given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     start: [f64; 2],
@@ -70,11 +81,26 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// The most segments that a profile can be given, where a spline counts as many as it has points.
+    pub const MOST_SEGMENTS: usize = 2048;
+
     /// A profile from `start` on the axis, through `segments`, to the top on the axis.
     ///
     /// # Errors
-    /// [`ProfileError`]: the profile is open, upside down, crosses the axis or itself, or has an invalid segment.
+    /// [`ProfileError`]: the profile is open, upside down, crosses the axis or itself, has too many segments or an invalid one.
     pub fn new(start: [f64; 2], segments: Vec<ProfileSegment>) -> Result<Self, ProfileError> {
+        let found = segments.iter().map(ProfileSegment::size).sum();
+        if found > Self::MOST_SEGMENTS {
+            return Err(ProfileError::TooManySegments {
+                found,
+                most: Self::MOST_SEGMENTS,
+            });
+        }
+        Self::checked(start, segments)
+    }
+
+    /// A profile of any number of segments, as offsets of others may have.
+    fn checked(start: [f64; 2], segments: Vec<ProfileSegment>) -> Result<Self, ProfileError> {
         let profile = Self { start, segments };
         let pieces = profile.try_pieces()?;
         let (Some(first), Some(last)) = (pieces.first(), pieces.last()) else {

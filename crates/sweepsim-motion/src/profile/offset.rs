@@ -355,7 +355,7 @@ fn chain(mut pieces: Vec<Piece>, size: f64) -> Option<Result<Profile, ProfileErr
             },
         });
         if is_last {
-            return Some(Profile::new(start, segments));
+            return Some(Profile::checked(start, segments));
         }
         let gap = |k: &usize| (pieces[*k].at(0.0) - end).norm();
         let next = (0..pieces.len()).min_by(|a, b| gap(a).total_cmp(&gap(b)));

@@ -4,8 +4,8 @@ use nalgebra::Matrix3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use sweepsim_motion::{
-    Apt, Barrel, Dovetail, Law, Lens, Lollipop, Move, Oval, Path, Pose, Profile, ProfileSegment, RotaryTable,
-    SplineMotion, Taper, TipArc, Tool, Turn, Turning,
+    Apt, Barrel, Dovetail, Law, Lens, Lollipop, Move, Oval, Path, Pose, Profile, ProfileError, ProfileSegment,
+    RotaryTable, SplineMotion, Taper, TipArc, Tool, Turn, Turning,
 };
 use sweepsim_spline::{BSpline, Bernstein, KnotVector, RationalSpline};
 
@@ -159,4 +159,33 @@ proptest! {
             prop_assert!(SplineMotion::from_matrices(&turn, &tip, tolerance).is_err());
         }
     }
+}
+
+/// A profile of many segments is a profile, one of too many is refused before anything is computed.
+#[test]
+fn profiles_of_many_segments() {
+    let most = Profile::MOST_SEGMENTS;
+    // Down the side of a cone in short lines.
+    let cone = |lines: usize| {
+        let up = |n: usize| n as f64 / (lines - 1) as f64;
+        let side = (1..lines).map(|n| ProfileSegment::Line { to: [up(n), up(n)] });
+        Profile::new(
+            [0.0; 2],
+            side.chain([ProfileSegment::Line { to: [0.0, 1.0] }]).collect(),
+        )
+    };
+    assert!(cone(most).is_ok());
+    let too_many = |found| Err(ProfileError::TooManySegments { found, most });
+    assert_eq!(cone(most + 1), too_many(most + 1));
+    // Points of splines count as segments, invalid ones as well.
+    let spline = ProfileSegment::Spline {
+        degree: 3,
+        knots: None,
+        points: vec![[1.0, 0.0]; 5_000_000],
+        weights: None,
+    };
+    assert_eq!(Profile::new([0.0; 2], vec![spline]), too_many(5_000_000));
+    // Offsets of the longest may have more.
+    let offset = cone(most).unwrap().offset(0.1).unwrap();
+    assert!(offset.segments().len() >= 2);
 }

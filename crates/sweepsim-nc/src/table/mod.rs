@@ -99,7 +99,10 @@ impl<'a> TableLine<'a> {
         let whole = std::str::from_utf8(bytes).map_err(|error| {
             let text = String::from_utf8_lossy(bytes);
             let column = 1 + text[..error.valid_up_to()].chars().count();
-            let problem = NcProblem::syntax("this is not a text file: expected UTF-8");
+            let problem = NcProblem::syntax(match bytes {
+                [0xff, 0xfe, ..] | [0xfe, 0xff, ..] if number == 1 => "this table is in UTF-16: expected UTF-8",
+                _ => "this is not a text file: expected UTF-8",
+            });
             NcError::new(problem, Some(TextPosition::in_line(number, text.trim_end(), column, 1)))
         })?;
         let whole = if number == 1 {

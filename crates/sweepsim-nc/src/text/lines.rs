@@ -4,6 +4,7 @@ use std::io::BufRead;
 use std::rc::Rc;
 
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::utf16;
 
 /// The longest line of a program or a table, in bytes. Blocks have a few hundred at most.
 pub(crate) const LONGEST: usize = 1 << 16;
@@ -78,7 +79,7 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// Everything in a reader.
+/// Everything in a reader; UTF-16 as UTF-8.
 ///
 /// # Errors
 /// [`NcError`]: the reader fails, a line is longer than [`LONGEST`] bytes, or there is more than 2 GB; nothing beyond it is read.
@@ -94,6 +95,9 @@ pub(crate) fn all(reader: impl BufRead) -> Result<Vec<u8>, NcError> {
             ));
         }
         bytes.extend_from_slice(lines.line());
+    }
+    if let Some(text) = utf16::as_utf8(&bytes) {
+        (bytes, lone) = (text, true);
     }
     if lone {
         end_lines_at_returns(&mut bytes);

@@ -4,4 +4,5 @@ pub(crate) mod error;
 pub(crate) mod kept;
 pub(crate) mod lines;
 pub(crate) mod numbers;
+pub(crate) mod utf16;
 pub(crate) mod whole;

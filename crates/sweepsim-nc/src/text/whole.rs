@@ -4,10 +4,12 @@ use std::fs::File;
 use std::io::{Error, ErrorKind, Read as _, Result};
 use std::path::Path;
 
+use super::utf16;
+
 /// The largest library of tools or description of a machine, in bytes: libraries of thousands of tools have a few millions.
 pub(crate) const LARGEST: u64 = 64 << 20;
 
-/// The bytes of a file, which may also be a pipe, of at most [`LARGEST`] bytes; nothing beyond is read.
+/// The bytes of a file, which may also be a pipe, of at most [`LARGEST`] bytes; nothing beyond is read. UTF-16 as UTF-8.
 ///
 /// # Errors
 /// Those of the file, and [`ErrorKind::InvalidData`] if it is larger.
@@ -37,6 +39,6 @@ fn at_most(file: File, limit: u64) -> Result<Vec<u8>> {
     if bytes.len() as u64 > limit {
         Err(large())
     } else {
-        Ok(bytes)
+        Ok(utf16::as_utf8(&bytes).unwrap_or(bytes))
     }
 }

@@ -203,3 +203,47 @@ fn a_return_by_itself_ends_a_line() {
     let program = read("a.nc", b"G21\r\r\nG0 X0 Y0 Z5\n\rG0 X1\r\r\n").unwrap();
     assert_eq!(program.poses.last().unwrap().line, 3);
 }
+
+/// A text in UTF-16 of either order, with its mark.
+fn utf16(text: &str) -> [Vec<u8>; 2] {
+    let units = || "\u{feff}".encode_utf16().chain(text.encode_utf16());
+    [
+        units().flat_map(u16::to_le_bytes).collect(),
+        units().flat_map(u16::to_be_bytes).collect(),
+    ]
+}
+
+/// As Windows' editors and PowerShell write them.
+#[test]
+fn programs_in_utf16_are_read_as_in_utf8() {
+    for text in [
+        "%\r\nO1000 (Größe 😀)\r\nG21\r\nG0 X0 Y0 Z5\r\nG1 Z0 F500\r\nM30\r\n",
+        "O1000\rG21\rG0 X0 Y0 Z5\rG1 Z0 (\u{a0d}\u{d0a})\rM30",
+        "0 BEGIN PGM A MM\n1 L X+0 Y+0 Z+5 R0 FMAX\n2 L Z+0 F500\n3 END PGM A MM\n",
+        "TOOL PATH/MILL,TOOL,D10\nGOTO/1,2,3,0,0,1\nGOTO/1,2,0,0,0,1\n",
+        "1 2 3 0 0 1\n4 5 6 0 0 1\n",
+    ] {
+        let expected = read("a.txt", text.as_bytes()).unwrap();
+        for bytes in utf16(text) {
+            let program = read("a.txt", &bytes).unwrap();
+            assert_eq!(program.poses, expected.poses, "{text}");
+            assert_eq!(program.poses.len(), 2, "{text}");
+        }
+    }
+    // Where a line is wrong it is named; what is cut off within a character is no character.
+    for bytes in utf16("G21\nG0 X0 Y0 Z5\nG1 Z0 !\n") {
+        let error = read("a.nc", &bytes).unwrap_err();
+        assert!(error.starts_with("a.nc:3:7: "), "{error}");
+    }
+    let [mut bytes, _] = utf16("G21\nG0 X0 Y0 Z5\nG1 Z0\nX1");
+    bytes.pop();
+    let error = read("a.nc", &bytes).unwrap_err();
+    assert!(error.starts_with("a.nc:4:1: expected a number after `X`"), "{error}");
+    for bytes in utf16("x,y,z,i,j,k\n1,2,3,0,0,1\n") {
+        let error = read("a.csv", &bytes).unwrap_err();
+        assert!(
+            error.starts_with("a.csv:1:1: this table is in UTF-16: expected UTF-8"),
+            "{error}"
+        );
+    }
+}

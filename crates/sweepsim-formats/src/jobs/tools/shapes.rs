@@ -146,6 +146,7 @@ pub(crate) fn tool(number: u32, raw: &schema::Tool, unit: f64) -> Result<Made, F
                 place.extend(in_spline(&fault));
                 place
             }
+            ProfileError::TooManySegments { .. } => vec!["segments".into()],
             ProfileError::Open { .. } | ProfileError::UpsideDown { .. } => last(raw),
             _ => vec![],
         };
