@@ -185,7 +185,14 @@ fn profiles_of_many_segments() {
         weights: None,
     };
     assert_eq!(Profile::new([0.0; 2], vec![spline]), too_many(5_000_000));
-    // Offsets of the longest may have more.
-    let offset = cone(most).unwrap().offset(0.1).unwrap();
-    assert!(offset.segments().len() >= 2);
+    // Offsets have arcs about the corners of a convex outline, so that there may be more.
+    let bowl = (1..most).map(|n| {
+        let (sin, cos) = (n as f64 / (most - 1) as f64 * std::f64::consts::FRAC_PI_2).sin_cos();
+        ProfileSegment::Line { to: [sin, 1.0 - cos] }
+    });
+    let bowl = Profile::new(
+        [0.0; 2],
+        bowl.chain([ProfileSegment::Line { to: [0.0, 1.0] }]).collect(),
+    );
+    assert!(bowl.unwrap().offset(0.1).unwrap().segments().len() > most);
 }
