@@ -96,6 +96,26 @@ impl Turns {
         one(start, cross / sine, sine.atan2(o0.dot(&o1)))
     }
 
+    /// The same with exactly the axis and the angle of an arc, if they are the same but for rounding: tool and tip then turn as one rigid body, with the same weights to the bit.
+    fn with_arc(self, course: &Course) -> Self {
+        /// Rounding errors of orientations that are turned by an angle, and of the turn between them.
+        const ROUNDING: f64 = 16.0 * f64::EPSILON;
+        let (Self::One { start, k, angle }, Course::Arc(arc)) = (&self, course) else {
+            return self;
+        };
+        let (normal, same_way) = (arc.normal_vector().into_inner(), (angle * arc.angle()).signum());
+        let is_same = (k * same_way - normal).norm() <= ROUNDING && (angle * same_way - arc.angle()).abs() <= ROUNDING;
+        if is_same {
+            Self::One {
+                start: *start,
+                k: normal,
+                angle: arc.angle(),
+            }
+        } else {
+            self
+        }
+    }
+
     /// The angles, unsigned.
     fn angles(&self) -> [f64; 2] {
         match self {
@@ -275,7 +295,7 @@ pub(crate) fn segments(
 ) -> Vec<Segment> {
     let tip = Tip::new(from, to, &way.course);
     let own = if symmetric { own_turn(from, to, way) } else { None };
-    let turns = Turns::new(from, to, &way.turning);
+    let turns = Turns::new(from, to, &way.turning).with_arc(&way.course);
     let [first, second] = turns.angles();
     let largest = first.max(second).max(tip.angle());
     let least = (largest / FRAC_PI_2 - 1e-12).ceil().max(1.0) as usize;

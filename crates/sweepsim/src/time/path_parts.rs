@@ -12,7 +12,7 @@ use sweepsim_motion::{Course, Path, Segment, Turning};
 #[derive(Clone, Debug)]
 pub(crate) struct PathPart {
     pub segment: Segment,
-    /// The same as a circle or helix about a line along the dexels, for a tool of revolution that stands along them.
+    /// The same as a circle or helix about a line along the dexels, for a tool that stands along them and turns with it, as one of revolution may.
     pub round: Option<Round>,
     /// The same as a circle in a plane along the dexels, for any tool of revolution.
     pub wheel: Option<Wheel>,
@@ -141,10 +141,10 @@ pub(crate) fn parts(
             let by = [displaced(from, [last, own]), displaced(to, [own, next])];
             last = own;
             let limit = tolerances.circle_deviation();
-            let round = if symmetric {
-                Round::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit))
-            } else {
+            let round = if carried {
                 None
+            } else {
+                Round::parts(path, to - 1 - first, frame, (&segments, symmetric, reach), (by, limit))
             };
             let inclined = match round {
                 None if symmetric => Inclined::parts(path, to - 1 - first, frame, (segments.len(), reach), (by, limit)),

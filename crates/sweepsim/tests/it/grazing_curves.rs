@@ -83,7 +83,7 @@ pub fn bud() -> Tool {
     ])
 }
 
-fn tools() -> [(&'static str, Tool); 3] {
+pub fn tools() -> [(&'static str, Tool); 3] {
     [
         ("cushion", cushion()),
         ("bud", bud()),

@@ -4,6 +4,7 @@ mod arcs_along_dexels;
 mod arcs_as_wide_as_the_tool;
 mod arcs_in_closed_form;
 mod arcs_in_tilted_planes;
+mod arcs_of_any_tool;
 mod arcs_of_lying_axes;
 mod arcs_of_lying_tools;
 mod arcs_of_spline_profiles;

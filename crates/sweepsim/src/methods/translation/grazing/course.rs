@@ -16,12 +16,15 @@ use sweepsim_motion::{Segment, turned_back};
 const FINENESS: f64 = 1_048_576.0;
 /// So no component of a direction is farther than this from the one that stands for it: rounded, and made a unit vector again.
 const SPREAD: f64 = 4.0 / FINENESS;
+/// The spread of a spin in units of that of directions over the radius. A spin is the length of the direction's horizontal part over the radius: members of a family differ from it by half the spread in each component, which makes
+/// `√½` of these units, and by half the spread of the radius, `½` of them; and like those, its spread is at least twice that.
+const SPREAD_OF_SPIN: f64 = 3.0;
 
 /// The direction of travel at the start of an arc, in the coordinates of a tool of revolution that stands along the dexels: how such a tool has turned about its own axis is arbitrary. Not
 /// along the seams of its patches, nor across them.
 const START: [f64; 2] = [0.761_245_135, 0.648_464_164];
 
-/// A move without rotation, or an arc with which a tool of revolution turns, in the direction in which its family goes: arcs turn left.
+/// A move without rotation, or an arc with which the tool turns, in the direction in which its family goes: arcs turn left.
 #[derive(Clone, Debug)]
 pub(super) struct Course {
     /// The height of the tip, and its rise.
@@ -53,6 +56,10 @@ pub(super) struct Directions {
     pub backwards: bool,
     /// Of an arc.
     pub centre: Option<Centre>,
+    /// The angular velocity about the dexels' direction, with the velocity of the tip as long as [`way`](Self::way) says: that of an arc with which a tool turns that is not of revolution.
+    pub spin: f64,
+    /// No spin that this one stands for differs by more.
+    pub spin_spread: f64,
 }
 
 /// What all directions of a family have in common.
@@ -74,7 +81,36 @@ impl Directions {
             spread,
             backwards: false,
             centre: None,
+            spin: 0.0,
+            spin_spread: 0.0,
         }
+    }
+
+    /// The same of an arc. `turns`: the tool, which is not of revolution.
+    fn around(self, centre: Centre, turns: bool) -> Self {
+        let [x, y, _] = self.way;
+        let (spin, spin_spread) = if turns {
+            (x.hypot(y) / centre.radius, SPREAD_OF_SPIN * self.spread / centre.radius)
+        } else {
+            (0.0, 0.0)
+        };
+        Self {
+            centre: Some(centre),
+            spin,
+            spin_spread,
+            ..self
+        }
+    }
+
+    /// The angular velocity and the velocity of the tip, in the tool's coordinates.
+    pub fn twist(&self) -> [[f64; 3]; 2] {
+        [self.rows[2].map(|x| x * self.spin), self.way]
+    }
+
+    /// The velocity of a point of the tool.
+    pub fn velocity(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        let [spin, way] = self.twist().map(Vector3::from);
+        way + spin.cross(point)
     }
 
     /// Whether these stand for others.
@@ -85,7 +121,8 @@ impl Directions {
             (a, b) => a.is_none() && b.is_none(),
         };
         let mut numbers = pairs.flat_map(|(a, b)| a.iter().zip(b));
-        radii && numbers.all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
+        let spins = (self.spin - others.spin).abs() <= 0.5 * self.spin_spread;
+        radii && spins && numbers.all(|(a, b)| (a - b).abs() <= 0.5 * self.spread)
     }
 
     /// A cell as it is seen from the centre of an arc, if its points may be off by so much.
@@ -177,10 +214,10 @@ impl Course {
         })
     }
 
-    /// An arc of a tool of revolution that stands along the dexels, and the same as a segment. `None` if it is too short.
+    /// An arc of a tool that stands along the dexels and turns with it, and the same as a segment. `None` if it is too short.
     ///
-    /// In the frame that turns with the arc, the velocity is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point out of its surface:
-    /// `g` is that of the translation.
+    /// In the frame that turns with the arc, the velocity of a tool of revolution is that of a translation along the tangent, but for a turn about the tool's own axis, which moves no point
+    /// out of its surface: `g` is that of the translation. Other tools keep that turn.
     pub fn around(round: &Round, segment: &Segment, slack: f64) -> Option<Self> {
         let (radius, angle) = (round.radius, round.angle.abs());
         let [first, last] = segment.tips();
@@ -194,7 +231,15 @@ impl Course {
         } else {
             (first[2], climb, round.from)
         };
-        let (turn, ahead) = (Matrix3::identity(), unit(START));
+        let ahead = unit(match round.tool_x {
+            None => START,
+            // The tangent to the left, as seen along the tool's x and y: the same at both ends.
+            Some([x, y]) => {
+                let [a, b] = round.from;
+                [a * y - b * x, a * x + b * y]
+            }
+        });
+        let (turn, centre) = (Matrix3::identity(), Centre { radius, spread: 0.0 });
         let way = [ahead[0] * radius * angle, ahead[1] * radius * angle, rise];
         let ring = Ring {
             centre: round.centre,
@@ -202,6 +247,7 @@ impl Course {
             from: out,
             slack,
         };
+        let own = Directions::new(&turn, ahead, unit(way), 0.0).around(centre, round.tool_x.is_some());
         Some(Self {
             from,
             rise,
@@ -211,8 +257,7 @@ impl Course {
             slack,
             own: Directions {
                 backwards: reversed,
-                centre: Some(Centre { radius, spread: 0.0 }),
-                ..Directions::new(&turn, ahead, unit(way), 0.0)
+                ..own
             },
             turn,
             ahead,
@@ -239,10 +284,10 @@ impl Course {
             way: way.map(|x| x as i32),
             radius: centre.map(|centre| centre.radius.to_bits()),
         };
-        let directions = Directions {
-            centre,
-            ..Directions::new(&self.turn, unit(ahead), unit(way), SPREAD)
-        };
+        let mut directions = Directions::new(&self.turn, unit(ahead), unit(way), SPREAD);
+        if let Some(centre) = centre {
+            directions = directions.around(centre, self.own.spin > 0.0);
+        }
         directions.are_near(&self.own).then_some((key, directions))
     }
 

@@ -33,10 +33,11 @@ impl<'a> Face<'a> {
     pub fn new(element: &'a PatchForms, directions: &Directions) -> Self {
         let [q, p, z] = directions.rows.map(|row| Vector3::from(row).transpose());
         let frame = element.frame();
+        let [spin, way] = directions.twist().map(Vector3::from);
         Self {
             element,
             placing: Placing::new(&Matrix3::from_rows(&[q, p, z]), &Vector3::zeros(), frame),
-            way: Twisted::new(&Vector3::zeros(), &directions.way.into(), frame),
+            way: Twisted::new(&spin, &way, frame),
             centre: directions.centre,
         }
     }

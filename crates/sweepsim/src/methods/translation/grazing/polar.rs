@@ -160,10 +160,12 @@ impl Wedge {
 mod tests {
     use super::super::course::Course;
     use super::super::face::{Curve, Face};
-    use super::super::tree::Tree;
+    use super::super::tree::{Tree, error, g, slopes_of_g};
+    use crate::algebra::table::position;
     use crate::cutter::cells::Cells;
     use crate::cutter::patch_forms::PatchForms;
     use crate::time::circles::Round;
+    use nalgebra::Vector3;
     use proptest::prelude::*;
     use sweepsim_motion::{Pose, Profile, ProfileSegment, Segment, Tool};
 
@@ -180,15 +182,15 @@ mod tests {
     }
 
     proptest! {
-        /// The ranges over a cell hold the values and derivatives at all of its points, for the arc itself and for its family.
+        /// The ranges over a cell hold the values and derivatives at all of its points, for the arc itself and for its family, whether the tool has to turn with the arc or is of revolution.
         #[test]
         fn ranges_hold_all_points(
-            tool in 0..3_usize, number in 0..100_usize, logarithm in -4.0..5.0_f64, slope in -1.0..1.0_f64, left in any::<bool>(),
+            tool in 0..3_usize, stands in prop::option::of(-3.2..3.2_f64), number in 0..100_usize, logarithm in -4.0..5.0_f64, slope in -1.0..1.0_f64, left in any::<bool>(),
             corner in [0.0..1.0_f64, 0.0..1.0], sides in [-12.0..0.0_f64, -12.0..0.0], shares in [0.0..1.0_f64, 0.0..1.0],
         ) {
             let radius = logarithm.exp();
             let angle = if left { 1.2 } else { -1.2 };
-            let round = Round { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle };
+            let round = Round { centre: [0.3, -0.2], radius, from: [0.6, 0.8], angle, tool_x: stands.map(|angle: f64| [angle.cos(), angle.sin()]) };
             let pose = |z: f64| Pose::new([0.0, 0.0, z], [0.0, 0.0, 1.0]).unwrap();
             let segment = Segment::between(&pose(0.0), &pose(slope * radius)).remove(0);
             let course = Course::around(&round, &segment, 1e-13).unwrap();
@@ -221,6 +223,22 @@ mod tests {
                         prop_assert!(lo - margin <= own && own <= hi + margin, "{axis} {k}: {own} in {lo} {hi}");
                     }
                 }
+                let within = error(element, directions) + blur.g;
+                let of_g = [(g(element, &cells, cell, 0, directions), within)];
+                let of_slopes = slopes_of_g(&cells, cell, directions, &blur.g_slopes).map(|range| (range, 1e3 * within));
+                for (k, ((lo, hi), within)) in of_g.into_iter().chain(of_slopes).enumerate() {
+                    prop_assert!(lo - within <= sight.g[k] && sight.g[k] <= hi + within, "{k}: {} in {lo} {hi}", sight.g[k]);
+                }
+            }
+            // The velocity is that of a turn about the centre; of a tool of revolution, but for a turn about its own axis.
+            let [ahead, left, up] = course.own.rows.map(Vector3::from);
+            let [point, ..] = position(&element.places.at::<4>(at));
+            if stands.is_some() {
+                let expected = up.cross(&(point - left * radius)) + up * (course.rise / course.length);
+                let scale = radius.hypot(course.rise / course.length).recip();
+                prop_assert!((course.own.velocity(&point) - expected * scale).norm() < 1e-12 * (1.0 + point.norm() * scale));
+            } else {
+                prop_assert!(course.own.velocity(&point).dot(&left).abs() < 1e-12 && course.own.velocity(&point).dot(&ahead) > 0.0);
             }
             // The derivatives are those of the values.
             const STEP: f64 = 1e-6;

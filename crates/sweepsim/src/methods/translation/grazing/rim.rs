@@ -161,9 +161,9 @@ pub(super) fn look(
 
 /// Whether `C′ × d` points outwards at a point (1), or inwards (−1).
 fn outwards(element: &PatchForms, r: f64, directions: &Directions) -> f64 {
-    let [_, slope] = position(&element.places.along::<4>(r));
+    let [point, slope] = position(&element.places.along::<4>(r));
     let (_, [[n, _], [m, _]]) = element.rim(r);
-    let way = Vector3::from(directions.way);
+    let way = directions.velocity(&point);
     // The envelope's normal lies in the fan of the two faces, where g = 0.
     let normal = n * m.dot(&way).abs() + m * n.dot(&way).abs();
     if slope.cross(&way).dot(&normal) < 0.0 {
@@ -178,29 +178,61 @@ mod tests {
     use super::super::course::Course;
     use super::super::tree::Tree;
     use super::*;
+    use crate::time::circles::Round;
     use proptest::prelude::*;
-    use sweepsim_motion::{Pose, Segment, Tool};
+    use sweepsim_motion::{Patch, Pose, Segment, Tool};
+    use sweepsim_spline::Bernstein;
+
+    /// Six bilinear patches, of no symmetry about the tool's axis.
+    fn block() -> Tool {
+        let corner = |k: usize| [0, 1, 2].map(|a| [[-1.5, -0.5, 0.0], [1.0, 1.2, 3.0]][k >> a & 1][a]);
+        let faces = [
+            [0, 2, 1, 3],
+            [4, 5, 6, 7],
+            [0, 1, 4, 5],
+            [2, 6, 3, 7],
+            [0, 4, 2, 6],
+            [1, 3, 5, 7],
+        ];
+        let patch = |face: [usize; 4]| {
+            let form = |values: Vec<f64>| Bernstein::new(&[1, 1], values).unwrap();
+            let position = [0, 1, 2].map(|a: usize| form(face.map(|k| corner(k)[a]).to_vec()));
+            Patch::new(position, form(vec![1.0; 4])).unwrap()
+        };
+        Tool::from_patches(faces.map(patch).to_vec(), 1e-9).unwrap()
+    }
 
     /// `p′`, and `g` of both faces.
     fn at(element: &PatchForms, r: f64, directions: &Directions) -> (f64, [f64; 2]) {
-        let [_, slope] = position(&element.places.along::<4>(r));
+        let [point, slope] = position(&element.places.along::<4>(r));
         let (_, normals) = element.rim(r);
-        let across = Vector3::from(directions.rows[1]).dot(&slope);
-        (across, normals.map(|[n, _]| n.dot(&Vector3::from(directions.way))))
+        let velocity = directions.velocity(&point);
+        let across = match &directions.centre {
+            None => Vector3::from(directions.rows[1]).dot(&slope),
+            Some(centre) => {
+                let out = point - Vector3::from(directions.rows[1]) * centre.radius;
+                -out.xy().dot(&slope.xy()) / out.xy().norm()
+            }
+        };
+        (across, normals.map(|[n, _]| n.dot(&velocity)))
     }
 
     proptest! {
-        /// What is said of a cell for a family of directions holds for each of them, at all of its points.
+        /// What is said of a cell for a family of directions holds for each of them, at all of its points. `radius`: of an arc with which the tool turns.
         #[test]
         fn looks_hold_for_all_of_a_family(
-            tool in 0..3_usize, axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0], way in [-2.0..2.0, -2.0..2.0, -1.0..1.0], shift in [-1e-7..1e-7, -1e-7..1e-7, -1e-7..1e-7], shares in [0.0..1.0, 0.0..1.0],
+            tool in 0..4_usize, radius in prop::option::of(-2.0..4.0_f64), axis in [-1.0..1.0, -1.0..1.0, 0.1..1.0], way in [-2.0..2.0, -2.0..2.0, -1.0..1.0], shift in [-1e-7..1e-7, -1e-7..1e-7, -1e-7..1e-7], shares in [0.0..1.0, 0.0..1.0],
         ) {
-            let tool = [Tool::flat(3.0, 9.0), Tool::bull(3.0, 1.0, 9.0), Tool::ball(3.0, 9.0)][tool].clone().unwrap();
-            let pose = |tip| Pose::new(tip, axis).unwrap();
-            let segment = |way| Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
-            let first = segment(way);
-            let second = segment([0, 1, 2].map(|k: usize| way[k] + shift[k]));
-            let (Some(course), Some(other)) = (Course::new(&first, 1e-13), Course::new(&second, 1e-13)) else { return Ok(()) };
+            let tool = [Tool::flat(3.0, 9.0), Tool::bull(3.0, 1.0, 9.0), Tool::ball(3.0, 9.0), Ok(block())][tool].clone().unwrap();
+            let pose = |tip| Pose::new(tip, if radius.is_some() { [0.0, 0.0, 1.0] } else { axis }).unwrap();
+            let course = |way: [f64; 3]| {
+                let segment = Segment::between(&pose([0.0; 3]), &pose(way)).remove(0);
+                let Some(radius) = radius else { return Course::new(&segment, 1e-13) };
+                let [x, y, _] = way;
+                let round = Round { centre: [0.3, -0.2], radius: radius.exp() + 0.1 * way[2], from: [0.6, 0.8], angle: x, tool_x: Some([x / x.hypot(y), y / x.hypot(y)]) };
+                Course::around(&round, &segment, 1e-13)
+            };
+            let (Some(course), Some(other)) = (course(way), course([0, 1, 2].map(|k: usize| way[k] + shift[k]))) else { return Ok(()) };
             let Some((key, family)) = course.family() else { return Ok(()) };
             let mut all = vec![&course];
             // A different family for a few of them.

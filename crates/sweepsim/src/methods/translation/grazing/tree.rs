@@ -3,7 +3,7 @@
 use super::chart::{Chart, Range, Rough, magnitude};
 use super::course::Directions;
 use super::rim::{Look, look};
-use crate::algebra::ranges::{ROUNDING, Triples, products};
+use crate::algebra::ranges::{ROUNDING, Triples, envelope, products};
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::{at_pole, pole};
@@ -69,7 +69,7 @@ pub(super) struct Blur {
     /// Of derivatives of the place, and of those of `g`, in each variable.
     pub slopes: [f64; 2],
     pub g: f64,
-    g_slopes: [f64; 2],
+    pub g_slopes: [f64; 2],
 }
 
 /// The sizes of vectors, component by component.
@@ -93,24 +93,30 @@ fn total(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|k| a[k].abs() * b[k]).sum()
 }
 
+/// The same of moments and normals, for the angular velocity and the direction of the way.
+fn both(twist: &[[f64; 3]; 2], sizes: &[[f64; 3]; 2]) -> f64 {
+    total(&twist[0], &sizes[0]) + total(&twist[1], &sizes[1])
+}
+
 pub(super) fn widened((lo, hi): Range, by: f64) -> Range {
     (lo - by, hi + by)
 }
 
 impl Blur {
-    fn new((element, cells): (&PatchForms, &mut Cells), cell: u32, spread: f64) -> Self {
-        if spread == 0.0 {
+    fn new((element, cells): (&PatchForms, &mut Cells), cell: u32, directions: &Directions) -> Self {
+        if directions.spread == 0.0 {
             return Self::default();
         }
         cells.prepare(element, cell);
-        let one = [spread; 3];
+        let one = [directions.spread; 3];
+        // Of the angular velocity, and of the direction of the way.
+        let twist = [directions.rows[2].map(|x| x * directions.spin_spread), one];
         let missing = cells.missing(cell);
-        let [_, largest] = element.largest;
         if element.is_edge() {
             return Self {
                 place: total(&one, &sizes(&cells.position(element, cell))),
                 slopes: [total(&one, &sizes(&cells.slope(element, cell, 0))), 0.0],
-                g: total(&one, &largest),
+                g: both(&twist, &element.largest),
                 g_slopes: [0.0; 2],
             };
         }
@@ -119,10 +125,10 @@ impl Blur {
             slopes: [0, 1].map(|axis| {
                 total(&one, &sizes(&cells.slope(element, cell, axis))) + total(&one, &missing.tangents[axis])
             }),
-            g: total(&one, &largest),
+            g: both(&twist, &element.largest),
             g_slopes: [0, 1].map(|axis| {
-                let [normals, _] = cells.field_slope(cell, 0, axis);
-                total(&one, &sizes(&normals)) + total(&one, &missing.slopes[axis][1])
+                let [normals, moments] = cells.field_slope(cell, 0, axis);
+                both(&twist, &[sizes(&moments), sizes(&normals)]) + both(&twist, &missing.slopes[axis])
             }),
         }
     }
@@ -130,22 +136,32 @@ impl Blur {
 
 /// The bound of the rounding error of `g`.
 pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
-    ROUNDING * total(&directions.way, &element.rounding[1])
+    ROUNDING * both(&directions.twist(), &element.rounding)
+}
+
+/// The range of `⟨way, N⟩ + ⟨spin, M⟩` over all coefficients of `N` and `M`, and what these lack.
+fn envelope_of(fields: &[Triples; 2], missing: &[[f64; 3]; 2], directions: &Directions) -> Range {
+    let twist = directions.twist();
+    let range = if directions.spin == 0.0 {
+        products(&[directions.way], &fields[0])
+    } else {
+        envelope(&[twist[0]], &[twist[1]], fields)
+    };
+    widened(range, both(&twist, missing))
 }
 
 /// The range of `g` on a cell, but for rounding; of an edge, on one of its two sides.
 pub(super) fn g(element: &PatchForms, cells: &Cells, cell: u32, side: usize, directions: &Directions) -> Range {
-    let [normals, _] = cells.field(element, cell, side);
-    let missing = total(&directions.way, &cells.missing(cell).value[1]);
-    widened(products(&[directions.way], &normals), missing)
+    let fields = cells.field(element, cell, side);
+    envelope_of(&fields, &cells.missing(cell).value, directions)
 }
 
 /// The ranges of its derivatives on a prepared cell, for all directions that differ by so much.
-fn slopes(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
+pub(super) fn slopes_of_g(cells: &Cells, cell: u32, directions: &Directions, blur: &[f64; 2]) -> [Range; 2] {
     [0, 1].map(|axis| {
-        let [normals, _] = cells.field_slope(cell, 0, axis);
-        let missing = total(&directions.way, &cells.missing(cell).slopes[axis][1]);
-        widened(products(&[directions.way], &normals), missing + blur[axis])
+        let fields = cells.field_slope(cell, 0, axis);
+        let range = envelope_of(&fields, &cells.missing(cell).slopes[axis], directions);
+        widened(range, blur[axis])
     })
 }
 
@@ -161,7 +177,7 @@ fn towards_pole(element: &PatchForms, bounds: [Range; 2]) -> Option<usize> {
 impl Tree {
     /// Of all of a cell.
     pub fn new(element: &PatchForms, cells: &mut Cells, cell: u32, directions: &Directions, slack: f64) -> Self {
-        let blur = Blur::new((element, cells), cell, directions.spread);
+        let blur = Blur::new((element, cells), cell, directions);
         let mut tree = Self {
             nodes: Vec::new(),
             charts: Vec::new(),
@@ -261,7 +277,7 @@ impl Tree {
         let of_place =
             [0, 1].map(|axis| directions.slopes((element, cells, cell), wedge.as_ref(), (axis, place_slopes[axis])));
         let [([q_u, p_u], in_u), ([q_v, p_v], in_v)] = of_place;
-        let of_g = slopes(cells, cell, directions, g_slopes);
+        let of_g = slopes_of_g(cells, cell, directions, g_slopes);
         let jacobian = [[p_u, p_v], of_g];
         let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
@@ -275,7 +291,10 @@ impl Tree {
             let (lo, hi) = g(element, cells, part, 0, directions);
             let found = (lo <= within && hi >= -within).then(|| {
                 cells.prepare(element, part);
-                (widened((lo, hi), within), slopes(cells, part, directions, g_slopes))
+                (
+                    widened((lo, hi), within),
+                    slopes_of_g(cells, part, directions, g_slopes),
+                )
             });
             cells.release(part as usize);
             found
