@@ -1,6 +1,7 @@
 //! Evaluations of a map in a chart: of the map itself, or of another one with the same solutions for one target.
 
 use super::beside::only;
+use super::faces::Searched;
 use super::linear::Linear;
 use super::solver::LIMIT;
 use super::{ChartMap, ChartSolver, Sample, Sink, Targets};
@@ -61,7 +62,7 @@ impl<C: Clone> ChartSolver<C> {
         map: &mut M,
         cell: &C,
         bounds: &[Enclosure; N],
-        domain: &[Enclosure; N],
+        searched: &Searched<N>,
         values: &[Enclosure; N],
         targets: &T,
         sink: &mut S,
@@ -94,7 +95,7 @@ impl<C: Clone> ChartSolver<C> {
             &linear,
             &contraction,
             bounds,
-            domain,
+            searched,
             &value,
             values,
             targets,

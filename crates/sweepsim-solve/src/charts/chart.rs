@@ -1,6 +1,7 @@
 //! One chart: Newton's method in it, and where preimages can be.
 
 use super::about::Points;
+use super::faces::{Place, Searched};
 use super::linear::{Contraction, Linear};
 use super::sides::Sides;
 use super::solver::{BETWEEN, CLOSE};
@@ -83,7 +84,7 @@ pub(crate) struct Chart<'a, const N: usize> {
     linear: &'a Linear<N>,
     contraction: &'a Contraction<N>,
     bounds: &'a [Enclosure; N],
-    domain: &'a [Enclosure; N],
+    searched: &'a Searched<'a, N>,
     /// The longest last step of Newton's method, in half sides: well inside the box, and near a face.
     accept: [f64; 2],
 }
@@ -98,13 +99,13 @@ impl<'a, const N: usize> Chart<'a, N> {
         linear: &'a Linear<N>,
         contraction: &'a Contraction<N>,
         bounds: &'a [Enclosure; N],
-        domain: &'a [Enclosure; N],
+        searched: &'a Searched<'a, N>,
         accept: f64,
     ) -> Self {
         // ‖R‖ bounds how much the Jacobian changes over the box, so that a step of δ leaves an error of about ‖R‖δ² half sides; the map's
         // other data are off by about the square of the step. In parts of the domain both are to be at most the square of `accept`.
         let part = (0..N)
-            .map(|i| bounds[i].radius() / domain[i].radius())
+            .map(|i| bounds[i].radius() / searched.domain[i].radius())
             .fold(0.0, f64::max);
         let scale = (part * part.max(linear.norm())).sqrt();
         let inside = (accept / scale).min(LONGEST).max(accept);
@@ -112,7 +113,7 @@ impl<'a, const N: usize> Chart<'a, N> {
             linear,
             contraction,
             bounds,
-            domain,
+            searched,
             accept: [inside, accept],
         }
     }
@@ -137,7 +138,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         q: &[f64; N],
         witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-        found: &mut impl FnMut(SVector<f64, N>, [f64; N], P::Seen),
+        found: &mut impl FnMut(SVector<f64, N>, Place, [f64; N], P::Seen),
     ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
@@ -174,9 +175,12 @@ impl<'a, const N: usize> Chart<'a, N> {
             let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
-                if step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step) && self.owns(&next) {
-                    found(next, from, sample.seen);
-                    return Outcome::Settled;
+                if step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step) {
+                    let place = self.place(&next);
+                    if place != Place::Outside {
+                        found(next, place, from, sample.seen);
+                        return Outcome::Settled;
+                    }
                 }
             }
             let predicted = self.narrow(&here, q, &mut region);
@@ -188,13 +192,16 @@ impl<'a, const N: usize> Chart<'a, N> {
                 let rests = |next: &SVector<f64, N>| {
                     (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
                 };
-                return match next {
-                    Some(next) if self.owns(&next) => {
-                        found(next, from, sample.seen);
+                let Some(next) = next else {
+                    return Outcome::Unclear;
+                };
+                return match self.place(&next) {
+                    Place::Outside if rests(&next) => Outcome::Settled,
+                    Place::Outside => Outcome::Unclear,
+                    place => {
+                        found(next, place, from, sample.seen);
                         Outcome::Settled
                     }
-                    Some(next) if rests(&next) => Outcome::Settled,
-                    _ => Outcome::Unclear,
                 };
             }
             s = next.unwrap_or(predicted);
@@ -220,13 +227,8 @@ impl<'a, const N: usize> Chart<'a, N> {
         (0..N).all(|i| (1.0 - next[i].abs()).abs() > step * step || step <= self.linear.slack[i])
     }
 
-    /// Whether a point is in the box. Only its lower faces, and upper faces on the domain's boundary, belong to it.
-    fn owns(&self, s: &SVector<f64, N>) -> bool {
-        let x = self.linear.point(s);
-        (0..N).all(|i| {
-            let (side, end) = (&self.bounds[i], self.domain[i].hi());
-            x[i] >= side.lo() && (x[i] < side.hi() || (x[i] <= side.hi() && side.hi() == end))
-        })
+    fn place(&self, s: &SVector<f64, N>) -> Place {
+        Place::of(s, self.linear, self.bounds, self.searched)
     }
 }
 
@@ -240,7 +242,7 @@ impl<C: Clone> ChartSolver<C> {
         linear: &Linear<N>,
         contraction: &Contraction<N>,
         bounds: &[Enclosure; N],
-        domain: &[Enclosure; N],
+        searched: &Searched<N>,
         value: &[f64; N],
         values: &[Enclosure; N],
         targets: &T,
@@ -259,13 +261,16 @@ impl<C: Clone> ChartSolver<C> {
         };
         let whole = Region::around(&centre.at, &SVector::repeat(1.0));
         let close = linear.radius < CLOSE;
-        let mark = sink.mark();
         let mut trail = Trail::new();
         let mut clear = true;
         let Self {
-            options, statistics, ..
+            options,
+            statistics,
+            faces,
+            ..
         } = self;
-        let chart = Chart::new(linear, contraction, bounds, domain, options.accept);
+        let mark = (sink.mark(), faces.mark());
+        let chart = Chart::new(linear, contraction, bounds, searched, options.accept);
         // Of the last target examined, and of the first one found in the row.
         let (mut last, mut first): (Option<Witness<N>>, Option<Witness<N>>) = (None, None);
         let mut row = usize::MAX;
@@ -308,16 +313,19 @@ impl<C: Clone> ChartSolver<C> {
                 q,
                 &mut witness,
                 &mut statistics.evaluations,
-                &mut |s, from, seen| {
+                &mut |s, place, from, seen| {
                     trail.push(target.place, s.into());
-                    sink.found(Preimage {
-                        target: target.number,
-                        x: linear.point(&s),
-                        from,
-                        seen,
-                        orientation: linear.orientation,
-                    });
                     hit = true;
+                    let x = linear.point(&s);
+                    if faces.is_new(target.number, &x, linear, place) {
+                        sink.found(Preimage {
+                            target: target.number,
+                            x,
+                            from,
+                            seen,
+                            orientation: linear.orientation,
+                        });
+                    }
                 },
             );
             if hit {
@@ -328,7 +336,8 @@ impl<C: Clone> ChartSolver<C> {
             clear
         });
         if !clear {
-            sink.forget(mark);
+            sink.forget(mark.0);
+            faces.forget(mark.1);
         }
         clear
     }

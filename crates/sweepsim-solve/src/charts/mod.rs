@@ -18,6 +18,7 @@
 mod about;
 mod beside;
 mod chart;
+mod faces;
 mod linear;
 mod narrow;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The subdivision, and the charts on it.
 
 use super::beside::{FEW, all_beside, hull, part_is_empty, remaining};
+use super::faces::{Faces, Searched};
 use super::linear::Linear;
 use super::narrow::{Narrowed, clipped, narrowed};
 use super::sides::Sides;
@@ -21,6 +22,7 @@ pub struct ChartSolver<C> {
     stack: Vec<(C, u32, Next)>,
     /// The numbers of targets that are not searched for any further, in order.
     given_up: Vec<usize>,
+    pub(super) faces: Faces,
 }
 
 /// What becomes of a box on the stack.
@@ -59,6 +61,7 @@ impl<C: Clone> ChartSolver<C> {
             statistics: ChartStatistics::default(),
             stack: Vec::new(),
             given_up: Vec::new(),
+            faces: Faces::default(),
         }
     }
 
@@ -106,6 +109,9 @@ impl<C: Clone> ChartSolver<C> {
     {
         let targets = &mut Wanted::new(targets, std::mem::take(&mut self.given_up));
         let mut budget = self.options.boxes;
+        let whole = map.bounds(&part);
+        let searched = &Searched { domain, part: &whole };
+        self.faces.clear();
         map.begin();
         targets.report_given_up(map, &part, sink);
         self.stack.clear();
@@ -215,7 +221,7 @@ impl<C: Clone> ChartSolver<C> {
                         &linear,
                         &contraction,
                         &bounds,
-                        domain,
+                        searched,
                         &value,
                         &values,
                         targets,
@@ -263,7 +269,7 @@ impl<C: Clone> ChartSolver<C> {
                 continue;
             }
             if is_stuck {
-                if self.about(map, &cell, &bounds, domain, &values, targets, sink, monitor) {
+                if self.about(map, &cell, &bounds, searched, &values, targets, sink, monitor) {
                     continue;
                 }
                 let range = hull(targets, &values);

@@ -10,6 +10,7 @@ mod curves;
 mod degenerate;
 mod expressions;
 mod extremes;
+mod faces;
 mod formulas;
 mod fuzz;
 mod invariance;

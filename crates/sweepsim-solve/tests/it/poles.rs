@@ -214,3 +214,22 @@ fn parts_leave_out_what_others_gave_up() {
     solver.solve(&mut map, root(), &targets, &mut answer, &());
     assert_eq!(answer.open.len(), 1);
 }
+
+/// Two targets of which one has its preimage within the last digit of a face between two boxes: both boxes place it beyond that face.
+#[test]
+fn a_preimage_within_rounding_of_a_face_is_found() {
+    let rise = 10_f64.powf(-11.339891947152042);
+    let targets = vec![
+        [7.397453328874363, -10_f64.powf(-10.68796901844866), 0.0],
+        [5.17519070290263, -10_f64.powf(-13.293298670611412), 0.0],
+    ];
+    let (answer, _) = solve(rise, targets.clone());
+    for (k, target) in targets.into_iter().enumerate() {
+        assert_eq!(
+            is_right(&answer, k, rise, target),
+            Some(true),
+            "{k}: {:?}",
+            answer.found
+        );
+    }
+}

@@ -83,7 +83,7 @@ impl Round {
         let ends = [path.pose(number), path.pose(number + 1)];
         let upright = ends.iter().all(|pose| frame.turn_from_world(pose.axis()) == UP);
         let [x, y, sign] = frame.turn_from_world(arc.normal());
-        if !(still || !symmetric) || !upright || [x, y] != [0.0; 2] || sign.abs() != 1.0 {
+        if (symmetric && !still) || !upright || [x, y] != [0.0; 2] || sign.abs() != 1.0 {
             return None;
         }
         let count = segments.len();
