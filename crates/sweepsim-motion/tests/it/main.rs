@@ -8,4 +8,5 @@ mod offsets;
 mod packed;
 mod parts;
 mod placed;
+mod rigid;
 mod spline_profiles;
