@@ -140,7 +140,7 @@ fn tip() -> impl Strategy<Value = [f64; 3]> {
 
 /// Few, unless the environment asks for a number.
 pub fn cases() -> u32 {
-    std::env::var("PROPTEST_CASES").map_or(24, |_| ProptestConfig::default().cases)
+    std::env::var("PROPTEST_CASES").map_or(16, |_| ProptestConfig::default().cases)
 }
 
 proptest! {
