@@ -1,4 +1,4 @@
-//! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and brute force.
+//! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and against samples in time.
 
 use crate::arcs_in_closed_form::{Arc, grid, small};
 use crate::grazing_curves::tools;
@@ -188,6 +188,50 @@ proptest! {
         // The first pose was made before.
         path.poses[0] = Pose::with_side(start, UP, [stands.cos(), stands.sin(), 0.0]).expect("a pose");
         agree(name, tool, &path.path(), &grid([17, 15]), TOLERANCE)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// A block is over the lines over which it is seen from time to time, and as high.
+    #[test]
+    fn blocks_are_where_samples_are(start in small(3.0), stands in -PI..PI, arc in [0.1..6.0_f64, -PI..PI, 0.3..3.1_f64, -2.0..2.0_f64], left in any::<bool>()) {
+        const SAMPLES: usize = 4000;
+        const HEIGHT: f64 = 3.0;
+        let [radius, from, angle, rise] = arc;
+        let angle = if left { angle } else { -angle };
+        let (lines, path) = (grid([23, 21]), Chain::new(start, stands, WORLD).arc([radius, from, angle, rise]).path());
+        let (_, tool) = &tools()[2];
+        let found = sweep(tool, &path, &lines, &Options::new(TOLERANCE), &()).expect("a sweep");
+        prop_assert!(found.statistics.unresolved.is_empty(), "{:?}", found.statistics);
+        for index in 0..lines.len() {
+            let (i, j) = lines.place(index);
+            // How far inside the block the line is, and how high the tip.
+            let seen = |share: f64| {
+                let at = from + angle * share;
+                let tip = [start[0] + radius * (at.cos() - from.cos()), start[1] + radius * (at.sin() - from.sin())];
+                let (s, c) = (stands + angle * share).sin_cos();
+                let [x, y] = [lines.x(i) - tip[0], lines.y(j) - tip[1]];
+                let [x, y] = [c * x + s * y, c * y - s * x];
+                ([x + 1.5, 1.0 - x, y + 0.5, 1.0 - y].into_iter().fold(f64::INFINITY, f64::min), start[2] + rise * share)
+            };
+            let samples: Vec<_> = (0..=SAMPLES).map(|k| seen(k as f64 / SAMPLES as f64)).collect();
+            let deepest = samples.iter().map(|(depth, _)| *depth).fold(f64::NEG_INFINITY, f64::max);
+            let own = found.volume.at(index).to_vec();
+            // Sides of the block pass over a line by less than this from one sample to the next.
+            let step = (radius + 2.0) * angle.abs() / SAMPLES as f64;
+            if deepest.abs() < step {
+                continue;
+            }
+            prop_assert_eq!(own.len(), usize::from(deepest > 0.0), "{:?} {}", (i, j), deepest);
+            let inside = || samples.iter().filter(|(depth, _)| *depth > 0.0).map(|(_, z)| *z);
+            if let [only] = own[..] {
+                let (low, high) = (inside().fold(f64::INFINITY, f64::min), inside().fold(f64::NEG_INFINITY, f64::max) + HEIGHT);
+                let error = 2.0 * rise.abs() / SAMPLES as f64 + 2.0 * TOLERANCE;
+                prop_assert!((only.lower.z - low).abs() < error && (only.upper.z - high).abs() < error, "{:?}: {only:?} {low} {high}", (i, j));
+            }
+        }
     }
 }
 
