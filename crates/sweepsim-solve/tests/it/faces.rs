@@ -80,7 +80,7 @@ impl ChartMap<2> for Noisy {
     }
 }
 
-/// A face between two boxes: where an interval of the last so many is cut.
+/// A face between two boxes: where the interval to which these turns lead is cut.
 fn face(turns: &[bool]) -> f64 {
     let (mut lower, mut upper) = (0.0, 1.0);
     for turn in turns {

@@ -1,20 +1,21 @@
 //! Level arcs and helices with which a tool of any shape turns, by its grazing curves, against charts and against samples in time.
 
-use crate::arcs_in_closed_form::{Arc, grid, small};
+use crate::arcs_in_closed_form::{Arc, agree_cheaply, assert_same_bytes, grid, small};
 use crate::grazing_curves::tools;
 use crate::translations::{TOLERANCE, UP, agree, cases};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use sweepsim::{Method, Options, SweepError, sweep};
+use sweepsim::{Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Move, Path, Pose, TipArc};
 
-/// Chains of arcs with which the tool turns, which first stands at an angle, joined by straight moves of this vector.
+/// A chain of straight moves and of arcs with which the tool turns.
 struct Chain {
     poses: Vec<Pose>,
     moves: Vec<Move>,
     tip: [f64; 3],
+    /// How far the tool has turned about its axis.
     stands: f64,
     /// In which axes the path is: the tool stands along the last.
     axes: [[f64; 3]; 3],
@@ -83,15 +84,9 @@ fn turning(start: [f64; 3], stands: f64, arcs: &[Arc], way: [f64; 3]) -> Path {
         .path()
 }
 
-/// The same, with hardly any line that needs the general method.
-fn agree_cheaply(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
+fn check(number: usize, path: &Path, grid: &Grid) -> TestCaseResult {
     let (name, tool) = &tools()[number];
-    let [curves, charts] = agree(name, tool, path, grid, TOLERANCE)?;
-    let [own, other] = [&curves.statistics, &charts.statistics];
-    prop_assert!(own.repaired <= other.repaired + 2, "{name}: {own:?} {other:?}");
-    let off = own.crossings.abs_diff(other.crossings);
-    prop_assert!(off <= 6 + other.crossings / 50, "{name}: {own:?} {other:?}");
-    Ok(())
+    agree_cheaply(name, tool, path, grid)
 }
 
 /// Less than half a turn: the poses do not tell of more.
@@ -109,20 +104,20 @@ proptest! {
     /// Level arcs, wider and narrower than the tool, in both directions.
     #[test]
     fn level(number in 0_usize..3, start in small(3.0), stands in -PI..PI, way in small(2.0), arcs in arcs(0.0)) {
-        agree_cheaply(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
+        check(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
     }
 
     /// Helices.
     #[test]
     fn helices(number in 0_usize..3, start in small(3.0), stands in -PI..PI, way in small(2.0), arcs in arcs(1.5)) {
-        agree_cheaply(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
+        check(number, &turning(start, stands, &arcs, way), &grid([23, 21]))?;
     }
 
     /// Many lines over each chart.
     #[test]
     fn many_lines(number in 0_usize..3, start in small(3.0), stands in -PI..PI, way in small(2.0), arcs in arcs(0.7), narrow in any::<bool>()) {
         let cells = if narrow { [19, 307] } else { [91, 89] };
-        agree_cheaply(number, &turning(start, stands, &arcs, way), &grid(cells))?;
+        check(number, &turning(start, stands, &arcs, way), &grid(cells))?;
     }
 
     /// Dexels along any axis, with the tool along them.
@@ -131,7 +126,7 @@ proptest! {
         let axes = [0, 1, 2].map(|k| WORLD[(first + k) % 3]);
         let path = arcs.iter().fold(Chain::new(start, stands, axes), |chain, arc| chain.arc(*arc).straight(way)).path();
         let frame = Frame::new([0.0; 3], axes[0], axes[1]).expect("a frame");
-        agree_cheaply(number, &path, &grid([23, 21]).in_frame(frame))?;
+        check(number, &path, &grid([23, 21]).in_frame(frame))?;
     }
 
     /// About dexel lines, about the tool's own tip or a line through it, along the grid, with full turns. The bud turns about lines beside them: its rational normals are too inexact for a line within a
@@ -173,10 +168,10 @@ proptest! {
     fn all_radii(number in 0_usize..3, logarithm in -4.6..5.7_f64, start in small(2.0), stands in -PI..PI, from in -PI..PI, length in 1.0..5.0_f64, rise in -0.5..0.5_f64, left in any::<bool>()) {
         let radius = logarithm.exp();
         let angle = (length / radius).min(3.1) * if left { 1.0 } else { -1.0 };
-        agree_cheaply(number, &turning(start, stands, &[[radius, from, angle, rise]], [0.5, 0.4, 0.0]), &grid([23, 21]))?;
+        check(number, &turning(start, stands, &[[radius, from, angle, rise]], [0.5, 0.4, 0.0]), &grid([23, 21]))?;
     }
 
-    /// Tools that turn a little more or less than the arc, or the other way: by however little they are no rigid body with it.
+    /// Tools that turn a little more or less than the arc, or the other way.
     #[test]
     fn almost_with_the_arc(number in 0_usize..3, start in small(2.0), stands in -PI..PI, arc in [0.5..5.0_f64, -PI..PI, 0.3..2.5_f64, -0.5..0.5_f64], digits in 1..16_i32, opposite in any::<bool>()) {
         let [radius, from, angle, rise] = arc;
@@ -194,7 +189,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// A block is over the lines over which it is seen from time to time, and as high.
+    /// A block covers the lines that it covers at closely spaced times, at the same heights.
     #[test]
     fn blocks_are_where_samples_are(start in small(3.0), stands in -PI..PI, arc in [0.1..6.0_f64, -PI..PI, 0.3..3.1_f64, -2.0..2.0_f64], left in any::<bool>()) {
         const SAMPLES: usize = 4000;
@@ -243,8 +238,7 @@ fn few_boxes() {
     for (name, tool) in &tools() {
         let [curves, charts] = agree(name, tool, &path, &grid([41, 43]), TOLERANCE).expect("the same");
         let [own, other] = [&curves.statistics, &charts.statistics];
-        // Those of the tool at rest are the same.
-        assert!(3 * own.boxes < 2 * other.boxes, "{name}: {own:?} {other:?}");
+        assert!(4 * own.boxes < other.boxes, "{name}: {own:?} {other:?}");
     }
 }
 
@@ -256,17 +250,5 @@ fn the_same_bytes_whatever_came_before() {
         .map(|k| [2.0 + 1e-7 * f64::from(k), 0.6 * f64::from(k), 2.5, 0.1])
         .collect();
     let path = turning([1.1, 0.3, 0.2], -0.7, &arcs, [0.5, 0.2, 0.0]);
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("threads");
-        let options = Options::new(TOLERANCE).method(Method::Charts);
-        pool.install(|| {
-            sweep(tool, &path, &grid([81, 80]), &options, &())
-                .expect("a sweep")
-                .volume
-        })
-    };
-    assert_eq!(on(1), on(4));
+    assert_same_bytes(tool, &path);
 }

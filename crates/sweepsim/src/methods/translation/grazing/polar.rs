@@ -223,9 +223,11 @@ mod tests {
                         prop_assert!(lo - margin <= own && own <= hi + margin, "{axis} {k}: {own} in {lo} {hi}");
                     }
                 }
-                let within = error(element, directions) + blur.g;
-                let of_g = [(g(element, &cells, cell, 0, directions), within)];
-                let of_slopes = slopes_of_g(&cells, cell, directions, &blur.g_slopes).map(|range| (range, 1e3 * within));
+                let rounding = error(element, directions);
+                let of_g = [(g(element, &cells, cell, 0, directions), rounding + blur.g)];
+                // Differences of neighbouring coefficients, times their number, over the cell's side.
+                let ranges = slopes_of_g(&cells, cell, directions, &blur.g_slopes);
+                let of_slopes = [0, 1].map(|axis| (ranges[axis], 32.0 * rounding / sides[axis]));
                 for (k, ((lo, hi), within)) in of_g.into_iter().chain(of_slopes).enumerate() {
                     prop_assert!(lo - within <= sight.g[k] && sight.g[k] <= hi + within, "{k}: {} in {lo} {hi}", sight.g[k]);
                 }
