@@ -1,9 +1,9 @@
 //! Evaluations of a map in a chart: of the map itself, or of another one with the same solutions for one target.
 
-use super::beside::only;
 use super::faces::Searched;
 use super::linear::Linear;
 use super::solver::LIMIT;
+use super::wanted::only;
 use super::{ChartMap, ChartSolver, Sample, Sink, Targets};
 use crate::{Enclosure, Monitor};
 use nalgebra::{Const, DimMin, ToTypenum};

@@ -3,6 +3,7 @@
 use super::about::Points;
 use super::faces::{Place, Searched};
 use super::linear::{Contraction, Linear};
+use super::region::{Region, Witness};
 use super::sides::Sides;
 use super::solver::{BETWEEN, CLOSE};
 use super::{ChartSolver, Preimage, Sink, Targets, Trail};
@@ -14,63 +15,12 @@ const STEPS: usize = 32;
 /// If a preimage can only lie in a part of the box no larger than this, relative to half its sides (besides rounding), Newton's result decides whether there is one.
 const ON_FACE: f64 = 1e-11;
 
+/// With rounding of more than this part of half the side, one step does not tell where a preimage is: Newton's method has to come to rest, perhaps beyond the box.
+const HIDDEN: f64 = 0.25;
 /// A preimage is expected in the box if its first guess is no farther from the centre, in half sides.
 const BESIDE: f64 = 1.0;
 
 type Square<const N: usize> = SMatrix<f64, N, N>;
-
-/// A box of positions, in coordinates scaled to the box of a chart.
-#[derive(Clone, Copy)]
-pub(crate) struct Region<const N: usize> {
-    pub lo: SVector<f64, N>,
-    pub hi: SVector<f64, N>,
-}
-
-impl<const N: usize> Region<N> {
-    pub fn around(middle: &SVector<f64, N>, reach: &SVector<f64, N>) -> Self {
-        Self {
-            lo: middle - reach,
-            hi: middle + reach,
-        }
-    }
-
-    pub fn intersect(&mut self, other: &Self) {
-        for i in 0..N {
-            self.lo[i] = if other.lo[i] > self.lo[i] {
-                other.lo[i]
-            } else {
-                self.lo[i]
-            };
-            self.hi[i] = if other.hi[i] < self.hi[i] {
-                other.hi[i]
-            } else {
-                self.hi[i]
-            };
-        }
-    }
-
-    pub fn is_empty(&self) -> bool {
-        (0..N).any(|i| self.lo[i] > self.hi[i])
-    }
-
-    /// The nearest position; the centre for NaN.
-    fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
-        SVector::from_fn(|i, _| {
-            if s[i].is_nan() {
-                0.5 * (self.lo[i] + self.hi[i])
-            } else {
-                s[i].clamp(self.lo[i], self.hi[i])
-            }
-        })
-    }
-}
-
-/// A position in a chart, and `Φ` there.
-#[derive(Clone, Copy)]
-pub(crate) struct Witness<const N: usize> {
-    pub at: SVector<f64, N>,
-    pub value: [f64; N],
-}
 
 /// The outcome for a target in a chart.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -169,9 +119,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                 value: sample.value,
             };
             *witness = Some(here);
-            let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
-            let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
-            let next = solve_linear(&scaled, &rest).map(|step| s - step);
+            let next = self.step(&s, &sample.value, &sample.jacobian, q);
             let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
@@ -189,24 +137,72 @@ impl<'a, const N: usize> Chart<'a, N> {
             }
             if (0..N).all(|i| region.hi[i] - region.lo[i] < ON_FACE + 4.0 * linear.slack[i]) {
                 // As close as rounding allows: a smaller box would not help.
-                let rests = |next: &SVector<f64, N>| {
-                    (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]))
-                };
                 let Some(next) = next else {
                     return Outcome::Unclear;
                 };
-                return match self.place(&next) {
-                    Place::Outside if rests(&next) => Outcome::Settled,
-                    Place::Outside => Outcome::Unclear,
-                    place => {
-                        found(next, place, from, sample.seen);
-                        Outcome::Settled
-                    }
+                let is_near = (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]));
+                if self.place(&next) == Place::Outside {
+                    return if is_near { Outcome::Settled } else { Outcome::Unclear };
+                }
+                let rested = if linear.slack.amax() > HIDDEN {
+                    self.rest(map, next, q, evaluations)
+                } else {
+                    Some((next, from, sample.seen))
                 };
+                let Some((next, from, seen)) = rested else {
+                    return Outcome::Unclear;
+                };
+                let place = self.place(&next);
+                if place != Place::Outside {
+                    found(next, place, from, seen);
+                }
+                return Outcome::Settled;
             }
             s = next.unwrap_or(predicted);
         }
         Outcome::Unclear
+    }
+
+    /// Where Newton's method comes to rest, in the domain and no farther beyond the box than rounding.
+    fn rest<P: Points<N>>(
+        &self,
+        map: &P,
+        from: SVector<f64, N>,
+        q: &[f64; N],
+        evaluations: &mut u64,
+    ) -> Option<(SVector<f64, N>, [f64; N], P::Seen)> {
+        let linear = self.linear;
+        let mut s = from;
+        for _ in 0..STEPS {
+            s = SVector::from_fn(|i, _| {
+                let part = &self.searched.part[i];
+                let end = |x: f64| (x - linear.centre[i]) / linear.half[i];
+                let most = 1.0 + 2.0 * linear.slack[i];
+                s[i].max(end(part.lo()).max(-most)).min(end(part.hi()).min(most))
+            });
+            let x = linear.point(&s);
+            let sample = map.evaluate(&x);
+            *evaluations += 1;
+            let next = self.step(&s, &sample.value, &sample.jacobian, q)?;
+            if (next - s).amax() <= LONGEST {
+                return Some((next, x, sample.seen));
+            }
+            s = next;
+        }
+        None
+    }
+
+    /// A step of Newton's method.
+    fn step(
+        &self,
+        s: &SVector<f64, N>,
+        value: &[f64; N],
+        jacobian: &[[f64; N]; N],
+        q: &[f64; N],
+    ) -> Option<SVector<f64, N>> {
+        let scaled = Square::<N>::from_fn(|i, j| jacobian[i][j] * self.linear.half[j]);
+        let rest = SVector::<f64, N>::from_fn(|i, _| value[i] - q[i]);
+        solve_linear(&scaled, &rest).map(|step| s - step)
     }
 
     /// Leaves of a region what can hold a preimage of `q`, and predicts it.

@@ -16,13 +16,13 @@
 //! Faces between boxes are half-open: a preimage belongs to the box above the face (so that, up to rounding, it is found once).
 
 mod about;
-mod beside;
 mod chart;
 mod faces;
 mod linear;
 mod narrow;
 #[cfg(test)]
 mod narrow_test;
+mod region;
 mod sides;
 mod solver;
 mod split;

@@ -3,8 +3,8 @@
 //! The tool at rest between two motions bounds the sweep only where `g` changes its sign, in a thin lune between two curves. A chart may hold hundreds
 //! of lines, and a few of them in the lune: bounds of both functions, linear in position, rule out the others without an evaluation.
 
-use super::chart::Region;
 use super::linear::Linear;
+use super::region::Region;
 use crate::Enclosure;
 use nalgebra::SVector;
 

@@ -1,12 +1,11 @@
 //! The subdivision, and the charts on it.
 
-use super::beside::{FEW, all_beside, hull, part_is_empty, remaining};
 use super::faces::{Faces, Searched};
 use super::linear::Linear;
 use super::narrow::{Narrowed, clipped, narrowed};
 use super::sides::Sides;
-use super::split::{change, collapses, largest, widest};
-use super::wanted::{Wanted, among, is_tiny, parts, worth_splitting};
+use super::split::{among, change, collapses, is_tiny, largest, parts, widest, worth_splitting};
+use super::wanted::{FEW, Wanted, all_beside, hull, part_is_empty, remaining};
 use super::{ChartMap, ChartOptions, ChartStatistics, Sink, Targets};
 use crate::{Cause, Enclosure, Monitor};
 use nalgebra::{Const, DimMin, ToTypenum};

@@ -1,46 +1,107 @@
-//! What is still searched for and split where rounding decides: directions that rounding does not hide, and targets that were not given up.
+//! The targets of a box: those that the mean value theorem leaves, those that the map itself excludes, and those that were given up.
 //!
-//! Ranges of values are wider than the true ones by their rounding on each side, and so are those of all parts of a box. Where a direction adds no more than that to any value, cutting across
-//! it tells no target from another; where all directions do, a target in the ranges of the box is in those of almost all its parts, of which there would be ever more. This is so at a pole, where all values
-//! of one variable are the same point: boxes would be cut across it until they are as small as the numbers allow. So a target that neither a chart nor a better bound has decided by then is *given up*:
-//! it is reported as unresolved, and not searched for in other boxes, since no other box can settle it.
+//! Where no direction is worth splitting, a target in the ranges of a box is in those of almost all its parts, of which there would be ever more. So a target that neither a chart nor a better bound
+//! has decided by then is *given up*: it is reported as unresolved, and not searched for in other boxes, since no other box can settle it.
 
-use super::beside::FEW;
+use super::linear::Linear;
 use super::{ChartMap, ChartTarget, Sink, Targets, UnresolvedTarget, all_of};
 use crate::{Cause, Enclosure};
+use nalgebra::SVector;
 
-/// The sides of a box as parts of the domain's.
-pub(super) fn parts<const N: usize>(bounds: &[Enclosure; N], domain: &[Enclosure; N]) -> [f64; N] {
-    std::array::from_fn(|j| bounds[j].radius() / domain[j].radius())
-}
+/// If a box has at most this many targets, each is tested before a split.
+pub(super) const FEW: usize = 4;
 
-/// Whether no direction is left to split: all are small, or nothing changes along them, for a continuum of solutions must not flood the search.
-pub(super) fn is_tiny<const N: usize>(jacobian: &[[Enclosure; N]; N], small: &[bool; N]) -> bool {
-    (0..N).all(|j| small[j] || (0..N).all(|i| jacobian[i][j].magnitude() == 0.0))
-}
-
-/// The directions in which a box is worth splitting: those that have not become `small` and, from the middle of the box to either face, add more to some value than what no split can take away, its
-/// rounding and what the small directions add.
-pub(super) fn worth_splitting<const N: usize>(
-    bounds: &[Enclosure; N],
-    jacobian: &[[Enclosure; N]; N],
-    rounding: &[f64; N],
-    small: &[bool; N],
-) -> [bool; N] {
-    let adds = |i: usize, j: usize| jacobian[i][j].magnitude() * bounds[j].radius();
-    let rest = |i: usize| {
-        (0..N)
-            .filter(|j| small[*j])
-            .fold(rounding[i], |rest, j| rest + adds(i, j))
+/// Whether the part of the box that holds all preimages certainly holds none of the targets'.
+pub(super) fn part_is_empty<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>(
+    map: &mut M,
+    cell: &M::Cell,
+    (values, jacobian): (&[Enclosure; N], &[[Enclosure; N]; N]),
+    targets: &T,
+) -> bool {
+    let Some(part) = map.part(cell, values, jacobian) else {
+        return false;
     };
-    let rest: [f64; N] = std::array::from_fn(rest);
-    // NaN is worth it.
-    std::array::from_fn(|j| !small[j] && !(0..N).all(|i| adds(i, j) <= rest[i]))
+    let is_empty = map.values(&part).is_none_or(|own| {
+        let count = targets.count(&own);
+        count == 0 || all_beside(map, &part, &own, targets)
+    });
+    map.drop_part(part);
+    is_empty
 }
 
-/// Weights of some directions only.
-pub(super) fn among<const N: usize>(weights: &[f64; N], of: &[bool; N]) -> [f64; N] {
-    std::array::from_fn(|j| if of[j] { weights[j] } else { -1.0 })
+/// Whether the map excludes each target in the range.
+pub(super) fn all_beside<const N: usize, M: ChartMap<N>, T: Targets<N> + ?Sized>(
+    map: &mut M,
+    cell: &M::Cell,
+    values: &[Enclosure; N],
+    targets: &T,
+) -> bool {
+    let mut absent = true;
+    targets.visit(values, &all_of, &mut |target| {
+        absent = map.is_absent(cell, &target.value);
+        absent
+    });
+    absent
+}
+
+/// The target in a range, if there is just one.
+pub(super) fn only<const N: usize, T: Targets<N> + ?Sized>(targets: &T, values: &[Enclosure; N]) -> Option<[f64; N]> {
+    let (mut found, mut count) = (None, 0);
+    targets.visit(values, &all_of, &mut |target| {
+        found = Some(target.value);
+        count += 1;
+        count == 1
+    });
+    found.filter(|_| count == 1)
+}
+
+/// The least box that holds all targets in a range.
+pub(super) fn hull<const N: usize, T: Targets<N> + ?Sized>(
+    targets: &T,
+    values: &[Enclosure; N],
+) -> Option<[Enclosure; N]> {
+    let mut hull: Option<[Enclosure; N]> = None;
+    targets.visit(values, &all_of, &mut |target| {
+        let own = target.value.map(|q| Enclosure::hull(q, q));
+        hull = Some(hull.map_or(own, |hull| {
+            std::array::from_fn(|k| Enclosure::hull(hull[k].lo().min(own[k].lo()), hull[k].hi().max(own[k].hi())))
+        }));
+        true
+    });
+    hull
+}
+
+/// The number of targets, of `count` in the range, that the mean value test does not exclude; any number from `enough` on if there are as many.
+pub(super) fn remaining<const N: usize, T: Targets<N> + ?Sized>(
+    linear: &Linear<N>,
+    value: &[f64; N],
+    values: &[Enclosure; N],
+    targets: &T,
+    count: usize,
+    enough: usize,
+) -> usize {
+    /// With this many times as many expected, they are not counted.
+    const CERTAIN: f64 = 4.0;
+    let mut left = 0;
+    if count <= FEW {
+        let origin = SVector::<f64, N>::zeros();
+        targets.visit(values, &all_of, &mut |target| {
+            let start = linear.predict(&origin, value, &target.value);
+            left += usize::from((0..N).all(|i| start[i].abs() <= 1.0 + linear.reach(i)));
+            left < enough
+        });
+        return left;
+    }
+    let strips = linear.strips(value);
+    let share = strips.narrowest() / values[1.min(N - 1)].radius();
+    if share * count as f64 > CERTAIN * (enough + FEW) as f64 {
+        return count.max(enough);
+    }
+    targets.visit(values, &|q| strips.window(q), &mut |_| {
+        left += 1;
+        left < enough
+    });
+    left
 }
 
 /// Targets without those that were given up.

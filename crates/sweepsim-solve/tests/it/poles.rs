@@ -154,7 +154,7 @@ fn is_right(answer: &Answer<3>, number: usize, rise: f64, [x, y, _]: [f64; 3]) -
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// However near to the pole's way, a target's preimage is found, or the target is given up after few boxes; far from it, compared with rounding, it is found.
+    /// However near to the pole's way, a target's preimage is found, or the target is given up after few boxes (6,300 in the worst of 400,000 such cases); far from it, compared with rounding, it is found.
     #[test]
     fn preimages_near_poles_are_found_or_given_up_early(
         places in [0.5..7.5_f64, 0.5..7.5_f64, 0.5..7.5_f64], digits in [0.5..16.0_f64, 0.5..16.0_f64, 0.5..16.0_f64], signs in [any::<bool>(), any::<bool>(), any::<bool>()],
@@ -164,11 +164,11 @@ proptest! {
         let across = |k: usize| 10_f64.powf(-digits[k]) * if signs[k] { 1.0 } else { -1.0 };
         let targets: Vec<[f64; 3]> = (0..3).map(|k| [places[k], across(k), 0.0]).collect();
         let (answer, boxes) = solve(rise, targets.clone());
-        prop_assert!(boxes < 6000, "{} boxes", boxes);
+        prop_assert!(boxes < 7500, "{} boxes", boxes);
         for (k, target) in targets.into_iter().enumerate() {
             let distance = (0.5 * rise).hypot(target[1]);
             match is_right(&answer, k, rise, target) {
-                Some(is_right) => prop_assert!(is_right || distance < 16.0 * ROUNDING, "{:?} {:?}", target, answer.found),
+                Some(is_right) => prop_assert!(is_right, "{:?} {:?}", target, answer.found),
                 None => prop_assert!(distance < 32.0 * ROUNDING, "{:?} {:?}", target, answer.open),
             }
         }
@@ -213,6 +213,20 @@ fn parts_leave_out_what_others_gave_up() {
     let mut answer = Answer::default();
     solver.solve(&mut map, root(), &targets, &mut answer, &());
     assert_eq!(answer.open.len(), 1);
+}
+
+/// Targets nearer to the pole than rounding: one step of Newton's method in a box that is smaller than rounding ends anywhere in it, and several such boxes would each find a preimage where none is.
+#[test]
+fn preimages_at_poles_are_found_where_they_are() {
+    for (rise, y) in [
+        (6.23e-14, -1.391487819462508e-16),
+        (6.24e-14, -1.4360551115617947e-16),
+        (6.00e-14, -1.496555358734811e-14),
+    ] {
+        let target = [3.0, y, 0.0];
+        let (answer, _) = solve(rise, vec![target]);
+        assert_ne!(is_right(&answer, 0, rise, target), Some(false), "{:?}", answer.found);
+    }
 }
 
 /// Two targets of which one has its preimage within the last digit of a face between two boxes: both boxes place it beyond that face.
