@@ -109,8 +109,14 @@ impl<'a, const N: usize> Chart<'a, N> {
             }
             s = predicted;
         }
+        // Whether rounding leaves so much of the box that Newton's method has to come to rest, perhaps beyond it.
+        let mut is_hidden = false;
         for _ in 0..STEPS {
-            s = region.clamp(&s);
+            s = if is_hidden {
+                self.within_rounding(&s)
+            } else {
+                region.clamp(&s)
+            };
             let from = linear.point(&s);
             let sample = map.evaluate(&from);
             *evaluations += 1;
@@ -119,17 +125,34 @@ impl<'a, const N: usize> Chart<'a, N> {
                 value: sample.value,
             };
             *witness = Some(here);
-            let next = self.step(&s, &sample.value, &sample.jacobian, q);
+            let scaled = Square::<N>::from_fn(|i, j| sample.jacobian[i][j] * linear.half[j]);
+            let rest = SVector::<f64, N>::from_fn(|i, _| sample.value[i] - q[i]);
+            let next = solve_linear(&scaled, &rest).map(|step| s - step);
             let step = next.map_or(f64::INFINITY, |next| (next - s).amax());
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
-                if step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step) {
+                let is_last = if is_hidden {
+                    step <= LONGEST
+                } else {
+                    step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step)
+                };
+                if is_last {
                     let place = self.place(&next);
                     if place != Place::Outside {
                         found(next, place, from, sample.seen);
                         return Outcome::Settled;
                     }
+                    if is_hidden {
+                        return Outcome::Settled;
+                    }
                 }
+            }
+            if is_hidden {
+                let Some(next) = next else {
+                    return Outcome::Unclear;
+                };
+                s = next;
+                continue;
             }
             let predicted = self.narrow(&here, q, &mut region);
             if region.is_empty() {
@@ -141,68 +164,30 @@ impl<'a, const N: usize> Chart<'a, N> {
                     return Outcome::Unclear;
                 };
                 let is_near = (0..N).all(|i| (next[i] - s[i]).abs() <= self.accept[1].max(2.0 * linear.slack[i]));
-                if self.place(&next) == Place::Outside {
-                    return if is_near { Outcome::Settled } else { Outcome::Unclear };
+                match self.place(&next) {
+                    Place::Outside if is_near => return Outcome::Settled,
+                    Place::Outside => return Outcome::Unclear,
+                    _ if linear.slack.amax() > HIDDEN => is_hidden = true,
+                    place => {
+                        found(next, place, from, sample.seen);
+                        return Outcome::Settled;
+                    }
                 }
-                let rested = if linear.slack.amax() > HIDDEN {
-                    self.rest(map, next, q, evaluations)
-                } else {
-                    Some((next, from, sample.seen))
-                };
-                let Some((next, from, seen)) = rested else {
-                    return Outcome::Unclear;
-                };
-                let place = self.place(&next);
-                if place != Place::Outside {
-                    found(next, place, from, seen);
-                }
-                return Outcome::Settled;
             }
             s = next.unwrap_or(predicted);
         }
         Outcome::Unclear
     }
 
-    /// Where Newton's method comes to rest, in the domain and no farther beyond the box than rounding.
-    fn rest<P: Points<N>>(
-        &self,
-        map: &P,
-        from: SVector<f64, N>,
-        q: &[f64; N],
-        evaluations: &mut u64,
-    ) -> Option<(SVector<f64, N>, [f64; N], P::Seen)> {
-        let linear = self.linear;
-        let mut s = from;
-        for _ in 0..STEPS {
-            s = SVector::from_fn(|i, _| {
-                let part = &self.searched.part[i];
-                let end = |x: f64| (x - linear.centre[i]) / linear.half[i];
-                let most = 1.0 + 2.0 * linear.slack[i];
-                s[i].max(end(part.lo()).max(-most)).min(end(part.hi()).min(most))
-            });
-            let x = linear.point(&s);
-            let sample = map.evaluate(&x);
-            *evaluations += 1;
-            let next = self.step(&s, &sample.value, &sample.jacobian, q)?;
-            if (next - s).amax() <= LONGEST {
-                return Some((next, x, sample.seen));
-            }
-            s = next;
-        }
-        None
-    }
-
-    /// A step of Newton's method.
-    fn step(
-        &self,
-        s: &SVector<f64, N>,
-        value: &[f64; N],
-        jacobian: &[[f64; N]; N],
-        q: &[f64; N],
-    ) -> Option<SVector<f64, N>> {
-        let scaled = Square::<N>::from_fn(|i, j| jacobian[i][j] * self.linear.half[j]);
-        let rest = SVector::<f64, N>::from_fn(|i, _| value[i] - q[i]);
-        solve_linear(&scaled, &rest).map(|step| s - step)
+    /// The nearest position in the domain that is no farther beyond the box than rounding.
+    #[cold]
+    fn within_rounding(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
+        SVector::from_fn(|i, _| {
+            let part = &self.searched.part[i];
+            let end = |x: f64| (x - self.linear.centre[i]) / self.linear.half[i];
+            let most = 1.0 + 2.0 * self.linear.slack[i];
+            s[i].max(end(part.lo()).max(-most)).min(end(part.hi()).min(most))
+        })
     }
 
     /// Leaves of a region what can hold a preimage of `q`, and predicts it.

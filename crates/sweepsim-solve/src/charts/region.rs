@@ -10,6 +10,7 @@ pub(crate) struct Region<const N: usize> {
 }
 
 impl<const N: usize> Region<N> {
+    #[inline]
     pub fn around(middle: &SVector<f64, N>, reach: &SVector<f64, N>) -> Self {
         Self {
             lo: middle - reach,
@@ -17,6 +18,7 @@ impl<const N: usize> Region<N> {
         }
     }
 
+    #[inline]
     pub fn intersect(&mut self, other: &Self) {
         for i in 0..N {
             self.lo[i] = if other.lo[i] > self.lo[i] {
@@ -32,11 +34,13 @@ impl<const N: usize> Region<N> {
         }
     }
 
+    #[inline]
     pub fn is_empty(&self) -> bool {
         (0..N).any(|i| self.lo[i] > self.hi[i])
     }
 
     /// The nearest position; the centre for NaN.
+    #[inline]
     pub fn clamp(&self, s: &SVector<f64, N>) -> SVector<f64, N> {
         SVector::from_fn(|i, _| {
             if s[i].is_nan() {
