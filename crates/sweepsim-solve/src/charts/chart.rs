@@ -17,6 +17,8 @@ const ON_FACE: f64 = 1e-11;
 
 /// With rounding of more than this part of half the side, one step does not tell where a preimage is: Newton's method has to come to rest, perhaps beyond the box.
 const HIDDEN: f64 = 0.25;
+/// It does when its steps are no longer than this part of the rounding.
+const RESTS: f64 = 1.0 / 16.0;
 /// A preimage is expected in the box if its first guess is no farther from the centre, in half sides.
 const BESIDE: f64 = 1.0;
 
@@ -132,7 +134,7 @@ impl<'a, const N: usize> Chart<'a, N> {
             if let Some(next) = next {
                 let near_face = next.amax() > 1.0 - NEAR_FACE;
                 let is_last = if is_hidden {
-                    step <= LONGEST
+                    (0..N).all(|i| (next[i] - s[i]).abs() <= LONGEST.max(RESTS * linear.slack[i]))
                 } else {
                     step <= self.accept[usize::from(near_face)] && self.tells_sides(&next, step)
                 };
@@ -185,7 +187,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         SVector::from_fn(|i, _| {
             let part = &self.searched.part[i];
             let end = |x: f64| (x - self.linear.centre[i]) / self.linear.half[i];
-            let most = 1.0 + 2.0 * self.linear.slack[i];
+            let most = 1.0 + 2.0 * self.contraction.slack[i];
             s[i].max(end(part.lo()).max(-most)).min(end(part.hi()).min(most))
         })
     }
