@@ -1,6 +1,7 @@
 //! Tools and their boundary.
 
 mod apt;
+mod below;
 mod circle_segment;
 fn reach(patches: &[Patch]) -> f64 {
     let control = |patch: &Patch| {
@@ -74,12 +75,15 @@ pub struct Tool {
     edges: Vec<Edge>,
     reach: f64,
     cylinder: BoundingCylinder,
+    /// Within which patches join.
+    tolerance: f64,
 }
 
 impl Tool {
     /// Its reach and its cylinder are asked for in every move, and are sums over all control points.
-    fn new(profile: Option<Profile>, patches: Vec<Patch>, edges: Vec<Edge>) -> Self {
+    fn new(profile: Option<Profile>, patches: Vec<Patch>, edges: Vec<Edge>, tolerance: f64) -> Self {
         Self {
+            tolerance,
             reach: reach(&patches),
             cylinder: bounding_cylinder(profile.as_ref(), &patches),
             profile,
@@ -104,7 +108,7 @@ impl Tool {
             boundary::patches_of_profile(&profile),
             boundary::edges_of_profile(&profile),
         );
-        Self::new(Some(profile), patches, edges)
+        Self::new(Some(profile), patches, edges, 0.0)
     }
 
     /// A tool of any shape: the solid that `patches` enclose, in any order.
@@ -134,7 +138,7 @@ impl Tool {
     /// ```
     pub fn from_patches(patches: Vec<Patch>, tolerance: f64) -> Result<Self, ToolError> {
         let edges = boundary::edges_of_patches(&patches, tolerance)?;
-        Ok(Self::new(None, patches, edges))
+        Ok(Self::new(None, patches, edges, tolerance))
     }
 
     /// The tool enclosed by B-spline surfaces, each with `F_u × F_v` pointing out of it. They are split at their knots.

@@ -37,19 +37,17 @@ impl ShortTools {
         let cylinder = tool.bounding_cylinder();
         let [low, high] = cylinder.z;
         let height = |n: i32| low + (high - low) * (f64::from(-n) / 3.0).exp2();
-        let rungs = if tool.is_revolved() { RUNGS } else { 0 };
         Self {
             cylinder,
-            rungs: (1..=rungs).map(|n| (height(n), OnceLock::new())).collect(),
+            rungs: (1..=RUNGS).map(|n| (height(n), OnceLock::new())).collect(),
         }
     }
 
     fn rung(&self, tool: &Tool, number: usize) -> Option<&ShortTool> {
         let (height, made) = &self.rungs[number];
         made.get_or_init(|| {
-            let profile = tool.profile()?.below(*height)?;
             Some(ShortTool {
-                tool: Tool::from_profile(profile),
+                tool: tool.below(*height)?,
                 cutter: OnceLock::new(),
                 spaces: Spaces::default(),
             })
@@ -60,11 +58,19 @@ impl ShortTools {
     /// The shortest tool that sweeps the same as `tool` below `top` along these parts, if there is one, and its number.
     pub fn shortest(&self, tool: &Tool, parts: &[PathPart], top: f64) -> Option<(usize, &ShortTool)> {
         let poses = Poses::new(parts);
+        let is_above = |height: f64, radius: f64| poses.lowest(height, radius) > top;
+        if !tool.is_revolved() {
+            // Parts of it above a height may be as wide as the tool.
+            let is_low_enough = |(height, _): &&(f64, _)| is_above(*height, self.cylinder.radius);
+            let count = self.rungs.iter().take_while(is_low_enough).count();
+            let mut numbers = (0..count).rev();
+            return numbers.find_map(|number| Some((number, self.rung(tool, number)?)));
+        }
         let mut cylinder = self.cylinder;
         let mut best = None;
         for (number, (height, _)) in self.rungs.iter().enumerate() {
             // Of a tool that was shortened before, all above the next height is within its own radius.
-            if !(poses.lowest(*height, cylinder.radius) > top) {
+            if !is_above(*height, cylinder.radius) {
                 break;
             }
             if let Some(short) = self.rung(tool, number) {

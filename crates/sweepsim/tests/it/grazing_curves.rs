@@ -36,7 +36,7 @@ fn cushion() -> Tool {
 }
 
 /// A body of revolution made oval and sheared, as rational patches with poles: nothing is round. `pieces` of the meridian are lists of homogeneous `(ρ, ζ, w)`.
-fn oval(pieces: &[Vec<[f64; 3]>]) -> Tool {
+pub fn oval(pieces: &[Vec<[f64; 3]>]) -> Tool {
     let h = std::f64::consts::FRAC_1_SQRT_2;
     let mut patches = Vec::new();
     for piece in pieces {
@@ -65,7 +65,7 @@ fn oval(pieces: &[Vec<[f64; 3]>]) -> Tool {
     Tool::from_patches(patches, 1e-9).expect("a tool")
 }
 
-fn straight(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 3]> {
+pub fn straight(from: [f64; 2], to: [f64; 2]) -> Vec<[f64; 3]> {
     vec![[from[0], from[1], 1.0], [to[0], to[1], 1.0]]
 }
 

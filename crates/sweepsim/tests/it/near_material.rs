@@ -1,5 +1,7 @@
 //! A simulation computes only what comes near material, and gives the same part.
 
+use crate::freeform::block;
+use crate::grazing_curves::{carried, oval, straight};
 use crate::translations::{TOLERANCE, UP, cases, path, same, tools};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -182,6 +184,91 @@ fn what_turns_above_the_stock_costs_nothing() {
     let [(long, part), (short, other)] = [200.0, 6.0].map(crossings);
     assert!((part - other).abs() < 1e-6, "{part} {other}");
     assert!(2 * long <= 3 * short, "{long} {short}");
+}
+
+/// Tools of patches, with this length: an oval end with a waist, a shank and a collar, and a block.
+fn long_patches(length: f64) -> [Tool; 2] {
+    let h = std::f64::consts::FRAC_1_SQRT_2;
+    let round = vec![[0.0, 0.0, 1.0], [1.4 * h, 0.0, h], [1.4, 1.4, 1.0]];
+    let waist = vec![[1.4, 1.4, 1.0], [1.4, 3.0, 1.0], [0.5, 2.6, 1.0], [0.9, 4.0, 1.0]];
+    let shank = straight([0.9, 4.0], [1.2, length - 2.0]);
+    let collar = [
+        straight([1.2, length - 2.0], [2.5, length - 1.0]),
+        straight([2.5, length - 1.0], [0.0, length]),
+    ];
+    let pieces: Vec<_> = [round, waist, shank].into_iter().chain(collar).collect();
+    [oval(&pieces), block([-1.5, -0.5, 0.0], [1.0, 1.0, length])]
+}
+
+/// The tool cut off at a height, which is to be no wider.
+fn cut_off(tool: &Tool, height: f64) -> Tool {
+    let short = tool.below(height).expect("a shorter tool");
+    let [own, whole] = [&short, tool].map(Tool::bounding_cylinder);
+    assert!(
+        own.z[1] < whole.z[1] && own.radius <= whole.radius + 1e-12,
+        "{own:?} {whole:?}"
+    );
+    short
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
+
+    /// What a tool that is cut off sweeps is the same below the height, in the tool's frame.
+    #[test]
+    fn tools_of_patches_are_the_same_below_a_height(number in 0..2usize, height in 4.5..16.0f64, tips in tips(), turn in -3.0..3.0f64) {
+        let tool = &long_patches(30.0)[number];
+        let short = cut_off(tool, height);
+        let path = carried(&tips, [0.0, 0.0, turn]);
+        let lowest = tips.iter().map(|tip| tip[2]).fold(f64::INFINITY, f64::min);
+        let grid = grid();
+        let swept = |tool: &Tool| {
+            let found = sweep(tool, &path, &grid, &Options::new(TOLERANCE), &()).expect("a sweep");
+            assert!(found.statistics.unresolved.is_empty());
+            let mut volume = found.volume;
+            let [min, max] = [[-30.0, -30.0, -30.0], [30.0, 30.0, lowest + height]];
+            let mut left = Stock::Block { min, max }.dexels(&grid).expect("a stock");
+            left.subtract_all(&volume).expect("the same grid");
+            std::mem::swap(&mut volume, &mut left);
+            volume
+        };
+        let [whole, cut] = [tool, &short].map(swept);
+        let mut wrong = 0;
+        for index in 0..grid.len() {
+            wrong += usize::from(!same(&whole.at(index).to_vec(), &cut.at(index).to_vec(), TOLERANCE));
+        }
+        // A line in a wall may be on either side of it.
+        prop_assert!(wrong <= 1, "{wrong}");
+    }
+
+    /// Tools of any shape are cut off above all material: upright, leaning, and turning.
+    #[test]
+    fn tools_of_patches(number in 0..2usize, poses in poses(), turns in any::<bool>(), turn in prop::array::uniform3(-0.5..0.5f64)) {
+        let tool = &long_patches(30.0)[number];
+        let tips: Vec<_> = poses.iter().map(|(tip, _)| *tip).collect();
+        let path = if turns { along(&poses) } else { carried(&tips, turn) };
+        agree(&stock(), &number.to_string(), tool, &path)?;
+    }
+}
+
+/// A tool of patches of any length costs about as much as a short one.
+#[test]
+fn patches_above_the_stock_cost_nothing() {
+    let tips: Vec<_> = (0..30)
+        .map(|n| [0.4 * f64::from(n) - 7.0, 3.0 * (0.4 * f64::from(n)).sin(), -1.0])
+        .collect();
+    for number in 0..2 {
+        let crossings = |length: f64| {
+            let tool = &long_patches(length)[number];
+            let path = carried(&tips, [0.1, -0.05, 0.3]);
+            let done = simulate(stock(), &[Cut::new(tool, &path)], &Options::new(TOLERANCE), &()).expect("a part");
+            assert!(done.statistics.unresolved.is_empty());
+            (done.statistics.crossings, done.remaining.volume())
+        };
+        let [(long, _), (short, _)] = [120.0, 10.0].map(crossings);
+        println!("{number}: {long} {short}");
+        assert!(2 * long <= 3 * short, "{number}: {long} {short}");
+    }
 }
 
 /// An engraver of 60° and this length.
