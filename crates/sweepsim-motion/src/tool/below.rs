@@ -59,6 +59,10 @@ impl Tool {
             let parts = cuts.iter().flatten().filter(|(own, _)| *own == side);
             parts.map(|(_, part)| *part).max()
         };
+        let left_out: Vec<_> = above
+            .iter()
+            .flat_map(|patch| Side::ALL.map(|side| places(patch, side)))
+            .collect();
         let (mut patches, mut rim) = (Vec::new(), Vec::new());
         for (patch, cut) in others.iter().zip(&cuts) {
             let kept = match cut {
@@ -66,20 +70,16 @@ impl Tool {
                 None => (*patch).clone(),
             };
             for side in Side::ALL {
+                let points = control(&kept, side);
+                if points.iter().any(|(p, _)| p.z < height) {
+                    continue;
+                }
                 let is_cut = cut.is_some_and(|(own, _)| own == side);
-                let is_open = || above.iter().any(|other| self.joins(&kept, side, other));
-                if is_cut || is_open() {
-                    rim.push((control(&kept, side), side));
+                if is_cut || self.joins(&places(&kept, side), &left_out) {
+                    rim.push((points, side));
                 }
             }
             patches.push(kept);
-        }
-        if rim.is_empty()
-            || rim
-                .iter()
-                .any(|(points, _)| points.iter().any(|(p, _)| !(p.z >= height)))
-        {
-            return None;
         }
         let points: Vec<_> = rim
             .iter()
@@ -87,23 +87,24 @@ impl Tool {
             .collect();
         let mut apex = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
         apex.z = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
+        let [_, top] = self.cylinder.z;
+        if points.is_empty() || apex.z >= top - ROUNDING * self.reach {
+            return None;
+        }
         for (points, side) in rim {
             patches.push(lid(&points, side, &apex)?);
         }
         Self::from_patches(patches, self.tolerance).ok()
     }
 
-    /// Whether a side of a patch is one of another patch, which is left out, and no pole.
-    fn joins(&self, patch: &Patch, side: Side, other: &Patch) -> bool {
+    /// Whether a side is one of those that are left out, and no pole.
+    fn joins(&self, [a, middle, b]: &[Vector3<f64>; 3], left_out: &[[Vector3<f64>; 3]]) -> bool {
         let near = |a: &Vector3<f64>, b: &Vector3<f64>| (a - b).norm() <= self.tolerance + ROUNDING * self.reach;
-        let [a, middle, b] = places(patch, side);
-        if near(&a, &b) && near(&a, &middle) {
-            return false;
-        }
-        Side::ALL.into_iter().any(|side| {
-            let [c, between, d] = places(other, side);
-            near(&middle, &between) && (near(&a, &c) && near(&b, &d) || near(&a, &d) && near(&b, &c))
-        })
+        let is_pole = near(a, b) && near(a, middle);
+        let is_same = |[c, between, d]: &[Vector3<f64>; 3]| {
+            near(middle, between) && (near(a, c) && near(b, d) || near(a, d) && near(b, c))
+        };
+        !is_pole && left_out.iter().any(is_same)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Integration tests of `sweepsim-motion`, in one binary: it links once.
 
+mod below;
 mod boundary;
 mod checked_boundary;
 mod misuse;
