@@ -33,8 +33,8 @@ impl Side {
 impl Tool {
     /// A solid with the same points below a height, and fewer above it; `None` if it is not found.
     ///
-    /// A profile is cut where [one straight line of it alone](crate::Profile::below) rises through that height. Otherwise patches that are above it are left out, others cut off along a parameter, and the
-    /// hole is closed by a cone of lines to one point, which no line may meet twice along the axis.
+    /// A profile is cut where [one straight line of it alone](crate::Profile::below) rises through that height. Of other tools, patches above it are left out, and those that pass through it are cut along a parameter somewhat
+    /// higher. Straight lines from the rim of the hole to one point in the middle close it, if no line along the axis meets them twice.
     ///
     /// ```
     /// use sweepsim_motion::Tool;
@@ -108,7 +108,7 @@ impl Tool {
     }
 }
 
-/// Whether all of a patch is above a height, or the part of it beyond a parameter, as seen from the side's opposite.
+/// Whether all of a patch is above a height, or its part between a parameter and a side.
 fn is_above(patch: &Patch, height: f64, beyond: Option<(Side, f64)>) -> bool {
     let (z, weight) = (&patch.position()[2], patch.weight());
     let above = |z: &Bernstein, weight: &Bernstein| {
@@ -122,7 +122,7 @@ fn is_above(patch: &Patch, height: f64, beyond: Option<(Side, f64)>) -> bool {
     above(&z.restrict(side.axis, lo, hi), &weight.restrict(side.axis, lo, hi))
 }
 
-/// The side from which most of a patch can be cut off, and how many parts of it remain.
+/// The side from which most of a patch can be cut off, all of it above a height, and how many parts remain.
 fn cut(patch: &Patch, height: f64) -> Option<(Side, usize)> {
     let remain = |side: Side| {
         let is_enough = |part: &usize| is_above(patch, height, Some((side, place(side, *part))));
@@ -180,7 +180,7 @@ fn places(patch: &Patch, side: Side) -> [Vector3<f64>; 3] {
     })
 }
 
-/// The lines from a side to a point, as a patch that faces as the side's own does beyond it; `None` unless it faces up, and no line along the axis meets it twice.
+/// The lines from a side to a point, as a patch that faces as one does that goes on beyond the side; `None` unless it faces up everywhere.
 fn lid(points: &[(Vector3<f64>, f64)], side: Side, apex: &Vector3<f64>) -> Option<Patch> {
     // Seen from above, the control polygon turns about the apex in one direction, and so does the side.
     let sense = if (side.axis == 1) == side.upper { 1.0 } else { -1.0 };
