@@ -18,14 +18,16 @@
 //! On curved faces, too, the first is of second order in the sides of the cell, where `X` and `Y` are of first.
 //!
 //! Where many points of the box are on one line, as the apex of a drill that turns about it, those around them lie in directions from there, and
-//! so does a line near it. What separates the two is a straight line in the plane of the dexels' feet, which is found from the control points.
+//! so does a line near it. What separates the two is a straight line in the plane of the dexels' feet, which is found from the control points. So it is with a ruling that slides
+//! along itself, as on the wall of a tool that moves along its own tilted axis: it passes beside the line next to it all the way, and the tip's way has the same direction.
 
 use crate::algebra::ranges::{Triples, products, range_of};
+use crate::algebra::separate::is_separate;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::envelope::enclosures::{Brick, ROUNDING, Size};
 use crate::time::pieces::Times;
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 use smallvec::SmallVec;
 
 pub(super) type Range = (f64, f64);
@@ -77,7 +79,7 @@ pub(super) fn is_absent_from_edge(
     })
 }
 
-/// Whether a line in the plane of `X` and `Y` separates the cell from the line `(x, y)`.
+/// Whether a line in the plane of `X` and `Y` separates the cell, on the whole of its way, from the line `(x, y)`.
 fn is_beside(
     (element, cells): (&PatchForms, &Cells),
     (times, size): (&Times, &Size),
@@ -85,52 +87,10 @@ fn is_beside(
     line: [f64; 2],
 ) -> bool {
     let rows = [0, 1].map(|r| times.rows(piece, r));
-    let tip = [0, 1].map(|r| times.tip(piece, r));
-    let middle = tip.map(|(lo, hi)| 0.5 * (lo + hi));
-    let offset = [line[0] - middle[0], line[1] - middle[1]];
-    let uncertain = tip.map(|(lo, hi)| 0.5 * (hi - lo) + 2.0 * size.slack);
-    is_separate(rows, &cells.position(element, cell), offset, uncertain)
-}
-
-/// Whether the products of pairs of rows with points all lie on one side of a line through `from`, all of them being uncertain.
-pub(super) fn is_separate(rows: [&[[f64; 3]]; 2], points: &Triples, from: [f64; 2], uncertain: [f64; 2]) -> bool {
-    let places = (0..rows[0].len()).flat_map(|k| {
-        (0..points.len()).map(move |j| Vector2::new(points.dot(&rows[0][k], j), points.dot(&rows[1][k], j)))
-    });
-    // The directions of all points are between these, by less than half a turn.
-    let mut ends: Option<[Vector2<f64>; 2]> = None;
-    for place in places {
-        let direction = place - Vector2::from(from);
-        let [right, left] = ends.get_or_insert([direction; 2]);
-        if right.perp(&direction) < 0.0 {
-            *right = direction;
-        }
-        if left.perp(&direction) > 0.0 {
-            *left = direction;
-        }
-        if right.perp(left) < 0.0 {
-            return false;
-        }
-    }
-    let Some([right, left]) = ends else { return false };
-    let bisector = right
-        .try_normalize(0.0)
-        .zip(left.try_normalize(0.0))
-        .map(|(a, b)| a + b);
-    let chord = left - right;
-    // Found without regard to rounding, and tested with it.
-    [bisector, Some(Vector2::new(chord.y, -chord.x))]
-        .into_iter()
-        .flatten()
-        .any(|side| {
-            let Some(side) = side.try_normalize(0.0) else {
-                return false;
-            };
-            let row = |k: usize| [0, 1, 2].map(|i| side.x * rows[0][k][i] + side.y * rows[1][k][i]);
-            let combined: SmallVec<[[f64; 3]; 3]> = (0..rows[0].len()).map(row).collect();
-            let (lo, _) = products(&combined, points);
-            lo - side.x * from[0] - side.y * from[1] > side.x.abs() * uncertain[0] + side.y.abs() * uncertain[1]
-        })
+    let (ends, off) = times.chord(piece);
+    let from = ends.map(|end| [line[0] - end[0], line[1] - end[1]]);
+    let uncertain = off.map(|off| off + 2.0 * size.slack);
+    is_separate(rows, &cells.position(element, cell), &from, uncertain)
 }
 
 /// The vector from the tip to any point of the lines, whose coordinates have these ranges, that is as high as some point of the cell.
@@ -278,11 +238,16 @@ mod tests {
         }
     }
 
-    /// Turns about a line along z that the tip moves along, or not quite: `off` from it.
-    fn motion(off: [f64; 4]) -> Segment {
+    /// Turns about a line along z that the tip moves along, or not quite: `off` from it. Or along the tool's own axis, or not quite, without a turn.
+    fn motion(off: [f64; 4], turns: bool) -> Segment {
         let [x, y, tilt, rise] = off;
-        let poses =
-            [0.3, -0.2].map(|side| Pose::new([0.0, x * side, rise * side], [side, 1.0 + y, tilt * side]).unwrap());
+        let poses = [0.3, -0.2].map(|side| {
+            let own = [0.3, 1.0, rise];
+            let along = [8.0 * side * own[0], side * (8.0 * own[1] + x), side * (8.0 * rise + y)];
+            let about = ([0.0, x * side, rise * side], [side, 1.0 + y, tilt * side]);
+            let (tip, axis) = if turns { about } else { (along, own) };
+            Pose::new(tip, axis).unwrap()
+        });
         let path = Path::with_law(poses.into(), Law::Slerp).unwrap();
         path.segments(0, 10.0, 1e-6).remove(0)
     }
@@ -312,9 +277,10 @@ mod tests {
         #[test]
         fn lines_through_a_box_are_not_absent(
             kind in 0..4_usize, off in offs(), place in [0.0..1.0, 0.0..1.0, 0.0..1.0], shares in [0.0..1.0, 0.0..1.0, 0.0..1.0], size in scale(),
+            turns in any::<bool>(),
         ) {
             let (patches, edges) = PatchForms::all(&tool(kind));
-            let segment = motion(off);
+            let segment = motion(off, turns);
             let [u, v, t] = place;
             for element in &patches {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
@@ -375,7 +341,7 @@ mod tests {
         fn lines_beside_a_bottom_that_turns_about_a_line_are_absent(size in -9.0..-1.0, angle in 0.4..2.5, start in 0.0..0.9) {
             let distance = 10.0_f64.powf(size);
             let (patches, _) = PatchForms::all(&tool(1));
-            let segment = motion([0.0, 0.0, 0.0, 5.0]);
+            let segment = motion([0.0, 0.0, 0.0, 5.0], true);
             let line = [distance * f64::cos(angle), distance * f64::sin(angle), 0.0];
             let mut bottoms = 0;
             for element in &patches {

@@ -2,10 +2,10 @@
 
 use crate::algebra::quad::vector;
 use crate::algebra::ranges::{Triples, envelope, envelope_coefficients, products};
+use crate::algebra::separate::is_separate;
 use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::cutter::reduced::Missing;
-use crate::envelope::absent::is_separate;
 use crate::envelope::any_box::AnyBox;
 use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, widened};
 use crate::time::pieces::Sizes;
@@ -186,7 +186,7 @@ impl ChartMap<2> for PlacedMap<'_> {
         is_separate(
             rows.each_ref().map(|row| &row[..]),
             &position,
-            from,
+            &[from],
             [2.0 * self.size.slack; 2],
         )
     }

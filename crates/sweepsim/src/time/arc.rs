@@ -187,11 +187,15 @@ impl ArcTimes {
         &self.nodes[piece as usize].travel_slope[..self.count - 1]
     }
 
+    /// Where the tip is at both ends of a piece, in the plane of `X` and `Y`.
+    pub fn chord(&self, piece: u32) -> [[f64; 2]; 2] {
+        let node = &self.nodes[piece as usize];
+        [node.lower, node.upper].map(|t| [0, 1].map(|r: usize| self.tips[0][r] + t * self.velocity[r]))
+    }
+
     /// The range of the coordinate `r` of the tip.
     pub fn tip(&self, piece: u32, r: usize) -> (f64, f64) {
-        let node = &self.nodes[piece as usize];
-        let at = |t: f64| self.tips[0][r] + t * self.velocity[r];
-        let (a, b) = (at(node.lower), at(node.upper));
+        let [a, b] = self.chord(piece).map(|end| end[r]);
         (a.min(b), a.max(b))
     }
 

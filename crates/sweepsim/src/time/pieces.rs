@@ -177,6 +177,18 @@ impl Times {
         }
     }
 
+    /// Two points in the plane of `X` and `Y` between which the tip moves in a straight line, but for these distances along both.
+    pub fn chord(&self, piece: u32) -> ([[f64; 2]; 2], [f64; 2]) {
+        match self {
+            Self::Arc(times) => (times.chord(piece), [0.0; 2]),
+            Self::Curve(_) => {
+                let tip = [0, 1].map(|r| self.tip(piece, r));
+                let middle = tip.map(|(lo, hi)| 0.5 * (lo + hi));
+                ([middle; 2], tip.map(|(lo, hi)| 0.5 * (hi - lo)))
+            }
+        }
+    }
+
     /// The range of the coordinate `r` of the tip's velocity.
     pub fn velocity(&self, piece: u32, r: usize) -> (f64, f64) {
         match self {

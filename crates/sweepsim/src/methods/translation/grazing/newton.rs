@@ -92,7 +92,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         });
                     }
                     if long <= ON_FACE {
-                        self.open(line);
+                        self.leave((p, line), &here, &within);
                         return None;
                     }
                 }
@@ -119,7 +119,7 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                         return None;
                     }
                 }
-                self.open(line);
+                self.leave((p, line), &here, &within);
                 return None;
             }
             s = step.map_or_else(
@@ -127,12 +127,18 @@ impl<S: Fn(f64) -> Source, C: Curve> Over<'_, '_, '_, S, C> {
                 |step| [s[0] + step[0], s[1] + step[1]],
             );
         }
-        self.open(line);
+        if let Some(latest) = latest {
+            self.leave((p, line), latest, &within);
+        }
         None
     }
 
-    fn open(&mut self, line: Option<(f64, u32)>) {
-        if let Some((_, line)) = line {
+    /// Leaves a line open, unless no point of the region meets it on its way, as seen from a witness.
+    fn leave(&mut self, (p, line): (f64, Option<(f64, u32)>), witness: &Witness, within: &Region) {
+        let Some((q, line)) = line else { return };
+        let slack = self.lines.course.ground.error(p);
+        let (lo, hi) = self.chart.q(witness, within);
+        if meets((lo - slack, hi + slack), q, self.lines.course.length) {
             self.lines.collector.open(line as usize);
         }
     }
