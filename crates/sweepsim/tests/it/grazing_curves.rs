@@ -327,7 +327,7 @@ fn flat_ends_at_fine_tolerances() {
     }
 }
 
-/// Along the tool's own axis hardly any line is met, though almost all of the tool lies across the way: no other is left open.
+/// A move along the tool's own axis meets hardly any line: none that it passes by is left open.
 #[test]
 fn retracts_open_no_line_beside_the_tool() {
     let grid = Grid::new([-6.546, -6.546], [97.143, 94.023], [300, 300]).expect("a grid");
@@ -352,7 +352,7 @@ fn lines_beside_a_ruling_that_slides_along_itself() {
     let tip = [15.5, 37.0 / 3.0 - 1.0 / 6.0, -19.506];
     let way = 19.0 / Vector3::from(axis).norm();
     let moves = path(&[tip, [0, 1, 2].map(|k| tip[k] + way * axis[k])], axis);
-    // A line near the ruling, to 1e-6, and the direction across it.
+    // A line within 1e-5 of the ruling, and the direction across it.
     let (near, across) = ([18.512_175, 17.758_175], [-0.5547, 0.832_05]);
     let drill = Apt {
         d: 6.0,
