@@ -7,6 +7,7 @@
 //! | what | at most | |
 //! | --- | --- | --- |
 //! | a tip of the path | 1/100 | [`tip_displacement`](Tolerances::tip_displacement) |
+//! | the middle of a straight move for lines that are solved again, attempts 4 and 5 | 1/100 | [`bend`](Tolerances::bend) |
 //! | a tip between moves that are joined to one | 1/100 | [`joint_deviation`](Tolerances::joint_deviation), not together with the next |
 //! | a motion that has no exact rational form, from its law | 1/20 | [`law_deviation`](Tolerances::law_deviation) |
 //! | a line | 1/1000 | [`line_displacement`](Tolerances::line_displacement), attempt 0 |
@@ -32,6 +33,12 @@ const LINE: f64 = 1e-3;
 const ATTEMPTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 200.0];
 /// The directions for the attempts, in radians: none along a row or column of lines, as walls are, and no two alike.
 const DIRECTIONS: [f64; 6] = [0.7391, 1.970, 3.520, 5.323, 1.154, 2.747];
+/// From this attempt on, straight moves are bent.
+const BENT: usize = 4;
+/// The maximum displacement of the middle of a straight move.
+const BEND: f64 = 1e-2;
+/// The same as a part of the move's length.
+const BEND_OF_LENGTH: f64 = 0.25;
 /// Crossings of a line this close together count as having the same height.
 const SAME: f64 = 1e-3;
 /// The error that the last step of Newton's method may leave.
@@ -56,7 +63,7 @@ const FINE_PERIOD: usize = 4;
 const FINE: f64 = 1e-9;
 /// The limit that the table above promises.
 const _: () = assert!(CIRCLE <= LAW);
-const _: () = assert!(TIP + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
+const _: () = assert!(TIP + BEND + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
 
 /// Coordinates are accurate to within this fraction of the largest: a few dozen roundings.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -117,6 +124,26 @@ impl Tolerances {
     /// A translation for a tool that stands still, with this axis: as long as the largest displacement of a tip.
     pub fn standstill(&self, axis: Vector3<f64>) -> Vector3<f64> {
         direction(axis) * (TIP * self.tolerance)
+    }
+
+    /// How far the middle of a straight move without rotation is displaced at an attempt, by this way and for this axis of the tool: across the way and, at the first such attempt, across the
+    /// displacement of tips. So rulings of a wall that slides along itself, which are where the displacement is tangent to it, turn about the tool by 90° or 45°. `None` at other attempts.
+    pub fn bend(&self, attempt: usize, way: Vector3<f64>, axis: Vector3<f64>) -> Option<Vector3<f64>> {
+        let ahead = way.try_normalize(0.0).filter(|_| attempt >= BENT)?;
+        let usual = direction(axis);
+        let across = ahead.cross(&usual);
+        let across = across.try_normalize(1e-3).unwrap_or_else(|| {
+            // Along the displacement itself: any way across will do.
+            let [_, other, _] = WAYS.map(Vector3::from);
+            ahead.cross(&other).normalize()
+        });
+        let within = across.cross(&ahead);
+        let bend = if attempt == BENT {
+            across
+        } else {
+            (across + within).normalize()
+        };
+        Some(bend * (BEND * self.tolerance).min(BEND_OF_LENGTH * way.norm()))
     }
 
     /// The maximum deviation of motions from their law.

@@ -20,6 +20,7 @@ use crate::sweep::boundary_operator::BoundaryOperator;
 use crate::sweep::options::{Method, Options};
 use crate::sweep::plan::Plan;
 use crate::sweep::short_tools::ShortTool;
+use crate::time::bent::bent;
 use crate::time::over::Over;
 use crate::time::path_parts::PathPart;
 use crate::tolerances::Tolerances;
@@ -260,17 +261,18 @@ impl SweepJob<'_> {
             _ => Lattice::all(self.grid, shift).masked(mask.as_ref()),
         };
         let over = self.over(&lines);
+        let parts = bent(chunk, &self.tolerances, attempt);
         let by_charts = Search {
             closed: false,
             outline: None,
-            ..self.search(&Charts, (chunk, over), &lines)
+            ..self.search(&Charts, (&parts, over), &lines)
         };
         let search = Search {
             closed: self.method == Method::Charts && attempt <= IN_CLOSED_FORM,
             outline: self.outline().filter(|_| attempt <= IN_CLOSED_FORM),
             ..by_charts.clone()
         };
-        for at in 0..chunk.len() {
+        for at in 0..parts.len() {
             if self.monitor.cancelled() {
                 break;
             }

@@ -28,6 +28,17 @@ impl Stretch {
     }
 }
 
+/// The parts of a joined way before and after the end of one of them, none at the ends, and how much of the way lies before it.
+pub(crate) fn divided(joined: &[Stretch], after: usize) -> (f64, [Vec<Stretch>; 2]) {
+    let at = joined[after - 1].until;
+    let [mut before, mut behind] = [&joined[..after], &joined[after..]].map(<[Stretch]>::to_vec);
+    before.iter_mut().for_each(|stretch| stretch.until /= at);
+    behind
+        .iter_mut()
+        .for_each(|stretch| stretch.until = (stretch.until - at) / (1.0 - at));
+    (at, [before, behind])
+}
+
 /// The most parts that are joined: each further one is compared with all tips before.
 const MOST: usize = 64;
 

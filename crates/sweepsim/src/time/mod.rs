@@ -2,6 +2,7 @@
 //! boxes around what a solid sweeps, and the times at which it is over some place.
 
 pub(crate) mod arc;
+pub(crate) mod bent;
 pub(crate) mod circles;
 pub(crate) mod curve;
 pub(crate) mod framed;

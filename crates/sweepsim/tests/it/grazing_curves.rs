@@ -1,13 +1,13 @@
 //! Moves without rotation of tools of any shape, by their grazing curves, against charts.
 
 use crate::freeform::block;
-use crate::translations::{TOLERANCE, UP, agree, cases, path, same};
+use crate::translations::{TOLERANCE, agree, cases, path, same};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
-use sweepsim_motion::{Apt, Patch, Path, Pose, Tool};
+use sweepsim_motion::{Patch, Path, Pose, Tool};
 use sweepsim_spline::Bernstein;
 
 fn bicubic(point: impl Fn(f64, f64) -> [f64; 3]) -> Patch {
@@ -324,67 +324,5 @@ fn flat_ends_at_fine_tolerances() {
             done.statistics.boxes
         });
         assert!(fine < 2 * coarse, "{method}: {fine} {coarse}");
-    }
-}
-
-/// A move along the tool's own axis meets hardly any line: none that it passes by is left open.
-#[test]
-fn retracts_open_no_line_beside_the_tool() {
-    let grid = Grid::new([-6.546, -6.546], [97.143, 94.023], [300, 300]).expect("a grid");
-    let tool = Tool::ball(3.0, 37.5).expect("a ball end");
-    for k in 0..60 {
-        let [x, y] = [15.5 + f64::from(k % 8) / 3.0, 1.5 + 2.0 * f64::from(k) / 3.0];
-        let moves = path(&[[x, y, -19.506], [x, y, 1.0]], UP);
-        let done = sweep(&tool, &moves, &grid, &Options::new(TOLERANCE), &()).expect("a sweep");
-        assert!(
-            done.statistics.unresolved.is_empty() && done.statistics.repaired == 0,
-            "{k}"
-        );
-    }
-}
-
-/// Along a tilted axis the wall slides along itself, and the displacement of tips alone decides where `g` vanishes on it: at a ruling, all of which passes beside the lines next to it at
-/// all times. They cost no more than others.
-#[test]
-fn lines_beside_a_ruling_that_slides_along_itself() {
-    const METHODS: [Method; 4] = [Method::General, Method::Charts, Method::Planes, Method::Lines];
-    let axis = [0.3, 0.2, 1.0];
-    let tip = [15.5, 37.0 / 3.0 - 1.0 / 6.0, -19.506];
-    let way = 19.0 / Vector3::from(axis).norm();
-    let moves = path(&[tip, [0, 1, 2].map(|k| tip[k] + way * axis[k])], axis);
-    // A line within 1e-5 of the ruling, and the direction across it.
-    let (near, across) = ([18.512_175, 17.758_175], [-0.5547, 0.832_05]);
-    let drill = Apt {
-        d: 6.0,
-        r: 0.0,
-        e: 3.0,
-        f: 0.0,
-        a: 31.0,
-        b: 0.0,
-        h: 10.0,
-    };
-    let tools = [
-        Tool::ball(3.0, 10.0).expect("a ball end"),
-        Tool::bull(3.0, 0.8, 10.0).expect("a bull nose"),
-        Tool::apt(&drill).expect("a drill").0,
-    ];
-    for tool in &tools {
-        for method in METHODS {
-            let boxes = |off: f64| {
-                let [x, y] = [0, 1].map(|k| near[k] + off * across[k]);
-                let grid = Grid::new([x - 0.1, y - 0.1], [x + 0.1, y + 0.1], [1, 1]).expect("a grid");
-                let options = Options::new(TOLERANCE).method(method);
-                let done = sweep(tool, &moves, &grid, &options, &()).expect("a sweep");
-                assert!(done.statistics.unresolved.is_empty(), "{method}, {off}");
-                done.statistics.boxes
-            };
-            let beside = boxes(0.11).max(boxes(-0.11)).max(40);
-            for off in [1e-2, 1e-3, 3e-4, 1e-4, 5e-5, 2e-5] {
-                for off in [off, -off] {
-                    let own = boxes(off);
-                    assert!(own <= 3 * beside, "{method}, {off}: {own} {beside}");
-                }
-            }
-        }
     }
 }

@@ -26,6 +26,7 @@ mod misuse;
 mod near_degenerate;
 mod near_material;
 mod rays;
+mod retracts;
 mod sections;
 mod sharp_edges;
 mod spline_profiles;
