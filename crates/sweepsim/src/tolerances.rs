@@ -126,7 +126,7 @@ impl Tolerances {
         direction(axis) * (TIP * self.tolerance)
     }
 
-    /// How far the middle of a straight move without rotation is displaced at an attempt, by this way and for this axis of the tool: across the way and, at the first such attempt, across the
+    /// How far the middle of a straight move is displaced at an attempt, by this way and for this axis of the tool: across the way and, at the first such attempt, across the
     /// displacement of tips. So rulings of a wall that slides along itself, which are where the displacement is tangent to it, turn about the tool by 90° or 45°. `None` at other attempts.
     pub fn bend(&self, attempt: usize, way: Vector3<f64>, axis: Vector3<f64>) -> Option<Vector3<f64>> {
         let ahead = way.try_normalize(0.0).filter(|_| attempt >= BENT)?;

@@ -19,12 +19,9 @@
 use super::rotary::{turn, unit_axis};
 use super::{Course, Move, RotaryTable, TipArc, Turning};
 use crate::pose::Pose;
-use crate::segment::{Segment, SegmentCurve, frame, product, raised, rational_turn, turn_between};
+use crate::segment::{NO_TURN, Segment, SegmentCurve, frame, product, raised, rational_turn, turn_between};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::FRAC_PI_2;
-
-/// Smaller angles count as 0.
-const NO_TURN: f64 = 1e-15;
 
 /// The largest number of parts of a move, however small the requested deviation (up to a factor of 2).
 const MOST: usize = 1 << 20;
@@ -73,12 +70,12 @@ impl Turns {
         if let Turning::Rotary { table, from, to } = *turning {
             let [tilt, round] = [from[0] - to[0], from[1] - to[1]].map(f64::to_radians);
             let start = table.orientation(from);
-            if round == 0.0 {
+            if round.abs() < NO_TURN {
                 // The tilting axis is rotated by C.
                 let tilting = table.orientation([0.0, from[1]]) * unit_axis(table.tilting());
                 return one(start, tilting, tilt);
             }
-            if tilt == 0.0 {
+            if tilt.abs() < NO_TURN {
                 return one(start, Vector3::z(), round);
             }
             return Self::Two { table, from, to };

@@ -5,6 +5,10 @@ use crate::pose::Pose;
 use nalgebra::{Matrix3, Rotation3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::FRAC_PI_2;
 
+/// Smaller angles between poses count as 0: rounding of the axes would decide in which direction the tool moves. A point as far from the tip as the largest coordinate moves by a six-hundredth of the finest
+/// tolerance.
+pub(crate) const NO_TURN: f64 = 1e-13;
+
 /// `ŵ R(t)` and `ŵ` of the turn about the unit vector `k` from 0 to `angle`, at most 90° in either direction, and `κ`.
 pub(crate) fn rational_turn(k: Vector3<f64>, angle: f64) -> ([Matrix3<f64>; 3], [f64; 3], f64) {
     let (half_sine, half_cosine) = (0.5 * angle).sin_cos();
@@ -93,7 +97,7 @@ impl Segment {
         let cross = o0.cross(&o1);
         let sine = cross.norm();
         let angle = sine.atan2(o0.dot(&o1));
-        if sine < 1e-15 {
+        if sine < NO_TURN {
             return Self::turning(tips, start, Vector3::z(), 0.0);
         }
         Self::turning(tips, start, cross / sine, angle)

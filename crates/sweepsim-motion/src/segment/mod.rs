@@ -11,7 +11,7 @@ mod forms;
 mod part;
 mod rates;
 
-pub(crate) use between::{frame, rational_turn, turn_between};
+pub(crate) use between::{NO_TURN, frame, rational_turn, turn_between};
 pub use compensated::turned_back;
 pub(crate) use forms::{product, raised, wronskian};
 pub(crate) use rates::spins;
@@ -66,7 +66,7 @@ pub enum SegmentEnd {
 impl Segment {
     /// A turn by `angle`, at most 90°, about the unit vector `k`.
     pub(crate) fn turning(tips: [Vector3<f64>; 2], start: Matrix3<f64>, k: Vector3<f64>, angle: f64) -> Self {
-        if angle < 1e-15 {
+        if angle < NO_TURN {
             return Self {
                 tips,
                 turns: vec![start],

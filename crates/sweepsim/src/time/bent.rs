@@ -2,7 +2,8 @@
 //!
 //! Where a tool moves along its own axis, its wall slides along itself, and the displacement of tips alone decides where `g` vanishes on it: at a ruling, which
 //! stays where it is along the whole move. For a line that passes within roundings of it, a curved face that meets the wall smoothly has its solution nearer to the joint than
-//! rounding. Displacing the line by a part of the tolerance does not take it out of there; but the direction in which the tip is displaced turns the ruling about the tool.
+//! rounding. Displacing the line by a part of the tolerance does not take it out of there; but the direction in which the tip is displaced turns the ruling about the tool. A turn by a trillionth
+//! makes no difference to that.
 
 use crate::time::joined::{Stretch, divided};
 use crate::time::path_parts::PathPart;
@@ -10,7 +11,7 @@ use crate::tolerances::Tolerances;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 
-/// The parts of a path as they are searched at an attempt: with all straight moves without rotation [bent](Tolerances::bend), if that is due.
+/// The parts of a path as they are searched at an attempt: with all straight moves [bent](Tolerances::bend), if that is due.
 pub(crate) fn bent<'a>(parts: &'a [PathPart], tolerances: &Tolerances, attempt: usize) -> Cow<'a, [PathPart]> {
     let mut all = Vec::new();
     for (at, part) in parts.iter().enumerate() {
@@ -33,9 +34,9 @@ pub(crate) fn bent<'a>(parts: &'a [PathPart], tolerances: &Tolerances, attempt: 
 }
 
 impl PathPart {
-    /// A straight move without rotation as two, by way of a point beside its middle; `None` for other moves.
+    /// A straight move as two, by way of a point beside its middle; `None` for other moves, and for turns whose halves would have clocks of their own.
     fn halves(&self, tolerances: &Tolerances, attempt: usize) -> Option<[Self; 2]> {
-        let is_straight = self.segment.is_arc() && self.segment.turns().len() == 1;
+        let is_straight = self.segment.is_arc() && self.segment.time(0.25) == 0.25;
         if !is_straight || self.round.is_some() || self.wheel.is_some() || self.inclined.is_some() {
             return None;
         }
@@ -48,7 +49,7 @@ impl PathPart {
             count => divided(&self.joined, count / 2),
         };
         let half = |[from, to]: [Vector3<f64>; 2], [begin, end]: [f64; 2], joined: Vec<Stretch>| Self {
-            segment: self.segment.clone().with_tips([from, to]),
+            segment: self.segment.part(begin, end).with_tips([from, to]),
             start: self.start + self.share * begin as f32,
             share: self.share * (end - begin) as f32,
             joins: false,
@@ -121,7 +122,7 @@ mod tests {
                 }
                 let mut left = &made[..];
                 for part in &parts {
-                    let straight = part.segment.turns().len() == 1;
+                    let straight = part.segment.is_arc();
                     let (own, rest) = left.split_at(if straight { 2 } else { 1 });
                     left = rest;
                     let [from, to] = part.segment.tips().map(Vector3::from);

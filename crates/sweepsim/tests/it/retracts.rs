@@ -2,10 +2,11 @@
 
 use crate::translations::{TOLERANCE, UP, cases, path, tools};
 use proptest::prelude::*;
+use proptest::test_runner::{TestCaseError, TestCaseResult};
 use sweepsim::nalgebra::Vector3;
 use sweepsim::{Method, Options, sweep};
-use sweepsim_dexel::Grid;
-use sweepsim_motion::{Apt, Tool};
+use sweepsim_dexel::{Grid, Interval};
+use sweepsim_motion::{Apt, Path, Pose, Tool};
 
 const METHODS: [Method; 5] = [
     Method::General,
@@ -102,75 +103,177 @@ fn beside() -> impl Strategy<Value = Beside> {
     (-0.2..1.2, off, side).prop_map(|(height, off, side)| Beside { height, off, side })
 }
 
+/// A move of a tool along its own tilted axis, or almost.
+#[derive(Clone, Debug)]
+struct Retract {
+    /// Among all tools.
+    number: usize,
+    axis: Vector3<f64>,
+    tip: Vector3<f64>,
+    way: f64,
+    down: bool,
+    tolerance: f64,
+    /// The radius of the wall whose ruling the lines pass by: often the tool's.
+    radius: f64,
+    /// How much the way leaves the axis, and the axis turns: the powers of ten and the directions.
+    leaves: Option<[f64; 2]>,
+    turns: Option<[f64; 2]>,
+}
+
+fn retract() -> impl Strategy<Value = Retract> {
+    let tilt = [-1.0..1.0, -1.0..1.0];
+    let rise = prop_oneof![Just(0.01), Just(0.3), 0.0..1.0_f64];
+    let axis = (tilt, rise)
+        .prop_map(|([x, y], z)| Vector3::new(x, y, z))
+        .prop_filter("tilted", |axis| axis.norm() > 0.1 && axis.xy().norm() > 0.01)
+        .prop_map(|axis| axis.normalize());
+    let tip = [-20.0..20.0, -20.0..20.0, -20.0..5.0].prop_map(Vector3::from);
+    let radius = prop_oneof![Just(3.0), Just(2.5), 2.0..3.1];
+    let aside = || (-16.0..-1.0, 0.0..6.28).prop_map(|(power, angle)| [power, angle]);
+    (
+        0..13_usize,
+        axis,
+        (tip, 13.0..40.0, any::<bool>()),
+        -8.0..-4.0,
+        radius,
+        [aside(), aside()],
+    )
+        .prop_map(
+            |(number, axis, (tip, way, down), power, radius, [leaves, turns])| Retract {
+                number,
+                axis,
+                tip,
+                way,
+                down,
+                tolerance: 10.0_f64.powf(power),
+                radius,
+                leaves: Some(leaves),
+                turns: Some(turns),
+            },
+        )
+}
+
+impl Retract {
+    fn aside(&self, aside: Option<[f64; 2]>) -> Vector3<f64> {
+        let Some([power, angle]) = aside else {
+            return Vector3::zeros();
+        };
+        let across = self.axis.cross(&Vector3::from(DISPLACED)).normalize();
+        (across * angle.cos() + self.axis.cross(&across) * angle.sin()) * 10.0_f64.powf(power)
+    }
+
+    fn path(&self) -> Path {
+        let ahead = self.axis + self.aside(self.leaves);
+        let pose = |tip: Vector3<f64>, axis: Vector3<f64>| Pose::new(tip.into(), axis.into()).expect("a pose");
+        let mut poses = vec![
+            pose(self.tip, self.axis),
+            pose(self.tip + ahead * self.way, self.axis + self.aside(self.turns)),
+        ];
+        if self.down {
+            poses.reverse();
+        }
+        Path::new(poses).expect("a path")
+    }
+
+    /// Where a line passes by a ruling.
+    fn place(&self, Beside { height, off, side }: &Beside) -> Vector3<f64> {
+        let slide = self.aside(self.leaves) * self.way + Vector3::from(DISPLACED) * (0.01 * self.tolerance / 61.0);
+        let out = self.axis.cross(&slide).normalize();
+        let across = Vector3::new(-self.axis.y, self.axis.x, 0.0).normalize();
+        self.tip + out * (side * self.radius) + self.axis * (height * self.way) + across * *off
+    }
+
+    /// The intervals of a line by all methods, each of which settles it.
+    fn swept(&self, at: &Vector3<f64>) -> Result<Vec<(Method, Vec<Interval>)>, TestCaseError> {
+        let (name, tool, _) = &tools()[self.number];
+        let grid = Grid::new([at.x - 0.1, at.y - 0.1], [at.x + 0.1, at.y + 0.1], [1, 1]).expect("a grid");
+        let path = self.path();
+        let of = |method| {
+            let options = Options::new(self.tolerance).method(method);
+            let done = sweep(tool, &path, &grid, &options, &()).expect("a sweep");
+            let unresolved = &done.statistics.unresolved;
+            prop_assert!(unresolved.is_empty(), "{name}, {method}: {unresolved:?}");
+            Ok((method, done.volume.at(0).to_vec()))
+        };
+        METHODS.into_iter().map(of).collect()
+    }
+
+    /// The radius of what is cut at a height above the first tip, as long as the tool's top is above it, and how accurate that is.
+    fn width(&self, along: f64) -> (f64, f64) {
+        let (name, tool, _) = &tools()[self.number];
+        let corner: f64 = match *name {
+            "ball" => 3.0,
+            "flat" => 0.0,
+            "bull" => 0.8,
+            _ => return (tool.radius_below(along), 1e-3),
+        };
+        let inside = (corner - along).max(0.0);
+        let width = 3.0 - corner + (corner * corner - inside * inside).sqrt();
+        (width, 0.5 * self.tolerance)
+    }
+
+    /// Whether a point has been inside the tool.
+    fn cuts(&self, point: &Vector3<f64>) -> bool {
+        let along = (point - self.tip).dot(&self.axis);
+        let off = (point - self.tip - along * self.axis).norm();
+        (0.0..self.way).contains(&along) && off <= self.width(along).0
+    }
+
+    /// Compares the intervals of a line with the tool's profile.
+    fn compare(&self, at: &Vector3<f64>, line: &[Interval]) -> TestCaseResult {
+        let on = |z: f64| Vector3::new(at.x, at.y, z);
+        let is_below_top = |z: f64| (on(z) - self.tip).dot(&self.axis) < self.way - 1.0;
+        let ends = line.iter().flat_map(|interval| [interval.lower.z, interval.upper.z]);
+        for end in ends.clone().filter(|end| is_below_top(*end)) {
+            let margin = self.width(0.0).1;
+            let radial = (on(end) - self.tip).cross(&self.axis).cross(&self.axis).normalize();
+            let near = [Vector3::x(), Vector3::y(), Vector3::z(), self.axis, radial].map(|way| way * margin);
+            let seen = near
+                .map(|by| [self.cuts(&(on(end) + by)), self.cuts(&(on(end) - by))])
+                .concat();
+            prop_assert!(seen.contains(&true) && seen.contains(&false), "{end}");
+        }
+        for k in 0..200 {
+            let z = self.tip.z - 5.0 + (self.way + 10.0) * f64::from(k) / 200.0;
+            if is_below_top(z) && ends.clone().all(|end| (end - z).abs() > 1e-2) {
+                let inside = line
+                    .iter()
+                    .any(|interval| (interval.lower.z..interval.upper.z).contains(&z));
+                prop_assert_eq!(inside, self.cuts(&on(z)), "{}", z);
+            }
+        }
+        Ok(())
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(), ..ProptestConfig::default() })]
 
     /// Lines within roundings of the ruling on which the displacement of tips lets `g` vanish: each is settled, by all methods, and ends where the tool has been.
     #[test]
-    fn lines_on_a_ruling_that_slides_along_itself(
-        number in 0..13_usize,
-        tilt in ([-1.0..1.0, -1.0..1.0], prop_oneof![Just(0.01), Just(0.3), 0.0..1.0_f64]),
-        place in [-20.0..20.0, -20.0..20.0, -20.0..5.0],
-        way in 13.0..40.0_f64,
-        lines in prop::collection::vec(beside(), 6),
-        radius in prop_oneof![Just(3.0), Just(2.5), 2.0..3.1],
-        power in -8.0..-4.0_f64,
-        down in any::<bool>(),
-    ) {
-        let (name, tool, _) = &tools()[number];
-        let ([x, y], z) = tilt;
-        let axis = Vector3::new(x, y, z);
-        prop_assume!(axis.norm() > 0.1 && axis.xy().norm() > 0.01);
-        let axis: Vector3<f64> = axis.normalize();
-        let tip = Vector3::from(place);
-        let tips = [tip, tip + axis * way].map(<[f64; 3]>::from);
-        let moves = path(&if down { [tips[1], tips[0]] } else { tips }, axis.into());
-        let tolerance = 10.0_f64.powf(power);
-        let out = axis.cross(&Vector3::from(DISPLACED)).normalize();
-        let across = Vector3::new(-axis.y, axis.x, 0.0).normalize();
-        // Exact where the profile is known here, otherwise to within 1e-4 of the radius.
-        let corner = [("ball", 3.0), ("flat", 0.0), ("bull", 0.8)].iter().find(|(round, _)| round == name).map(|(_, corner)| *corner);
-        let width = |along: f64| match corner {
-            Some(corner) if along >= corner => 3.0,
-            Some(corner) => 3.0 - corner + (corner * corner - (corner - along).powi(2)).sqrt(),
-            None => tool.radius_below(along),
-        };
-        let margin = if corner.is_some() { 0.5 * tolerance } else { 1e-3 };
-        for Beside { height, off, side } in lines {
-            let at = tip + out * (side * radius) + axis * (height * way) + across * off;
-            let grid = Grid::new([at.x - 0.1, at.y - 0.1], [at.x + 0.1, at.y + 0.1], [1, 1]).expect("a grid");
-            for method in METHODS {
-                let done = sweep(tool, &moves, &grid, &Options::new(tolerance).method(method), &()).expect("a sweep");
-                prop_assert!(done.statistics.unresolved.is_empty(), "{name}, {method}: {:?}", done.statistics.unresolved);
-                if *name == "hollow" {
-                    continue;
+    fn lines_on_a_ruling_that_slides_along_itself(retract in retract(), lines in prop::collection::vec(beside(), 6)) {
+        let retract = Retract { leaves: None, turns: None, ..retract };
+        for line in &lines {
+            let at = retract.place(line);
+            for (method, swept) in retract.swept(&at)? {
+                // A hollow end doesn't cut what is inside.
+                if tools()[retract.number].0 != "hollow" {
+                    retract.compare(&at, &swept).map_err(|error| TestCaseError::fail(format!("{method}: {error}")))?;
                 }
-                // What is cut has been below a part of the tool that is at least as wide, as long as the top doesn't come into it.
-                let cut = |p: Vector3<f64>| {
-                    let along = (p - tip).dot(&axis);
-                    (0.0..way).contains(&along) && (p - tip - along * axis).norm() <= width(along)
-                };
-                let [x, y] = [at.x, at.y];
-                let line = done.volume.at(0).to_vec();
-                let on = |z: f64| Vector3::new(x, y, z);
-                for end in line.iter().flat_map(|interval| [interval.lower.z, interval.upper.z]) {
-                    let along = (on(end) - tip).dot(&axis);
-                    if along > way - 1.0 {
-                        continue;
-                    }
-                    let near = [Vector3::x(), Vector3::y(), Vector3::z(), axis, out, across].map(|way: Vector3<f64>| way * margin);
-                    let seen = near.map(|by| [cut(on(end) + by), cut(on(end) - by)]).concat();
-                    prop_assert!(seen.contains(&true) && seen.contains(&false), "{name}, {method}: {end}");
-                }
-                for k in 0..400 {
-                    let z = tip.z - 5.0 + (way + 10.0) * f64::from(k) / 400.0;
-                    let along = (on(z) - tip).dot(&axis);
-                    let is_near = line.iter().any(|i| (i.lower.z - z).abs().min((i.upper.z - z).abs()) < 1e-3);
-                    if along > way - 1.0 || is_near {
-                        continue;
-                    }
-                    let inside = line.iter().any(|i| (i.lower.z..i.upper.z).contains(&z));
-                    prop_assert_eq!(inside, cut(on(z)), "{}, {}: {}", name, method, z);
+            }
+        }
+    }
+
+    /// The same for moves that leave the axis, or turn, by little: a turn by less than 1e-13 counts as none.
+    #[test]
+    fn moves_almost_along_the_axis_are_settled(retract in retract(), turning in any::<bool>(), lines in prop::collection::vec(beside(), 6)) {
+        let retract = Retract { turns: retract.turns.filter(|_| turning), ..retract };
+        let moves_by = (retract.aside(retract.leaves).norm() + retract.aside(retract.turns).norm()) * 50.0;
+        for line in &lines {
+            let at = retract.place(line);
+            for (method, swept) in retract.swept(&at)? {
+                if tools()[retract.number].0 != "hollow" && moves_by < 0.1 * retract.tolerance {
+                    retract.compare(&at, &swept).map_err(|error| TestCaseError::fail(format!("{method}: {error}")))?;
                 }
             }
         }
