@@ -129,7 +129,7 @@ fn retract() -> impl Strategy<Value = Retract> {
         .prop_map(|axis| axis.normalize());
     let tip = [-20.0..20.0, -20.0..20.0, -20.0..5.0].prop_map(Vector3::from);
     let radius = prop_oneof![Just(3.0), Just(2.5), 2.0..3.1];
-    let aside = || (-16.0..-1.0, 0.0..6.28).prop_map(|(power, angle)| [power, angle]);
+    let aside = || (-16.0..-1.0, 0.0..6.2).prop_map(|(power, angle)| [power, angle]);
     (
         0..13_usize,
         axis,
