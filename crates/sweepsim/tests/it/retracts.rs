@@ -3,6 +3,7 @@
 use crate::translations::{TOLERANCE, UP, cases, path, tools};
 use proptest::prelude::*;
 use proptest::test_runner::{TestCaseError, TestCaseResult};
+use std::sync::LazyLock;
 use sweepsim::nalgebra::Vector3;
 use sweepsim::{Method, Options, sweep};
 use sweepsim_dexel::{Grid, Interval};
@@ -79,6 +80,8 @@ fn lines_beside_a_ruling_that_slides_along_itself() {
         }
     }
 }
+
+static TOOLS: LazyLock<Vec<(&str, Tool, bool)>> = LazyLock::new(tools);
 
 /// How a line passes by a ruling.
 #[derive(Clone, Debug)]
@@ -175,6 +178,14 @@ impl Retract {
         Path::new(poses).expect("a path")
     }
 
+    /// The turn in place, and then straight along the axis.
+    fn turned_before(&self) -> Path {
+        let axis = (self.axis + self.aside(self.turns)).normalize();
+        let pose = |tip: Vector3<f64>, axis: Vector3<f64>| Pose::new(tip.into(), axis.into()).expect("a pose");
+        let end = self.tip + axis * self.way;
+        Path::new(vec![pose(self.tip, self.axis), pose(self.tip, axis), pose(end, axis)]).expect("a path")
+    }
+
     /// Where a line passes by a ruling.
     fn place(&self, Beside { height, off, side }: &Beside) -> Vector3<f64> {
         let slide = self.aside(self.leaves) * self.way + Vector3::from(DISPLACED) * (0.01 * self.tolerance / 61.0);
@@ -183,14 +194,17 @@ impl Retract {
         self.tip + out * (side * self.radius) + self.axis * (height * self.way) + across * *off
     }
 
-    /// The intervals of a line by all methods, each of which settles it.
     fn swept(&self, at: &Vector3<f64>) -> Result<Vec<(Method, Vec<Interval>)>, TestCaseError> {
-        let (name, tool, _) = &tools()[self.number];
+        self.swept_along(&self.path(), at)
+    }
+
+    /// The intervals of a line by all methods, each of which settles it.
+    fn swept_along(&self, path: &Path, at: &Vector3<f64>) -> Result<Vec<(Method, Vec<Interval>)>, TestCaseError> {
+        let (name, tool, _) = &TOOLS[self.number];
         let grid = Grid::new([at.x - 0.1, at.y - 0.1], [at.x + 0.1, at.y + 0.1], [1, 1]).expect("a grid");
-        let path = self.path();
         let of = |method| {
             let options = Options::new(self.tolerance).method(method);
-            let done = sweep(tool, &path, &grid, &options, &()).expect("a sweep");
+            let done = sweep(tool, path, &grid, &options, &()).expect("a sweep");
             let unresolved = &done.statistics.unresolved;
             prop_assert!(unresolved.is_empty(), "{name}, {method}: {unresolved:?}");
             Ok((method, done.volume.at(0).to_vec()))
@@ -200,7 +214,7 @@ impl Retract {
 
     /// The radius of what is cut at a height above the first tip, as long as the tool's top is above it, and how accurate that is.
     fn width(&self, along: f64) -> (f64, f64) {
-        let (name, tool, _) = &tools()[self.number];
+        let (name, tool, _) = &TOOLS[self.number];
         let corner: f64 = match *name {
             "ball" => 3.0,
             "flat" => 0.0,
@@ -257,7 +271,7 @@ proptest! {
             let at = retract.place(line);
             for (method, swept) in retract.swept(&at)? {
                 // A hollow end doesn't cut what is inside.
-                if tools()[retract.number].0 != "hollow" {
+                if TOOLS[retract.number].0 != "hollow" {
                     retract.compare(&at, &swept).map_err(|error| TestCaseError::fail(format!("{method}: {error}")))?;
                 }
             }
@@ -272,10 +286,21 @@ proptest! {
         for line in &lines {
             let at = retract.place(line);
             for (method, swept) in retract.swept(&at)? {
-                if tools()[retract.number].0 != "hollow" && moves_by < 0.1 * retract.tolerance {
+                if TOOLS[retract.number].0 != "hollow" && moves_by < 0.1 * retract.tolerance {
                     retract.compare(&at, &swept).map_err(|error| TestCaseError::fail(format!("{method}: {error}")))?;
                 }
             }
+        }
+    }
+
+    /// A turn in place, however small, before a retract along the axis: a neck and a ball, and any tool.
+    #[test]
+    fn retracts_after_a_turn_are_settled(retract in retract(), is_lollipop in any::<bool>(), lines in prop::collection::vec(beside(), 6)) {
+        let retract = Retract { leaves: None, ..retract };
+        let retract = if is_lollipop { Retract { number: 9, radius: 1.1, ..retract } } else { retract };
+        for line in &lines {
+            let at = retract.place(line);
+            retract.swept_along(&retract.turned_before(), &at)?;
         }
     }
 }
