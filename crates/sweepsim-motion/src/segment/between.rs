@@ -59,6 +59,8 @@ pub(crate) fn turn_between(from: &Pose, to: &Pose) -> Option<(Unit<Vector3<f64>>
 impl Segment {
     /// The segments from one pose to the next: one, or 2, 4, … equal parts if the axis (or the orientation) turns by more than 90°.
     ///
+    /// Turns by less than 1e-13 are left out.
+    ///
     /// The axes must not be opposite (a [`Path`](crate::Path) checks it).
     #[must_use]
     pub fn between(from: &Pose, to: &Pose) -> Vec<Self> {

@@ -28,7 +28,7 @@ impl Stretch {
     }
 }
 
-/// The parts of a joined way before and after the end of one of them, none at the ends, and how much of the way lies before it.
+/// Divides joined moves behind the first `after` of them, at least one and not all. Also how much of the way lies before.
 pub(crate) fn divided(joined: &[Stretch], after: usize) -> (f64, [Vec<Stretch>; 2]) {
     let at = joined[after - 1].until;
     let [mut before, mut behind] = [&joined[..after], &joined[after..]].map(<[Stretch]>::to_vec);

@@ -17,7 +17,7 @@ const METHODS: [Method; 5] = [
     Method::Surface,
 ];
 
-/// The direction in which tips are displaced, where the tool's axis isn't almost across it.
+/// The direction in which tips are displaced (`WAYS` in `tolerances.rs`), where the tool's axis isn't almost across it.
 const DISPLACED: [f64; 3] = [0.569_840_290_998, 0.331_172_830_617, 0.752_022_194_331];
 
 /// A move along the tool's own axis meets hardly any line: none that it passes by is left open.
@@ -178,7 +178,7 @@ impl Retract {
         Path::new(poses).expect("a path")
     }
 
-    /// The turn in place, and then straight along the axis.
+    /// The turn in place first, and then straight along the axis.
     fn turned_before(&self) -> Path {
         let axis = (self.axis + self.aside(self.turns)).normalize();
         let pose = |tip: Vector3<f64>, axis: Vector3<f64>| Pose::new(tip.into(), axis.into()).expect("a pose");
@@ -194,6 +194,7 @@ impl Retract {
         self.tip + out * (side * self.radius) + self.axis * (height * self.way) + across * *off
     }
 
+    /// As [`swept_along`](Self::swept_along) its own path.
     fn swept(&self, at: &Vector3<f64>) -> Result<Vec<(Method, Vec<Interval>)>, TestCaseError> {
         self.swept_along(&self.path(), at)
     }
