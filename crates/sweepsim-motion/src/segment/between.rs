@@ -105,3 +105,28 @@ impl Segment {
         Self::turning(tips, start, cross / sine, angle)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Move, Path, Pose, Turning};
+
+    #[test]
+    fn turns_as_small_as_rounding_count_as_none() {
+        for (angle, coefficients) in [(0.0, 1), (2e-15, 1), (9e-14, 1), (2e-13, 3)] {
+            for turning in [Turning::Slerp, Turning::Even] {
+                for axis in [[1.0, angle, 0.0], [1.0, 0.6 * angle, -0.8 * angle]] {
+                    let poses = vec![
+                        Pose::new([0.0; 3], [1.0, 0.0, 0.0]).unwrap(),
+                        Pose::new([5.0, 2.0, 1.0], axis).unwrap(),
+                    ];
+                    let path = Path::with_moves(poses, vec![Move::straight(turning)]).unwrap();
+                    let segments = path.segments(0, 10.0, 1e-6);
+                    assert!(
+                        segments.len() == 1 && segments[0].turns().len() == coefficients,
+                        "{angle}, {turning:?}"
+                    );
+                }
+            }
+        }
+    }
+}
