@@ -102,19 +102,19 @@ impl Formula {
         Self::of(Node::Apply(function, self.clone()))
     }
 
-    /// The sine.
+    /// The sine. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn sin(&self) -> Self {
         self.apply(Function::Sine)
     }
 
-    /// The cosine.
+    /// The cosine. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn cos(&self) -> Self {
         self.apply(Function::Cosine)
     }
 
-    /// The tangent.
+    /// The tangent. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn tan(&self) -> Self {
         self.apply(Function::Tangent)

@@ -79,19 +79,19 @@ impl Expression {
         self
     }
 
-    /// Its sine.
+    /// Its sine. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn sin(self) -> Self {
         self.apply(Function::Sine)
     }
 
-    /// Its cosine.
+    /// Its cosine. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn cos(self) -> Self {
         self.apply(Function::Cosine)
     }
 
-    /// Its tangent.
+    /// Its tangent. Of arguments beyond 10⁹ only the whole range is known: enclosures are wide there, never wrong.
     #[must_use]
     pub fn tan(self) -> Self {
         self.apply(Function::Tangent)

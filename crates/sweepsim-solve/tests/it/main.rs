@@ -11,6 +11,7 @@ mod degenerate;
 mod expressions;
 mod extremes;
 mod faces;
+mod formula_trees;
 mod formulas;
 mod fuzz;
 mod invariance;
