@@ -10,7 +10,7 @@
 //! | the middle of a straight move for lines that are solved again, attempts 4 and 5 | 1/100 | [`bend`](Tolerances::bend) |
 //! | a tip between moves that are joined to one | 1/100 | [`joint_deviation`](Tolerances::joint_deviation), not together with the next |
 //! | a motion that has no exact rational form, from its law | 1/20 | [`law_deviation`](Tolerances::law_deviation) |
-//! | a line | 1/1000 | [`line_displacement`](Tolerances::line_displacement), attempt 0 |
+//! | a line | 1/1000, at tolerances near the least 1/31 | [`line_displacement`](Tolerances::line_displacement), attempt 0 |
 //! | a line that is solved again because its audit failed | 1/300 … 1/5 | the same, attempts 1 to 5 |
 //! | heights that count as one crossing's | 1/1000 | [`same_height`](Tolerances::same_height) |
 //! | the last step of Newton's method leaves | 1/1000 | [`last_step`](Tolerances::last_step) |
@@ -31,8 +31,14 @@ const CIRCLE: f64 = 1e-2;
 const LINE: f64 = 1e-3;
 /// The factors for the attempts, each larger than the one before.
 const ATTEMPTS: [f64; 6] = [1.0, 3.0, 10.0, 30.0, 100.0, 200.0];
-/// The directions for the attempts, in radians: none along a row or column of lines, as walls are, and no two alike.
-const DIRECTIONS: [f64; 6] = [0.7391, 1.970, 3.520, 5.323, 1.154, 2.747];
+/// The same at the least tolerance.
+const FINEST_ATTEMPTS: [f64; 6] = [32.0, 46.0, 67.0, 96.0, 139.0, 200.0];
+/// A line is displaced by at least this part of the largest coordinate: 128 times the rounding of coordinates, or lines that a pole passes over, or a wall, would be seen to be within
+/// rounding of it, and solved twice.
+const LEAST: f64 = 128.0 * ROUNDING;
+/// The directions for the attempts, in radians: none along a row or column of lines, as walls are, and no two alike. That of the usual one has the golden
+/// ratio for its tangent, from which ratios of small numbers are farthest, as the directions of diagonals are on cells that are squares.
+const DIRECTIONS: [f64; 6] = [0.5536, 1.970, 3.520, 5.323, 1.154, 2.747];
 /// From this attempt on, straight moves are bent.
 const BENT: usize = 4;
 /// The maximum displacement of the middle of a straight move.
@@ -63,12 +69,13 @@ const FINE_PERIOD: usize = 4;
 const FINE: f64 = 1e-9;
 /// The limit that the table above promises.
 const _: () = assert!(CIRCLE <= LAW);
+const _: () = assert!(FINEST_ATTEMPTS[Tolerances::REPAIRS] <= ATTEMPTS[Tolerances::REPAIRS]);
 const _: () = assert!(TIP + BEND + LAW + LINE * ATTEMPTS[Tolerances::REPAIRS] + SAME + REST < 1.0 / 3.0);
 
 /// Coordinates are accurate to within this fraction of the largest: a few dozen roundings.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// The smallest tolerance, as a fraction of the largest coordinate. The smallest displacement, a thousandth of it, is then four times the rounding of
-/// coordinates, so that a line in a wall is seen to be beside it.
+/// The smallest tolerance, as a fraction of the largest coordinate: a thousandth of it is four times the rounding of coordinates, and the least
+/// displacement of lines a thirtieth of it.
 const FINEST: f64 = 4.0 * ROUNDING / LINE;
 /// Sums of products of three such coordinates stay far from overflow.
 const LARGEST: f64 = 1e90;
@@ -101,8 +108,13 @@ impl Tolerances {
 
     /// The displacement of a line at an attempt, 0 to [`REPAIRS`](Self::REPAIRS): farther than at the previous one, and in a different direction.
     pub fn line_displacement(&self, attempt: usize) -> [f64; 2] {
-        let reach = LINE * self.tolerance * ATTEMPTS[attempt.min(Self::REPAIRS)];
-        let angle = DIRECTIONS[attempt.min(Self::REPAIRS)];
+        let attempt = attempt.min(Self::REPAIRS);
+        let [usual, finest] = [ATTEMPTS[attempt], FINEST_ATTEMPTS[attempt]];
+        // The factor that attempt 0 needs is 1 or more; the others grow in proportion.
+        let least = LEAST * self.size / (LINE * self.tolerance);
+        let share = ((least - ATTEMPTS[0]) / (FINEST_ATTEMPTS[0] - ATTEMPTS[0])).clamp(0.0, 1.0);
+        let reach = LINE * self.tolerance * (usual + share * (finest - usual));
+        let angle = DIRECTIONS[attempt];
         [reach * angle.cos(), reach * angle.sin()]
     }
 
@@ -236,21 +248,40 @@ mod tests {
 
     #[test]
     fn each_attempt_displaces_a_line_farther_than_the_one_before() {
-        let tolerances = Tolerances::new(1e-6, 100.0).unwrap();
-        let mut before = 0.0;
-        for attempt in 0..=Tolerances::REPAIRS {
-            let [x, y] = tolerances.line_displacement(attempt);
-            let reach = x.hypot(y);
-            assert!(
-                reach > 1.5 * before && reach <= 0.2 * 1e-6 * (1.0 + 1e-12),
-                "attempt {attempt}"
-            );
-            before = reach;
-            // Away from walls along rows and columns.
-            assert!(x.abs().min(y.abs()) > 0.3 * reach, "attempt {attempt}");
+        let size = 100.0;
+        for tolerance in [1e-3, 1e-6, 5e-8, 2e-8, 1e-8, FINEST * size] {
+            let tolerances = Tolerances::new(tolerance, size).unwrap();
+            let mut before = 0.0;
+            for attempt in 0..=Tolerances::REPAIRS {
+                let [x, y] = tolerances.line_displacement(attempt);
+                let reach = x.hypot(y);
+                assert!(
+                    reach > 1.4 * before && reach <= 0.2 * tolerance * (1.0 + 1e-12),
+                    "{tolerance}, attempt {attempt}"
+                );
+                before = reach;
+                // Away from walls along rows and columns.
+                assert!(x.abs().min(y.abs()) > 0.3 * reach, "{tolerance}, attempt {attempt}");
+            }
+            let [x, y] = tolerances.line_displacement(0);
+            let most = (1e-3 * tolerance).max(LEAST * size);
+            assert!((x.hypot(y) - most).abs() <= 1e-12 * most && most < tolerance / 31.0);
+            // And from walls along diagonals, the more so the more lines of a square grid they pass over.
+            for [p, q] in [
+                [1.0, 1.0],
+                [2.0, 1.0],
+                [1.0, 2.0],
+                [3.0, 1.0],
+                [1.0, 3.0],
+                [3.0, 2.0],
+                [2.0, 3.0],
+            ] {
+                for q in [q, -q] {
+                    let across = (x * q - y * p).abs() / f64::hypot(p, q);
+                    assert!(across > 0.4 * most / (p * p + q * q), "{p}:{q}");
+                }
+            }
         }
-        let [x, y] = tolerances.line_displacement(0);
-        assert!(x.hypot(y) <= 1e-3 * 1e-6 * (1.0 + 1e-12));
     }
 
     #[test]

@@ -7,15 +7,13 @@ use crate::near_degenerate::{
 use sweepsim::{Method, Options, sweep};
 use sweepsim_motion::{Law, Tool};
 
-/// The exception, as measured (3.15, by `general` with a flat end): a line that is 6e-10 from a wall, less than lines are displaced by.
-const WALL: f64 = 3.2;
-
 /// From `most` down by a constant factor.
 fn scales(most: f64, factor: f64, count: i32) -> impl Iterator<Item = f64> {
     (0..count).map(move |k| most * factor.powi(k))
 }
 
-/// The line touches the ball at its tip at all times, but for its displacement, by which it cuts off a chord of 3e-5. A tip that rises by as much during the turn passes the ends of the chord.
+/// The line touches the ball at its tip at all times, but for its displacement, by which it cuts off a chord of 3e-5. A tip that rises by as much during the turn passes the ends of the chord:
+/// at two rises, within half a hundredth of each, where the line touches its way, it is solved again.
 #[test]
 fn a_ball_that_rises_by_a_chord_while_it_turns_about_a_line() {
     let tool = Tool::ball(2.0, 7.0).unwrap();
@@ -23,7 +21,7 @@ fn a_ball_that_rises_by_a_chord_while_it_turns_about_a_line() {
         let boxes = |rise: f64| {
             let (path, grid) = about_a_line(0.0, rise, 0.0);
             let found = cost(method, &tool, &(path, grid));
-            assert!(found.unresolved.is_empty() && found.repaired == 0, "{method}, {rise}");
+            assert!(found.unresolved.is_empty() && found.repaired <= 1, "{method}, {rise}");
             work(method, &found, &grid)
         };
         let neighbour = boxes(23.0);
@@ -71,14 +69,14 @@ fn almost_degenerate_input_is_cheap_at_all_scales() {
 fn dear(method: Method, (what, family): Family, (name, tool): (&str, &Tool)) -> Vec<String> {
     let input = family(GENERIC);
     let generic = work(method, &cost(method, tool, &input), &input.1);
-    let most = if what == "line from the wall" { WALL } else { MOST };
-    scales(0.2, 0.75, 90)
+    // At 0.2 from the axis, another row of lines would be in the wall, which is a family of its own.
+    scales(0.19, 0.75, 90)
         .filter_map(|distance| {
             let input = family(distance);
             let found = cost(method, tool, &input);
             let times = work(method, &found, &input.1) / generic;
             let unresolved = found.unresolved.len();
-            (times > most || unresolved > 0)
+            (times > MOST || unresolved > 0)
                 .then(|| format!("{method}, {what}, {name}, {distance:e}: {times:.2} times, {unresolved} unresolved"))
         })
         .collect()

@@ -66,8 +66,8 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
         let again = [[3e-3, 1.970], [1e-2, 3.520], [3e-2, 5.323], [0.1, 1.154], [0.2, 2.747]];
         let moved = |[r, angle]: [f64; 2]| {
             [
-                r * angle.cos() - 1e-3 * 0.7391_f64.cos(),
-                r * angle.sin() - 1e-3 * 0.7391_f64.sin(),
+                r * angle.cos() - 1e-3 * 0.5536_f64.cos(),
+                r * angle.sin() - 1e-3 * 0.5536_f64.sin(),
             ]
         };
         let mut others = Vec::new();

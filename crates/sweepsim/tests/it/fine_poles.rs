@@ -7,22 +7,15 @@ use crate::grazing_curves::bud;
 use crate::near_degenerate::{DISTANCES, GENERIC, METHODS, MOST, over_poles, work};
 use sweepsim::{Method, Options, sweep};
 
-/// Tolerances, and how many times as much work as its generic neighbour an input may take, method by method. Below 3e-8, a pole on a diagonal passes its 15 lines within a few roundings of
-/// coordinates; below 3e-9, one in a row does, too.
-const FINE: [(f64, [f64; 5]); 5] = [
-    (1e-7, [MOST, MOST, MOST, MOST, 3.5]),
-    (3e-8, [3.5, MOST, MOST, MOST, 5.5]),
-    (1e-8, [MOST, MOST, MOST, MOST, 5.0]),
-    (1e-9, [5.0, MOST, MOST, MOST, 7.5]),
-    (6e-10, [6.0, MOST, 3.5, MOST, 9.0]),
-];
+/// Tolerances down to almost the least.
+const FINE: [f64; 5] = [1e-7, 3e-8, 1e-8, 1e-9, 6e-10];
 
 /// Lines that rounding leaves undecided are given up early, and solved again at a distance, which takes about as many boxes as all lines do otherwise. `lines` leaves to charts what would
 /// have taken it fewer.
 fn poles_at_fine_tolerances(distances: &[f64]) {
     let (mut wrong, tool) = (Vec::new(), bud());
-    for (tolerance, most) in FINE {
-        for (method, most) in METHODS.into_iter().zip(most) {
+    for tolerance in FINE {
+        for method in METHODS {
             for (what, family) in over_poles() {
                 let swept = |d: f64, tolerance: f64, method: Method| {
                     let input = family(d);
@@ -44,7 +37,7 @@ fn poles_at_fine_tolerances(distances: &[f64]) {
                     );
                     println!("{line}");
                     // No other line is solved again.
-                    if !(ratio <= most && again <= 15 && open == 0 && apart < 1e-5) {
+                    if !(ratio <= MOST && again <= 15 && open == 0 && apart < 1e-5) {
                         wrong.push(line);
                     }
                 }
