@@ -63,11 +63,11 @@ pub fn agree(name: &str, tool: &Tool, path: &Path, grid: &Grid, tolerance: f64) 
             .clone()
             .flat_map(|angle| [0.05, 0.3].map(|r| [r * angle.cos(), r * angle.sin()]));
         // Where lines are solved again, seen from where they are solved first: two vertical tangents in one place magnify any difference.
-        let again = [[3e-3, 1.970], [1e-2, 3.520], [3e-2, 5.323], [0.1, 1.154], [0.2, 2.747]];
+        let again = [[6e-3, 1.970], [2e-2, 3.520], [6e-2, 5.323], [0.12, 1.154], [0.2, 2.747]];
         let moved = |[r, angle]: [f64; 2]| {
             [
-                r * angle.cos() - 1e-3 * 0.5536_f64.cos(),
-                r * angle.sin() - 1e-3 * 0.5536_f64.sin(),
+                r * angle.cos() - 2e-3 * 3.6952_f64.cos(),
+                r * angle.sin() - 2e-3 * 3.6952_f64.sin(),
             ]
         };
         let mut others = Vec::new();

@@ -31,7 +31,8 @@ fn poles_at_fine_tolerances(distances: &[f64]) {
                         found.statistics.repaired,
                         found.statistics.unresolved.len(),
                     );
-                    let apart = difference(&found.volume, &swept(*d, 1e-6, Method::Charts).1.volume, 10.0);
+                    let apart =
+                        difference(&found.volume, &swept(*d, 1e-6, Method::Charts).1.volume, 10.0, 0.0).along_lines;
                     let line = format!(
                         "{tolerance:e}, {method}, {what}, {d:e}: {ratio:.2} of {generic}, {again} again, {open} open, {apart:e}"
                     );

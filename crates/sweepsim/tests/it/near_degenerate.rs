@@ -266,8 +266,15 @@ pub fn over_poles() -> Vec<Family> {
             let off = d * std::f64::consts::FRAC_1_SQRT_2;
             tip_over([[-4.0 - off, -4.0 + off, 0.0], [4.0 - off, 4.0 + off, 0.0]])
         }),
-        ("line from the way of a pole, on another diagonal", |d| {
+        ("line from the way of a pole, on the other diagonal", |d| {
+            let off = d * std::f64::consts::FRAC_1_SQRT_2;
+            tip_over([[-4.0 - off, 4.0 - off, 0.0], [4.0 - off, -4.0 - off, 0.0]])
+        }),
+        ("line from the way of a pole, on every second diagonal", |d| {
             tip_over([[-4.0, -2.0 + 0.1 * d, 0.0], [4.0, 2.0 + 0.1 * d, 0.0]])
+        }),
+        ("line from the way of a pole, on every second steep diagonal", |d| {
+            tip_over([[-2.0 + 0.1 * d, 4.0, 0.0], [2.0 + 0.1 * d, -4.0, 0.0]])
         }),
         ("rise of a pole over a row of lines", |d| {
             tip_over([[-4.0, 0.0, 0.0], [4.0, 0.0, d]])
@@ -375,7 +382,7 @@ fn almost_upright_tools_remove_what_the_general_search_says() {
                     "{name}"
                 );
                 assert_eq!(found[0].statistics.repaired, 0, "{name}");
-                let apart = difference(&found[0].volume, &found[1].volume, 10.0);
+                let apart = difference(&found[0].volume, &found[1].volume, 10.0, 0.0).along_lines;
                 assert!(apart < 1e-5, "{name}: {apart}");
             }
         }

@@ -44,8 +44,8 @@ fn lines_beside_a_ruling_that_slides_along_itself() {
     let tip = [15.5, 37.0 / 3.0 - 1.0 / 6.0, -19.506];
     let way = 19.0 / Vector3::from(axis).norm();
     let moves = path(&[tip, [0, 1, 2].map(|k| tip[k] + way * axis[k])], axis);
-    // A line within 1e-5 of the ruling, and the direction across it.
-    let (near, across) = ([18.512_175, 17.758_175], [-0.5547, 0.832_05]);
+    // A line within 1e-6 of the ruling, and the direction across it. Lines within 2e-5 may be solved again up to five times, for rounding decides what they meet.
+    let (near, across) = ([18.512_170_6, 17.758_181_7], [-0.5547, 0.832_05]);
     let drill = Apt {
         d: 6.0,
         r: 0.0,
