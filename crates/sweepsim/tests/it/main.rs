@@ -35,3 +35,4 @@ mod tiles;
 mod translations;
 mod turning;
 mod verify;
+mod walls_along_rows;
