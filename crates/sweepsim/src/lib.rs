@@ -39,7 +39,7 @@
 //! # Accuracy
 //!
 //! The dexels are exact, up to rounding, for an input that differs from the given one by less than a third of the
-//! [tolerance](Options::tolerance). The displacements avoid degenerate input: tips are displaced by at most a hundredth of it, dexel lines by a thousandth,
+//! [tolerance](Options::tolerance). The displacements avoid degenerate input: tips are displaced by at most a hundredth of it, dexel lines by a five-hundredth (near the least tolerance, a fifteenth),
 //! and motions without an exact rational form are approximated to within a twentieth. A line whose audit fails is solved again, displaced farther
 //! each time, by at most a fifth, and in the end with straight moves bent by a hundredth. Intervals and gaps shorter than the tolerance may be missing or extra.
 
