@@ -260,6 +260,18 @@ pub fn same_volume(case: &Case, grid: &Grid, one: &Sweep, other: &Sweep) -> Resu
     same_sweeps(profile, &Motion::new(&case.poses), grid, one, other)
 }
 
+/// Gaps shorter than the tolerance may be extra: where a line is hardly beside a wall, an exit and an entry at a joint that are one are as far apart along it.
+fn without_short_gaps(intervals: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let mut joined: Vec<[f64; 2]> = Vec::with_capacity(intervals.len());
+    for next in intervals {
+        match joined.last_mut() {
+            Some(last) if next[0] - last[1] < TOLERANCE => last[1] = next[1],
+            _ => joined.push(next),
+        }
+    }
+    joined
+}
+
 /// As [`same_volume`], for the volume of this outline along this motion.
 pub fn same_sweeps(
     profile: &Profile,
@@ -274,10 +286,7 @@ pub fn same_sweeps(
     for index in 0..grid.len() {
         let (i, j) = grid.place(index);
         let place = [grid.x(i), grid.y(j)];
-        let (a, b) = (
-            ends(&one.volume.intervals(i, j).to_vec()),
-            ends(&other.volume.intervals(i, j).to_vec()),
-        );
+        let [a, b] = [one, other].map(|found| without_short_gaps(ends(&found.volume.intervals(i, j).to_vec())));
         let error = [TOLERANCE; 2];
         let spans = b.iter().map(|&[low, high]| Span { low, high, error }).collect();
         let line = SweptLine {
