@@ -30,7 +30,10 @@ pub fn slow(filter: Option<&str>) -> Result<bool, String> {
 fn tests(packages: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO"));
     command.current_dir(workspace::root());
-    command.args(["test", "--release", "--all-features"]).args(packages);
+    // One failure hides no other.
+    command
+        .args(["test", "--release", "--all-features", "--no-fail-fast"])
+        .args(packages);
     command
 }
 
