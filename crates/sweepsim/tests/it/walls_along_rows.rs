@@ -15,12 +15,12 @@ fn relief(ahead: [f64; 2], phase: usize) -> Vec<[f64; 3]> {
         let height = 0.4 * (0.7 * s).sin() + 0.2 * (2.3 * s + phase as f64).cos();
         [s * ahead[0], s * ahead[1], height]
     };
-    // Poses before them move the walls to other poses of the period.
+    // With more poses before them, the moves are at other poses of the period.
     let before = (0..phase).map(|k| [-30.0 - 0.1 * k as f64, 0.3, 9.0]);
     before.chain([[-30.0, 0.3, 10.0]]).chain((0..130).map(tip)).collect()
 }
 
-/// The tools' walls are walls, or meet a line at their rim only; none of their lines is solved again, and those of the general method agree.
+/// No line in a wall is solved again, and the general method agrees.
 #[test]
 fn lines_in_a_wall_are_beside_it_at_every_pose() {
     let radius = 1.25;
@@ -33,7 +33,7 @@ fn lines_in_a_wall_are_beside_it_at_every_pose() {
     for (n, tool) in tools.iter().enumerate() {
         for ahead in [[1.0, 0.0], [0.0, 1.0], [diagonal, diagonal], [diagonal, -diagonal]] {
             let path = path(&relief(ahead, 7 * n), UP);
-            // Lines on a diagonal of the grid through a point of the wall, or in a row through it.
+            // A row, column or diagonal of lines is in the wall.
             let [x, y] = [-ahead[1], ahead[0]].map(|across| radius * across);
             let grid = Grid::new([x - 3.15, y - 3.15], [x + 45.15, y + 45.15], [161, 161]).expect("a grid");
             let swept = |method| {
