@@ -5,11 +5,12 @@
 //!
 //! With the error `ω` of the nodes, `ω(x) = Π (x − xₙ)`, interpolation in one variable leaves `|f − If| ≤ ‖ω‖/6 ‖f‴‖` and, by Shadrin's theorem (Error bounds
 //! for Lagrange interpolation, J. Approx. Theory 80, 1995), `|(f − If)′| ≤ ‖ω′‖/6 ‖f‴‖`. In two variables, `f − I_u I_v f = (f − I_u f) + I_u (f − I_v f)`, where `I_u` makes a
-//! function at most `Λ` times as large, and its derivative at most `Λ′/h`. The third derivatives are bounded by the coefficients of the whole patch.
+//! function at most `Λ` times as large, and its derivative in `u` at most `Λ′/h`, but also at most `4/√3` times as large as that of the function itself: on a cell that is long in `v` and
+//! narrow in `u`, as those at a pole are, `f_uvvv` says much more than `f_vvv`. The derivatives are bounded by the coefficients of the whole patch.
 
 use crate::algebra::bivariate::MOST;
 use crate::algebra::quad::Quad;
-use crate::cutter::vanishing::{Size, is_near_side, largest};
+use crate::cutter::vanishing::{Bounds, Size, is_near_side, largest};
 use crate::time::pieces::Sizes;
 use sweepsim_spline::kernel::basis;
 
@@ -25,6 +26,9 @@ const SLOPE: f64 = 3.0 / 32.0;
 /// `Λ` and `Λ′` of the three nodes on such a side, at its ends.
 const LEBESGUE: f64 = 5.0 / 3.0;
 const LEBESGUE_OF_SLOPES: f64 = 32.0 / 3.0;
+/// How many times as large as that of the function, at most, the derivative of the polynomial through its values at the three nodes is: `4/√3`. It is linear, and in the middle between
+/// two nodes a difference quotient; these places are `√3/4` of the side apart, so that at its ends the sum of the absolute values of both weights is this.
+const STRETCHED: f64 = 2.309_401_076_758_504;
 /// Coefficients are combinations of values at the nodes with factors that add up to at most `11/3` in each variable, the square of which is less than this.
 pub(super) const COMBINED: f64 = 13.5;
 
@@ -135,17 +139,19 @@ impl Reduced {
         let is_near = self.vanishes && is_near_side(lower, upper);
         for (number, size) in self.sizes.iter().enumerate() {
             let (vector, k) = (1 - number / 3, number % 3);
-            let (rounding, third) = if is_near {
+            let Bounds { rounding, third, mixed } = if is_near {
                 size.on(lower, upper)
             } else {
                 size.anywhere()
             };
             let rounding = rounding + COMBINED * errors[vector][k];
-            let cubes = [0, 1].map(|axis| third[axis] * widths[axis] * widths[axis] * widths[axis]);
+            let cubes = [0, 1].map(|axis| widths[axis] * widths[axis] * widths[axis]);
             missing.value[vector][k] = beyond(third, widths) + rounding;
             for axis in 0..2 {
-                let across = LEBESGUE_OF_SLOPES * (VALUE * cubes[1 - axis]);
-                missing.slopes[axis][vector][k] = (SLOPE * cubes[axis] + across + 4.0 * rounding) / widths[axis];
+                let (own, other) = (SLOPE * third[axis] * cubes[axis], 1 - axis);
+                let across = (LEBESGUE_OF_SLOPES * third[other]).min(STRETCHED * mixed[other] * widths[axis]);
+                let all = own + VALUE * cubes[other] * across + 4.0 * rounding;
+                missing.slopes[axis][vector][k] = all / widths[axis];
             }
         }
         if missing.is_unknown() {

@@ -11,6 +11,18 @@ pub(super) struct Size {
     roundings: [Bound; 2],
     /// Of the third derivatives in each variable.
     thirds: [Bound; 2],
+    /// Of the derivatives of these in the other variable.
+    mixed: [Bound; 2],
+}
+
+/// Bounds of a form on a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    /// The rounding of a reduced coefficient.
+    pub rounding: f64,
+    /// Of the third derivatives in each variable, and of the derivatives of these in the other variable.
+    pub third: [f64; 2],
+    pub mixed: [f64; 2],
 }
 
 impl Size {
@@ -25,7 +37,7 @@ impl Size {
                     i * (rows + 1) + row
                 }]
             };
-            let of_rows = move |of: &dyn Fn(usize, usize) -> f64, count: usize| -> Vec<f64> {
+            let of_rows = move |of: &dyn Fn(usize, usize) -> f64, count: usize, rows: usize| -> Vec<f64> {
                 (0..=rows).map(|row| largest((0..count).map(|i| of(i, row)))).collect()
             };
             // In each variable, 1.5 n roundings of Bernstein polynomials, 3n that the nodes are off by, and n/2 + 1 of a sum of products.
@@ -33,15 +45,23 @@ impl Size {
             let cubic = (n * n.saturating_sub(1) * n.saturating_sub(2)) as f64;
             let third =
                 |i: usize, row: usize| cubic * (at(i + 3, row) - 3.0 * (at(i + 2, row) - at(i + 1, row)) - at(i, row));
-            (
-                Bound::new(&of_rows(&|i, row| roundings * at(i, row), n + 1)),
-                Bound::new(&of_rows(&third, (n + 1).saturating_sub(3))),
-            )
+            let mixed = |i: usize, row: usize| rows as f64 * (third(i, row + 1) - third(i, row));
+            let count = (n + 1).saturating_sub(3);
+            [
+                Bound::new(&of_rows(&|i, row| roundings * at(i, row), n + 1, rows)),
+                Bound::new(&of_rows(&third, count, rows)),
+                if rows == 0 {
+                    Bound::new(&[0.0])
+                } else {
+                    Bound::new(&of_rows(&mixed, count, rows - 1))
+                },
+            ]
         };
-        let [(rounding_u, in_u), (rounding_v, in_v)] = [0, 1].map(along);
+        let [[rounding_u, third_u, mixed_u], [rounding_v, third_v, mixed_v]] = [0, 1].map(along);
         Self {
             roundings: [rounding_u, rounding_v],
-            thirds: [in_u, in_v],
+            thirds: [third_u, third_v],
+            mixed: [mixed_u, mixed_v],
         }
     }
 
@@ -49,17 +69,24 @@ impl Size {
         self.thirds.iter().any(Bound::vanishes)
     }
 
-    /// The rounding of a reduced coefficient, and bounds of the third derivatives, on a cell.
-    pub fn on(&self, lower: [f64; 2], upper: [f64; 2]) -> (f64, [f64; 2]) {
+    pub fn on(&self, lower: [f64; 2], upper: [f64; 2]) -> Bounds {
         let on = |[in_u, in_v]: &[Bound; 2]| [in_u.between(lower[1], upper[1]), in_v.between(lower[0], upper[0])];
         let [u, v] = on(&self.roundings);
-        (u.min(v), on(&self.thirds))
+        Bounds {
+            rounding: u.min(v),
+            third: on(&self.thirds),
+            mixed: on(&self.mixed),
+        }
     }
 
     /// The same anywhere.
     #[inline]
-    pub fn anywhere(&self) -> (f64, [f64; 2]) {
-        (self.roundings[0].most, self.thirds.each_ref().map(|third| third.most))
+    pub fn anywhere(&self) -> Bounds {
+        Bounds {
+            rounding: self.roundings[0].most,
+            third: self.thirds.each_ref().map(|third| third.most),
+            mixed: self.mixed.each_ref().map(|mixed| mixed.most),
+        }
     }
 }
 

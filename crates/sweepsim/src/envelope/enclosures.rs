@@ -88,6 +88,13 @@ pub(super) fn largest(rows: &[[f64; 3]]) -> [f64; 3] {
     largest
 }
 
+/// Bounds of the components of vectors, up to what they lack for rounding.
+pub(super) fn speeds(spins: &[[f64; 3]], travels: &[[f64; 3]], sizes: &Sizes) -> Sizes {
+    let [spin, travel] = [largest(spins), largest(travels)];
+    let with = |own: [f64; 3], of: &[f64; 3]| std::array::from_fn(|k| own[k] + ROUNDING * of[k]);
+    [with(spin, &sizes[0]), with(travel, &sizes[1])]
+}
+
 /// Ranges of X and Y.
 pub(super) fn plane_values(
     element: &PatchForms,

@@ -10,7 +10,7 @@ use crate::envelope::any_box::AnyBox;
 use crate::envelope::clipped::clipped;
 use crate::envelope::enclosures::{
     Brick, Near, Size, envelope_error, envelope_error_in, envelope_size, interval, largest, plane_values, product_size,
-    turning, widened,
+    speeds, turning, widened,
 };
 use crate::envelope::poles::{at_pole, with_zeros};
 use crate::time::framed::FramedMotion;
@@ -50,7 +50,8 @@ impl ChartMap<3> for PatchMap<'_> {
     fn values(&mut self, cell: &Brick) -> Option<[Enclosure; 3]> {
         let field = self.cells.field(self.element, cell.0, 0);
         let (spins, travels) = self.times.twist(cell.1);
-        let missing = product_size(&self.times.sizes(), &self.cells.missing(cell.0).value);
+        let speeds = speeds(spins, travels, &self.times.sizes());
+        let missing = product_size(&speeds, &self.cells.missing(cell.0).value);
         let g = widened(envelope(spins, travels, &field), missing);
         let error = envelope_error_in(self.element, self.cells, self.times, cell.0);
         if g.0 > error || g.1 < -error || (g.0 == 0.0 && g.1 == 0.0) {
@@ -65,15 +66,15 @@ impl ChartMap<3> for PatchMap<'_> {
         let zero = Enclosure::hull(0.0, 0.0);
         let mut jacobian = [[zero; 3]; 3];
         let missing = self.cells.missing(cell.0);
-        let sizes = self.times.sizes();
+        let (spins, travels) = self.times.twist(cell.1);
+        let speeds = speeds(spins, travels, &self.times.sizes());
         for axis in 0..2 {
             for (r, row) in jacobian.iter_mut().enumerate().take(2) {
                 let rows = self.times.rows(cell.1, r);
                 row[axis] = interval(self.cells.slope_products(self.element, cell.0, axis, rows));
             }
             let slopes = self.cells.field_slope(cell.0, 0, axis);
-            let (spins, travels) = self.times.twist(cell.1);
-            let error = product_size(&sizes, &missing.slopes[axis]);
+            let error = product_size(&speeds, &missing.slopes[axis]);
             jacobian[2][axis] = interval(widened(envelope(spins, travels, &slopes), error));
         }
         let turning = turning(self.element, self.cells, self.times, *cell);

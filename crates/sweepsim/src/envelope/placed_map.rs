@@ -7,7 +7,7 @@ use crate::cutter::cells::Cells;
 use crate::cutter::patch_forms::PatchForms;
 use crate::cutter::reduced::Missing;
 use crate::envelope::any_box::AnyBox;
-use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, widened};
+use crate::envelope::enclosures::{Near, ROUNDING, Size, interval, negative, product_size, speeds, widened};
 use crate::time::pieces::Sizes;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
@@ -27,8 +27,15 @@ pub(crate) struct OnPlaced {
 pub(crate) struct Twist {
     pub spin: [f64; 3],
     pub travel: [f64; 3],
-    /// Bounds of the components of both.
+    /// Of the components of both, with what their roundings are relative to.
     pub sizes: Sizes,
+}
+
+impl Twist {
+    /// Bounds of the components of both.
+    fn speeds(&self) -> Sizes {
+        speeds(&[self.spin], &[self.travel], &self.sizes)
+    }
 }
 
 /// A side of a joint: the motion there, or none at the end of a path. The sign of `g` is then fixed.
@@ -46,7 +53,7 @@ impl Side {
             Self::Moving(twist) => {
                 let g = envelope(&[twist.spin], &[twist.travel], field);
                 let error = ROUNDING * product_size(&twist.sizes, &element.rounding);
-                negative(widened(g, product_size(&twist.sizes, &missing.value)), error)
+                negative(widened(g, product_size(&twist.speeds(), &missing.value)), error)
             }
         }
     }
@@ -61,7 +68,7 @@ impl Side {
             },
             Self::Moving(twist) => {
                 let rounding = ROUNDING * product_size(&twist.sizes, &element.rounding);
-                let error = rounding + product_size(&twist.sizes, &missing.value);
+                let error = rounding + product_size(&twist.speeds(), &missing.value);
                 let coefficients = envelope_coefficients(&[twist.spin], &[twist.travel], field);
                 Affine::of_form(&coefficients, length, error)
             }
