@@ -76,7 +76,10 @@ impl Direct {
         let flat = [0, 1, 2].map(|k| flat_at(patch, k));
         let centre = Vector3::from_fn(|k, _| flat[k].unwrap_or(middle[k]));
         let raised = |form: &Bernstein| form.elevated_to(&degrees);
-        let shifted = [0, 1, 2].map(|k| raised(&patch.position()[k]).sub(&raised(&weight.scale(centre[k]))));
+        let shifted = [0, 1, 2].map(|k| match flat[k] {
+            Some(_) => raised(&Bernstein::constant(2, 0.0)),
+            None => raised(&patch.position()[k]).sub(&raised(&weight.scale(centre[k]))),
+        });
         let [x, y, z] = shifted.clone();
         // Of the shift, whose terms are as large as the distance from the origin: of a product, and four of each raise of a degree.
         let shift = std::array::from_fn(|k| {
