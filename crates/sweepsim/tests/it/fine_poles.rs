@@ -4,7 +4,8 @@
 
 use crate::far_and_fine::difference;
 use crate::grazing_curves::bud;
-use crate::near_degenerate::{DISTANCES, GENERIC, METHODS, MOST, over_poles, work};
+use crate::near_degenerate::{DISTANCES, GENERIC, METHODS, MOST, work};
+use crate::near_poles::over_poles;
 use sweepsim::{Method, Options, sweep};
 
 /// Tolerances down to almost the least.

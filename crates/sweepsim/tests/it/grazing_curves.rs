@@ -83,6 +83,12 @@ pub fn bud() -> Tool {
     ])
 }
 
+/// As flat in the middle of its end as a router bit of one B-spline surface: its height grows with the third power of the distance.
+pub fn pad() -> Tool {
+    let end = vec![[0.0, 0.0, 1.0], [0.7, 0.0, 1.0], [1.4, 0.0, 1.0], [2.0, 0.3, 1.0]];
+    oval(&[end, straight([2.0, 0.3], [2.0, 7.0]), straight([2.0, 7.0], [0.0, 7.0])])
+}
+
 pub fn tools() -> [(&'static str, Tool); 3] {
     [
         ("cushion", cushion()),

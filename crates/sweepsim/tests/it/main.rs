@@ -25,6 +25,7 @@ mod methods;
 mod misuse;
 mod near_degenerate;
 mod near_material;
+mod near_poles;
 mod rays;
 mod retracts;
 mod sections;

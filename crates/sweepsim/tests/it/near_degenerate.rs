@@ -4,12 +4,11 @@
 //! `cargo test -p sweepsim --release --test it near_degenerate -- --include-ignored --nocapture` prints the table of the docs.
 
 use crate::far_and_fine::difference;
-use crate::grazing_curves::{bud, carried};
 use sweepsim::{Method, Options, Statistics, sweep};
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Apt, Course, Law, Move, Path, Pose, RotaryTable, TipArc, Tool, Turning};
 
-const UP: [f64; 3] = [0.0, 0.0, 1.0];
+pub const UP: [f64; 3] = [0.0, 0.0, 1.0];
 /// From far to none at all.
 pub const DISTANCES: [f64; 11] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9, 1e-12, 1e-15, 0.0];
 /// The neighbour that is generic.
@@ -38,7 +37,7 @@ pub fn through(poses: Vec<Pose>, law: Law) -> Path {
 }
 
 /// An arc of the tip of 100° about the origin, of this radius, rising by `rise`.
-fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
+pub fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Path {
     let (s, c) = 1.745_f64.sin_cos();
     let (from, to) = ([radius, 0.0, 0.0], [radius * c, radius * s, rise]);
     let course = Course::Arc(TipArc::between(from, to, [0.0; 3], UP, 1).expect("an arc"));
@@ -250,38 +249,6 @@ pub fn cost(method: Method, tool: &Tool, (path, grid): &(Path, Grid)) -> Statist
         .statistics
 }
 
-/// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising by `d` over a row.
-pub fn over_poles() -> Vec<Family> {
-    fn tip_over(tips: [[f64; 3]; 2]) -> (Path, Grid) {
-        (
-            carried(&tips, [0.0; 3]),
-            Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid"),
-        )
-    }
-    vec![
-        ("line from the way of a pole, in a row", |d| {
-            tip_over([[-4.0, d, 0.0], [4.0, d, 0.0]])
-        }),
-        ("line from the way of a pole, on a diagonal", |d| {
-            let off = d * std::f64::consts::FRAC_1_SQRT_2;
-            tip_over([[-4.0 - off, -4.0 + off, 0.0], [4.0 - off, 4.0 + off, 0.0]])
-        }),
-        ("line from the way of a pole, on the other diagonal", |d| {
-            let off = d * std::f64::consts::FRAC_1_SQRT_2;
-            tip_over([[-4.0 - off, 4.0 - off, 0.0], [4.0 - off, -4.0 - off, 0.0]])
-        }),
-        ("line from the way of a pole, on every second diagonal", |d| {
-            tip_over([[-4.0, -2.0 + 0.1 * d, 0.0], [4.0, 2.0 + 0.1 * d, 0.0]])
-        }),
-        ("line from the way of a pole, on every second steep diagonal", |d| {
-            tip_over([[-2.0 + 0.1 * d, 4.0, 0.0], [2.0 + 0.1 * d, -4.0, 0.0]])
-        }),
-        ("rise of a pole over a row of lines", |d| {
-            tip_over([[-4.0, 0.0, 0.0], [4.0, 0.0, d]])
-        }),
-    ]
-}
-
 /// The work of a sweep, in boxes. By default, a line in closed form takes as long as a box that holds only one (1.3 µs), and counts as one.
 pub fn work(method: Method, statistics: &Statistics, grid: &Grid) -> f64 {
     let lines = if method == Method::Charts { grid.len() } else { 0 };
@@ -289,7 +256,7 @@ pub fn work(method: Method, statistics: &Statistics, grid: &Grid) -> f64 {
 }
 
 /// Prints how many times as much work as its generic neighbour each input of a family takes, and tells whether all are cheap.
-fn is_cheap(
+pub fn is_cheap(
     method: Method,
     (what, family): Family,
     (name, tool): &(&'static str, Tool),
@@ -350,19 +317,6 @@ fn so_it_does_by_all_methods() {
 #[ignore = "takes half a minute"]
 fn so_it_does_by_all_methods_at_all_distances() {
     all_are_cheap(&METHODS[1..], &DISTANCES);
-}
-
-#[test]
-fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
-    let (mut wrong, tool) = (Vec::new(), ("bud", bud()));
-    for method in METHODS {
-        wrong.extend(
-            over_poles()
-                .into_iter()
-                .filter_map(|family| is_cheap(method, family, &tool, &DISTANCES).err()),
-        );
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 /// Closed forms of a tool that leans by almost nothing, moving level or down.

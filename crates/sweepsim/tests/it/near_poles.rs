@@ -1,0 +1,140 @@
+//! What almost degenerate input costs with free-form tools, whose normals vanish at poles but for one component: as in [`near_degenerate`](crate::near_degenerate).
+//!
+//! `cargo test -p sweepsim --release --test it near_poles -- --include-ignored --nocapture` prints the table.
+
+use crate::grazing_curves::{bud, carried, pad};
+use crate::near_degenerate::{DISTANCES, Family, METHODS, UP, arc, around, families, is_cheap, leaning, pose, through};
+use sweepsim::Method;
+use sweepsim_dexel::Grid;
+use sweepsim_motion::{Law, Move, Path, RotaryTable, Turning};
+
+/// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising by `d` over a row.
+pub fn over_poles() -> Vec<Family> {
+    fn tip_over(tips: [[f64; 3]; 2]) -> (Path, Grid) {
+        (
+            carried(&tips, [0.0; 3]),
+            Grid::new([-3.0, -3.0], [3.0, 3.0], [15, 15]).expect("a grid"),
+        )
+    }
+    vec![
+        ("line from the way of a pole, in a row", |d| {
+            tip_over([[-4.0, d, 0.0], [4.0, d, 0.0]])
+        }),
+        ("line from the way of a pole, on a diagonal", |d| {
+            let off = d * std::f64::consts::FRAC_1_SQRT_2;
+            tip_over([[-4.0 - off, -4.0 + off, 0.0], [4.0 - off, 4.0 + off, 0.0]])
+        }),
+        ("line from the way of a pole, on the other diagonal", |d| {
+            let off = d * std::f64::consts::FRAC_1_SQRT_2;
+            tip_over([[-4.0 - off, 4.0 - off, 0.0], [4.0 - off, -4.0 - off, 0.0]])
+        }),
+        ("line from the way of a pole, on every second diagonal", |d| {
+            tip_over([[-4.0, -2.0 + 0.1 * d, 0.0], [4.0, 2.0 + 0.1 * d, 0.0]])
+        }),
+        ("line from the way of a pole, on every second steep diagonal", |d| {
+            tip_over([[-2.0 + 0.1 * d, 4.0, 0.0], [2.0 + 0.1 * d, -4.0, 0.0]])
+        }),
+        ("rise of a pole over a row of lines", |d| {
+            tip_over([[-4.0, 0.0, 0.0], [4.0, 0.0, d]])
+        }),
+    ]
+}
+
+/// Moves of a tool whose tip passes near a line on a curve, or while the tool turns.
+pub fn over_poles_on_curves() -> Vec<Family> {
+    fn over_the_arc(d: f64) -> Grid {
+        let (s, c) = 0.8_f64.sin_cos();
+        around([(1.3 + d) * c, (1.3 + d) * s])
+    }
+    /// A level move, while the tool turns about its own axis, which leans by `tilt`.
+    fn turning_about_its_axis(tilt: f64) -> Path {
+        let (table, tilt) = (RotaryTable::Ac, tilt.to_degrees());
+        let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
+        let poses = vec![
+            pose([-1.0, -0.4, 0.0], table.axis(from)),
+            pose([1.0, 0.4, 0.0], table.axis(to)),
+        ];
+        let way = Move::straight(Turning::Rotary { table, from, to });
+        Path::with_moves(poses, vec![way]).expect("a path")
+    }
+    vec![
+        ("line from a level arc", |d| {
+            (arc(1.3, 0.0, [UP; 2], Turning::Even), over_the_arc(d))
+        }),
+        ("rise of an arc over a line", |d| {
+            (arc(1.3, d, [UP; 2], Turning::Even), over_the_arc(0.0))
+        }),
+        ("tilt on an arc over a line", |d| {
+            (arc(1.3, 0.0, [leaning(d); 2], Turning::Even), over_the_arc(0.0))
+        }),
+        ("axis change on an arc over a line", |d| {
+            (arc(1.3, 0.0, [UP, leaning(d)], Turning::Even), over_the_arc(0.0))
+        }),
+        ("axis change on a level move over a line", |d| {
+            let poses = vec![pose([-2.0, -0.7, 0.0], UP), pose([2.0, 0.9, 0.0], leaning(d))];
+            (through(poses, Law::Slerp), around([0.0, 0.1]))
+        }),
+        ("tilt of a level move over a line", |d| {
+            let poses = [-1.0, 1.0].map(|far| pose([2.0 * far, 0.8 * far, 0.0], leaning(d)));
+            (through(poses.into(), Law::Slerp), around([0.0; 2]))
+        }),
+        ("line from a level move that turns", |d| {
+            let poses = vec![
+                pose([-2.0, -0.7, 0.0], leaning(0.3)),
+                pose([2.0, 0.7, 0.0], leaning(-0.2)),
+            ];
+            (through(poses, Law::Slerp), around([-0.33 * d, 0.94 * d]))
+        }),
+        ("line from a level move that turns about the own axis", |d| {
+            (turning_about_its_axis(0.0), around([-0.371 * d, 0.928 * d]))
+        }),
+        ("tilt of a level move that turns about the own axis, over a line", |d| {
+            (turning_about_its_axis(d), around([0.0; 2]))
+        }),
+    ]
+}
+
+#[test]
+fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
+    let (mut wrong, tool) = (Vec::new(), ("bud", bud()));
+    for method in METHODS {
+        wrong.extend(
+            over_poles()
+                .into_iter()
+                .filter_map(|family| is_cheap(method, family, &tool, &DISTANCES).err()),
+        );
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Free-form tools, one of them as flat at its pole as a cubic is, on what is asked of tools of revolution, and with poles over lines.
+fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
+    let mut wrong = Vec::new();
+    for tool in [("bud", bud()), ("pad", pad())] {
+        for method in methods {
+            let families = list.iter().filter(|(what, _)| !is_dear(*method, what, tool.0));
+            wrong.extend(families.filter_map(|family| is_cheap(*method, *family, &tool, distances).err()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What costs more, as the docs say: the tool turns about a line within 2e-9 mm of a dexel, or, by other methods than the default, a pole that is as flat as a cubic slides along a line.
+fn is_dear(method: Method, what: &str, name: &str) -> bool {
+    let slides = ["tilt of a level move", "line from the way of a pole", "rise of a pole"];
+    what == "tilt while turning about the own axis"
+        || method != Method::Charts && name == "pad" && slides.iter().any(|start| what.starts_with(start))
+}
+
+#[test]
+fn moves_on_curves_cost_at_most_thrice_their_generic_neighbour() {
+    free_form_is_cheap(&METHODS[..2], &over_poles_on_curves(), &[1e-3, 1e-9, 0.0]);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn so_do_all_families() {
+    let list = [families(), over_poles(), over_poles_on_curves()].concat();
+    free_form_is_cheap(&METHODS[..2], &list, &DISTANCES);
+    free_form_is_cheap(&METHODS[2..], &over_poles_on_curves(), &DISTANCES);
+}
