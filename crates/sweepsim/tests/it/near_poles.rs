@@ -6,7 +6,8 @@ use crate::grazing_curves::{bud, carried, pad};
 use crate::near_degenerate::{DISTANCES, Family, METHODS, UP, arc, around, families, is_cheap, leaning, pose, through};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
-use sweepsim_motion::{Law, Move, Path, RotaryTable, Turning};
+use sweepsim_motion::{Law, Move, Path, RotaryTable, SplineMotion, Turning};
+use sweepsim_spline::{BSpline, KnotVector, RationalSpline};
 
 /// Level moves of a free-form tool whose tip passes over lines: `d` beside a row of them, beside a diagonal, or rising by `d` over a row.
 pub fn over_poles() -> Vec<Family> {
@@ -57,6 +58,26 @@ pub fn over_poles_on_curves() -> Vec<Family> {
         let way = Move::straight(Turning::Rotary { table, from, to });
         Path::with_moves(poses, vec![way]).expect("a path")
     }
+    /// A cubic through the origin, rising, along which the tool turns.
+    fn spline(rise: f64, turn: [f64; 3]) -> Path {
+        let [a, b, c] = turn;
+        let knots = || vec![KnotVector::new(3, [[0.0; 4], [1.0; 4]].concat()).expect("knots")];
+        let turns = [
+            [1.0, -a, -b, -c],
+            [1.0, 0.2 * a, 0.1 * b, 0.0],
+            [1.0, a, b, -c],
+            [1.0, a, -b, c],
+        ];
+        let turn = BSpline::new(knots(), 4, turns.concat()).expect("a curve");
+        let tips = [
+            [-1.4, -0.4, -rise],
+            [-0.5, -0.5, 0.0],
+            [0.5, 0.5, 0.0],
+            [1.4, 0.4, rise],
+        ];
+        let tip = RationalSpline::new(knots(), 3, &tips.concat(), &[1.0; 4]).expect("a curve");
+        Path::along(SplineMotion::from_quaternions(&turn, &tip).expect("a motion"))
+    }
     vec![
         ("line from a level arc", |d| {
             (arc(1.3, 0.0, [UP; 2], Turning::Even), over_the_arc(d))
@@ -77,6 +98,18 @@ pub fn over_poles_on_curves() -> Vec<Family> {
         ("tilt of a level move over a line", |d| {
             let poses = [-1.0, 1.0].map(|far| pose([2.0 * far, 0.8 * far, 0.0], leaning(d)));
             (through(poses.into(), Law::Slerp), around([0.0; 2]))
+        }),
+        ("line from a level spline", |d| {
+            (spline(0.0, [0.0; 3]), around([0.371 * d, -0.928 * d]))
+        }),
+        ("rise of a spline over a line", |d| {
+            (spline(d, [0.0; 3]), around([0.0; 2]))
+        }),
+        ("line from a level spline along which the tool turns", |d| {
+            (spline(0.0, [0.1, 0.2, 0.3]), around([0.371 * d, -0.928 * d]))
+        }),
+        ("turn along a level spline over a line", |d| {
+            (spline(0.0, [0.3 * d, -0.7 * d, 0.5 * d]), around([0.0; 2]))
         }),
         ("line from a level move that turns", |d| {
             let poses = vec![
