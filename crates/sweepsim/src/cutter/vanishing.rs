@@ -37,24 +37,25 @@ impl Size {
                     i * (rows + 1) + row
                 }]
             };
-            let of_rows = move |of: &dyn Fn(usize, usize) -> f64, count: usize, rows: usize| -> Vec<f64> {
-                (0..=rows).map(|row| largest((0..count).map(|i| of(i, row)))).collect()
-            };
             // In each variable, 1.5 n roundings of Bernstein polynomials, 3n that the nodes are off by, and n/2 + 1 of a sum of products.
             let roundings = combined * (5 * (n + rows) + 8) as f64 * f64::EPSILON;
             let cubic = (n * n.saturating_sub(1) * n.saturating_sub(2)) as f64;
             let third =
                 |i: usize, row: usize| cubic * (at(i + 3, row) - 3.0 * (at(i + 2, row) - at(i + 1, row)) - at(i, row));
-            let mixed = |i: usize, row: usize| rows as f64 * (third(i, row + 1) - third(i, row));
             let count = (n + 1).saturating_sub(3);
+            let thirds: Vec<Vec<f64>> = (0..=rows)
+                .map(|row| (0..count).map(|i| third(i, row)).collect())
+                .collect();
+            // The step from the last row to itself is 0: forms of one row have no derivative in the other variable.
+            let step = |row: usize| {
+                let next = thirds[(row + 1).min(rows)].iter();
+                largest(next.zip(&thirds[row]).map(|(next, this)| rows as f64 * (next - this)))
+            };
+            let bound = |of: &dyn Fn(usize) -> f64, count: usize| Bound::new(&(0..count).map(of).collect::<Vec<f64>>());
             [
-                Bound::new(&of_rows(&|i, row| roundings * at(i, row), n + 1, rows)),
-                Bound::new(&of_rows(&third, count, rows)),
-                if rows == 0 {
-                    Bound::new(&[0.0])
-                } else {
-                    Bound::new(&of_rows(&mixed, count, rows - 1))
-                },
+                bound(&|row| largest((0..=n).map(|i| roundings * at(i, row))), rows + 1),
+                bound(&|row| largest(thirds[row].iter().copied()), rows + 1),
+                bound(&step, rows.max(1)),
             ]
         };
         let [[rounding_u, third_u, mixed_u], [rounding_v, third_v, mixed_v]] = [0, 1].map(along);
