@@ -71,7 +71,7 @@ impl Errors {
 /// The coordinate `k` of all points, if it is the same, as exactly as a product with their weights can tell, and the forms of the normals and moments agree: the patch is flat, and
 /// where only `N_k` is not 0, nothing else has an error.
 pub(super) fn flat_at(patch: &Patch, k: usize) -> Option<f64> {
-    /// Half of one each in the quotient, in the product that a coefficient is, and in another one.
+    /// More than the three halves of the quotient, of the product that a coefficient is, and of the product that it is compared with.
     const ROUNDINGS: f64 = 2.0;
     let (form, weight) = (&patch.position()[k], patch.weight());
     let same_degrees = (0..2).all(|axis| form.degree(axis) == weight.degree(axis));

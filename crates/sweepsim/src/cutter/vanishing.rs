@@ -70,6 +70,7 @@ impl Size {
         self.thirds.iter().any(Bound::vanishes)
     }
 
+    /// The bounds on a cell.
     pub fn on(&self, lower: [f64; 2], upper: [f64; 2]) -> Bounds {
         let on = |[in_u, in_v]: &[Bound; 2]| [in_u.between(lower[1], upper[1]), in_v.between(lower[0], upper[0])];
         let [u, v] = on(&self.roundings);

@@ -88,7 +88,7 @@ pub(super) fn largest(rows: &[[f64; 3]]) -> [f64; 3] {
     largest
 }
 
-/// Bounds of the components of vectors, up to what they lack for rounding.
+/// Bounds of the components of angular and linear velocities, whose roundings are relative to `sizes`.
 pub(super) fn speeds(spins: &[[f64; 3]], travels: &[[f64; 3]], sizes: &Sizes) -> Sizes {
     let [spin, travel] = [largest(spins), largest(travels)];
     let with = |own: [f64; 3], of: &[f64; 3]| std::array::from_fn(|k| own[k] + ROUNDING * of[k]);

@@ -27,7 +27,7 @@ pub(crate) struct OnPlaced {
 pub(crate) struct Twist {
     pub spin: [f64; 3],
     pub travel: [f64; 3],
-    /// Of the components of both, with what their roundings are relative to.
+    /// Bounds of what the roundings of the components of both are relative to, and of the components themselves.
     pub sizes: Sizes,
 }
 

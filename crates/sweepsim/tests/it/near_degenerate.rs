@@ -45,6 +45,15 @@ pub fn arc(radius: f64, rise: f64, axes: [[f64; 3]; 2], turning: Turning) -> Pat
     Path::with_moves(poses, vec![Move { course, turning }]).expect("a path")
 }
 
+/// A straight move while the tool turns about its own axis, which leans by `tilt`.
+pub fn turning_about_its_axis(tips: [[f64; 3]; 2], tilt: f64) -> Path {
+    let (table, tilt) = (RotaryTable::Ac, tilt.to_degrees());
+    let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
+    let poses = vec![pose(tips[0], table.axis(from)), pose(tips[1], table.axis(to))];
+    let way = Move::straight(Turning::Rotary { table, from, to });
+    Path::with_moves(poses, vec![way]).expect("a path")
+}
+
 /// A turn about a line along the dexels, `d` from the nearest one, while the tip moves along it by `rise`; the axis leans by `tilt` out of the plane
 /// across the line.
 pub fn about_a_line(d: f64, rise: f64, tilt: f64) -> (Path, Grid) {
@@ -162,21 +171,11 @@ pub fn families() -> Vec<Family> {
             about_a_line(0.0, 100.0 * d, 0.0)
         }),
         ("tilt while turning about the own axis", |d| {
-            let (table, tilt) = (RotaryTable::Ac, d.to_degrees());
-            let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
-            let poses = vec![pose([0.0; 3], table.axis(from)), pose([0.0; 3], table.axis(to))];
-            let way = Move::straight(Turning::Rotary { table, from, to });
-            (Path::with_moves(poses, vec![way]).expect("a path"), around([0.0; 2]))
+            (turning_about_its_axis([[0.0; 3]; 2], d), around([0.0; 2]))
         }),
         ("tilt while turning about the own axis on the way", |d| {
-            let (table, tilt) = (RotaryTable::Ac, d.to_degrees());
-            let [from, to] = [[tilt, 10.0], [tilt, 95.0]];
-            let poses = vec![
-                pose([-1.0, -0.4, 0.0], table.axis(from)),
-                pose([1.0, 0.5, 0.0], table.axis(to)),
-            ];
-            let way = Move::straight(Turning::Rotary { table, from, to });
-            (Path::with_moves(poses, vec![way]).expect("a path"), around(SIDE))
+            let tips = [[-1.0, -0.4, 0.0], [1.0, 0.5, 0.0]];
+            (turning_about_its_axis(tips, d), around(SIDE))
         }),
         ("axis from across the displacement of tips, on a level move", |d| {
             let axis = from_across_displacement(d);
