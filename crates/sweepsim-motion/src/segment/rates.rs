@@ -48,7 +48,7 @@ impl Segment {
         };
         // With b′ = B/f and Ω = S/σ the factor is f σ: f S and (σ/ŵ) Âᵀ B.
         let (rate, factor) = curve.rate();
-        let mut travel = product(&self.turns, &rate, |turn, rate| turn.tr_mul(rate));
+        let mut travel = product(&self.turns, &rate, turned_back);
         if curve.squared {
             travel = product(&self.weights, &travel, |weight, travel| travel * *weight);
         }

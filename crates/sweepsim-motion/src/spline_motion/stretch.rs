@@ -83,7 +83,7 @@ fn matrix(p: &[f64; 4], q: &[f64; 4]) -> Matrix3<f64> {
 /// From quaternions, which always give rotations; the angular velocity has the lowest degree.
 pub(super) fn of_quaternions(stretch: &MotionStretch) -> Result<StretchTurning, MotionError> {
     let count = stretch.turn.components()[0].coefficients().len();
-    let quaternions: Vec<[f64; 4]> = (0..count)
+    let mut quaternions: Vec<[f64; 4]> = (0..count)
         .map(|i| {
             let c = MotionStretch::column(&stretch.turn, i);
             [c[0], c[1], c[2], c[3]]
@@ -94,6 +94,9 @@ pub(super) fn of_quaternions(stretch: &MotionStretch) -> Result<StretchTurning, 
             what: "orientation",
             at: stretch.middle(),
         });
+    }
+    if quaternions.iter().all(|q| *q == quaternions[0]) {
+        quaternions.truncate(1);
     }
     let dot = |p: &[f64; 4], q: &[f64; 4]| (0..4).map(|k| p[k] * q[k]).sum::<f64>();
     let weights = product(&quaternions, &quaternions, dot);
@@ -108,10 +111,9 @@ pub(super) fn of_quaternions(stretch: &MotionStretch) -> Result<StretchTurning, 
         let (u, v) = (Vector3::new(p[1], p[2], p[3]), Vector3::new(q[1], q[2], q[3]));
         (v * p[0] - u * q[0] - u.cross(&v)) * 2.0
     };
-    let spins = if count == 1 {
-        vec![Vector3::zeros()]
-    } else {
-        wronskian(count - 1, vector)
+    let spins = match quaternions.len() {
+        1 => vec![Vector3::zeros()],
+        n => wronskian(n - 1, vector),
     };
     Ok(Some((turns, weights, spins)))
 }
@@ -132,7 +134,10 @@ fn deviation(turns: &[Matrix3<f64>], weights: &[f64]) -> f64 {
 pub(super) fn of_matrices(stretch: &MotionStretch, tolerance: f64, last: bool) -> Result<StretchTurning, MotionError> {
     let at = stretch.middle();
     let count = stretch.turn.components()[0].coefficients().len();
-    let columns: Vec<Vec<f64>> = (0..count).map(|i| MotionStretch::column(&stretch.turn, i)).collect();
+    let mut columns: Vec<Vec<f64>> = (0..count).map(|i| MotionStretch::column(&stretch.turn, i)).collect();
+    if columns.iter().all(|c| *c == columns[0]) {
+        columns.truncate(1);
+    }
     if !columns.iter().flatten().all(|c| c.abs() < 1e100) {
         let what = "orientation";
         return Err(MotionError::NotFinite { what, at });

@@ -293,6 +293,32 @@ fn straight() -> RationalSpline {
     RationalSpline::new(vec![knots(1)], 3, &[0.0, 0.0, 0.0, 5.0, 1.0, 0.0], &[1.0; 2]).unwrap()
 }
 
+/// Such a motion has no turn whose coefficients cancel, whatever the degree it is given in.
+#[test]
+fn equal_orientations_have_one_coefficient() {
+    let q = [1.0, 0.3, -0.2, 0.5];
+    let quaternions = [0, 1, 3].map(|degree| {
+        let turn = BSpline::new(vec![knots(degree)], 4, q.repeat(degree + 1)).unwrap();
+        SplineMotion::from_quaternions(&turn, &straight()).unwrap()
+    });
+    let rows = Rotation3::new(Vector3::new(0.3, 0.5, -0.2))
+        .transpose()
+        .matrix()
+        .as_slice()
+        .to_vec();
+    let matrices = [0, 1, 3].map(|degree| {
+        let weights = vec![2.0; degree + 1];
+        let turn = RationalSpline::new(vec![knots(degree)], 9, &rows.repeat(degree + 1), &weights).unwrap();
+        SplineMotion::from_matrices(&turn, &straight(), 1e-9).unwrap()
+    });
+    for same in [quaternions, matrices] {
+        let segments = same.map(|motion| Path::along(motion).segments(0, 10.0, 1e-6));
+        assert!(segments.iter().flatten().all(|segment| segment.turns().len() == 1));
+        assert_eq!(segments[0], segments[1]);
+        assert_eq!(segments[0], segments[2]);
+    }
+}
+
 #[test]
 fn matrices_that_are_no_rotations_are_refused_with_place_and_size() {
     // A chord of rotations: in the middle it is no rotation.

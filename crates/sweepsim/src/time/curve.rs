@@ -104,6 +104,23 @@ pub(crate) struct CurveTimes {
     joint: bool,
 }
 
+/// Bounds of the components of some vectors `Aᵀ v` in the tool's frame, which hold their rounding, too: a component may be a small difference of products, but only of those that it is
+/// a sum of, which `|A|ᵀ |A|` times the largest components bounds. A face that slides along itself has the sign of a component that is a tiny part of the whole. As in [`back_size`],
+/// nothing cancels if there is only one `A`.
+///
+/// [`back_size`]: crate::time::pieces::back_size
+fn component_sizes(segment: &Segment, list: &[Vector3<f64>]) -> [f64; 3] {
+    let own = list.iter().fold(Vector3::zeros(), |most, v| most.sup(&v.abs()));
+    if segment.turns().len() == 1 {
+        return own.into();
+    }
+    let controls = segment.turns().iter().zip(segment.weights());
+    let turned = controls.fold(Matrix3::zeros(), |most, (turn, weight)| {
+        most.sup(&(turn.abs() / *weight))
+    });
+    (own + turned.transpose() * (turned * own) * PRODUCT).into()
+}
+
 fn triples(channel: &Channel) -> Vec<[f64; 3]> {
     let triple = |i: usize| [0, 1, 2].map(|k| channel.row(i)[k]);
     certain((0..channel.len()).map(triple).collect())
@@ -164,18 +181,12 @@ impl CurveTimes {
             bare(&spins),
             bare(&travels),
         ];
-        // Components may be small differences of large products.
-        let size = |list: &[Vector3<f64>]| {
-            let largest = |of: &dyn Fn(&Vector3<f64>) -> f64| list.iter().map(of).fold(0.0, f64::max);
-            let all = largest(&|v| v.abs().sum());
-            [0, 1, 2].map(|k| largest(&|v| v[k].abs()) + PRODUCT * all)
-        };
         let joint = segment.weights() == tip.1 && turn_rate.1 == tip_rate.1;
         let mut times = Self {
             joint,
             nodes: Vec::with_capacity(32),
             recent: Recent::default(),
-            sizes: [size(&spins), size(&travels)],
+            sizes: [component_sizes(segment, &spins), component_sizes(segment, &travels)],
         };
         times.nodes.push(node(0.0, 1.0, channels, joint));
         times

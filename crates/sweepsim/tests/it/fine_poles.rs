@@ -3,25 +3,27 @@
 //! `cargo test -p sweepsim --release --test it fine_poles -- --include-ignored --nocapture` prints the table of the docs.
 
 use crate::far_and_fine::difference;
-use crate::grazing_curves::bud;
-use crate::near_degenerate::{DISTANCES, GENERIC, METHODS, MOST, work};
-use crate::near_poles::over_poles;
+use crate::grazing_curves::{bud, pad};
+use crate::near_degenerate::{DISTANCES, Family, GENERIC, METHODS, MOST, around, work};
+use crate::near_poles::{over_poles, over_poles_on_curves};
+use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, sweep};
+use sweepsim_motion::Tool;
 
 /// Tolerances down to almost the least.
 const FINE: [f64; 5] = [1e-7, 3e-8, 1e-8, 1e-9, 6e-10];
 
 /// Lines that rounding leaves undecided are given up early, and solved again at a distance, which takes about as many boxes as all lines do otherwise. `lines` leaves to charts what would
 /// have taken it fewer.
-fn poles_at_fine_tolerances(distances: &[f64]) {
-    let (mut wrong, tool) = (Vec::new(), bud());
+fn cheap_at_fine_tolerances((name, tool): (&str, &Tool), methods: &[Method], list: &[Family], distances: &[f64]) {
+    let mut wrong = Vec::new();
     for tolerance in FINE {
-        for method in METHODS {
-            for (what, family) in over_poles() {
+        for &method in methods {
+            for &(what, family) in list {
                 let swept = |d: f64, tolerance: f64, method: Method| {
                     let input = family(d);
                     let options = Options::new(tolerance).method(method);
-                    let found = sweep(&tool, &input.0, &input.1, &options, &()).expect("a sweep");
+                    let found = sweep(tool, &input.0, &input.1, &options, &()).expect("a sweep");
                     (work(method, &found.statistics, &input.1), found)
                 };
                 let (generic, _) = swept(GENERIC, tolerance, method);
@@ -35,7 +37,7 @@ fn poles_at_fine_tolerances(distances: &[f64]) {
                     let apart =
                         difference(&found.volume, &swept(*d, 1e-6, Method::Charts).1.volume, 10.0, 0.0).along_lines;
                     let line = format!(
-                        "{tolerance:e}, {method}, {what}, {d:e}: {ratio:.2} of {generic}, {again} again, {open} open, {apart:e}"
+                        "{tolerance:e}, {method}, {name}, {what}, {d:e}: {ratio:.2} of {generic}, {again} again, {open} open, {apart:e}"
                     );
                     println!("{line}");
                     // No other line is solved again.
@@ -51,11 +53,74 @@ fn poles_at_fine_tolerances(distances: &[f64]) {
 
 #[test]
 fn poles_over_lines_cost_little_at_fine_tolerances() {
-    poles_at_fine_tolerances(&[1e-9, 1e-12, 0.0]);
+    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &[1e-9, 1e-12, 0.0]);
 }
 
 #[test]
 #[ignore = "takes half a minute"]
 fn so_they_do_at_all_distances() {
-    poles_at_fine_tolerances(&DISTANCES);
+    cheap_at_fine_tolerances(("bud", &bud()), &METHODS, &over_poles(), &DISTANCES);
+}
+
+/// Poles over lines on curves, but for a pole as flat as a cubic that slides straight along a line: its line is solved again, and takes ten times as many boxes as all others do, as the docs say.
+fn on_curves(name: &str) -> Vec<Family> {
+    let is_dear = |what: &str| name == "pad" && what == "tilt of a level move over a line";
+    let mut list = over_poles_on_curves();
+    list.retain(|(what, _)| !is_dear(what));
+    list
+}
+
+fn cheap_on_curves(methods: &[Method], distances: &[f64]) {
+    for (name, tool) in [("bud", bud()), ("pad", pad())] {
+        cheap_at_fine_tolerances((name, &tool), methods, &on_curves(name), distances);
+    }
+}
+
+#[test]
+fn so_they_do_on_curves() {
+    cheap_on_curves(&[Method::Charts], &[1e-9]);
+}
+
+#[test]
+#[ignore = "takes two minutes"]
+fn so_they_do_on_curves_at_all_distances() {
+    cheap_on_curves(&METHODS[..2], &DISTANCES);
+}
+
+/// In no plane of the grid, and far from the origin: then all components of a velocity are rounded.
+#[test]
+fn so_they_do_anywhere() {
+    let turn = Rotation3::new(Vector3::new(0.3, 0.5, -0.2)).into_inner();
+    let shift = Vector3::new(31.7, -17.3, 7.1);
+    for (name, tool) in [("bud", bud()), ("pad", pad())] {
+        for (what, family) in on_curves(name) {
+            // As the docs say, whether a face slides along itself is lost in the rounding of such a turn.
+            if what.contains("about the own axis") {
+                continue;
+            }
+            for d in [0.1, 1e-3, 0.0] {
+                let (path, grid) = family(d);
+                let [x, y] = [0, 1].map(|k| 0.5 * (grid.min()[k] + grid.max()[k]));
+                let place = turn * Vector3::new(x, y, 0.0) + shift;
+                let (path, grid) = (path.moved(&turn, shift).expect("a path"), around([place.x, place.y]));
+                let boxes = |tolerance: f64| {
+                    let found = sweep(&tool, &path, &grid, &Options::new(tolerance), &())
+                        .expect("a sweep")
+                        .statistics;
+                    let (again, open) = (found.repaired, found.unresolved.len());
+                    assert!(
+                        again <= 1 && open == 0,
+                        "{name}, {what}, {d:e} at {tolerance:e}: {again} again, {open} open"
+                    );
+                    work(Method::Charts, &found, &grid)
+                };
+                // Motions that have no exact form are cut into more parts.
+                let (usual, fine) = (boxes(1e-6), boxes(1e-8));
+                assert!(
+                    fine <= 6.0 * usual,
+                    "{name}, {what}, {d:e}: {fine} boxes, {usual} at 1e-6"
+                );
+            }
+        }
+    }
 }
