@@ -28,6 +28,7 @@ mod cell;
 mod line;
 mod search;
 mod taylor;
+mod trail;
 
 use crate::Monitor;
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, Sink, Targets};

@@ -3,7 +3,8 @@
 use super::cell::{Blocks, StackedBox};
 use super::line::{self, Found, Outcome, Window};
 use super::taylor::Taylor;
-use crate::charts::{BETWEEN, Trail, all_of, collapses, largest, widest};
+use crate::bundles::trail::Trail;
+use crate::charts::{BETWEEN, all_of, collapses, largest, widest};
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, ChartTarget, Preimage, Sink, Targets, UnresolvedTarget};
 use crate::{Cause, Enclosure, Monitor};
 use std::collections::BTreeMap;

@@ -3,10 +3,11 @@
 use super::about::Points;
 use super::faces::{Place, Searched};
 use super::linear::{Contraction, Linear};
+use super::neighbours::{Neighbours, Solution};
 use super::region::{Region, Witness};
 use super::sides::Sides;
 use super::solver::{BETWEEN, CLOSE};
-use super::{ChartSolver, Preimage, Sink, Targets, Trail};
+use super::{ChartSolver, Preimage, Sink, Targets};
 use crate::{Enclosure, Monitor};
 use nalgebra::{SMatrix, SVector, Vector3};
 
@@ -90,7 +91,7 @@ impl<'a, const N: usize> Chart<'a, N> {
         q: &[f64; N],
         witness: &mut Option<Witness<N>>,
         evaluations: &mut u64,
-        found: &mut impl FnMut(SVector<f64, N>, Place, [f64; N], P::Seen),
+        found: &mut impl FnMut(SVector<f64, N>, Place, &Square<N>, [f64; N], P::Seen),
     ) -> Outcome {
         let linear = self.linear;
         let mut s = guess;
@@ -141,7 +142,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                 if is_last {
                     let place = self.place(&next);
                     if place != Place::Outside {
-                        found(next, place, from, sample.seen);
+                        found(next, place, &scaled, from, sample.seen);
                         return Outcome::Settled;
                     }
                     if is_hidden {
@@ -171,7 +172,7 @@ impl<'a, const N: usize> Chart<'a, N> {
                     Place::Outside => return Outcome::Unclear,
                     _ if linear.slack.amax() > HIDDEN => is_hidden = true,
                     place => {
-                        found(next, place, from, sample.seen);
+                        found(next, place, &scaled, from, sample.seen);
                         return Outcome::Settled;
                     }
                 }
@@ -244,7 +245,7 @@ impl<C: Clone> ChartSolver<C> {
         };
         let whole = Region::around(&centre.at, &SVector::repeat(1.0));
         let close = linear.radius < CLOSE;
-        let mut trail = Trail::new();
+        let mut known = Neighbours::new();
         let mut clear = true;
         let Self {
             options,
@@ -287,7 +288,8 @@ impl<C: Clone> ChartSolver<C> {
             if region.is_empty() || sides.is_some_and(|sides| sides.agree(&region)) {
                 return true;
             }
-            let guess = trail.guess(target.place).map_or(near, SVector::from);
+            let first_two = [q[0], q[N.min(2) - 1]];
+            let guess = known.guess(target.place, &first_two).map_or(near, SVector::from);
             let (mut witness, mut hit) = (None, false);
             let outcome = chart.solve(
                 map,
@@ -296,8 +298,15 @@ impl<C: Clone> ChartSolver<C> {
                 q,
                 &mut witness,
                 &mut statistics.evaluations,
-                &mut |s, place, from, seen| {
-                    trail.push(target.place, s.into());
+                &mut |s, place, jacobian, from, seen| {
+                    if let Some(slopes) = first_columns(jacobian) {
+                        let solution = Solution {
+                            s: s.into(),
+                            q: first_two,
+                            slopes,
+                        };
+                        known.push(target.place, solution);
+                    }
                     hit = true;
                     let x = linear.point(&s);
                     if faces.is_new(target.number, &x, linear, place) {
@@ -324,6 +333,21 @@ impl<C: Clone> ChartSolver<C> {
         }
         clear
     }
+}
+
+/// The first two columns of `A⁻¹`; the only one twice for `N = 1`.
+fn first_columns<const N: usize>(matrix: &Square<N>) -> Option<[[f64; N]; 2]> {
+    if N == 3 {
+        let column = |j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
+        let (x, y, z) = (column(0), column(1), column(2));
+        let rows = [y.cross(&z), z.cross(&x), x.cross(&y)];
+        let inverse = 1.0 / x.dot(&rows[0]);
+        return inverse
+            .is_finite()
+            .then(|| [0, 1].map(|k| std::array::from_fn(|i| rows[i][k] * inverse)));
+    }
+    let column = |k: usize| solve_linear(matrix, &SVector::from_fn(|i, _| f64::from(u8::from(i == k))));
+    Some([column(0)?.into(), column(N.min(2) - 1)?.into()])
 }
 
 /// `A⁻¹ b` for a small matrix.

@@ -22,11 +22,11 @@ mod linear;
 mod narrow;
 #[cfg(test)]
 mod narrow_test;
+mod neighbours;
 mod region;
 mod sides;
 mod solver;
 mod split;
-mod trail;
 mod wanted;
 
 use crate::{Cause, Enclosure};
@@ -34,7 +34,6 @@ pub use sides::Affine;
 pub(crate) use solver::BETWEEN;
 pub use solver::ChartSolver;
 pub(crate) use split::{collapses, largest, widest};
-pub(crate) use trail::Trail;
 
 /// A map `R^N → R^N` with enclosures over boxes.
 pub trait ChartMap<const N: usize> {

@@ -149,7 +149,7 @@ mod tests {
             let element = &elements[patch % elements.len()];
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
             let mut map = PatchMap {
-                motion: FramedMotion::new(&times, element.frame()),
+                motion: FramedMotion::new(element.frame()),
                 element,
                 cells: &mut cells,
                 times: &mut times,

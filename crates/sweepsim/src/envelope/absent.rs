@@ -285,7 +285,7 @@ mod tests {
             for element in &patches {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
                 let mut map = PatchMap {
-                    motion: FramedMotion::new(&times, element.frame()),
+                    motion: FramedMotion::new(element.frame()),
                     element,
                     cells: &mut cells,
                     times: &mut times,
@@ -325,7 +325,7 @@ mod tests {
             for element in &edges {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
                 let mut map = EdgeMap {
-                    motion: FramedMotion::new(&times, None),
+                    motion: FramedMotion::new(None),
                     element,
                     cells: &mut cells,
                     times: &mut times,
@@ -347,7 +347,7 @@ mod tests {
             for element in &patches {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
                 let mut map = PatchMap {
-                    motion: FramedMotion::new(&times, element.frame()),
+                    motion: FramedMotion::new(element.frame()),
                     element,
                     cells: &mut cells,
                     times: &mut times,

@@ -178,7 +178,7 @@ mod tests {
             for element in &PatchForms::all(&Tool::ball(2.0, 7.0).unwrap()).0 {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
                 let mut map = PatchMap {
-                    motion: FramedMotion::new(&times, element.frame()),
+                    motion: FramedMotion::new(element.frame()),
                     element,
                     cells: &mut cells,
                     times: &mut times,

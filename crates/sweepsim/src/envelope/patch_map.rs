@@ -307,7 +307,7 @@ mod tests {
             let segment = straight([f64::cos(angle), f64::sin(angle), rise]);
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
             let mut map = PatchMap {
-                motion: FramedMotion::new(&times, element.frame()),
+                motion: FramedMotion::new(element.frame()),
                 element,
                 cells: &mut cells,
                 times: &mut times,
@@ -343,7 +343,7 @@ mod tests {
             let segment = straight([1.0, 0.0, 0.0]);
             let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
             let mut map = PatchMap {
-                motion: FramedMotion::new(&times, element.frame()),
+                motion: FramedMotion::new(element.frame()),
                 element,
                 cells: &mut cells,
                 times: &mut times,
@@ -366,7 +366,7 @@ mod tests {
             for element in &PatchForms::all(&Tool::flat(2.0, 7.0).unwrap()).0 {
                 let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
                 let mut map = PatchMap {
-                    motion: FramedMotion::new(&times, element.frame()),
+                    motion: FramedMotion::new(element.frame()),
                     element,
                     cells: &mut cells,
                     times: &mut times,

@@ -161,7 +161,7 @@ fn size() -> Size {
 fn searched(element: &PatchForms, segment: &Segment, lines: &Lattice, always: bool) -> (Found, [u64; 3]) {
     let (mut times, mut cells) = (Times::new(segment), Cells::new(element));
     let map = PatchMap {
-        motion: FramedMotion::new(&times, element.frame()),
+        motion: FramedMotion::new(element.frame()),
         element,
         cells: &mut cells,
         times: &mut times,
@@ -274,7 +274,7 @@ fn memory_of_a_long_search_is_bounded() {
     for direction in 0..3 {
         let (mut times, mut cells) = (Times::new(&segment), Cells::new(element));
         let map = PatchMap {
-            motion: FramedMotion::new(&times, element.frame()),
+            motion: FramedMotion::new(element.frame()),
             element,
             cells: &mut cells,
             times: &mut times,

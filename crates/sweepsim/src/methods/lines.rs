@@ -289,7 +289,7 @@ mod tests {
             for (patch, element) in tool.patches().iter().zip(&faces) {
                 let motion = PatchMotion::new(patch, &segment);
                 let mut cells = Cells::new(element);
-                let own = FramedMotion::new(&times, element.frame());
+                let own = FramedMotion::new(element.frame());
                 let map = PatchMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
                 let [x, y, g] = map.evaluate(&at).value;
                 let [a, b] = plane(motion.position(), &at);
@@ -312,7 +312,7 @@ mod tests {
             for (edge, element) in tool.edges().iter().zip(&rims) {
                 let motion = EdgeMotion::new(edge, &segment);
                 let mut cells = Cells::new(element);
-                let own = FramedMotion::new(&times, None);
+                let own = FramedMotion::new(None);
                 let map = EdgeMap { motion: own, element, cells: &mut cells, times: &mut times, size: SIZE };
                 let origin = [at[0], at[2]];
                 let sample = map.evaluate(&origin);

@@ -304,7 +304,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
     ) -> (PatchMap<'b>, impl Sink<3, OnPatch>) {
         let element = &self.cutter.patches[number];
         let map = PatchMap {
-            motion: FramedMotion::new(times, element.frame()),
+            motion: FramedMotion::new(element.frame()),
             element,
             cells: &mut cells[number],
             times,
@@ -352,7 +352,7 @@ impl<'a, M: CrossingMethod<'a>> Search<'_, M> {
         harvest: &'b mut Harvest,
     ) -> (EdgeMap<'b>, impl Sink<2, OnEdge>) {
         let map = EdgeMap {
-            motion: FramedMotion::new(times, None),
+            motion: FramedMotion::new(None),
             element: &self.cutter.edges[number],
             cells: &mut cells[number],
             times,

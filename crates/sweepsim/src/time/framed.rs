@@ -1,10 +1,12 @@
 //! The inner loop: the motion at one time, in the frame of a patch.
 
 use crate::algebra::quad::{Quad, add, blend, cross, mix, quad, quadratics, sub};
+use crate::time::arc::ArcTimes;
 use crate::time::moment::Moment;
 use crate::time::pieces::Times;
 use crate::time::placement::{LocalFrame, Placing, Twisted};
 use nalgebra::{Matrix3, Vector3};
+use std::cell::OnceCell;
 
 /// The motion at one time.
 #[derive(Clone, Copy, Debug)]
@@ -39,14 +41,11 @@ impl Instant {
     }
 }
 
-/// A motion, in a frame fixed to the tool.
-pub(crate) enum FramedMotion<'a> {
-    /// In the lowest degrees, those of an arc.
-    FramedArc(Box<FramedArc>),
-    /// In any degrees.
-    Any(&'a LocalFrame),
-    /// The same, in the tool's own frame.
-    AnyOwn,
+/// A motion, in a frame fixed to the tool, or in the tool's own.
+pub(crate) struct FramedMotion<'a> {
+    frame: Option<&'a LocalFrame>,
+    /// An arc in the lowest degrees, from the first evaluation on: most patches are settled without any.
+    arc: OnceCell<Box<FramedArc>>,
 }
 
 /// An arc with a straight tip, in a frame.
@@ -66,10 +65,26 @@ const TRAVEL: usize = 12;
 const WEIGHT: usize = 15;
 
 impl<'a> FramedMotion<'a> {
-    pub fn new(times: &Times, frame: Option<&'a LocalFrame>) -> Self {
-        let Times::Arc(arc) = times else {
-            return frame.map_or(Self::AnyOwn, Self::Any);
-        };
+    pub fn new(frame: Option<&'a LocalFrame>) -> Self {
+        Self {
+            frame,
+            arc: OnceCell::new(),
+        }
+    }
+
+    /// The motion at `t`, always of the same pieces. Callers that need only some of it do not pay for the rest.
+    #[inline]
+    pub fn at(&self, times: &Times, t: f64) -> Instant {
+        match times {
+            Times::Arc(arc) => self.arc.get_or_init(|| Box::new(FramedArc::new(arc, self.frame))).at(t),
+            Times::Curve(_) => Instant::of(&times.at(t), self.frame),
+        }
+    }
+}
+
+impl FramedArc {
+    #[cold]
+    fn new(arc: &ArcTimes, frame: Option<&LocalFrame>) -> Self {
         let still = (arc.count == 1).then(|| Instant::of(&arc.at(0.0), frame));
         let mut c = [[0.0; 16]; 3];
         for (c, (turn, weight, travel)) in c.iter_mut().zip(arc.coefficients()) {
@@ -80,28 +95,16 @@ impl<'a> FramedMotion<'a> {
             c[TRAVEL..WEIGHT].copy_from_slice(&seen[..3]);
             c[WEIGHT] = weight;
         }
-        Self::FramedArc(Box::new(FramedArc {
+        Self {
             still,
             c,
             tip: quad(&arc.tips[0]),
             velocity: quad(&arc.velocity),
             pace: quad(&arc.pace()),
             spin: Twisted::new(&Vector3::from(arc.spin[0]), &Vector3::zeros(), frame).spin,
-        }))
-    }
-
-    /// The motion at `t`. Callers that need only some of it do not pay for the rest.
-    #[inline]
-    pub fn at(&self, times: &Times, t: f64) -> Instant {
-        match self {
-            Self::FramedArc(arc) => arc.at(t),
-            Self::Any(frame) => Instant::of(&times.at(t), Some(frame)),
-            Self::AnyOwn => Instant::of(&times.at(t), None),
         }
     }
-}
 
-impl FramedArc {
     #[inline]
     fn at(&self, t: f64) -> Instant {
         let pivot = mix(1.0, &self.tip, t, &self.velocity);
@@ -158,7 +161,7 @@ mod tests {
             for part in parts((&path, 0..path.moves()), &sweepsim_dexel::Frame::WORLD, crate::time::path_parts::Kind { symmetric: true, closed: false }, 40.0, &Tolerances::new(1e-6, 100.0).unwrap()) {
                 let times = Times::new(&part.segment);
                 for frame in [None, Some(&own)] {
-                    let (motion, expected) = (FramedMotion::new(&times, frame), Instant::of(&times.at(t), frame));
+                    let (motion, expected) = (FramedMotion::new(frame), Instant::of(&times.at(t), frame));
                     let found = motion.at(&times, t);
                     for k in 0..3 {
                         prop_assert!(near(&found.placing.turn[k], &expected.placing.turn[k], 1e-14));

@@ -7,6 +7,9 @@ pub(crate) use line_mask::LineMask;
 use sweepsim_dexel::Grid;
 use sweepsim_solve::{ChartTarget, Enclosure, Targets};
 
+/// Of positions, of lines and of places among them: each has a few roundings of the largest coordinate.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
 /// Dexel lines `i[0] ..= i[1]` × `j[0] ..= j[1]` of a grid, all moved by `shift`.
 #[derive(Clone, Debug)]
 pub(crate) struct Lattice<'a> {
@@ -19,6 +22,8 @@ pub(crate) struct Lattice<'a> {
     /// The approximate position of the grid's first lines, and their number per unit of length.
     first: [f64; 2],
     density: [f64; 2],
+    /// Which part of a spacing the rounding of a position may be.
+    unsure: [f64; 2],
 }
 
 impl<'a> Lattice<'a> {
@@ -33,6 +38,10 @@ impl<'a> Lattice<'a> {
             mask: None,
             first: [0, 1].map(|k| grid.min()[k] + 0.5 * spacing[k] + shift[k]),
             density: spacing.map(f64::recip),
+            unsure: [0, 1].map(|k| {
+                let largest = grid.min()[k].abs().max(grid.max()[k].abs()) + spacing[k] + shift[k].abs();
+                ROUNDING * largest / spacing[k]
+            }),
         }
     }
 
@@ -82,24 +91,54 @@ impl<'a> Lattice<'a> {
     }
 
     /// The numbers of the lines along one direction whose coordinate lies in the range.
+    #[inline]
     pub fn numbers(&self, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
         let window = if axis == 0 { self.i } else { self.j };
-        let [start, end] = window.map(|number| number as f64);
-        let number = |z: f64| (z - self.first[axis]) * self.density[axis];
-        // NaN ranges contain everything: `max` and `min` ignore NaN.
-        let mut lo = number(range.lo()).max(start).min(end) as usize;
-        let mut hi = (number(range.hi()).min(end).max(start) as usize + 1).min(window[1]);
-        // The product is only a guess: the exact coordinates of the lines decide.
-        while lo <= hi && self.coordinate(axis, lo) < range.lo() {
-            lo += 1;
+        let [lo, hi] = [range.lo(), range.hi()].map(|z| (z - self.first[axis]) * self.density[axis]);
+        let margin = self.unsure[axis].max(0.5);
+        let [before, behind] = [window[0] as f64 - margin, window[1] as f64 + margin];
+        if lo > behind || hi < before {
+            return None;
         }
-        while hi >= lo && self.coordinate(axis, hi) > range.hi() {
-            if hi == 0 {
-                return None;
-            }
-            hi -= 1;
+        // NaN ranges contain everything.
+        let first = if lo > before {
+            self.first_on(axis, lo, |coordinate| coordinate >= range.lo())
+        } else {
+            window[0]
+        };
+        let end = if hi < behind {
+            self.first_on(axis, hi, |coordinate| coordinate > range.hi())
+        } else {
+            window[1] + 1
+        };
+        let (first, end) = (first.max(window[0]), end.min(window[1] + 1));
+        (first < end).then(|| (first, end - 1))
+    }
+
+    /// The first line beyond a limit, which is at about `place`, in spacings from the first line.
+    #[inline]
+    fn first_on(&self, axis: usize, place: f64, is_on: impl Fn(f64) -> bool) -> usize {
+        let next = (place + 1.0) as usize;
+        let part = place + 1.0 - next as f64;
+        if part > self.unsure[axis] && part < 1.0 - self.unsure[axis] {
+            next
+        } else {
+            self.first_where(axis, next, is_on)
         }
-        (lo <= hi).then_some((lo, hi))
+    }
+
+    /// The same where rounding could tell wrongly: the coordinates of the lines decide.
+    #[cold]
+    fn first_where(&self, axis: usize, guess: usize, is_on: impl Fn(f64) -> bool) -> usize {
+        let last = self.grid.cells()[axis];
+        let mut number = guess.min(last);
+        while number > 0 && is_on(self.coordinate(axis, number - 1)) {
+            number -= 1;
+        }
+        while number < last && !is_on(self.coordinate(axis, number)) {
+            number += 1;
+        }
+        number
     }
 
     /// Whether a line is asked for.
@@ -190,6 +229,61 @@ impl<const N: usize> Targets<N> for Lattice<'_> {
                 if !visit(&target) {
                     return;
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn by_all(lattice: &Lattice, axis: usize, range: Enclosure) -> Option<(usize, usize)> {
+        let [from, to] = if axis == 0 { lattice.i } else { lattice.j };
+        let within = |number: &usize| {
+            let coordinate = lattice.coordinate(axis, *number);
+            !(coordinate < range.lo() || coordinate > range.hi())
+        };
+        let numbers: Vec<usize> = (from..=to).filter(within).collect();
+        Some((*numbers.first()?, *numbers.last()?))
+    }
+
+    fn place() -> impl Strategy<Value = (usize, i32, f64)> {
+        // A line, this many neighbouring numbers beside it or a part of a spacing.
+        (0..40_usize, -3..4_i32, prop_oneof![3 => Just(0.0), 1 => -2.0..2.0])
+    }
+
+    proptest! {
+        #[test]
+        fn numbers_are_those_of_all_lines_in_the_range(
+            corner in prop_oneof![-50.0..50.0, 1e6..1e7, Just(0.0), Just(-1e15)],
+            spacing in prop_oneof![0.1..3.0, Just(0.25), Just(1e-9), Just(1e3)],
+            shift in -1e-3..1e-3,
+            window in (0..40_usize, 0..40_usize),
+            ends in (place(), place()),
+        ) {
+            let size = 40.0 * spacing;
+            let Ok(grid) = Grid::new([corner, 0.0], [corner + size, 1.0], [40, 1]) else { return Ok(()) };
+            let i = [window.0.min(window.1), window.0.max(window.1)];
+            let lattice = Lattice::columns(&grid, i, [shift, 0.0]);
+            let end = |(line, beside, part): (usize, i32, f64)| -> f64 {
+                let mut z: f64 = lattice.coordinate(0, line) + part * spacing;
+                for _ in 0..beside.abs() {
+                    z = if beside > 0 { z.next_up() } else { z.next_down() };
+                }
+                z
+            };
+            let (a, b) = (end(ends.0), end(ends.1));
+            let ranges = [
+                Enclosure::hull(a.min(b), a.max(b)),
+                Enclosure::hull(a, a),
+                Enclosure::hull(f64::NEG_INFINITY, a),
+                Enclosure::hull(a, 1e300),
+                Enclosure::hull(f64::NAN, f64::NAN),
+            ];
+            for range in ranges {
+                prop_assert_eq!(lattice.numbers(0, range), by_all(&lattice, 0, range), "{:?}", range);
             }
         }
     }
