@@ -25,6 +25,16 @@ impl ShortTool {
     }
 }
 
+/// Whether a shorter tool is certainly solved faster. Along short moves, patches above all material are left out as fast as they are cut off, and the rim where they are may be a sharp edge.
+fn pays(short: &Tool, tool: &Tool) -> bool {
+    /// An edge takes about as long as two patches.
+    fn elements(tool: &Tool) -> f64 {
+        tool.patches().len() as f64 + 2.0 * tool.edges().len() as f64
+    }
+    const LESS: f64 = 0.75;
+    short.edges().len() <= tool.edges().len() || elements(short) <= LESS * elements(tool)
+}
+
 /// A tool in several lengths, the longest first. They are made when they are asked for.
 pub(crate) struct ShortTools {
     cylinder: BoundingCylinder,
@@ -47,7 +57,7 @@ impl ShortTools {
         let (height, made) = &self.rungs[number];
         made.get_or_init(|| {
             Some(ShortTool {
-                tool: tool.below(*height)?,
+                tool: tool.below(*height).filter(|short| pays(short, tool))?,
                 cutter: OnceLock::new(),
                 spaces: Spaces::default(),
             })
