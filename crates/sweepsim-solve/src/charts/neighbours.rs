@@ -107,10 +107,8 @@ impl<const N: usize> Neighbours<N> {
         let across = |back: usize| self.row(number.checked_sub(back)?);
         let previous = across(1);
         let below = previous.and_then(|row| row.at(place));
-        if let Some(below) = below {
-            if let Some(before) = across(2).and_then(|row| row.at(place)) {
-                return Some(below.cubic(before, ACROSS));
-            }
+        if let (Some(below), Some(before)) = (below, across(2).and_then(|row| row.at(place))) {
+            return Some(below.cubic(before, ACROSS));
         }
         if let Some(last) = beside {
             let mut guess = last.tangent(q);
