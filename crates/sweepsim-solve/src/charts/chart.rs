@@ -288,7 +288,7 @@ impl<C: Clone> ChartSolver<C> {
             if region.is_empty() || sides.is_some_and(|sides| sides.agree(&region)) {
                 return true;
             }
-            let first_two = [q[0], q[N.min(2) - 1]];
+            let first_two = if N == 1 { [0.0, q[0]] } else { [q[0], q[1]] };
             let guess = known.guess(target.place, &first_two).map_or(near, SVector::from);
             let (mut witness, mut hit) = (None, false);
             let outcome = chart.solve(
@@ -335,7 +335,7 @@ impl<C: Clone> ChartSolver<C> {
     }
 }
 
-/// The first two columns of `A⁻¹`; the only one twice for `N = 1`.
+/// The first two columns of `A⁻¹`; for `N = 1` zeros, and the only one.
 fn first_columns<const N: usize>(matrix: &Square<N>) -> Option<[[f64; N]; 2]> {
     if N == 3 {
         let column = |j: usize| Vector3::new(matrix[(0, j)], matrix[(1, j)], matrix[(2, j)]);
@@ -347,7 +347,10 @@ fn first_columns<const N: usize>(matrix: &Square<N>) -> Option<[[f64; N]; 2]> {
             .then(|| [0, 1].map(|k| std::array::from_fn(|i| rows[i][k] * inverse)));
     }
     let column = |k: usize| solve_linear(matrix, &SVector::from_fn(|i, _| f64::from(u8::from(i == k))));
-    Some([column(0)?.into(), column(N.min(2) - 1)?.into()])
+    match N {
+        1 => Some([[0.0; N], column(0)?.into()]),
+        _ => Some([column(0)?.into(), column(1)?.into()]),
+    }
 }
 
 /// `A⁻¹ b` for a small matrix.

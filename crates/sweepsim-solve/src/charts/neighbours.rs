@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-/// A solution, of a target with these first two values.
+/// A solution, of a target with these first two values. (If it has only one, that is the second.)
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Solution<const N: usize> {
     pub s: [f64; N],
