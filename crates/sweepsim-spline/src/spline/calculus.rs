@@ -45,6 +45,7 @@ impl BSpline {
                     weights: SmallVec::from_slice(&[-factor, factor]),
                     growth: up(2.0 * factor),
                     roundings: 3,
+                    is_affine: false,
                 });
                 knots.push(t[i + 1]);
             }
@@ -137,6 +138,7 @@ impl BSpline {
                 weights,
                 growth,
                 roundings: 3,
+                is_affine: false,
             };
             let view = along(lengths.iter().copied(), axis, self.dimension);
             let size = crate::rounding::magnitude(&data);

@@ -179,6 +179,7 @@ impl BSpline {
                 weights,
                 growth: up(1.0),
                 roundings: 6 * p,
+                is_affine: true,
             },
         };
         let (coefficients, error) = rows::apply(

@@ -19,6 +19,8 @@ pub(crate) struct Row {
     pub growth: f64,
     /// The weights are within `γ(roundings) · growth`, in sum, of the exact ones.
     pub roundings: usize,
+    /// Whether the sum of the exact weights is 1: equal coefficients give the same one, to the bit.
+    pub is_affine: bool,
 }
 
 /// The roundings of a step `s a + t b` with `s = (v − x)/(v − w)`: three in `s`, one product, one sum.
@@ -31,6 +33,7 @@ impl Row {
             weights: SmallVec::from_slice(&[1.0]),
             growth: 1.0,
             roundings: 0,
+            is_affine: true,
         }
     }
 
@@ -40,10 +43,11 @@ impl Row {
             weights: SmallVec::new(),
             growth: 0.0,
             roundings: 0,
+            is_affine: false,
         }
     }
 
-    /// `s a + t b`, `s` and `t` with up to three roundings each.
+    /// `s a + t b`, `s` and `t` with up to three roundings each, and a sum of 1.
     pub fn blend(a: &Self, s: f64, b: &Self, t: f64) -> Self {
         if t == 0.0 && s == 1.0 {
             return a.clone();
@@ -65,6 +69,7 @@ impl Row {
             weights,
             growth: up(s.abs() * a.growth + t.abs() * b.growth),
             roundings: a.roundings.max(b.roundings) + STEP,
+            is_affine: a.is_affine && b.is_affine,
         }
     }
 
@@ -94,6 +99,16 @@ pub(crate) fn apply(rows: &[Row], data: &[f64], view: Along, size: f64, error: f
             for (j, &weight) in row.weights.iter().enumerate() {
                 let at = (row.start + j) * inner;
                 accumulate(target, &from[at..at + inner], weight);
+            }
+            if row.is_affine {
+                // A pole stays a point, and a face flat.
+                for (k, value) in target.iter_mut().enumerate() {
+                    let mut used = (row.start..row.start + row.weights.len()).map(|j| from[j * inner + k]);
+                    let first = used.next();
+                    if let Some(first) = first.filter(|first| used.all(|other| other == *first)) {
+                        *value = first;
+                    }
+                }
             }
         }
     }
@@ -289,4 +304,36 @@ fn missing_knots(from: &[f64], to: &[f64]) -> Option<Vec<f64>> {
         }
     }
     rest.next().is_none().then_some(missing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Of refinement, extraction, elevation and the way back.
+        #[test]
+        fn equal_coefficients_stay_equal(value in -50.0..50.0, gaps in prop::collection::vec(0.1..3.0, 5..9), degree in 1..5_usize, clamped in any::<bool>()) {
+            let inner = gaps.iter().scan(0.0, |at: &mut f64, gap| { *at += gap; Some(*at) });
+            let mut knots: Vec<f64> = inner.collect();
+            if clamped {
+                let (first, last) = (knots[0], knots[knots.len() - 1]);
+                knots = [vec![first; degree], knots, vec![last; degree]].concat();
+            }
+            let Ok(vector) = KnotVector::new(degree, knots) else { return Ok(()) };
+            let breakpoints = vector.breakpoints();
+            let pieces = extraction(&vector, &breakpoints);
+            let back = join(&pieces, &breakpoints, &vector).unwrap();
+            let middle = 0.3 * breakpoints[0] + 0.7 * breakpoints[1];
+            let (_, finer) = refinement(&vector, &[middle, middle]);
+            for rows in [pieces.clone(), elevation(&pieces, degree, 2), back, finer] {
+                // Another component, which differs.
+                let data: Vec<f64> = (0..vector.count()).flat_map(|k| [value, k as f64]).collect();
+                let view = Along { outer: 1, len: vector.count(), inner: 2 };
+                let (found, _) = apply(&rows, &data, view, 50.0, 0.0);
+                prop_assert!(found.chunks(2).all(|pair| pair[0] == value), "{found:?}");
+            }
+        }
+    }
 }

@@ -148,6 +148,7 @@ impl BSpline {
                 weights: row.as_slice().into(),
                 growth: up(up(row.iter().map(|w| w.abs()).sum())),
                 roundings: 0,
+                is_affine: false,
             })
             .collect();
         let view = along([self.dimension].into_iter(), 0, 1);

@@ -8,7 +8,7 @@ use sweepsim::nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, SweepError, sweep};
 use sweepsim_dexel::{Frame, Grid};
 use sweepsim_motion::{Patch, Path, Pose, Tool};
-use sweepsim_spline::Bernstein;
+use sweepsim_spline::{Bernstein, KnotVector, RationalSpline};
 
 fn bicubic(point: impl Fn(f64, f64) -> [f64; 3]) -> Patch {
     let third = |k: usize| k as f64 / 3.0;
@@ -87,6 +87,34 @@ pub fn bud() -> Tool {
 pub fn pad() -> Tool {
     let end = vec![[0.0, 0.0, 1.0], [0.7, 0.0, 1.0], [1.4, 0.0, 1.0], [2.0, 0.3, 1.0]];
     oval(&[end, straight([2.0, 0.3], [2.0, 7.0]), straight([2.0, 7.0], [0.0, 7.0])])
+}
+
+/// A bit as one bicubic B-spline surface that closes smoothly around its axis: not quite round, with ten patches about each pole, as flat there as a cubic is.
+pub fn bit() -> Tool {
+    const DISTINCT: usize = 10;
+    const PROFILE: [[f64; 2]; 8] = [
+        [0.0, 0.0],
+        [0.7, 0.0],
+        [1.4, 0.0],
+        [2.0, 0.3],
+        [2.0, 3.0],
+        [2.0, 7.0],
+        [1.0, 7.0],
+        [0.0, 7.0],
+    ];
+    let knot = |from: i32, to: i32, last: i32| (from..=to).map(|k| f64::from(k.clamp(0, last))).collect::<Vec<_>>();
+    let around = KnotVector::new(3, (-3..=13).map(f64::from).collect()).expect("knots");
+    let up = KnotVector::new(3, knot(-3, 8, 5)).expect("knots");
+    let points = PROFILE.iter().flat_map(|[radius, height]| {
+        (0..DISTINCT + 3).flat_map(move |k| {
+            let angle = std::f64::consts::TAU * (k % DISTINCT) as f64 / DISTINCT as f64;
+            [radius * angle.cos(), radius * angle.sin(), *height]
+        })
+    });
+    let points: Vec<f64> = points.collect();
+    let weights = vec![1.0; points.len() / 3];
+    let surface = RationalSpline::new(vec![around, up], 3, &points, &weights).expect("a surface");
+    Tool::from_surfaces(&[surface], 1e-9).expect("a tool")
 }
 
 pub fn tools() -> [(&'static str, Tool); 3] {

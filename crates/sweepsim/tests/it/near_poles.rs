@@ -2,7 +2,7 @@
 //!
 //! `cargo test -p sweepsim --release --test it near_poles -- --include-ignored --nocapture` prints the table.
 
-use crate::grazing_curves::{bud, carried, pad};
+use crate::grazing_curves::{bit, bud, carried, pad};
 use crate::near_degenerate::{
     DISTANCES, Family, METHODS, UP, arc, around, families, is_cheap, leaning, pose, through, turning_about_its_axis,
 };
@@ -36,6 +36,12 @@ pub fn over_poles() -> Vec<Family> {
         }),
         ("line from the way of a pole, on every second steep diagonal", |d| {
             tip_over([[-2.0 + 0.1 * d, 4.0, 0.0], [2.0 + 0.1 * d, -4.0, 0.0]])
+        }),
+        ("start of a level move from a line", |d| {
+            tip_over([[0.6 * d, 0.8 * d, 0.0], [-2.8, 1.6, 0.0]])
+        }),
+        ("end of a level move from a line", |d| {
+            tip_over([[-2.8, 1.6, 0.0], [0.6 * d, -0.8 * d, 0.0]])
         }),
         ("rise of a pole over a row of lines", |d| {
             tip_over([[-4.0, 0.0, 0.0], [4.0, 0.0, d]])
@@ -132,10 +138,10 @@ fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Free-form tools, one of them as flat at its pole as a cubic is, on what is asked of tools of revolution, and with poles over lines.
+/// Free-form tools, two of them as flat at their poles as a cubic is, on what is asked of tools of revolution, and with poles over lines.
 fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
     let mut wrong = Vec::new();
-    for tool in [("bud", bud()), ("pad", pad())] {
+    for tool in [("bud", bud()), ("pad", pad()), ("bit", bit())] {
         for method in methods {
             let families = list.iter().filter(|(what, _)| !is_dear(*method, what, tool.0));
             wrong.extend(families.filter_map(|family| is_cheap(*method, *family, &tool, distances).err()));
@@ -152,7 +158,7 @@ fn is_dear(method: Method, what: &str, name: &str) -> bool {
         _ => &[],
     };
     what == "tilt while turning about the own axis"
-        || name == "pad" && slides.iter().any(|start| what.starts_with(start))
+        || name != "bud" && slides.iter().any(|start| what.starts_with(start))
 }
 
 #[test]
