@@ -3,7 +3,7 @@
 use super::cell::{Blocks, StackedBox};
 use super::line::{self, Found, Outcome, Window};
 use super::taylor::Taylor;
-use crate::bundles::trail::Trail;
+use super::trail::Trail;
 use crate::charts::{BETWEEN, all_of, collapses, largest, widest};
 use crate::charts::{ChartMap, ChartOptions, ChartStatistics, ChartTarget, Preimage, Sink, Targets, UnresolvedTarget};
 use crate::{Cause, Enclosure, Monitor};

@@ -25,7 +25,7 @@ impl ShortTool {
     }
 }
 
-/// Whether a shorter tool is certainly solved faster. Along short moves, patches above all material are left out as fast as they are cut off, and the rim where they are may be a sharp edge.
+/// Whether a shorter tool is likely to be solved faster. Along short moves, patches above all material are soon left out, too, and the rim of the cut may be a new sharp edge.
 fn pays(short: &Tool, tool: &Tool) -> bool {
     /// An edge takes about as long as two patches.
     fn elements(tool: &Tool) -> f64 {

@@ -102,9 +102,8 @@ pub fn bit() -> Tool {
         [1.0, 7.0],
         [0.0, 7.0],
     ];
-    let knot = |from: i32, to: i32, last: i32| (from..=to).map(|k| f64::from(k.clamp(0, last))).collect::<Vec<_>>();
     let around = KnotVector::new(3, (-3..=13).map(f64::from).collect()).expect("knots");
-    let up = KnotVector::new(3, knot(-3, 8, 5)).expect("knots");
+    let up = KnotVector::new(3, (-3_i32..=8).map(|k| f64::from(k.clamp(0, 5))).collect()).expect("knots");
     let points = PROFILE.iter().flat_map(|[radius, height]| {
         (0..DISTINCT + 3).flat_map(move |k| {
             let angle = std::f64::consts::TAU * (k % DISTINCT) as f64 / DISTINCT as f64;

@@ -167,7 +167,7 @@ fn moves_on_curves_cost_at_most_thrice_their_generic_neighbour() {
 }
 
 #[test]
-#[ignore = "takes half a minute"]
+#[ignore = "takes more than a minute"]
 fn so_do_all_families() {
     let list = [families(), over_poles(), over_poles_on_curves()].concat();
     free_form_is_cheap(&METHODS[..2], &list, &DISTANCES);
