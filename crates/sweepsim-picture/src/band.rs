@@ -13,7 +13,16 @@ const EMPTY: u32 = u32::MAX;
 /// Marks a sample that sees a section.
 const CUT_OPEN: u32 = u32::MAX - 1;
 
+/// A surface at a vertex, or at a sample.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Surface {
+    pub normal: Vector,
+    pub around: Around,
+    pub value: f32,
+}
+
 /// The samples of a band of rows.
+#[derive(Default)]
 pub(crate) struct Band {
     size: [usize; 2],
     /// The first row of pixels.
@@ -22,60 +31,89 @@ pub(crate) struct Band {
     width: usize,
     triangles: Vec<u32>,
     near: Vec<f32>,
-    normals: Vec<Vector>,
-    around: Vec<Around>,
-    values: Vec<f32>,
+    surface: Vec<Surface>,
     /// The number of times that a line of sight leaves the part, less the number of times that it enters; empty without sections.
     depth: Vec<i32>,
-    /// Whether a sample sees the inside of the part through a section.
-    inside: Vec<bool>,
+    /// Whether there is anything to see.
+    is_empty: bool,
+}
+
+/// Samples of a pixel on the same piece of surface: sums over them.
+struct Piece {
+    /// The depth of the first.
+    first: f32,
+    /// Column and row.
+    at: [f32; 2],
+    near: f32,
+    normal: Vector,
+    around: Around,
+    value: f32,
+    line: f32,
+    count: f32,
+    matter: Matter,
+}
+
+impl Piece {
+    /// None yet.
+    fn of(first: f32, matter: Matter) -> Self {
+        Self {
+            first,
+            at: [0.0; 2],
+            near: 0.0,
+            normal: [0.0; 3],
+            around: Around::default(),
+            value: 0.0,
+            line: 0.0,
+            count: 0.0,
+            matter,
+        }
+    }
 }
 
 impl Band {
-    pub(crate) fn new(
+    /// Looks at the triangles of a list, from the row `top` on. The memory of another band serves again.
+    pub(crate) fn look(
+        &mut self,
         scene: &Scene,
         camera: &Camera,
-        lights: &Lights,
         points: &[ImagePoint],
         size: [usize; 2],
         top: usize,
         list: &[u32],
-    ) -> Self {
-        let width = (size[0] + 2 * RIM) * SAMPLES;
-        let height = (BAND + 2 * RIM) * SAMPLES;
-        let count = width * height;
-        let mut band = Self {
-            size,
-            top,
-            width,
-            triangles: vec![EMPTY; count],
-            near: vec![0.0; count],
-            normals: Vec::new(),
-            around: Vec::new(),
-            values: Vec::new(),
-            depth: vec![0; if scene.sections.is_empty() { 0 } else { count }],
-            inside: Vec::new(),
-        };
+    ) {
+        (self.size, self.top, self.is_empty) = (size, top, list.is_empty());
         if list.is_empty() {
-            return band;
+            return;
         }
+        self.width = (size[0] + 2 * RIM) * SAMPLES;
+        let height = (BAND + 2 * RIM) * SAMPLES;
+        let count = self.width * height;
+        let is_cut = !scene.sections.is_empty();
+        refill(&mut self.triangles, count, EMPTY);
+        refill(&mut self.near, count, 0.0);
+        refill(&mut self.depth, if is_cut { count } else { 0 }, 0);
+        // Only looked at where a sample sees something.
+        self.surface.resize(count, Surface::default());
         for number in list {
-            let corners = scene.triangles[*number as usize].map(|v| points[v as usize]);
-            band.draw(*number, corners, *number >= scene.tool);
+            let corners = scene.triangles[*number as usize].map(|v| &points[v as usize]);
+            self.draw(*number, corners, *number >= scene.tool);
         }
-        band.normals = vec![[0.0; 3]; count];
-        band.around = vec![Around::default(); count];
-        band.values = vec![0.0; count];
-        band.inside = vec![false; count];
-        for index in 0..count {
-            if band.depth.get(index).is_some_and(|depth| *depth > 0) && band.cut_open(scene, camera, index) {
-                continue;
-            }
-            if band.triangles[index] != EMPTY {
-                band.look_up(scene, lights, points, index);
+        for row in 0..height {
+            for column in 0..self.width {
+                let at = [column, row];
+                let index = self.index(at);
+                if is_cut && self.depth[index] > 0 && self.cut_open(scene, camera, at) {
+                    continue;
+                }
+                if self.triangles[index] != EMPTY {
+                    self.surface[index] = self.look_up(scene, points, at);
+                }
             }
         }
-        band
+    }
+
+    fn index(&self, [column, row]: [usize; 2]) -> usize {
+        row * self.width + column
     }
 
     /// Steps from the image's first sample to the band's.
@@ -85,7 +123,7 @@ impl Band {
     }
 
     /// Sections do not cut a tool.
-    fn draw(&mut self, number: u32, mut points: [ImagePoint; 3], is_tool: bool) {
+    fn draw(&mut self, number: u32, mut points: [&ImagePoint; 3], is_tool: bool) {
         let (step, origin) = (STEP as i64, self.origin());
         let [a, b, c] = points.map(|p| [p.x, p.y]);
         let back = area(a, b, c) < 0;
@@ -139,38 +177,32 @@ impl Band {
     }
 
     /// Interpolates between the corners of the triangle at a sample, with perspective correction.
-    fn look_up(&mut self, scene: &Scene, lights: &Lights, points: &[ImagePoint], index: usize) {
-        let corners = scene.triangles[self.triangles[index] as usize].map(|v| v as usize);
-        let p = corners.map(|v| points[v]);
+    fn look_up(&self, scene: &Scene, points: &[ImagePoint], at: [usize; 2]) -> Surface {
+        let number = self.triangles[self.index(at)];
+        let corners = scene.triangles[number as usize].map(|v| &points[v as usize]);
         let origin = self.origin();
-        let step = STEP as i64;
-        let at = [
-            origin[0] + (index % self.width) as i64 * step,
-            origin[1] + (index / self.width) as i64 * step,
-        ];
-        let [a, b, c] = p.map(|p| [p.x, p.y]);
+        let at = [0, 1].map(|k| origin[k] + at[k] as i64 * STEP as i64);
+        let [a, b, c] = corners.map(|p| [p.x, p.y]);
         let weights = [area(b, c, at), area(c, a, at), area(a, b, at)];
-        let weights = [0, 1, 2].map(|k| weights[k] as f32 * p[k].weight);
-        let sum: f32 = weights.iter().sum();
-        let mut normal = [0.0; 3];
-        let mut around = Around::default();
-        let mut value = 0.0;
-        for k in 0..3 {
-            let w = weights[k] / sum;
-            normal = along(normal, w, scene.normals[corners[k]]);
-            around.sky += w * lights.around[corners[k]].sky;
-            around.ground += w * lights.around[corners[k]].ground;
-            value += w * scene.values[corners[k]];
+        let weights = [0, 1, 2].map(|k| weights[k] as f32 * corners[k].weight);
+        let share = 1.0 / weights.iter().sum::<f32>();
+        let mut surface = Surface::default();
+        for (weight, corner) in weights.iter().zip(corners) {
+            let (w, of) = (weight * share, &corner.surface);
+            surface.normal = along(surface.normal, w, of.normal);
+            surface.around.sky += w * of.around.sky;
+            surface.around.ground += w * of.around.ground;
+            surface.value += w * of.value;
         }
-        self.normals[index] = unit(normal);
-        self.around[index] = around;
-        self.values[index] = value;
+        surface.normal = unit(surface.normal);
+        surface
     }
 
     /// If a line of sight leaves the closed part once more than it enters, it must have entered through a section. The space that the
     /// sections leave is convex, so it entered through the last section that it meets, and nothing is in front of that.
-    fn cut_open(&mut self, scene: &Scene, camera: &Camera, index: usize) -> bool {
-        let [x, y] = self.place(index);
+    fn cut_open(&mut self, scene: &Scene, camera: &Camera, at: [usize; 2]) -> bool {
+        let index = self.index(at);
+        let [x, y] = self.place(at.map(|n| n as f32));
         let [from, ray] = camera.sight(x, y);
         let entered = scene.sections.iter().filter_map(|(normal, at)| {
             let towards = -dot(*normal, ray);
@@ -189,22 +221,21 @@ impl Band {
         }
         self.triangles[index] = CUT_OPEN;
         self.near[index] = camera.near(distance);
-        self.normals[index] = normal;
-        self.inside[index] = true;
-        self.around[index] = Around {
-            sky: 0.5 + 0.5 * normal[2],
-            ground: 0.5 - 0.5 * normal[2],
+        self.surface[index] = Surface {
+            normal,
+            around: Around {
+                sky: 0.5 + 0.5 * normal[2],
+                ground: 0.5 - 0.5 * normal[2],
+            },
+            value: 0.0,
         };
         true
     }
 
     /// The position of a sample in the image, from −1 to 1 to the right and up.
-    fn place(&self, index: usize) -> [f32; 2] {
+    fn place(&self, [column, row]: [f32; 2]) -> [f32; 2] {
         let rim = (RIM * SAMPLES) as f32;
-        let across = [
-            (index % self.width) as f32 - rim,
-            (self.top * SAMPLES) as f32 + (index / self.width) as f32 - rim,
-        ];
+        let across = [column - rim, (self.top * SAMPLES) as f32 + row - rim];
         let [x, y] = [0, 1].map(|k| (across[k] + 0.5) / (self.size[k] * SAMPLES) as f32 * 2.0 - 1.0);
         [x, -y]
     }
@@ -213,14 +244,14 @@ impl Band {
     pub(crate) fn paint(&self, scene: &Scene, camera: &Camera, lights: &Lights, rows: &mut [u8]) {
         let place = |pixel: f32, k: usize| 2.0 * pixel / self.size[k] as f32 - 1.0;
         for (row, pixels) in rows.chunks_mut(3 * self.size[0]).enumerate() {
-            let mut spots = Vec::new();
+            let mut pieces = Vec::new();
             for (column, pixel) in pixels.chunks_mut(3).enumerate() {
                 let (x, y) = (column as f32 + 0.5, (self.top + row) as f32 + 0.5);
                 let behind = || shade::background(camera, lights, scene.ground, place(x, 0), -place(y, 1));
-                let colour = if self.normals.is_empty() {
+                let colour = if self.is_empty {
                     behind()
                 } else {
-                    self.pixel(scene, camera, lights, [column, row], &mut spots, behind)
+                    self.pixel(scene, camera, lights, [column, row], &mut pieces, behind)
                 };
                 for k in 0..3 {
                     // A fixed dither pattern keeps visible steps out of the background.
@@ -237,55 +268,45 @@ impl Band {
         camera: &Camera,
         lights: &Lights,
         at: [usize; 2],
-        spots: &mut Vec<(Spot, f32, f32, usize)>,
+        pieces: &mut Vec<Piece>,
         behind: impl Fn() -> Vector,
     ) -> Vector {
         let mut free = 0_usize;
         for sample in 0..SAMPLES * SAMPLES {
             let column = (at[0] + RIM) * SAMPLES + sample % SAMPLES;
             let row = (at[1] + RIM) * SAMPLES + sample / SAMPLES;
-            let index = row * self.width + column;
+            let index = self.index([column, row]);
             if self.triangles[index] == EMPTY {
                 free += 1;
                 continue;
             }
             let near = self.near[index];
-            let (normal, around, value) = (self.normals[index], self.around[index], self.values[index]);
-            let is_tool = self.triangles[index] >= scene.tool;
-            let matter = match (self.inside[index], is_tool, scene.valued) {
-                (true, ..) => Matter::Section,
-                (_, true, _) => Matter::Tool,
-                (_, _, true) => Matter::Value,
-                (_, _, false) => Matter::Metal,
+            let Surface { normal, around, value } = self.surface[index];
+            let matter = match self.triangles[index] {
+                CUT_OPEN => Matter::Section,
+                number if number >= scene.tool => Matter::Tool,
+                _ if scene.valued => Matter::Value,
+                _ => Matter::Metal,
             };
-            let line = self.line(camera, index);
-            let [x, y] = self.place(index);
-            let [from, ray] = camera.sight(x, y);
-            let place = along(from, camera.distance(near), ray);
-            let alike = spots.iter_mut().find(|(spot, first, _, count)| {
-                (near - first).abs() < 0.01 * near
-                    && dot(spot.normal, normal) > 0.9 * *count as f32
-                    && spot.matter == matter
-                    && spot.value.is_nan() == value.is_nan()
+            let alike = pieces.iter().position(|piece| {
+                (near - piece.first).abs() < 0.01 * near
+                    && dot(piece.normal, normal) > 0.9 * piece.count
+                    && piece.matter == matter
+                    && piece.value.is_nan() == value.is_nan()
             });
-            if let Some((spot, _, lines, count)) = alike {
-                spot.at = add(spot.at, place);
-                spot.normal = add(spot.normal, normal);
-                spot.around.sky += around.sky;
-                spot.around.ground += around.ground;
-                spot.value += value;
-                *lines += line;
-                *count += 1;
-            } else {
-                let spot = Spot {
-                    at: place,
-                    normal,
-                    around,
-                    value,
-                    matter,
-                };
-                spots.push((spot, near, line, 1));
-            }
+            let number = alike.unwrap_or_else(|| {
+                pieces.push(Piece::of(near, matter));
+                pieces.len() - 1
+            });
+            let piece = &mut pieces[number];
+            piece.at = [piece.at[0] + column as f32, piece.at[1] + row as f32];
+            piece.near += near;
+            piece.normal = add(piece.normal, normal);
+            piece.around.sky += around.sky;
+            piece.around.ground += around.ground;
+            piece.value += value;
+            piece.line += self.line(camera, index);
+            piece.count += 1.0;
         }
         let part = 1.0 / (SAMPLES * SAMPLES) as f32;
         let mut colour = if free > 0 {
@@ -293,15 +314,24 @@ impl Band {
         } else {
             [0.0; 3]
         };
-        for (mut spot, _, lines, count) in spots.drain(..) {
-            let mean = 1.0 / count as f32;
-            spot.at = scale(spot.at, mean);
-            spot.around.sky *= mean;
-            spot.around.ground *= mean;
-            spot.value *= mean;
+        for piece in pieces.drain(..) {
+            let mean = 1.0 / piece.count;
+            // Depth is linear across the image of a plane, so that the mean is on it.
+            let [x, y] = self.place(piece.at.map(|c| c * mean));
+            let [from, ray] = camera.sight(x, y);
+            let spot = Spot {
+                at: along(from, camera.distance(piece.near * mean), ray),
+                normal: piece.normal,
+                around: Around {
+                    sky: piece.around.sky * mean,
+                    ground: piece.around.ground * mean,
+                },
+                value: piece.value * mean,
+                matter: piece.matter,
+            };
             let lit = shade::shade(camera, lights, &spot);
-            let lined = mix(lit, scale(lit, 0.45), lines * mean);
-            colour = along(colour, count as f32 * part, lined);
+            let lined = mix(lit, scale(lit, 0.45), piece.line * mean);
+            colour = along(colour, piece.count * part, lined);
         }
         colour
     }
@@ -327,13 +357,19 @@ impl Band {
             if bend > 0.012 {
                 line = line.max(0.8 * smooth_step(0.012, 0.05, bend));
             }
-            let turn = 1.0 - dot(self.normals[before], self.normals[after]);
+            let turn = 1.0 - dot(self.surface[before].normal, self.surface[after].normal);
             if turn > 0.12 {
                 line = line.max(0.30 * smooth_step(0.12, 0.6, turn));
             }
         }
         line
     }
+}
+
+/// Makes every element the same.
+fn refill<T: Copy>(list: &mut Vec<T>, count: usize, value: T) {
+    list.clear();
+    list.resize(count, value);
 }
 
 /// Dither noise from −0.5 to 0.5.

@@ -10,8 +10,10 @@ use rayon::prelude::*;
 const TILE: usize = 16;
 /// Maps that are looked up together.
 const LANES: usize = 8;
-/// In rows of triangles over more texels than this it pays to look for those that are inside.
-const NARROW: usize = 16;
+/// Steps from a texel to the next, to which corners are rounded: whether a texel is inside a triangle is then decided in whole numbers.
+const STEP: i32 = 256;
+/// The largest number of steps: products of differences stay below 2⁶³.
+const LIMIT: i32 = 1 << 29;
 
 /// Depth maps seen from several directions.
 pub(crate) struct DepthMaps {
@@ -34,7 +36,7 @@ impl DepthMaps {
         let lanes = maps.chunks(LANES).map(|maps| {
             let mut lanes = [[[0.0; LANES]; 3]; 3];
             for (lane, map) in maps.iter().enumerate() {
-                for (row, axis) in map.axes.iter().enumerate() {
+                for (row, axis) in axes_of(map.direction).iter().enumerate() {
                     for k in 0..3 {
                         lanes[row][k][lane] = axis[k];
                     }
@@ -56,31 +58,66 @@ impl DepthMaps {
     pub fn reaching(&self, p: Vector, bias: f32, weight: impl Fn(Vector) -> f32) -> [f32; 2] {
         let mut light = [0.0; 2];
         for (axes, maps) in self.lanes.iter().zip(self.maps.chunks(LANES)) {
-            let [right, up, towards] = [0, 1, 2].map(|row| {
-                let [a, b, c]: &[[f32; LANES]; 3] = &axes[row];
-                let mut dots = [0.0; LANES];
-                for lane in 0..LANES {
-                    dots[lane] = p[0] * a[lane] + p[1] * b[lane] + p[2] * c[lane];
-                }
-                dots
-            });
-            for (lane, map) in maps.iter().enumerate() {
-                let direction = map.axes[2];
-                let weight = weight(direction);
+            let places = self.places(axes, p, bias);
+            for (map, place) in maps.iter().zip(places) {
+                let weight = weight(map.direction);
                 if weight > 0.0 {
-                    let place = map.place([right[lane], up[lane], towards[lane]]);
-                    light[usize::from(direction[2] <= 0.0)] += weight * map.share(place, bias);
+                    light[usize::from(map.direction[2] <= 0.0)] += weight * map.share(place);
                 }
             }
         }
         light
     }
+
+    /// The mean share of light that reaches a point. Where the first eight directions agree that all of it does, or nothing, the others aren't asked.
+    pub fn mean_share(&self, p: Vector, bias: f32) -> f32 {
+        let (mut sum, mut count) = (0.0, 0);
+        for (axes, maps) in self.lanes.iter().zip(self.maps.chunks(LANES)) {
+            let places = self.places(axes, p, bias);
+            sum += maps
+                .iter()
+                .zip(places)
+                .map(|(map, place)| map.share(place))
+                .sum::<f32>();
+            count += maps.len();
+            if sum <= 0.0 || sum >= count as f32 {
+                break;
+            }
+        }
+        sum / count as f32
+    }
+
+    /// Columns, rows, and depths less the bias, of a point in [`LANES`] maps.
+    fn places(&self, axes: &[[[f32; LANES]; 3]; 3], p: Vector, bias: f32) -> [Vector; LANES] {
+        let [scale, middle] = across(self.texels);
+        let [right, up, towards] = [0, 1, 2].map(|row| {
+            let [a, b, c]: &[[f32; LANES]; 3] = &axes[row];
+            let mut dots = [0.0; LANES];
+            for lane in 0..LANES {
+                dots[lane] = p[0] * a[lane] + p[1] * b[lane] + p[2] * c[lane];
+            }
+            dots
+        });
+        std::array::from_fn(|lane| {
+            [
+                middle + scale * right[lane],
+                middle + scale * up[lane],
+                -towards[lane] - bias,
+            ]
+        })
+    }
+}
+
+/// What a coordinate across a map is multiplied by, and what is then added, to give the column or row; texel centres are whole numbers.
+fn across(texels: usize) -> [f32; 2] {
+    let half = 0.5 * texels as f32;
+    [0.99 * half, half - 0.5]
 }
 
 /// Distances from a distant light to the nearest surface.
 struct DepthMap {
-    /// Right, up, and towards the light.
-    axes: [Vector; 3],
+    /// Towards the light.
+    direction: Vector,
     texels: usize,
     depth: Vec<f32>,
     /// Tiles in a row.
@@ -89,144 +126,162 @@ struct DepthMap {
     ranges: Vec<[f32; 2]>,
 }
 
+/// A vertex as a map sees it.
+#[derive(Clone, Copy)]
+struct Corner {
+    /// Steps from the first texel to the right and up.
+    at: [i32; 2],
+    /// Away from the light.
+    depth: f32,
+}
+
+/// Right, up, and towards the light, as seen from it.
+fn axes_of(direction: Vector) -> [Vector; 3] {
+    let other = if direction[2].abs() < 0.9 {
+        [0.0, 0.0, 1.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
+    let right = unit(cross(other, direction));
+    [right, cross(direction, right), direction]
+}
+
+/// Twice the area of a triangle, in square steps: positive if it faces the light.
+fn area(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
+    let by = |p: [i32; 2], k: usize| i64::from(p[k] - a[k]);
+    by(b, 0) * by(c, 1) - by(b, 1) * by(c, 0)
+}
+
 impl DepthMap {
     fn new(scene: &Scene, direction: Vector, texels: usize) -> Self {
-        let other = if direction[2].abs() < 0.9 {
-            [0.0, 0.0, 1.0]
-        } else {
-            [1.0, 0.0, 0.0]
-        };
-        let right = unit(cross(other, direction));
+        let axes = axes_of(direction);
         let mut map = Self {
-            axes: [right, cross(direction, right), direction],
+            direction,
             texels,
             depth: vec![f32::INFINITY; texels * texels],
             tiles: texels.div_ceil(TILE),
             ranges: Vec::new(),
         };
-        let place = |p: &Vector| map.place(map.axes.map(|axis| dot(*p, axis)));
-        let points: Vec<Vector> = scene.positions.iter().map(place).collect();
+        let [scale, middle] = across(texels);
+        let seen = |p: &Vector| {
+            let [right, up, towards] = axes.map(|axis| dot(*p, axis));
+            // The scene is in the unit ball, so that nothing is cut off; the least and the greatest whole numbers would overflow in differences.
+            let steps = |across: f32| ((STEP as f32 * (middle + scale * across)) as i32).clamp(-LIMIT, LIMIT);
+            Corner {
+                at: [steps(right), steps(up)],
+                depth: -towards,
+            }
+        };
+        let corners: Vec<Corner> = scene.positions.iter().map(seen).collect();
         for t in &scene.triangles {
             // Light that enters through a section reaches the back of the face behind it.
-            map.draw(t.map(|v| points[v as usize]), !scene.sections.is_empty());
+            map.draw(t.map(|v| corners[v as usize]), !scene.sections.is_empty());
         }
-        map.ranges = (0..map.tiles * map.tiles).map(|tile| map.range(tile)).collect();
+        map.ranges = (0..map.tiles).flat_map(|row| map.ranges(row)).collect();
         map
     }
 
-    /// Column and row (texel centres are whole numbers), and depth, which grows away from the light, of a point given in the map's
-    /// axes.
-    fn place(&self, [right, up, towards]: Vector) -> Vector {
-        let half = 0.5 * self.texels as f32;
-        [
-            half + right * half * 0.99 - 0.5,
-            half + up * half * 0.99 - 0.5,
-            -towards,
-        ]
-    }
-
-    fn draw(&mut self, [a, mut b, mut c]: [Vector; 3], backs: bool) {
-        let mut area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if area < 0.0 && backs {
-            (area, b, c) = (-area, c, b);
+    fn draw(&mut self, [a, mut b, mut c]: [Corner; 3], backs: bool) {
+        let mut whole = area(a.at, b.at, c.at);
+        if whole < 0 && backs {
+            (whole, b, c) = (-whole, c, b);
         }
         // A back face: a front face is nearer to the light.
-        if area.is_nan() || area <= 0.0 {
+        if whole <= 0 {
             return;
         }
-        let last = self.texels - 1;
+        let last = self.texels as i32 - 1;
         let range = |k: usize| {
-            let (low, high) = (a[k].min(b[k]).min(c[k]), a[k].max(b[k]).max(c[k]));
-            // Casts round towards 0 and saturate.
-            let from = low as usize;
-            let from = from + usize::from((from as f32) < low);
-            (from, (high as usize).min(last), high >= 0.0)
+            let low = a.at[k].min(b.at[k]).min(c.at[k]);
+            let high = a.at[k].max(b.at[k]).max(c.at[k]);
+            (
+                (low + STEP - 1).div_euclid(STEP).max(0),
+                high.div_euclid(STEP).min(last),
+            )
         };
-        let ((left, right, seen), (top, bottom, also)) = (range(0), range(1));
-        if left > right || top > bottom || !seen || !also {
+        let ((left, right), (top, bottom)) = (range(0), range(1));
+        if left > right || top > bottom {
             return;
         }
+        let first = [left * STEP, top * STEP];
+        let mut weights = [
+            area(b.at, c.at, first),
+            area(c.at, a.at, first),
+            area(a.at, b.at, first),
+        ];
         if left == right && top == bottom {
             // Several such triangles may share a texel: the furthest corner casts no shadow on its neighbours.
-            let (x, y) = (left as f32, top as f32);
-            let inside = |p: Vector, q: Vector| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0.0;
-            if inside(a, b) && inside(b, c) && inside(c, a) {
-                let texel = &mut self.depth[top * self.texels + left];
-                *texel = texel.min(a[2].max(b[2]).max(c[2]));
+            if weights.iter().all(|weight| *weight >= 0) {
+                let texel = &mut self.depth[top as usize * self.texels + left as usize];
+                *texel = texel.min(a.depth.max(b.depth).max(c.depth));
             }
             return;
         }
-        let scale = 1.0 / area;
-        // Weights of b and c grow like this with column and row.
-        let (bx, by) = ((c[1] - a[1]) * scale, -(c[0] - a[0]) * scale);
-        let (cx, cy) = (-(b[1] - a[1]) * scale, (b[0] - a[0]) * scale);
-        for row in top..=bottom {
-            let y = row as f32 - a[1];
-            let (mut from, mut to) = (left, right);
-            if right - left > NARROW {
-                // In exact numbers, with more than the rounding errors of what is computed below.
-                let [bx, by, cx, cy] = [bx, by, cx, cy].map(f64::from);
-                let widest = (left as f32 - a[0]).abs().max((right as f32 - a[0]).abs());
-                let error = |slope: f64, other: f64| {
-                    8.0 * f64::from(f32::EPSILON) * ((slope * f64::from(widest)).abs() + (other * f64::from(y)).abs())
-                };
-                let [in_b, in_c] = [(bx, by), (cx, cy)].map(|(slope, other)| {
-                    let value = other * f64::from(y) - slope * f64::from(a[0]);
-                    (value, slope, error(slope, other))
-                });
-                let both = (1.0001 - in_b.0 - in_c.0, -in_b.1 - in_c.1, in_b.2 + in_c.2 + 1e-6);
-                let mut range = [left as f64, right as f64];
-                for (value, slope, error) in [(in_b.0 + 1e-4, in_b.1, in_b.2), (in_c.0 + 1e-4, in_c.1, in_c.2), both] {
-                    range = columns::narrowed(range, value + error, slope);
-                }
-                if range[0] > range[1] {
-                    continue;
-                }
-                [from, to] = range.map(|column| column as usize);
+        let sides = [[b.at, c.at], [c.at, a.at], [a.at, b.at]];
+        // How the weights grow from a column, and from a row, to the next.
+        let right_by = sides.map(|[p, q]| i64::from(STEP) * i64::from(p[1] - q[1]));
+        let up_by = sides.map(|[p, q]| i64::from(STEP) * i64::from(q[0] - p[0]));
+        let scale = 1.0 / whole as f64;
+        let slopes = [b, c].map(|corner| scale * f64::from(corner.depth - a.depth));
+        let depth = |weights: &[i64; 3]| slopes[0] * weights[1] as f64 + slopes[1] * weights[2] as f64;
+        let deeper = depth(&right_by) as f32;
+        let count = i64::from(right - left + 1);
+        for row in top as usize..=bottom as usize {
+            let [from, to] = columns::inside(count, weights, right_by).map(|column| column as usize);
+            let start = f64::from(a.depth) + depth(&weights);
+            let texels = &mut self.depth[row * self.texels + left as usize..][from..to];
+            for (column, texel) in (from as i32..).zip(texels) {
+                let depth = start as f32 + deeper * column as f32;
+                *texel = if depth < *texel { depth } else { *texel };
             }
-            for column in from..=to {
-                let x = column as f32 - a[0];
-                let (wb, wc) = (bx * x + by * y, cx * x + cy * y);
-                if wb >= -1e-4 && wc >= -1e-4 && wb + wc <= 1.0001 {
-                    let z = a[2] + wb * (b[2] - a[2]) + wc * (c[2] - a[2]);
-                    let texel = &mut self.depth[row * self.texels + column];
-                    *texel = texel.min(z);
-                }
+            for (weight, by) in weights.iter_mut().zip(up_by) {
+                *weight += by;
             }
         }
     }
 
-    fn range(&self, tile: usize) -> [f32; 2] {
-        let span = |first: usize| first * TILE..((first + 1) * TILE + 1).min(self.texels);
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for row in span(tile / self.tiles) {
-            for depth in &self.depth[row * self.texels..][span(tile % self.tiles)] {
-                low = low.min(*depth);
-                high = high.max(*depth);
+    /// The ranges of a row of tiles.
+    fn ranges(&self, row: usize) -> Vec<[f32; 2]> {
+        let span = |tile: usize| tile * TILE..((tile + 1) * TILE + 1).min(self.texels);
+        // First of each column, whose rows lie side by side.
+        let mut low = vec![f32::INFINITY; self.texels];
+        let mut high = vec![f32::NEG_INFINITY; self.texels];
+        for row in span(row) {
+            let depths = &self.depth[row * self.texels..][..self.texels];
+            for ((low, high), depth) in low.iter_mut().zip(&mut high).zip(depths) {
+                *low = if depth < low { *depth } else { *low };
+                *high = if depth > high { *depth } else { *high };
             }
         }
-        [low, high]
+        let of = |tile: usize| {
+            let least = low[span(tile)].iter().fold(f32::INFINITY, |a, b| a.min(*b));
+            let most = high[span(tile)].iter().fold(f32::NEG_INFINITY, |a, b| a.max(*b));
+            [least, most]
+        };
+        (0..self.tiles).map(of).collect()
     }
 
-    /// The share of light that reaches a place, interpolated between four texels.
-    fn share(&self, [x, y, z]: Vector, bias: f32) -> f32 {
+    /// The share of light that reaches a column, row and depth, interpolated between four texels.
+    fn share(&self, [x, y, z]: Vector) -> f32 {
         let last = self.texels as f32 - 2.0;
         if !(x >= 0.0 && y >= 0.0 && x <= last && y <= last) {
             return 1.0;
         }
-        let (column, row) = (x as usize, y as usize);
-        let z = z - bias;
+        let (column, row) = (x as i32 as usize, y as i32 as usize);
         let [low, high] = self.ranges[row / TILE * self.tiles + column / TILE];
-        if z <= low || z > high {
-            return f32::from(u8::from(z <= low));
+        if z <= low {
+            return 1.0;
         }
-        let first = row * self.texels + column;
-        let seen = |index: usize| z <= self.depth[index];
-        let corners = [first, first + 1, first + self.texels, first + self.texels + 1].map(seen);
-        if corners[1..].iter().all(|corner| *corner == corners[0]) {
-            return f32::from(u8::from(corners[0]));
+        if z > high {
+            return 0.0;
         }
-        let [a, b, c, d] = corners.map(|corner| f32::from(u8::from(corner)));
+        let texels = &self.depth[row * self.texels + column..][..self.texels + 2];
+        let seen = |index: usize| z <= texels[index];
+        let (a, b, c, d) = (seen(0), seen(1), seen(self.texels), seen(self.texels + 1));
+        if a == b && a == c && a == d {
+            return f32::from(u8::from(a));
+        }
+        let [a, b, c, d] = [a, b, c, d].map(|corner| f32::from(u8::from(corner)));
         let (s, t) = (x - column as f32, y - row as f32);
         let (lower, upper) = (a * (1.0 - s) + b * s, c * (1.0 - s) + d * s);
         lower * (1.0 - t) + upper * t

@@ -1,6 +1,6 @@
 //! From triangles to pixels.
 
-use crate::band::Band;
+use crate::band::{Band, Surface};
 use crate::base::image::Image;
 use crate::base::steps::Steps;
 use crate::camera::Camera;
@@ -16,13 +16,13 @@ pub(crate) const BAND: usize = 16;
 pub(crate) const RIM: usize = 1;
 /// Fixed-point steps between neighbouring samples.
 pub(crate) const STEP: f32 = 256.0;
-/// A vertex in the image, in steps from the top left sample, with its depth and its interpolation weight.
-#[derive(Clone, Copy)]
+/// A vertex in the image, in steps from the top left sample, with its depth, its interpolation weight, and the surface there.
 pub(crate) struct ImagePoint {
     pub x: i64,
     pub y: i64,
     pub near: f32,
     pub weight: f32,
+    pub surface: Surface,
 }
 
 /// Twice the area of a triangle: positive if it faces the viewer (counter-clockwise with `y` up).
@@ -47,7 +47,8 @@ pub(crate) fn render(
     let points: Vec<ImagePoint> = scene
         .positions
         .par_iter()
-        .map(|p| {
+        .enumerate()
+        .map(|(v, p)| {
             let [x, y, near, weight] = camera.project(*p);
             let place = |c: f32, n: f32| (((0.5 + 0.5 * c) * n - 0.5) * STEP).round() as i64;
             ImagePoint {
@@ -55,6 +56,11 @@ pub(crate) fn render(
                 y: place(-y, samples[1]),
                 near,
                 weight,
+                surface: Surface {
+                    normal: scene.normals[v],
+                    around: lights.around.get(v).copied().unwrap_or_default(),
+                    value: scene.values[v],
+                },
             }
         })
         .collect();
@@ -66,9 +72,9 @@ pub(crate) fn render(
         .par_chunks_mut(size[0] * 3 * BAND)
         .zip(&lists)
         .enumerate()
-        .try_for_each(|(band, (rows, list))| {
+        .try_for_each_init(Band::default, |band, (number, (rows, list))| {
             steps.step(|| {
-                let band = Band::new(scene, camera, lights, &points, size, band * BAND, list);
+                band.look(scene, camera, &points, size, number * BAND, list);
                 band.paint(scene, camera, lights, rows);
             })
         })?;
@@ -80,7 +86,7 @@ fn sort_into_bands(scene: &Scene, points: &[ImagePoint], bands: usize) -> Vec<Ve
     let step = STEP as i64;
     let mut lists = vec![Vec::new(); bands];
     for (number, t) in scene.triangles.iter().enumerate() {
-        let [a, b, c] = t.map(|v| points[v as usize]);
+        let [a, b, c] = t.map(|v| &points[v as usize]);
         // Behind the camera, as a tool may be that comes towards the viewer.
         if a.near.min(b.near).min(c.near) <= 0.0 {
             continue;

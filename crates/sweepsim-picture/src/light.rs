@@ -99,9 +99,7 @@ impl Lights {
         let texel = shadows.texel();
         let grazing = 1.0 - dot(normal, self.lamp).clamp(0.0, 1.0);
         let p = along(p, texel * (1.5 + 2.5 * grazing), normal);
-        // The lamp stands above the horizon, all of it.
-        let [light, _] = shadows.reaching(p, 1.5 * texel, |_| 1.0);
-        light / LAMP as f32
+        shadows.mean_share(p, 1.5 * texel)
     }
 
     /// Sky and lamp at a point of the ground: 1 is all.
@@ -151,7 +149,7 @@ fn sky_maps(scene: &Scene) -> usize {
     (WORK / scene.triangles.len().max(1)).clamp(FEWEST, SKY)
 }
 
-/// Directions spread over the lamp.
+/// Directions spread over the lamp; so are the first half of them, and the second.
 fn over_the_lamp(lamp: Vector) -> Vec<Vector> {
     let side = unit(cross(lamp, [0.0, 0.0, 1.0]));
     let other = cross(side, lamp);
@@ -160,7 +158,8 @@ fn over_the_lamp(lamp: Vector) -> Vec<Vector> {
         let (sin, cos) = (k as f32 * GOLDEN).sin_cos();
         unit(along(along(lamp, r * cos, side), r * sin, other))
     };
-    (0..LAMP).map(direction).collect()
+    let first = (0..LAMP).step_by(2);
+    first.chain((1..LAMP).step_by(2)).map(direction).collect()
 }
 
 /// Directions spread over the sphere.

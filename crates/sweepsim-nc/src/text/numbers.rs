@@ -1,8 +1,16 @@
 //! Numbers as text.
 
-/// The shortest text that reads back to the same `f64`: `1`, `0.1`, `1e-7`.
+/// The shortest text that reads back to the same `f64`, but at most four characters stay plain: `1`, `0.1`, `1000`, `1e-7`.
 #[must_use]
 pub fn shortest(value: f64) -> String {
+    // Most numbers have a fraction and no zeros to be saved: theirs are the digits of any shortest text, made in a fifth of the time.
+    if (0.01..1e12).contains(&value.abs()) {
+        let mut buffer = zmij::Buffer::new();
+        let text = buffer.format_finite(value);
+        if !text.ends_with(".0") {
+            return text.to_owned();
+        }
+    }
     let plain = value.to_string();
     // An exponent is shorter only in place of zeros at an end.
     if plain.len() < 5 || (value.abs() >= 1.0 && plain.contains('.')) {
@@ -52,12 +60,15 @@ mod tests {
         }
         let mut value = 1.234_567_891_234_567_8e-300_f64;
         while value.is_finite() {
-            for value in [value, value.trunc(), (value * 8.0).round() / 8.0] {
+            let rounded = format!("{value:.2e}").parse().unwrap();
+            for value in [value, value.trunc(), (value * 8.0).round() / 8.0, rounded, 0.01 + value] {
                 let (text, [plain, scientific]) = (shortest(value), [value.to_string(), format!("{value:e}")]);
                 assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits());
-                assert_eq!(text.len(), plain.len().min(scientific.len()));
+                let is_plain = plain.len() < 5 || plain.len() <= scientific.len();
+                let shorter = if is_plain { plain } else { scientific };
+                assert_eq!(text, shorter);
             }
-            value *= -1.7e3;
+            value *= if (1e-4..1e14).contains(&value.abs()) { -1.003 } else { -1.7e3 };
         }
     }
 }
