@@ -163,6 +163,7 @@ fn is_dear(method: Method, what: &str, name: &str) -> bool {
     let slides: &[&str] = match method {
         Method::General => &["tilt of a level move", "line from the way of a pole", "rise of a pole"],
         Method::Surface | Method::Lines => &["line from the way of a pole", "rise of a pole"],
+        Method::Planes if name == "burr" => &["rise of a pole"],
         _ => &[],
     };
     what == "tilt while turning about the own axis"

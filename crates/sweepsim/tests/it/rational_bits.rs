@@ -118,14 +118,7 @@ fn weights_of_flat_faces_cost_nothing() {
         {
             let [plain, own] = tools.each_ref().map(|tool| {
                 let options = Options::new(tolerance).method(method);
-                sweep(
-                    tool,
-                    &carried(tips, turn),
-                    &grid.clone().in_frame(*frame),
-                    &options,
-                    &(),
-                )
-                .expect("a sweep")
+                sweep(tool, &carried(tips, turn), &grid.in_frame(*frame), &options, &()).expect("a sweep")
             });
             let what = format!("{tips:?}, {turn:?}, {frame:?}, {method} at {tolerance:e}");
             let [few, found] = [&plain.statistics, &own.statistics];
