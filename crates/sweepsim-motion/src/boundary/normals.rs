@@ -150,8 +150,8 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
         (both, moment)
     } else {
         let (wu, wv) = (weight.derivative(0), weight.derivative(1));
-        // The normals do not depend on the origin. About a pole they vanish there without rounding, however far it is.
-        let shifted = about_pole(position, weight);
+        // The normals do not depend on the origin. About a pole or a level they vanish there without rounding, however far it is.
+        let shifted = about_levels(position, weight);
         let (position, pu, pv, both) = match &shifted {
             None => (position, pu, pv, both),
             Some(shifted) => {
@@ -171,47 +171,55 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
     without_sides(normal, moment)
 }
 
-/// `P − w c`, if a side of the patch has shrunk to the point `c` up to rounding; 0 on that side. `None` if there is no such side, or it is at the origin.
-fn about_pole(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernstein; 3]> {
-    /// Roundings of control points that count as one.
-    const ROUNDINGS: f64 = 8.0;
+/// `P − w c`, where coordinates of control points that are those of `c` up to rounding become exactly 0, as they would be if no product with a weight were rounded: `c` is a point that a side
+/// of the patch has shrunk to or, coordinate by coordinate, what most control points share. `None` if there is neither.
+fn about_levels(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernstein; 3]> {
     let degrees = [0, 1].map(|axis| {
         let own = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0);
         own.max(weight.degree(axis))
     });
     let raised = |form: &Bernstein| form.elevated_to(&degrees);
     let (forms, weight) = (position.each_ref().map(raised), raised(weight));
-    let on_side = |axis: usize, upper: bool, index: &[usize]| index[axis] == if upper { degrees[axis] } else { 0 };
+    let weights = weight.coefficients();
+    let points = forms.each_ref().map(|form| -> Vec<f64> {
+        let pairs = form.coefficients().iter().zip(weights);
+        pairs.map(|(x, w)| x / w).collect()
+    });
+    let size = points.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+    // Halves of a rounding: one of each product with a weight, as many as a sum has terms when a B-spline is divided into patches, of both form and weight and along both axes, and one of the
+    // quotient. Two points are compared.
+    let roundings = 2 * (degrees[0] + degrees[1] + 3);
+    let is_same = |a: f64, b: f64| (a - b).abs() <= roundings as f64 * f64::EPSILON * size;
     let sides = [(0, false), (0, true), (1, false), (1, true)];
-    sides
+    let pole = sides
         .into_iter()
         .filter(|(axis, _)| degrees[1 - axis] > 0)
         .find_map(|(axis, upper)| {
-            let weights: Vec<f64> = side(&weight, axis, upper).collect();
-            let points = forms
-                .each_ref()
-                .map(|form| -> Vec<f64> { side(form, axis, upper).zip(&weights).map(|(x, w)| x / w).collect() });
-            let pole = points.each_ref().map(|coordinates| coordinates[0]);
-            let size = pole.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-            let allowed = ROUNDINGS * f64::EPSILON * size;
-            let is_one = (0..3).all(|k| points[k].iter().all(|x| (x - pole[k]).abs() <= allowed));
-            if !is_one || size == 0.0 {
-                return None;
-            }
-            let about = |k: usize| {
-                let all = |index: &[usize]| {
-                    let at = index[0] + (degrees[0] + 1) * index[1];
-                    let (x, w) = (forms[k].coefficients()[at], weight.coefficients()[at]);
-                    if on_side(axis, upper, index) {
-                        0.0
-                    } else {
-                        x - w * pole[k]
-                    }
-                };
-                Bernstein::from_fn(&degrees, all).ok()
-            };
-            Some([about(0)?, about(1)?, about(2)?])
-        })
+            let on_side = || side_indices(degrees, axis, upper);
+            let first = on_side().next()?;
+            let is_one = points.iter().all(|x| on_side().all(|at| is_same(x[at], x[first])));
+            is_one.then(|| points.each_ref().map(|x| x[first]))
+        });
+    let shared = |x: &Vec<f64>| {
+        let count = |at: &f64| x.iter().filter(|other| is_same(**other, *at)).count();
+        // The first of those that as many share.
+        let most = x.iter().rev().max_by_key(|at| count(at)).copied();
+        most.filter(|at| count(at) > 1)
+    };
+    let levels = match pole {
+        Some(pole) => pole.map(Some),
+        None => points.each_ref().map(shared),
+    };
+    if levels.iter().all(Option::is_none) {
+        return None;
+    }
+    let about = |k: usize| {
+        let level = levels[k].unwrap_or(0.0);
+        let all = forms[k].coefficients().iter().zip(weights).zip(&points[k]);
+        let shifted = all.map(|((x, w), point)| if is_same(*point, level) { 0.0 } else { x - w * level });
+        Bernstein::new(&degrees, shifted.collect()).ok()
+    };
+    Some([about(0)?, about(1)?, about(2)?])
 }
 
 /// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.
@@ -245,12 +253,16 @@ fn without_sides(mut normal: [Bernstein; 3], mut moment: [Bernstein; 3]) -> (Nor
 
 /// The coefficients of a form in two variables on one of its sides.
 fn side(form: &Bernstein, axis: usize, upper: bool) -> impl Iterator<Item = f64> {
-    let [p, q] = [form.degree(0), form.degree(1)];
-    let fixed = if upper { form.degree(axis) } else { 0 };
+    side_indices([form.degree(0), form.degree(1)], axis, upper).map(|at| form.coefficients()[at])
+}
+
+/// Where these are.
+fn side_indices([p, q]: [usize; 2], axis: usize, upper: bool) -> impl Iterator<Item = usize> {
+    let fixed = if upper { [p, q][axis] } else { 0 };
     let count = if axis == 0 { q } else { p };
     (0..=count).map(move |k| {
         let [i, j] = if axis == 0 { [fixed, k] } else { [k, fixed] };
-        form.coefficients()[i + (p + 1) * j]
+        i + (p + 1) * j
     })
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use sweepsim_motion::{NormalField, Patch, Pose, Profile, ProfileSegment, Segment, Tool, Turn};
-use sweepsim_spline::Bernstein;
+use sweepsim_spline::{Bernstein, KnotVector, RationalSpline};
 
 /// Value and derivatives (by u, by v) of a bivariate Bernstein form, from the definition.
 fn at(form: &Bernstein, u: f64, v: f64) -> [f64; 3] {
@@ -219,5 +219,38 @@ proptest! {
         let (first, last) = (&parts[0], &parts[parts.len() - 1]);
         prop_assert!((first.start().column(2) - Vector3::from(from.axis())).norm() < 1e-14);
         prop_assert!((last.end().column(2) - Vector3::from(to.axis())).norm() < 1e-14);
+    }
+}
+
+proptest! {
+    /// Where control points of a rational surface share a coordinate, whatever its products with their weights are rounded to, normals are exactly along its axis: on all of a flat face, and along a
+    /// side where the next row shares it, too.
+    #[test]
+    fn level_points_have_level_normals(
+        axis in 0..3_usize, level in prop_oneof![Just(9.6), -50.0..50.0], flat in any::<bool>(), weights in prop::collection::vec(0.6..1.6, 36), bumps in prop::collection::vec(-0.2..0.2, 72),
+    ) {
+        let knots = |step: f64| KnotVector::new(3, [0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 3.0].map(|t| step * t).to_vec()).unwrap();
+        let points: Vec<f64> = (0..36)
+            .flat_map(|at| {
+                let (i, j) = (at % 6, at / 6);
+                let rise = if flat || j < 3 { 0.0 } else { (j * j) as f64 / 9.0 };
+                let mut point = [i as f64 + bumps[at], j as f64 + bumps[36 + at], level + rise];
+                point.rotate_left(axis);
+                point
+            })
+            .collect();
+        let surface = RationalSpline::new(vec![knots(1.0), knots(0.3)], 3, &points, &weights).unwrap();
+        let own = (2 + 3 - axis) % 3;
+        for piece in surface.pieces().unwrap() {
+            let forms = piece.map.numerators();
+            let patch = Patch::new([0, 1, 2].map(|k| forms[k].clone()), piece.map.weight().clone()).unwrap();
+            for k in (0..3).filter(|k| *k != own) {
+                let normal = &patch.field().normal()[k];
+                let columns = normal.degrees()[0] + 1;
+                let first = &normal.coefficients()[..if flat { normal.coefficients().len() } else { columns }];
+                let is_level = flat || piece.ranges[1].0 == 0.0;
+                prop_assert!(!is_level || first.iter().all(|c| *c == 0.0), "{k}: {first:?}");
+            }
+        }
     }
 }

@@ -68,19 +68,11 @@ impl Errors {
     }
 }
 
-/// The coordinate `k` of all points, if it is the same, as exactly as a product with their weights can tell, and the forms of the normals and moments agree: the patch is flat, and
-/// where only `N_k` is not 0, nothing else has an error.
+/// The coordinate `k` of all points, if the forms of normals and moments are exactly those of a patch across that axis: where only `N_k` is not 0, nothing else has an error.
 pub(super) fn flat_at(patch: &Patch, k: usize) -> Option<f64> {
-    /// More than the three halves of the quotient, of the product that a coefficient is, and of the product that it is compared with.
-    const ROUNDINGS: f64 = 2.0;
-    let (form, weight) = (&patch.position()[k], patch.weight());
-    let same_degrees = (0..2).all(|axis| form.degree(axis) == weight.degree(axis));
-    let (own, weights) = (form.coefficients(), weight.coefficients());
-    let at = own[0] / weights[0];
-    let is_same = |p: f64, w: f64| (p - at * w).abs() <= ROUNDINGS * f64::EPSILON * p.abs();
-    let is_flat = same_degrees && own.iter().zip(weights).all(|(p, w)| is_same(*p, *w));
     let vanish =
         |forms: &[Bernstein; 3], is_own: bool| (0..3).all(|j| (j == k) != is_own || forms[j].magnitude() == 0.0);
     let field = patch.field();
-    (is_flat && vanish(field.normal(), false) && vanish(field.moment(), true)).then_some(at)
+    let is_flat = vanish(field.normal(), false) && vanish(field.moment(), true);
+    is_flat.then(|| patch.position()[k].coefficients()[0] / patch.weight().coefficients()[0])
 }

@@ -26,6 +26,7 @@ mod misuse;
 mod near_degenerate;
 mod near_material;
 mod near_poles;
+mod rational_bits;
 mod rays;
 mod retracts;
 mod sections;

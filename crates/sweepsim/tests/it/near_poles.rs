@@ -6,6 +6,7 @@ use crate::grazing_curves::{bit, bud, carried, pad};
 use crate::near_degenerate::{
     DISTANCES, Family, METHODS, UP, arc, around, families, is_cheap, leaning, pose, through, turning_about_its_axis,
 };
+use crate::rational_bits::{burr, ring};
 use sweepsim::Method;
 use sweepsim_dexel::Grid;
 use sweepsim_motion::{Law, Path, SplineMotion, Turning};
@@ -138,10 +139,17 @@ fn poles_over_lines_cost_at_most_thrice_their_generic_neighbour() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Free-form tools, two of them as flat at their poles as a cubic is, on what is asked of tools of revolution, and with poles over lines.
+/// Free-form tools, all but the first as flat at their poles as a cubic is, on what is asked of tools of revolution, and with poles over lines.
 fn free_form_is_cheap(methods: &[Method], list: &[Family], distances: &[f64]) {
     let mut wrong = Vec::new();
-    for tool in [("bud", bud()), ("pad", pad()), ("bit", bit())] {
+    let tools = [
+        ("bud", bud()),
+        ("pad", pad()),
+        ("bit", bit()),
+        ("ring", ring()),
+        ("burr", burr()),
+    ];
+    for tool in tools {
         for method in methods {
             let families = list.iter().filter(|(what, _)| !is_dear(*method, what, tool.0));
             wrong.extend(families.filter_map(|family| is_cheap(*method, *family, &tool, distances).err()));
@@ -155,6 +163,7 @@ fn is_dear(method: Method, what: &str, name: &str) -> bool {
     let slides: &[&str] = match method {
         Method::General => &["tilt of a level move", "line from the way of a pole", "rise of a pole"],
         Method::Surface | Method::Lines => &["line from the way of a pole", "rise of a pole"],
+        Method::Planes if name == "burr" => &["rise of a pole"],
         _ => &[],
     };
     what == "tilt while turning about the own axis"

@@ -223,7 +223,8 @@ mod tests {
                         prop_assert!(lo - margin <= own && own <= hi + margin, "{axis} {k}: {own} in {lo} {hi}");
                     }
                 }
-                let rounding = error(element, directions);
+                let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
+                let rounding = error(element, bounds, directions);
                 let of_g = [(g(element, &cells, cell, 0, directions), rounding + blur.g)];
                 // Differences of neighbouring coefficients, times their number, over the cell's side.
                 let ranges = slopes_of_g(&cells, cell, directions, &blur.g_slopes);

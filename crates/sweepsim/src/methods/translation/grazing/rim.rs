@@ -106,7 +106,7 @@ pub(super) fn look(
     blur: &Blur,
     slack: f64,
 ) -> Look {
-    let error = error(element, directions);
+    let error = error(element, [cells.bounds(cell, 0), (0.0, 1.0)], directions);
     let is_family = directions.spread > 0.0;
     let ranges = [0, 1].map(|side| g(element, cells, cell, side, directions));
     let (lower, upper) = cells.bounds(cell, 0);

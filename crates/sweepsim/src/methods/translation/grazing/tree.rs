@@ -134,9 +134,10 @@ impl Blur {
     }
 }
 
-/// The bound of the rounding error of `g`.
-pub(super) fn error(element: &PatchForms, directions: &Directions) -> f64 {
-    ROUNDING * both(&directions.twist(), &element.rounding)
+/// The bound of the rounding error of `g` on a cell of a patch.
+pub(super) fn error(element: &PatchForms, [u, v]: [Range; 2], directions: &Directions) -> f64 {
+    let rounding = element.rounding_in([u.0, v.0], [u.1, v.1]);
+    ROUNDING * both(&directions.twist(), rounding)
 }
 
 /// The range of `⟨way, N⟩ + ⟨spin, M⟩` over all coefficients of `N` and `M`, and what these lack.
@@ -257,8 +258,9 @@ impl Tree {
             };
         }
         let (lo, hi) = g(element, cells, cell, 0, directions);
-        let error = error(element, directions);
-        let within = error + self.blur.g;
+        let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
+        let (error, blur_of_g) = (error(element, bounds, directions), self.blur.g);
+        let within = error + blur_of_g;
         // Where g is exactly 0, it counts as not negative.
         let zero = lo == 0.0 && hi == 0.0;
         if lo > within || hi < -within || (zero && directions.spread == 0.0) {
@@ -279,7 +281,6 @@ impl Tree {
         let [([q_u, p_u], in_u), ([q_v, p_v], in_v)] = of_place;
         let of_g = slopes_of_g(cells, cell, directions, g_slopes);
         let jacobian = [[p_u, p_v], of_g];
-        let bounds = [0, 1].map(|axis| cells.bounds(cell, axis));
         let (lower, upper) = (bounds.map(|b| b.0), bounds.map(|b| b.1));
         let blur = [[in_u, in_v], *g_slopes];
         let rough = match Chart::new([lower, upper], &jacobian, &blur, [slack, error], [q_u, q_v]) {
@@ -289,6 +290,7 @@ impl Tree {
         let rest = at_pole(&element.poles, bounds, (widened((lo, hi), within), of_g), |[u, v]| {
             let part = cells.place(element, [u.0, v.0], [u.1, v.1]);
             let (lo, hi) = g(element, cells, part, 0, directions);
+            let within = self::error(element, [u, v], directions) + blur_of_g;
             let found = (lo <= within && hi >= -within).then(|| {
                 cells.prepare(element, part);
                 (
