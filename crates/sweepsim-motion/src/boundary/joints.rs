@@ -59,11 +59,11 @@ fn stretches(curves: &[SideCurve], tolerance: f64) -> Vec<JointStretch<'_>> {
         }
         cuts.sort_by(f64::total_cmp);
         let bounds: Vec<f64> = std::iter::once(0.0).chain(cuts).chain([1.0]).collect();
-        stretches.extend(bounds.windows(2).map(|pair| JointStretch {
-            curve,
-            range: [pair[0], pair[1]],
-            ends: [curve.at(pair[0]), curve.at(pair[1])],
-        }));
+        stretches.extend(
+            bounds
+                .windows(2)
+                .map(|pair| JointStretch::new(curve, [pair[0], pair[1]])),
+        );
     }
     stretches
 }
@@ -83,12 +83,12 @@ pub(crate) fn edges(patches: &[Patch], tolerance: f64) -> Result<Vec<Edge>, Tool
         .collect();
     curves.retain(|curve| !curve.is_pole(tolerance));
     let stretches = stretches(&curves, tolerance);
-    let starts = InOrder::new(stretches.iter().map(|stretch| stretch.ends[0]));
+    let starts = InOrder::new(stretches.iter().map(|stretch| stretch.ends()[0]));
     let mut edges = Vec::new();
     for (number, stretch) in stretches.iter().enumerate() {
         // Those that begin where this one ends or, if not backwards, begins.
         let others = |backwards: bool| {
-            let start = stretch.ends[usize::from(backwards)].x;
+            let start = stretch.ends()[usize::from(backwards)].x;
             let near = starts.between(start - 3.0 * tolerance, start + 3.0 * tolerance);
             let near = near.into_iter().filter(|other| *other != number);
             let stretches = &stretches;

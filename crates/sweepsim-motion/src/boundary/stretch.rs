@@ -16,10 +16,28 @@ const HALVINGS: usize = 8;
 pub(super) struct JointStretch<'a> {
     pub(super) curve: &'a SideCurve,
     pub(super) range: [f64; 2],
-    pub(super) ends: [Vector3<f64>; 2],
+    /// Points at equal steps of the parameter.
+    places: Vec<Vector3<f64>>,
 }
 
-impl JointStretch<'_> {
+impl<'a> JointStretch<'a> {
+    pub(super) fn new(curve: &'a SideCurve, [from, to]: [f64; 2]) -> Self {
+        let mut stretch = Self {
+            curve,
+            range: [from, to],
+            places: curve.places.clone(),
+        };
+        if [from, to] != [0.0, 1.0] {
+            stretch.places = (0..PLACES).map(|n| stretch.at(part(n))).collect();
+        }
+        stretch
+    }
+
+    /// Its start and its end.
+    pub(super) fn ends(&self) -> [Vector3<f64>; 2] {
+        [self.places[0], self.places[PLACES - 1]]
+    }
+
     fn parameter(&self, part: f64) -> f64 {
         self.range[0] * (1.0 - part) + self.range[1] * part
     }
@@ -31,13 +49,14 @@ impl JointStretch<'_> {
     /// Whether it runs along the other, in the opposite or in the same direction.
     pub(super) fn runs_along(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
         // Corners that cut a side are within the tolerance of it, and of the corner that is the other's end.
-        let gap = |end: usize| (self.ends[end] - other.ends[if backwards { 1 - end } else { end }]).norm();
+        let (own, others) = (self.ends(), other.ends());
+        let gap = |end: usize| (own[end] - others[if backwards { 1 - end } else { end }]).norm();
         if !(gap(0) <= 2.0 * tolerance && gap(1) <= 2.0 * tolerance) {
             return false;
         }
         let covered = |one: &Self, two: &Self| {
-            (0..PLACES).all(|n| {
-                let (_, distance) = two.curve.nearest(&one.at(part(n)), two.range);
+            one.places.iter().all(|place| {
+                let (_, distance) = two.curve.nearest(place, two.range);
                 distance <= tolerance
             })
         };
@@ -47,8 +66,8 @@ impl JointStretch<'_> {
     /// Whether they have the same parametrisation: the same points at the same fractions of their parameters.
     fn keeps_pace(&self, other: &Self, backwards: bool, tolerance: f64) -> bool {
         (0..PLACES).all(|n| {
-            let there = if backwards { 1.0 - part(n) } else { part(n) };
-            (self.at(part(n)) - other.at(there)).norm() <= tolerance
+            let there = if backwards { PLACES - 1 - n } else { n };
+            (self.places[n] - other.places[there]).norm() <= tolerance
         })
     }
 

@@ -3,7 +3,7 @@
 /// The shortest text that reads back to the same `f64`, but at most four characters stay plain: `1`, `0.1`, `1000`, `1e-7`.
 #[must_use]
 pub fn shortest(value: f64) -> String {
-    // Most numbers have a fraction and no zeros to be saved: theirs are the digits of any shortest text, made in a fifth of the time.
+    // Most numbers have a fraction and no zeros to be saved: theirs are the digits of any shortest text.
     if (0.01..1e12).contains(&value.abs()) {
         let mut buffer = zmij::Buffer::new();
         let text = buffer.format_finite(value);
