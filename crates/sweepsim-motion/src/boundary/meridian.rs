@@ -159,7 +159,7 @@ impl Meridian {
                 meridian,
                 frame: None,
             }),
-            product: None,
+            normals: None,
         }
     }
 

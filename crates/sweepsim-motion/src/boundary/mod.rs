@@ -6,6 +6,7 @@ mod joints;
 mod meridian;
 mod normals;
 mod patch;
+mod plane;
 mod recognised;
 mod revolution;
 mod revolved;

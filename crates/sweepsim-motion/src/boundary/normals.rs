@@ -131,20 +131,25 @@ pub(super) fn scaled(forms: &[Bernstein; 3], factor: f64) -> [Bernstein; 3] {
     [0, 1, 2].map(|k| forms[k].scale(factor).assumed_exact())
 }
 
+/// The value of a weight that is constant.
+pub(super) fn constant(weight: &Bernstein) -> Option<f64> {
+    let first = weight.coefficients()[0];
+    weight.coefficients().iter().all(|w| *w == first).then_some(first)
+}
+
 /// For each variable, whether the lower and the upper side of a patch is meant.
 pub(super) type Sides = [[bool; 2]; 2];
 
 /// The normals `F_u × F_v` of any patch, times a power of its weight, and their moments, with the sides whose factors were left out: see [`without_sides`].
 pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalField, Sides) {
-    let first = weight.coefficients()[0];
-    let polynomial = weight.coefficients().iter().all(|w| *w == first);
+    let polynomial = constant(weight);
     let (pu, pv) = (
         [0, 1, 2].map(|k| position[k].derivative(0)),
         [0, 1, 2].map(|k| position[k].derivative(1)),
     );
     let both = cross(&pu, &pv);
     let origin = position;
-    let (normal, moment) = if polynomial {
+    let (normal, moment) = if let Some(first) = polynomial {
         // F = P / w with a constant weight: the moment of F is that of P over it.
         let moment = cross(position, &both).map(|form| form.scale(1.0 / first));
         (both, moment)
@@ -171,25 +176,55 @@ pub(super) fn normals(position: &[Bernstein; 3], weight: &Bernstein) -> (NormalF
     without_sides(normal, moment)
 }
 
+/// The control points of a patch, with coordinates `points[k][i]`, and its forms of common degrees.
+pub(super) struct ControlPoints {
+    pub degrees: [usize; 2],
+    pub forms: [Bernstein; 3],
+    pub weight: Bernstein,
+    pub points: [Vec<f64>; 3],
+    /// How far rounding may have moved a coordinate.
+    pub off: f64,
+}
+
+impl ControlPoints {
+    pub fn new(position: &[Bernstein; 3], weight: &Bernstein) -> Self {
+        let degrees = [0, 1].map(|axis| {
+            let own = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0);
+            own.max(weight.degree(axis))
+        });
+        let raised = |form: &Bernstein| form.elevated_to(&degrees);
+        let (forms, weight) = (position.each_ref().map(raised), raised(weight));
+        let points = forms.each_ref().map(|form| -> Vec<f64> {
+            let pairs = form.coefficients().iter().zip(weight.coefficients());
+            pairs.map(|(x, w)| x / w).collect()
+        });
+        let size = points.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        // Halves of a rounding: one of each product with a weight, as many as a sum has terms when a B-spline is divided into patches, of both form and weight and along both axes, and one of the
+        // quotient.
+        let halves = 2 * (degrees[0] + degrees[1] + 3);
+        Self {
+            degrees,
+            forms,
+            weight,
+            points,
+            off: 0.5 * halves as f64 * f64::EPSILON * size,
+        }
+    }
+}
+
 /// `P − w c`, where coordinates of control points that are those of `c` up to rounding become exactly 0, as they would be if no product with a weight were rounded: `c` is a point that a side
 /// of the patch has shrunk to or, coordinate by coordinate, what most control points share. `None` if there is neither.
 fn about_levels(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernstein; 3]> {
-    let degrees = [0, 1].map(|axis| {
-        let own = position.iter().map(|form| form.degree(axis)).max().unwrap_or(0);
-        own.max(weight.degree(axis))
-    });
-    let raised = |form: &Bernstein| form.elevated_to(&degrees);
-    let (forms, weight) = (position.each_ref().map(raised), raised(weight));
+    let ControlPoints {
+        degrees,
+        forms,
+        weight,
+        points,
+        off,
+    } = ControlPoints::new(position, weight);
     let weights = weight.coefficients();
-    let points = forms.each_ref().map(|form| -> Vec<f64> {
-        let pairs = form.coefficients().iter().zip(weights);
-        pairs.map(|(x, w)| x / w).collect()
-    });
-    let size = points.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-    // Halves of a rounding: one of each product with a weight, as many as a sum has terms when a B-spline is divided into patches, of both form and weight and along both axes, and one of the
-    // quotient. Two points are compared.
-    let roundings = 2 * (degrees[0] + degrees[1] + 3);
-    let is_same = |a: f64, b: f64| (a - b).abs() <= roundings as f64 * f64::EPSILON * size;
+    // Two points are compared.
+    let is_same = |a: f64, b: f64| (a - b).abs() <= 2.0 * off;
     let sides = [(0, false), (0, true), (1, false), (1, true)];
     let pole = sides
         .into_iter()
@@ -223,7 +258,7 @@ fn about_levels(position: &[Bernstein; 3], weight: &Bernstein) -> Option<[Bernst
 }
 
 /// Roundings of coefficients that count as 0 on the side of a patch that has shrunk to a point.
-const POLE: f64 = 16.0;
+pub(super) const POLE: f64 = 16.0;
 
 /// The same without the factors `u`, `1 − u`, `v` and `1 − v` that all normals have where a side has shrunk to a point, a pole. What remains points in
 /// a definite direction there, and bounds of it need not hold 0.

@@ -1,7 +1,7 @@
 //! Patches of a boundary.
 
-use super::normals::{Sides, check_form, check_normals, check_place, normals, scaled};
-use super::{NormalField, PatchError, Revolved, recognised};
+use super::normals::{Sides, check_form, check_normals, check_place, constant, normals, scaled};
+use super::{NormalField, PatchError, Revolved, plane, recognised};
 use nalgebra::Vector3;
 use sweepsim_spline::Bernstein;
 
@@ -14,8 +14,17 @@ pub struct Patch {
     pub(super) weight: Bernstein,
     pub(super) field: NormalField,
     pub(super) revolved: Option<Revolved>,
-    /// The factor of products of derivatives, and the sides whose factors were left out.
-    pub(super) product: Option<(f64, Sides)>,
+    /// What is known of normals that were computed here, and the sides that have shrunk to a point.
+    pub(super) normals: Option<(Normals, Sides)>,
+}
+
+/// Normals that follow from the position.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Normals {
+    /// This factor of products of derivatives, divided by the distances from the shrunk sides.
+    Product(f64),
+    /// This vector times the weight, unless that is constant.
+    Plane([f64; 3]),
 }
 
 impl Patch {
@@ -24,7 +33,7 @@ impl Patch {
     /// Its normals and moments are computed as Bernstein forms: with `P` the position and `w` the weight,
     /// `N = w (P_u × P_v) + w_v (P × P_u) − w_u (P × P_v)`, up to the factor `w³` (after the quotient rule), and without the factor by which they vanish on a
     /// side that has shrunk to a point. Those of a piece of a surface
-    /// of revolution about the third axis, which is recognised up to rounding, have a lower degree.
+    /// of revolution about the third axis, and of a piece of a plane, which are recognised up to rounding, have a lower degree.
     ///
     /// # Errors
     /// [`PatchError`]: not two variables, a degree above 7, weights that are not positive, no normal in the interior (it may
@@ -43,19 +52,23 @@ impl Patch {
         if largest == 0.0 || !largest.is_finite() {
             return Err(PatchError::NoNormal { u: 0.5, v: 0.5 });
         }
-        let field = NormalField {
+        let mut field = NormalField {
             normal: scaled(&normal, 1.0 / largest),
             moment: scaled(&moment, 1.0 / largest),
         };
         check_normals(&field.normal)?;
+        let flat = sides.and_then(|_| plane::field(&position, &weight, &field.normal));
+        let normals = if let Some((vector, flat)) = flat {
+            field = flat;
+            Normals::Plane(vector)
+        } else {
+            // Of polynomial patches, whose weight is constant, `normals` leaves out two of its powers.
+            let powers = constant(&weight).map_or(1.0, |weight| weight * weight);
+            Normals::Product(1.0 / (largest * powers))
+        };
         Ok(Self {
             position: scaled(&position, 1.0),
-            // Of polynomial patches, whose weight is constant, `normals` leaves out two of its powers.
-            product: sides.map(|sides| {
-                let first = weight.coefficients()[0];
-                let is_constant = weight.coefficients().iter().all(|w| *w == first);
-                (1.0 / if is_constant { largest * first * first } else { largest }, sides)
-            }),
+            normals: sides.map(|sides| (normals, sides)),
             weight: weight.assumed_exact(),
             field,
             revolved: None,
@@ -92,7 +105,7 @@ impl Patch {
         }
         Ok(Self {
             field,
-            product: None,
+            normals: None,
             ..own
         })
     }
@@ -126,14 +139,27 @@ impl Patch {
     /// [sides that have shrunk to a point](Self::shrunk_sides); `None` if they have another form.
     #[must_use]
     pub fn product(&self) -> Option<f64> {
-        self.product.map(|(factor, _)| factor)
+        match self.normals {
+            Some((Normals::Product(factor), _)) => Some(factor),
+            _ => None,
+        }
     }
 
-    /// For each variable, whether the lower and the upper side have shrunk to a point, so that the normals are divided by the distance from it; none if they
-    /// are no [product](Self::product).
+    /// The vector `n` of normals `N = w n`, where `w` is the weight, or `N = n` if that is constant; `None` if they have another form. Those of all patches
+    /// that are flat up to rounding have this form, but for parts of surfaces of revolution about the third axis and normals that are user-defined.
+    #[must_use]
+    pub fn plane(&self) -> Option<[f64; 3]> {
+        match self.normals {
+            Some((Normals::Plane(vector), _)) => Some(vector),
+            _ => None,
+        }
+    }
+
+    /// For each variable, whether the lower and the upper side have shrunk to a point, so that normals that are a [product](Self::product) are divided by the
+    /// distance from it; none if the normals are neither a product nor those of a [plane](Self::plane).
     #[must_use]
     pub fn shrunk_sides(&self) -> [[bool; 2]; 2] {
-        self.product.map_or_else(Sides::default, |(_, sides)| sides)
+        self.normals.map_or_else(Sides::default, |(_, sides)| sides)
     }
 
     /// The patch as products of functions of `u` and of `v`, if it is a piece of a surface of revolution.

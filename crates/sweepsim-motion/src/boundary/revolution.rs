@@ -53,7 +53,7 @@ fn disk(radius: f64, zeta: f64, up: bool) -> Patch {
             moment: [take(&|i| facing * py(i)), take(&|i| -facing * px(i)), zero()],
         },
         revolved: None,
-        product: None,
+        normals: None,
     }
 }
 
@@ -116,7 +116,7 @@ pub(super) fn place(patch: &Patch, turn: &Matrix3<f64>, shift: &Vector3<f64>) ->
             frame: Some((*turn, *shift)),
             ..revolved
         }),
-        product: patch.product,
+        normals: patch.normals,
     }
 }
 

@@ -68,7 +68,11 @@ mod tests {
                 let shorter = if is_plain { plain } else { scientific };
                 assert_eq!(text, shorter);
             }
-            value *= if (1e-4..1e14).contains(&value.abs()) { -1.003 } else { -1.7e3 };
+            value *= if (1e-4..1e14).contains(&value.abs()) {
+                -1.003
+            } else {
+                -1.7e3
+            };
         }
     }
 }

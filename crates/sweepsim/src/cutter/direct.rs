@@ -1,7 +1,8 @@
 //! Normals from the position's own derivatives, where their forms have many times its degree.
 //!
 //! `N = s w⁴ (F_u × F_v)` and `M = F × N` with their derivatives take the second-order jet of `F`, of 16 control points for a bicubic patch, where the forms
-//! of `N` and `M` have 81 coefficients each. Both are the same function, which the forms bound over boxes.
+//! of `N` and `M` have 81 coefficients each. Both are the same function, which the forms bound over boxes. On a flat patch `N = w n` with a constant vector `n`, near poles
+//! and elsewhere.
 
 use crate::algebra::quad::{Quad, add, cross, dot, mix, quad};
 use crate::algebra::table::Table;
@@ -13,14 +14,13 @@ use nalgebra::Vector3;
 use sweepsim_motion::Patch;
 use sweepsim_spline::Bernstein;
 
-/// A patch whose normals are products of its derivatives.
+/// A patch whose normals are products of its derivatives, or those of a plane.
 #[derive(Clone, Debug)]
 pub(crate) struct Direct {
     /// The homogeneous position relative to `centre`, so that its derivatives are differences of small numbers.
     places: Places,
     centre: Vector3<f64>,
-    /// `s`.
-    factor: f64,
+    normals: Normals,
     /// The weight, if it is constant.
     constant: Option<f64>,
     /// For each variable, whether `N` is divided by the distance from its lower and its upper side.
@@ -29,6 +29,15 @@ pub(crate) struct Direct {
     pub rounding: Sizes,
     /// Those of `F_u` and `F_v`.
     pub of_slopes: Sizes,
+}
+
+/// What `N` is.
+#[derive(Clone, Copy, Debug)]
+enum Normals {
+    /// `s`.
+    Product(f64),
+    /// `n`.
+    Plane(Quad),
 }
 
 /// Nearer to a pole, normals are left to their forms: divided by the distance, the rounding errors of their products would be too large.
@@ -41,7 +50,7 @@ pub(crate) struct Site {
     pub normal: Quad,
     /// Derivatives in `uu`, `uv` and `vv`.
     second: [Quad; 3],
-    /// `N` is this many times the product of the slopes, and the relative change of that factor in `u` and in `v`.
+    /// What changes in `N` as in the product of the slopes is this many times that product, and the relative change of the rest in `u` and in `v`.
     size: f64,
     grown: [f64; 2],
 }
@@ -53,8 +62,8 @@ struct First {
     slopes: [Quad; 2],
     /// One over the weight.
     inverse: f64,
-    /// As in [`Site`].
-    size: f64,
+    /// The weight.
+    weight: f64,
 }
 
 fn scaled(a: &Quad, factor: f64) -> Quad {
@@ -64,7 +73,11 @@ fn scaled(a: &Quad, factor: f64) -> Quad {
 impl Direct {
     /// `None` if the normals have another form.
     pub fn new(patch: &Patch) -> Option<Self> {
-        let factor = patch.product()?;
+        let normals = match (patch.product(), patch.plane()) {
+            (Some(factor), _) => Normals::Product(factor),
+            (None, Some([x, y, z])) => Normals::Plane([x, y, z, 0.0]),
+            (None, None) => return None,
+        };
         let weight = patch.weight();
         let first = weight.coefficients()[0];
         let constant = weight.coefficients().iter().all(|w| *w == first).then_some(first);
@@ -91,21 +104,34 @@ impl Direct {
             let roundings = 1 + 4 * raises.map(|[u, v]| u + v).into_iter().max().unwrap_or(0);
             roundings as f64 * f64::EPSILON * (form.magnitude() + centre[k].abs() * weight.magnitude())
         });
-        let sides = patch.shrunk_sides();
+        let sides = match normals {
+            Normals::Product(_) => patch.shrunk_sides(),
+            Normals::Plane(_) => [[false; 2]; 2],
+        };
         let divisions = sides.as_flattened().iter().filter(|side| **side).count();
         let growth = POLE.recip().powi(divisions as i32) * (1.0 + 4.0 * f64::EPSILON);
         let table = Table::new(&[x, y, z, raised(weight)], degrees);
         let places = Places::new(table);
         let magnitudes = [0, 1, 2, 3].map(|k| shifted.get(k).unwrap_or(weight).magnitude());
-        let errors = Errors::new((&shifted, weight), places.roundings(magnitudes), shift);
-        let rounding = errors
-            .of_fields(&centre, factor)
-            .map(|sizes| sizes.map(|size| growth * size));
+        let of_slopes = [[1, 0], [0, 1]].map(|orders| places.roundings(orders, magnitudes));
+        let errors = Errors::new((&shifted, weight), of_slopes, shift);
+        let rounding = match normals {
+            Normals::Product(factor) => errors
+                .of_fields(&centre, factor)
+                .map(|sizes| sizes.map(|size| growth * size)),
+            Normals::Plane([x, y, z, _]) => {
+                let weights = match constant {
+                    Some(_) => [1.0, 0.0],
+                    None => [weight.magnitude(), places.roundings([0, 0], magnitudes)[3]],
+                };
+                errors.of_plane(&centre, [x, y, z], weights)
+            }
+        };
         Some(Self {
             sides,
             places,
             centre,
-            factor,
+            normals,
             constant,
             rounding,
             of_slopes: errors.of_slopes(),
@@ -154,9 +180,9 @@ impl Direct {
         (product, slopes)
     }
 
-    /// The position about the centre, both slopes, and how many times their product is `N`, from values and first derivatives of the forms.
+    /// The position about the centre, and both slopes, from values and first derivatives of the forms.
     #[inline(always)]
-    fn first(&self, at: [f64; 2], [p, pu, pv]: [&Quad; 3]) -> First {
+    fn first(&self, [p, pu, pv]: [&Quad; 3]) -> First {
         let plain = |[x, y, z, _]: &Quad| [*x, *y, *z, 0.0];
         let weight = self.constant.unwrap_or(p[3]);
         let inverse = 1.0 / weight;
@@ -167,15 +193,29 @@ impl Direct {
             // The quotient rule, solved for the highest derivative.
             [pu, pv].map(|p| scaled(&mix(1.0, &plain(p), -p[3], &f), inverse))
         };
-        let mut size = self.factor * (weight * weight) * (weight * weight);
-        if self.has_poles() {
-            size /= self.divisor(at).0;
-        }
         First {
             f,
             slopes,
             inverse,
-            size,
+            weight,
+        }
+    }
+
+    /// `N`, and how many times the product of the slopes it is, if it is that.
+    #[inline(always)]
+    fn normal(&self, at: [f64; 2], first: &First) -> (Quad, f64) {
+        match &self.normals {
+            Normals::Product(factor) => {
+                let square = first.weight * first.weight;
+                let mut size = factor * square * square;
+                if self.has_poles() {
+                    size /= self.divisor(at).0;
+                }
+                let [fu, fv] = &first.slopes;
+                (scaled(&cross(fu, fv), size), size)
+            }
+            Normals::Plane(vector) if self.constant.is_some() => (*vector, 0.0),
+            Normals::Plane(vector) => (scaled(vector, first.weight), 0.0),
         }
     }
 
@@ -187,10 +227,9 @@ impl Direct {
     #[inline]
     pub fn tangent(&self, at: [f64; 2]) -> (Quad, [Quad; 2], Quad) {
         let [p, pu, pv] = self.places.slopes(at);
-        let First { f, slopes, size, .. } = self.first(at, [&p, &pu, &pv]);
-        let [fu, fv] = &slopes;
-        let normal = scaled(&cross(fu, fv), size);
-        (add(&f, &quad(&self.centre)), slopes, normal)
+        let first = self.first([&p, &pu, &pv]);
+        let (normal, _) = self.normal(at, &first);
+        (add(&first.f, &quad(&self.centre)), first.slopes, normal)
     }
 
     /// The point at `(u, v)` relative to the tool, and `⟨spin, M⟩ + ⟨travel, N⟩` there, as [`at`](Self::at) computes them; `None` if it has to be used.
@@ -216,12 +255,14 @@ impl Direct {
     pub fn at(&self, at: [f64; 2]) -> Site {
         let jet = self.places.jet(at);
         let [p, pu, pv, puu, puv, pvv] = &jet;
+        let first = self.first([p, pu, pv]);
+        let (normal, size) = self.normal(at, &first);
         let First {
             f,
             slopes: [fu, fv],
             inverse,
-            size,
-        } = self.first(at, [p, pu, pv]);
+            ..
+        } = first;
         let (second, mut grown);
         if self.constant.is_some() {
             second = [puu, puv, pvv].map(|[x, y, z, _]| scaled(&[*x, *y, *z, 0.0], inverse));
@@ -237,7 +278,11 @@ impl Direct {
                 curvature(puv, [wu, wv]),
                 curvature(pvv, [2.0 * wv, 0.0]),
             ];
-            grown = [4.0 * wu * inverse, 4.0 * wv * inverse];
+            let power = match self.normals {
+                Normals::Product(_) => 4.0,
+                Normals::Plane(_) => 1.0,
+            };
+            grown = [power * wu * inverse, power * wv * inverse];
         }
         if self.has_poles() {
             let (_, slopes) = self.divisor(at);
@@ -245,7 +290,7 @@ impl Direct {
         }
         Site {
             place: add(&f, &quad(&self.centre)),
-            normal: scaled(&cross(&fu, &fv), size),
+            normal,
             slopes: [fu, fv],
             second,
             size,
@@ -355,6 +400,49 @@ mod tests {
             let (_, most) = range_of(direct.rounding[1]);
             let farthest = centre.iter().fold(0.0_f64, |most, c: &f64| most.max(c.abs())) + 3.0;
             prop_assert!(most < 1e3 * f64::EPSILON * farthest * 2.0 * 32.0, "{most}");
+        }
+
+        /// The same on flat patches, anywhere: at poles as well, where nothing is divided.
+        #[test]
+        fn flat_normals_are_those_of_the_forms(
+            degrees in prop_oneof![Just([3, 3]), [1_usize..5, 1_usize..5]], rational in any::<bool>(), has_pole in any::<bool>(), weights in proptest::collection::vec(0.6..1.6, 25),
+            at in [0.0..=1.0, 0.0..=1.0], on_side in any::<bool>(), centre in [-50.0..50.0, -50.0..50.0, -50.0..50.0],
+            tilt in (0_usize..3, -1.0..1.0, -1.0..1.0),
+        ) {
+            let [p, q] = degrees;
+            let at = if on_side { [at[0], 0.0] } else { at };
+            let tilt = [if tilt.0 > 1 { tilt.1 } else { 0.0 }, if tilt.0 > 0 { tilt.2 } else { 0.0 }];
+            let y = |i: usize| (i / (p + 1)) as f64 / q as f64;
+            let x = |i: usize| (i % (p + 1)) as f64 / p as f64 * if has_pole { y(i) } else { 1.0 };
+            let weight = |i: usize| if rational { weights[i] } else { 2.0 };
+            let position = [
+                form(degrees, &|i| weight(i) * (centre[0] + 3.0 * x(i))),
+                form(degrees, &|i| weight(i) * (centre[1] + y(i))),
+                form(degrees, &|i| weight(i) * (centre[2] + tilt[0] * x(i) + tilt[1] * y(i))),
+            ];
+            let patch = Patch::new(position, form(degrees, &weight)).unwrap();
+            prop_assert!(patch.plane().is_some());
+            prop_assert_eq!(patch.shrunk_sides(), [[false; 2], [has_pole, false]]);
+            let direct = Direct::new(&patch).unwrap();
+            prop_assert!(direct.covers(at));
+            let lists = lists(&direct, at);
+            let forms: Vec<&Bernstein> = patch.field().normal().iter().chain(patch.field().moment()).collect();
+            for (k, form) in forms.iter().enumerate() {
+                let rounding = direct.rounding[1 - k / 3][k % 3];
+                let error = rounding + 64.0 * f64::EPSILON * form.magnitude();
+                let value = form.evaluate(&at);
+                prop_assert!((lists[0][k] - value).abs() <= error, "{k}: {} {value} {error}", lists[0][k]);
+                for axis in 0..2 {
+                    let slope = form.derivative(axis).evaluate(&at);
+                    prop_assert!((lists[1 + axis][k] - slope).abs() <= 1e3 * error + 1e-12);
+                }
+                // Where the plane is parallel to an axis, nothing is left of the component.
+                if k < 3 && patch.plane().unwrap()[k] == 0.0 {
+                    prop_assert!(value == 0.0 && lists[0][k] == 0.0 && rounding == 0.0);
+                }
+            }
+            let (_, most) = range_of(direct.rounding[1]);
+            prop_assert!(most < 300.0 * f64::EPSILON, "{most}");
         }
 
         /// The same where a side has shrunk to a point, and the normals are divided by the distance from it.

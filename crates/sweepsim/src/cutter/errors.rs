@@ -15,6 +15,9 @@ pub(super) struct Errors {
     heaviest: f64,
 }
 
+/// The factors of a component of a vector product.
+const PAIRS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
 impl Errors {
     /// `roundings`: of the first derivatives of all four forms, in each variable. `shift` bounds the errors of the position's coefficients themselves.
     pub fn new((position, weight): (&[Bernstein; 3], &Bernstein), roundings: [[f64; 4]; 2], shift: [f64; 3]) -> Self {
@@ -49,22 +52,32 @@ impl Errors {
         let epsilon = f64::EPSILON;
         let [u, v] = self.slopes;
         let size = factor * self.heaviest.powi(4);
-        let (mut normal, mut moment) = ([[0.0; 2]; 3], [0.0; 3]);
-        let pairs = [[1, 2], [2, 0], [0, 1]];
-        for (k, [a, b]) in pairs.into_iter().enumerate() {
+        let mut normal = [[0.0; 2]; 3];
+        for (k, [a, b]) in PAIRS.into_iter().enumerate() {
             let product = |p: [f64; 2], q: [f64; 2]| [p[0] * q[0], p[0] * q[1] + p[1] * q[0]];
             let (one, other) = (product(u[a], v[b]), product(u[b], v[a]));
             let bound = size * (one[0] + other[0]);
             normal[k] = [bound, size * (one[1] + other[1]) + 16.0 * epsilon * bound];
         }
-        for (k, [a, b]) in pairs.into_iter().enumerate() {
+        [self.of_moment(centre, normal), normal.map(|[_, error]| error)]
+    }
+
+    /// Of `M` and `N = w n`, with a bound of the weight and of its error.
+    pub fn of_plane(&self, centre: &Vector3<f64>, vector: [f64; 3], [weight, error]: [f64; 2]) -> Sizes {
+        // A rounding of the product here, and one of the forms' coefficients.
+        let normal = vector.map(|x: f64| [x.abs() * weight, x.abs() * (error + 2.0 * f64::EPSILON * weight)]);
+        [self.of_moment(centre, normal), normal.map(|[_, error]| error)]
+    }
+
+    /// Of `M`, from a bound of each component of `N` and of its error.
+    fn of_moment(&self, centre: &Vector3<f64>, normal: [[f64; 2]; 3]) -> [f64; 3] {
+        PAIRS.map(|[a, b]| {
             let term = |p: usize, n: usize| {
                 let reach = centre[p].abs() + self.radius[p];
-                reach * (normal[n][1] + 24.0 * epsilon * normal[n][0]) + self.shift[p] * normal[n][0]
+                reach * (normal[n][1] + 24.0 * f64::EPSILON * normal[n][0]) + self.shift[p] * normal[n][0]
             };
-            moment[k] = term(a, b) + term(b, a);
-        }
-        [moment, normal.map(|[_, error]| error)]
+            term(a, b) + term(b, a)
+        })
     }
 }
 

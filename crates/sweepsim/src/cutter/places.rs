@@ -37,19 +37,25 @@ impl Places {
         }
     }
 
-    /// Bounds of the rounding errors of both first derivatives, form by form; the forms have coefficients up to `sizes`.
-    pub fn roundings(&self, sizes: [f64; 4]) -> [[f64; 4]; 2] {
+    /// Bounds of the rounding errors of values or of first derivatives, form by form; the forms have coefficients up to `sizes`.
+    pub fn roundings(&self, orders: [usize; 2], sizes: [f64; 4]) -> [f64; 4] {
         match self {
-            Self::Bicubic(bicubic) => [[1, 0], [0, 1]].map(|orders| {
+            Self::Bicubic(bicubic) => {
                 let sums = bicubic.sizes(orders);
                 let unit = 0.5 * f64::EPSILON;
                 // Besides, coefficients of 64 terms, up to nine times as large, are computed with twice the digits.
                 std::array::from_fn(|k| unit * (Bicubic::ROUNDINGS * sums[k] + 1e6 * unit * sizes[k]))
-            }),
-            Self::Any(table) => table.degrees().map(|degree| {
-                let degree = degree as f64;
-                sizes.map(|size| 2.0 * degree * (2.0 * degree + 8.0) * f64::EPSILON * size)
-            }),
+            }
+            Self::Any(table) => {
+                let degrees = table.degrees().map(|degree| degree as f64);
+                let grown = [0, 1].map(|axis| if orders[axis] == 0 { 1.0 } else { 2.0 * degrees[axis] });
+                let most = if orders == [0, 0] {
+                    degrees[0] + degrees[1]
+                } else {
+                    orders[0] as f64 * degrees[0] + orders[1] as f64 * degrees[1]
+                };
+                sizes.map(|size| grown[0] * grown[1] * (2.0 * most + 8.0) * f64::EPSILON * size)
+            }
         }
     }
 }

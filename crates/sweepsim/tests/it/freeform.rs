@@ -208,10 +208,13 @@ proptest! {
         };
         let general = weighted(&pieces, bend);
         let degree = |patch: &Patch| patch.field().moment()[0].degrees().to_vec();
-        prop_assert!(general.patches().iter().all(|patch| degree(patch).into_iter().max() > Some(4)));
-        // All are evaluated from derivatives, those with a pole only at some distance from it.
+        // The flat ones have normals of their own.
+        prop_assert!(general.patches().iter().all(|patch| degree(patch).into_iter().max() > Some(4) || patch.plane().is_some()));
+        let flat = general.patches().iter().filter(|patch| patch.plane().is_some()).count();
+        prop_assert_eq!(flat, if ball { 4 } else { 8 });
+        // All are evaluated from derivatives, those with a pole that are not flat only at some distance from it.
         let poles = general.patches().iter().filter(|patch| patch.shrunk_sides() != [[false; 2]; 2]).count();
-        prop_assert!(general.patches().iter().all(|patch| patch.product().is_some()));
+        prop_assert!(general.patches().iter().all(|patch| patch.product().is_some() != patch.plane().is_some()));
         prop_assert!(0 < poles && poles < general.patches().len());
         let path = Path::new(poses).unwrap();
         let grid = Grid::new([-9.0, -8.0], [9.0, 10.0], [12, 12]).unwrap();
