@@ -54,7 +54,7 @@ struct Piece {
 }
 
 impl Piece {
-    /// None yet.
+    /// Of no samples yet.
     fn of(first: f32, matter: Matter) -> Self {
         Self {
             first,

@@ -145,8 +145,8 @@ impl Patch {
         }
     }
 
-    /// The vector `n` of normals `N = w n`, where `w` is the weight, or `N = n` if that is constant; `None` if they have another form. Those of all patches
-    /// that are flat up to rounding have this form, but for parts of surfaces of revolution about the third axis and normals that are user-defined.
+    /// The vector `n` of normals `N = w n`, where `w` is the weight, or `N = n` if that is constant; `None` if they have another form. Those of patches
+    /// that are flat up to rounding have this form, except slivers, parts of surfaces of revolution about the third axis, and patches whose normals a caller gave.
     #[must_use]
     pub fn plane(&self) -> Option<[f64; 3]> {
         match self.normals {

@@ -1,6 +1,6 @@
 //! Numbers as text.
 
-/// The shortest text that reads back to the same `f64`, but at most four characters stay plain: `1`, `0.1`, `1000`, `1e-7`.
+/// The shortest text that reads back to the same `f64`; without an exponent, if that takes up to four characters: `1`, `0.1`, `1000`, `1e-7`.
 #[must_use]
 pub fn shortest(value: f64) -> String {
     // Most numbers have a fraction and no zeros to be saved: theirs are the digits of any shortest text.

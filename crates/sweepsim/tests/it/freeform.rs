@@ -114,18 +114,20 @@ fn pose() -> impl Strategy<Value = Pose> {
         .prop_map(|(tip, [a, b])| Pose::new(tip, [a, b, 1.0]).unwrap())
 }
 
+/// The corners of the faces of a block: bit `a` of a corner's number tells at which end of axis `a` it is.
+pub const FACES: [[usize; 4]; 6] = [
+    [0, 2, 1, 3],
+    [4, 5, 6, 7],
+    [0, 1, 4, 5],
+    [2, 6, 3, 7],
+    [0, 4, 2, 6],
+    [1, 3, 5, 7],
+];
+
 /// A block from `min` to `max` as six bilinear patches.
 pub fn block(min: [f64; 3], max: [f64; 3]) -> Tool {
     let corner = |k: usize| [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
-    let faces = [
-        [0, 2, 1, 3],
-        [4, 5, 6, 7],
-        [0, 1, 4, 5],
-        [2, 6, 3, 7],
-        [0, 4, 2, 6],
-        [1, 3, 5, 7],
-    ];
-    let patches = faces.map(|face| {
+    let patches = FACES.map(|face| {
         let form = |a: usize| Bernstein::new(&[1, 1], face.map(|k| corner(k)[a]).to_vec()).unwrap();
         Patch::new(
             [form(0), form(1), form(2)],

@@ -1,12 +1,12 @@
 //! Tools of rational B-spline surfaces, whose homogeneous coordinates are rounded products: equal ones are equal up to rounding only.
 
 use crate::far_and_fine::difference;
-use crate::freeform::block;
+use crate::freeform::{FACES, block};
 use crate::grazing_curves::carried;
 use nalgebra::{Rotation3, Vector3};
 use sweepsim::{Method, Options, sweep};
 use sweepsim_dexel::{Frame, Grid};
-use sweepsim_motion::Tool;
+use sweepsim_motion::{Path, Tool};
 use sweepsim_spline::{KnotVector, RationalSpline};
 
 /// As flat at both poles as a cubic is, at heights whose products with most weights are rounded.
@@ -74,32 +74,15 @@ fn surface(around: KnotVector, points: Vec<f64>, weights: &[f64]) -> Tool {
     Tool::from_surfaces(&[surface], 1e-9).expect("a tool")
 }
 
-/// A block like that of `freeform`, whose corners have the weights of a list: no face is moved by them.
-fn weighted_block(min: [f64; 3], max: [f64; 3], weights: [f64; 8]) -> Tool {
-    turned_block(min, max, 0.0, Some(weights))
-}
-
-/// The same, turned about its axis; polynomial without weights.
-fn turned_block(min: [f64; 3], max: [f64; 3], angle: f64, weights: Option<[f64; 8]>) -> Tool {
+/// A block like that of `freeform`, turned about its axis, whose corners have the weights of a list, if there is one: no face is moved by them.
+fn turned_block([min, max]: [[f64; 3]; 2], angle: f64, weights: Option<[f64; 8]>) -> Tool {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), angle);
     let corner = |k: usize| -> [f64; 3] {
-        let corner = Vector3::from([0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] }));
-        if angle == 0.0 {
-            corner.into()
-        } else {
-            (turn * corner).into()
-        }
+        let corner = [0, 1, 2].map(|a| if k >> a & 1 == 0 { min[a] } else { max[a] });
+        (turn * Vector3::from(corner)).into()
     };
-    let faces = [
-        [0, 2, 1, 3],
-        [4, 5, 6, 7],
-        [0, 1, 4, 5],
-        [2, 6, 3, 7],
-        [0, 4, 2, 6],
-        [1, 3, 5, 7],
-    ];
     let knots = || vec![KnotVector::new(1, vec![0.0, 0.0, 1.0, 1.0]).expect("knots"); 2];
-    let surfaces = faces.map(|face| {
+    let surfaces = FACES.map(|face| {
         let points = face.map(corner).concat();
         let weights = face.map(|k| weights.map_or(1.0, |weights| weights[k]));
         RationalSpline::new(knots(), 3, &points, &weights).expect("a surface")
@@ -107,12 +90,34 @@ fn turned_block(min: [f64; 3], max: [f64; 3], angle: f64, weights: Option<[f64; 
     Tool::from_surfaces(&surfaces, 1e-9).expect("a tool")
 }
 
+/// The block of the tests below.
+const BLOCK: [[f64; 3]; 2] = [[-1.3, -0.7, 0.1], [1.1, 0.9, 3.7]];
+const WEIGHTS: [f64; 8] = [0.86, 0.89, 1.24, 0.73, 1.17, 0.91, 1.03, 0.77];
+
+/// Along each axis, off the origin.
+fn frames() -> [Frame; 3] {
+    let along = |z: [f64; 3]| Frame::new([0.05; 3], z, [z[2], z[0], z[1]]).expect("a frame");
+    [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(along)
+}
+
+/// The second tool is swept as certainly as the first, to the same dexels, and takes at most `times` as many boxes.
+fn as_cheap(tools: &[Tool; 2], path: &Path, grid: &Grid, options: &Options, times: u64) {
+    let [plain, own] = tools
+        .each_ref()
+        .map(|tool| sweep(tool, path, grid, options, &()).expect("a sweep"));
+    let [few, found] = [&plain.statistics, &own.statistics];
+    let what = format!("{path:?}, {:?}, {options:?}: {found:?} {few:?}", grid.frame());
+    assert!(found.unresolved.is_empty() && found.repaired <= few.repaired, "{what}");
+    assert!(found.boxes <= times * few.boxes + 100, "{what}");
+    let apart = difference(&own.volume, &plain.volume, 10.0, 0.0).along_lines;
+    assert!(apart < 10.0 * options.tolerance, "{what}: {apart:e}");
+}
+
 /// Faces that slide along themselves, at places whose products with the weights are rounded, cost what those of polynomials do; plunges by default had taken some hundred times as long.
 #[test]
 fn weights_of_flat_faces_cost_nothing() {
-    let (min, max) = ([-1.3, -0.7, 0.1], [1.1, 0.9, 3.7]);
-    let weights = [0.86, 0.89, 1.24, 0.73, 1.17, 0.91, 1.03, 0.77];
-    let tools = [block(min, max), weighted_block(min, max, weights)];
+    let [min, max] = BLOCK;
+    let tools = [block(min, max), turned_block(BLOCK, 0.0, Some(WEIGHTS))];
     let moves = [
         [[0.3, 0.2, 1.0], [0.3, 0.2, -1.0]],
         [[0.3, 0.2, 1.0], [0.3, 0.2 + 2.5e-9, -2.0]],
@@ -120,46 +125,24 @@ fn weights_of_flat_faces_cost_nothing() {
         [[-1.0, 0.0, 0.0], [1.5, 0.0, 0.0]],
     ];
     let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [31, 29]).expect("a grid");
-    let frames = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-        .map(|z| Frame::new([0.05; 3], z, [z[2], z[0], z[1]]).expect("a frame"));
-    for (tips, turn) in moves
-        .iter()
-        .flat_map(|tips| [[0.0; 3], [0.0, 0.0, 0.4]].map(|turn| (tips, turn)))
-    {
-        for (frame, method, tolerance) in frames
-            .iter()
-            .flat_map(|frame| [Method::Charts, Method::General].map(|method| (frame, method)))
-            .flat_map(|(frame, method)| [1e-4, 1e-6, 1e-9].map(|tolerance| (frame, method, tolerance)))
-        {
-            let [plain, own] = tools.each_ref().map(|tool| {
-                let options = Options::new(tolerance).method(method);
-                sweep(tool, &carried(tips, turn), &grid.in_frame(*frame), &options, &()).expect("a sweep")
-            });
-            let what = format!("{tips:?}, {turn:?}, {frame:?}, {method} at {tolerance:e}");
-            let [few, found] = [&plain.statistics, &own.statistics];
-            assert!(
-                found.unresolved.is_empty() && found.repaired <= few.repaired,
-                "{what}: {found:?} {few:?}"
-            );
-            assert!(
-                found.boxes <= 2 * few.boxes + 100,
-                "{what}: {} {}",
-                found.boxes,
-                few.boxes
-            );
-            let apart = difference(&own.volume, &plain.volume, 10.0, 0.0).along_lines;
-            assert!(apart < 10.0 * tolerance, "{what}: {apart:e}");
+    for tips in &moves {
+        for path in [[0.0; 3], [0.0, 0.0, 0.4]].map(|turn| carried(tips, turn)) {
+            for grid in frames().map(|frame| grid.in_frame(frame)) {
+                for method in [Method::Charts, Method::General] {
+                    for tolerance in [1e-4, 1e-6, 1e-9] {
+                        as_cheap(&tools, &path, &grid, &Options::new(tolerance).method(method), 2);
+                    }
+                }
+            }
         }
     }
 }
 
-/// So do faces that are not across the tool's own axes, by all methods: at 1e-8, charts and the general method had solved 88 to 186 of the 399 lines again, in up to a thousand times as long.
+/// So do faces that are not across the tool's own axes, by all methods; at 1e-8, charts and the general method had solved 88 to 186 of the 399 lines again, which took up to a thousand times as long.
 #[test]
 fn weights_of_turned_faces_cost_nothing() {
     const ANGLE: f64 = 0.5;
-    let (min, max) = ([-1.3, -0.7, 0.1], [1.1, 0.9, 3.7]);
-    let weights = [0.86, 0.89, 1.24, 0.73, 1.17, 0.91, 1.03, 0.77];
-    let tools = [None, Some(weights)].map(|weights| turned_block(min, max, ANGLE, weights));
+    let tools = [None, Some(WEIGHTS)].map(|weights| turned_block(BLOCK, ANGLE, weights));
     let along = [2.0 * ANGLE.cos(), 2.0 * ANGLE.sin()];
     let moves = [
         [[0.3, 0.2, 1.0], [0.3, 0.2, -1.0]],
@@ -167,42 +150,22 @@ fn weights_of_turned_faces_cost_nothing() {
         [[0.0; 3], [along[0], along[1], 0.0]],
         [[0.0; 3], [along[0], along[1], -0.7]],
     ];
-    let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [21, 19]).expect("a grid");
-    let frames = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-        .map(|z| Frame::new([0.05; 3], z, [z[2], z[0], z[1]]).expect("a frame"));
+    // Planes are cut in the parameters, of which places on a rational face are not linear functions.
     let methods = [
-        Method::Charts,
-        Method::General,
-        Method::Lines,
-        Method::Planes,
-        Method::Surface,
+        (Method::Charts, 2),
+        (Method::General, 2),
+        (Method::Lines, 2),
+        (Method::Planes, 3),
+        (Method::Surface, 2),
     ];
-    for (tips, frame, method) in moves
-        .iter()
-        .flat_map(|tips| frames.iter().map(move |frame| (tips, frame)))
-        .flat_map(|(tips, frame)| methods.map(|method| (tips, frame, method)))
-    {
-        for tolerance in [1e-6, 1e-8] {
-            let [plain, own] = tools.each_ref().map(|tool| {
-                let options = Options::new(tolerance).method(method);
-                sweep(tool, &carried(tips, [0.0; 3]), &grid.in_frame(*frame), &options, &()).expect("a sweep")
-            });
-            let what = format!("{tips:?}, {frame:?}, {method} at {tolerance:e}");
-            let [few, found] = [&plain.statistics, &own.statistics];
-            assert!(
-                found.unresolved.is_empty() && found.repaired <= few.repaired,
-                "{what}: {found:?} {few:?}"
-            );
-            // Planes are cut in the parameters, of which places on a rational face are no linear functions.
-            let times = if method == Method::Planes { 3 } else { 2 };
-            assert!(
-                found.boxes <= times * few.boxes + 100,
-                "{what}: {} {}",
-                found.boxes,
-                few.boxes
-            );
-            let apart = difference(&own.volume, &plain.volume, 10.0, 0.0).along_lines;
-            assert!(apart < 10.0 * tolerance, "{what}: {apart:e}");
+    let grid = Grid::new([-3.0, -3.0], [3.0, 3.0], [21, 19]).expect("a grid");
+    for path in moves.map(|tips| carried(&tips, [0.0; 3])) {
+        for grid in frames().map(|frame| grid.in_frame(frame)) {
+            for (method, times) in methods {
+                for tolerance in [1e-6, 1e-8] {
+                    as_cheap(&tools, &path, &grid, &Options::new(tolerance).method(method), times);
+                }
+            }
         }
     }
 }
