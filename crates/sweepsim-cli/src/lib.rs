@@ -1,30 +1,27 @@
 //! The `sweepsim` command: simulates NC programs with exact swept volumes.
 //!
-//! This library exists only for the command's binary. In your own code, use the crates below it: [`sweepsim`],
-//! `sweepsim_dexel`, `sweepsim_formats`, `sweepsim_motion`, `sweepsim_nc`, `sweepsim_picture`.
+//! This library exists only for the command's binary. In your own code, use [`sweepsim_job`], which does all that the command does.
 //!
-//! `arguments` parses the command line, `session` holds the code shared by the commands, `warnings` finds what is odd about a job, and `commands` has
-//! a module for each command.
+//! `arguments` parses the command line into requests, `commands` carries them out and says what was found, and `session` holds what they share: progress,
+//! interruption, output files, exit status.
 
 mod arguments;
 mod commands;
-mod frames;
 mod session;
-mod shards;
-mod warnings;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
 use std::process::ExitCode;
+use sweepsim_job::Task;
 
 /// Runs the command with the arguments of the process.
 #[must_use]
 pub fn main() -> ExitCode {
     session::interruption::handle();
     let done = match Arguments::parse().command {
-        Command::Simulate(options) => commands::run(commands::Task::Simulate, &options, &Default::default()),
-        Command::Sweep(options) => commands::run(commands::Task::Sweep, &options, &Default::default()),
-        Command::Verify { run, judging } => commands::run(commands::Task::Verify, &run, &judging),
+        Command::Simulate(options) => commands::run(Task::Simulate, &options, &Default::default()),
+        Command::Sweep(options) => commands::run(Task::Sweep, &options, &Default::default()),
+        Command::Verify { run, judging } => commands::run(Task::Verify, &run, &judging),
         Command::Section(options) => commands::section(&options),
         Command::New(options) => commands::new(&options).map(|()| ExitCode::SUCCESS),
         Command::Inspect(options) => commands::inspect(&options).map(|()| ExitCode::SUCCESS),

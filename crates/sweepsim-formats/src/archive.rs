@@ -15,7 +15,7 @@ const FREE_BYTES: u64 = 1 << 28;
 const MOST_EXPANSION: u64 = 100;
 
 /// Writes an archive without compression. The same content gives the same bytes.
-pub(crate) fn write(entries: &[(&str, Vec<u8>)], writer: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write(entries: &[(&str, Vec<u8>)], writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let mut archive = ZipWriter::new_stream(writer);
     for (name, bytes) in entries {
         let options = SimpleFileOptions::default()

@@ -278,6 +278,12 @@ impl std::error::Error for FormatError {
 }
 
 impl FormatError {
+    /// A file, or what would be one, that cannot be written.
+    #[must_use]
+    pub fn writing(file: &Path, error: io::Error) -> Self {
+        Self::new(Problem::Write(error), None).in_file(file)
+    }
+
     /// The system's error, if the file could not be read at all.
     pub(crate) fn into_read_error(self) -> Result<io::Error, Self> {
         match *self.0 {

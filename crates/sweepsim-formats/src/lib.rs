@@ -53,15 +53,17 @@ mod vtk;
 pub use atomic::{AtomicFile, write_atomically};
 pub use dexels::{
     DexelFormat, DexelRow, Fixture, FixtureDifference, dexels_from_rows, is_dexels_csv, read_dexels_binary,
-    read_dexels_csv, read_dexels_file, read_dexels_npz, read_tri_dexels, read_tri_dexels_file, write_dexels_binary,
-    write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_tri_dexels,
+    read_dexels_csv, read_dexels_file, read_dexels_npz, read_tri_dexels, read_tri_dexels_file, write_dexels,
+    write_dexels_binary, write_dexels_csv, write_dexels_file, write_dexels_npz, write_dexels_vtu, write_tri_dexels,
 };
-pub use drafts::{Draft, DraftOptions, DraftStock, draft};
+pub use drafts::{Draft, DraftOptions, DraftStock, Guess, draft, draft_of};
 pub use error::{FormatError, Problem, TextPosition, io_reason};
-pub use jobs::{Flags, Job, JobPath, LimitRegion, Limits, Origin, Origins, RegionPlace, Seconds, Setup, Target, Units};
+pub use jobs::{
+    Flags, Job, JobPath, LimitRegion, Limits, Origin, Origins, Provided, RegionPlace, Seconds, Setup, Target, Units,
+};
 pub use meshes::{
     Colour, MeshFormat, parse_stl, read_3mf, read_coloured_mesh_file, read_glb, read_mesh_file, read_ply, read_stl,
-    read_vtp, write_3mf, write_glb, write_mesh_file, write_ply, write_stl, write_vtp,
+    read_vtp, write_3mf, write_glb, write_mesh, write_mesh_file, write_ply, write_stl, write_vtp,
 };
 pub use report::{
     ComparisonReport, DeviationSummary, DexelCounts, Furthest, HistogramBar, MoveSummary, PathSummary, Report,

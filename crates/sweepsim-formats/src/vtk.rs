@@ -37,7 +37,7 @@ impl Document {
         self.data[at..at + 8].copy_from_slice(&length.to_le_bytes());
     }
 
-    pub fn finish(self, kind: &str, writer: &mut impl Write) -> io::Result<()> {
+    pub fn finish(self, kind: &str, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
         write!(
             writer,
             "{}</Piece>\n</{kind}>\n<AppendedData encoding=\"raw\">\n_",

@@ -55,7 +55,7 @@ pub use model::stock::StockDescription;
 pub use model::times::{CORNER_DEVIATION, MoveClock, MoveTime, RAPID_SPEED, RAPID_TURN};
 pub use model::tool::{CutterKind, HolderSegment, ToolDescription};
 pub use model::usage::ToolUsage;
-pub use read::read_file;
+pub use read::{read_file, read_text};
 pub use sweepsim_motion::RotaryTable;
 pub use text::error::{NcError, NcProblem, TextPosition, shortened};
 pub use text::lines::end_lines_at_returns;

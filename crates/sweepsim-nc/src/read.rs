@@ -44,7 +44,7 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
         open().and_then(|reader| table::read_from(reader, unit(options)))
     } else {
         let bytes = open().and_then(lines::all);
-        bytes.and_then(|bytes| read_bytes(bytes, file, extension.as_deref(), options))
+        bytes.and_then(|bytes| read_bytes(bytes, Some(file), extension.as_deref(), options))
     };
     let mut program = read.map_err(|error| error.in_file(file))?;
     // Subprograms come after the main program.
@@ -55,7 +55,46 @@ pub fn read_file(file: &Path, options: &ReadOptions) -> Result<Program, NcError>
     Ok(program)
 }
 
-fn read_bytes(bytes: Vec<u8>, file: &Path, extension: Option<&str>, options: &ReadOptions) -> Result<Program, NcError> {
+/// Reads a program from its text, as [`read_file`] would from a file of this name. Nothing is read from files: programs that it calls are missing.
+///
+/// ```
+/// use std::path::Path;
+/// use sweepsim_nc::{ReadOptions, read_text};
+/// let program = read_text("0 BEGIN PGM A MM\n1 L X+1 Y+2 Z+3 FMAX\n2 END PGM A MM\n", Path::new("a.h"), &ReadOptions::default())?;
+/// assert_eq!(program.poses.len(), 1);
+/// # Ok::<(), sweepsim_nc::NcError>(())
+/// ```
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_text(text: &str, name: &Path, options: &ReadOptions) -> Result<Program, NcError> {
+    let extension = name.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    let is_table = match options.format {
+        None => extension.as_deref() == Some("csv"),
+        Some(format) => format == Format::Table,
+    };
+    let read = if is_table {
+        table::read_from(text.as_bytes(), unit(options))
+    } else {
+        let mut bytes = text.as_bytes().to_vec();
+        lines::end_lines_at_returns(&mut bytes);
+        read_bytes(bytes, None, extension.as_deref(), options)
+    };
+    let mut program = read.map_err(|error| error.in_file(name))?;
+    match program.files.first_mut() {
+        Some(main) => *main = name.to_owned(),
+        None => program.files = vec![name.to_owned()],
+    }
+    Ok(program)
+}
+
+/// `file`: beside which subprograms are.
+fn read_bytes(
+    bytes: Vec<u8>,
+    file: Option<&Path>,
+    extension: Option<&str>,
+    options: &ReadOptions,
+) -> Result<Program, NcError> {
     let unit = unit(options);
     // Comments come in all encodings; anything else that is not ASCII is an error of the reader. Only then there are two copies.
     let (text, other) = match String::from_utf8(bytes) {
@@ -69,7 +108,7 @@ fn read_bytes(bytes: Vec<u8>, file: &Path, extension: Option<&str>, options: &Re
     let bytes = other.as_deref().unwrap_or(text.as_bytes());
     let read_table = || table::read_from(bytes, unit);
     match options.format {
-        Some(Format::Gcode) => return gcode::read_at(&text, Some(file), options),
+        Some(Format::Gcode) => return gcode::read_at(&text, file, options),
         Some(Format::Apt) => return apt::read(&text, options),
         Some(Format::Table) => return read_table(),
         Some(Format::Rows) => {
@@ -100,13 +139,11 @@ fn read_bytes(bytes: Vec<u8>, file: &Path, extension: Option<&str>, options: &Re
     match Content::of(&text) {
         Content::Siemens => read_siemens(),
         Content::Table => read_table(),
-        Content::Gcode => gcode::read_at(&text, Some(file), options),
+        Content::Gcode => gcode::read_at(&text, file, options),
         Content::Apt { .. } => apt::read(&text, options),
         Content::Heidenhain { .. } => read_heidenhain(),
         // The G-code reader reports what is wrong with the line.
-        _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => {
-            gcode::read_at(&text, Some(file), options)
-        }
+        _ if matches!(extension, Some("nc" | "ngc" | "gcode" | "tap" | "mpf")) => gcode::read_at(&text, file, options),
         _ if matches!(extension, Some("apt" | "cls" | "clsf" | "ncl" | "cl" | "aptsource")) => {
             apt::read(&text, options)
         }
@@ -129,7 +166,8 @@ fn unit(options: &ReadOptions) -> f64 {
 }
 
 /// A program of this name beside another, in capitals or not.
-fn beside(file: &Path, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
+fn beside(file: Option<&Path>, name: &str, extensions: &[&str]) -> Option<(PathBuf, String)> {
+    let file = file?;
     // Names that could lead elsewhere are none.
     if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
         return None;

@@ -1,17 +1,17 @@
 //! The command line.
 
 mod programs;
+mod requests;
 mod shard;
 mod values;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 pub(crate) use programs::{DialectOptions, InspectOptions, NewOptions, ProgramOptions, WritingOptions};
-pub(crate) use shard::ShardNumber;
 use std::path::PathBuf;
 use sweepsim::systems::Plane;
 use sweepsim::{BoundaryOperator, Method};
+use sweepsim_job::DeviationLimits;
 use sweepsim_picture::{CuttingPlane, View};
-pub(crate) use values::GivenLimits;
 use values::{area, camera, cells, length, limits, parsed, plane, section, size, tile, tolerance};
 
 /// Simulates NC programs with exact swept volumes of milling tools.
@@ -97,8 +97,8 @@ pub(crate) struct RunOptions {
     pub tile: usize,
     /// Computes one shard of the run, from 0 of N, and leaves a piece for `merge`. `auto/N` takes the index from SLURM_ARRAY_TASK_ID,
     /// JOB_COMPLETION_INDEX or AWS_BATCH_JOB_ARRAY_INDEX, `auto` also the number of shards.
-    #[arg(long, value_name = "I/N", value_parser = ShardNumber::parse)]
-    pub shard: Option<ShardNumber>,
+    #[arg(long, value_name = "I/N", value_parser = shard::parse)]
+    pub shard: Option<sweepsim_job::ShardNumber>,
     /// With --shard: does nothing if its piece is there, whole and of this run.
     #[arg(long, requires = "shard")]
     pub resume: bool,
@@ -227,7 +227,7 @@ pub(crate) struct CompareOptions {
     /// How deep gouges and how high remaining material may be, like 0.02,0.1 in millimetres; or a job, whose limits count, by region if it has
     /// regions [default: 0.1 each].
     #[arg(long, value_name = "GOUGE,EXCESS|JOB", value_parser = limits)]
-    pub limits: Option<GivenLimits>,
+    pub limits: Option<DeviationLimits>,
     /// The distance at the ends of the picture's colour scale, in millimetres [default: the largest].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub range: Option<f64>,

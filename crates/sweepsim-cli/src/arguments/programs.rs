@@ -3,10 +3,9 @@
 use super::values::stock;
 use clap::Args;
 use clap::ValueHint;
-use std::path::{Path, PathBuf};
-use sweepsim_formats::{DraftOptions, DraftStock};
-use sweepsim_nc::write::GcodeOptions;
-use sweepsim_nc::{Controller, Format, Machine, ReadOptions};
+use std::path::PathBuf;
+use sweepsim_job::StockOption;
+use sweepsim_nc::{Controller, Format};
 
 /// How a program is read.
 #[derive(Debug, Args)]
@@ -53,7 +52,7 @@ pub(crate) struct ProgramOptions {
     pub tools: Option<PathBuf>,
     /// The stock: auto, block:X0,Y0,Z0,X1,Y1,Z1, or a mesh [default: auto, as the program says or a block around its path].
     #[arg(long, value_name = "STOCK", value_parser = stock, allow_hyphen_values = true)]
-    pub stock: Option<DraftStock>,
+    pub stock: Option<StockOption>,
     /// The design part: a mesh.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub target: Option<PathBuf>,
@@ -100,69 +99,5 @@ fn known(knows: fn(&str) -> bool, names: &'static [&'static str]) -> impl Fn(&st
         } else {
             Err(format!("expected one of {}", names.join(", ")))
         }
-    }
-}
-
-impl DialectOptions {
-    /// How to read a program.
-    pub fn reading(&self) -> Result<ReadOptions, String> {
-        let mut options = ReadOptions::default();
-        options.lenient = self.lenient;
-        options.controller = self.controller.as_deref().and_then(Controller::named);
-        options.format = self.format.as_deref().and_then(Format::named);
-        if let Some(machine) = &self.machine {
-            options.machine = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
-        }
-        Ok(options)
-    }
-}
-
-impl WritingOptions {
-    /// How to write a file with this extension.
-    pub fn options(&self, extension: &str) -> Result<GcodeOptions, String> {
-        let mut options = GcodeOptions::default();
-        options.dialect = match (self.dialect.as_deref().and_then(Controller::named), extension) {
-            (Some(dialect), _) => dialect,
-            (None, "mpf" | "spf") => Controller::Siemens,
-            (None, "h") => Controller::Heidenhain,
-            _ => options.dialect,
-        };
-        if let Some(machine) = &self.for_machine {
-            let read = Machine::read_file(Path::new(machine)).map_err(|error| format!("{machine}: {error}"))?;
-            options.machine = Some(read);
-            options.tip_control = !self.axes;
-        }
-        options.decimals = usize::from(self.decimals);
-        Ok(options)
-    }
-}
-
-impl ProgramOptions {
-    /// The first of these options that was given.
-    pub fn first(&self) -> Option<&'static str> {
-        let given = [
-            ("--tools", self.tools.is_some()),
-            ("--stock", self.stock.is_some()),
-            ("--target", self.target.is_some()),
-            ("--controller", self.dialect.controller.is_some()),
-            ("--machine", self.dialect.machine.is_some()),
-            ("--as", self.dialect.format.is_some()),
-            ("--lenient", self.dialect.lenient),
-        ];
-        given.iter().find(|(_, given)| *given).map(|(name, _)| *name)
-    }
-
-    /// For a job in a folder.
-    pub fn draft(&self, folder: &Path) -> DraftOptions {
-        let mut options = DraftOptions::default();
-        options.tools.clone_from(&self.tools);
-        options.stock = self.stock.clone().unwrap_or_default();
-        options.target.clone_from(&self.target);
-        options.controller.clone_from(&self.dialect.controller);
-        options.machine.clone_from(&self.dialect.machine);
-        options.format.clone_from(&self.dialect.format);
-        options.lenient = self.dialect.lenient;
-        options.folder = folder.to_owned();
-        options
     }
 }

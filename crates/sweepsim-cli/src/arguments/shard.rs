@@ -1,23 +1,7 @@
 //! Which shard of how many, given or taken from the environment that a scheduler sets.
 
 use std::env;
-use std::fmt;
-
-/// The most shards of a run.
-const MOST: usize = 100_000;
-
-/// Shard `index`, from 0, of `count`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct ShardNumber {
-    pub index: usize,
-    pub count: usize,
-}
-
-impl fmt::Display for ShardNumber {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}/{}", self.index, self.count)
-    }
-}
+use sweepsim_job::ShardNumber;
 
 /// What schedulers call the index of a task.
 const INDICES: [&str; 3] = [
@@ -26,35 +10,24 @@ const INDICES: [&str; 3] = [
     "AWS_BATCH_JOB_ARRAY_INDEX",
 ];
 
-impl ShardNumber {
-    /// `3/64`; `auto/64` with the index of the environment; `auto` with the number of shards from there, too.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        Self::read(text, &|name| env::var(name).ok())
-    }
+/// `3/64`; `auto/64` with the index of the environment; `auto` with the number of shards from there, too.
+pub(super) fn parse(text: &str) -> Result<ShardNumber, String> {
+    read(text, &|name| env::var(name).ok())
+}
 
-    fn read(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<Self, String> {
-        let expected = || "expected the shard from 0 and their number, like 3/64, or auto/64, or auto".to_owned();
-        let number = |text: &str| text.trim().parse::<usize>().map_err(|_| expected());
-        let (index, count) = match text.split_once('/') {
-            Some(("auto", count)) => (found(variable)?.1, number(count)?),
-            Some((index, count)) => (number(index)?, number(count)?),
-            None if text == "auto" => {
-                let (name, index) = found(variable)?;
-                (index, counted(name, variable)?)
-            }
-            None => return Err(expected()),
-        };
-        if !(1..=MOST).contains(&count) {
-            return Err(format!("expected 1 to {MOST} shards"));
+fn read(text: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<ShardNumber, String> {
+    let expected = || "expected the shard from 0 and their number, like 3/64, or auto/64, or auto".to_owned();
+    let number = |text: &str| text.trim().parse::<usize>().map_err(|_| expected());
+    let (index, count) = match text.split_once('/') {
+        Some(("auto", count)) => (found(variable)?.1, number(count)?),
+        Some((index, count)) => (number(index)?, number(count)?),
+        None if text == "auto" => {
+            let (name, index) = found(variable)?;
+            (index, counted(name, variable)?)
         }
-        if index >= count {
-            return Err(format!(
-                "there is no shard {index} of {count}: they are numbered from 0 to {}",
-                count - 1
-            ));
-        }
-        Ok(Self { index, count })
-    }
+        None => return Err(expected()),
+    };
+    ShardNumber::new(index, count)
 }
 
 /// The index that a scheduler gave, and what it calls it.
@@ -90,7 +63,7 @@ fn counted(index: &str, variable: &dyn Fn(&str) -> Option<String>) -> Result<usi
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::INDICES;
 
     fn read(text: &str, set: &[(&str, &str)]) -> Result<(usize, usize), String> {
         let variable = |name: &str| {
@@ -98,7 +71,7 @@ mod tests {
                 .find(|(own, _)| *own == name)
                 .map(|(_, value)| (*value).to_owned())
         };
-        ShardNumber::read(text, &variable).map(|shard| (shard.index, shard.count))
+        super::read(text, &variable).map(|shard| (shard.index(), shard.count()))
     }
 
     #[test]

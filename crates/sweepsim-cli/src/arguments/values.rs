@@ -1,8 +1,8 @@
 //! Parsers of option values.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use sweepsim::systems::Plane;
-use sweepsim_formats::DraftStock;
+use sweepsim_job::{DeviationLimits, StockOption};
 use sweepsim_picture::{Axis, CuttingPlane, Image, View};
 
 /// Parses one of several names, which clap lists in its help.
@@ -34,26 +34,17 @@ pub(super) fn size(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-/// Limits of deviations.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum GivenLimits {
-    /// For gouges and for excess.
-    Both([f64; 2]),
-    /// Those of a job.
-    Job(PathBuf),
-}
-
-pub(super) fn limits(text: &str) -> Result<GivenLimits, String> {
+pub(super) fn limits(text: &str) -> Result<DeviationLimits, String> {
     if Path::new(text)
         .extension()
         .is_some_and(|extension| extension.eq_ignore_ascii_case("ron"))
     {
-        return Ok(GivenLimits::Job(text.into()));
+        return Ok(DeviationLimits::Job(text.into()));
     }
     let numbers: Vec<_> = text.split(',').map(|word| word.trim().parse::<f64>()).collect();
     match numbers[..] {
         [Ok(gouge), Ok(excess)] if gouge >= 0.0 && excess >= 0.0 && gouge.is_finite() && excess.is_finite() => {
-            Ok(GivenLimits::Both([gouge, excess]))
+            Ok(DeviationLimits::Both([gouge, excess]))
         }
         _ => Err("expected two lengths, for gouges and for excess, like 0.02,0.1, or a job (.ron)".to_owned()),
     }
@@ -146,20 +137,17 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 /// `auto`, `block:` and six numbers, or a file.
-pub(super) fn stock(text: &str) -> Result<DraftStock, String> {
+pub(super) fn stock(text: &str) -> Result<StockOption, String> {
     if text.eq_ignore_ascii_case("auto") {
-        return Ok(DraftStock::Auto);
+        return Ok(StockOption::Auto);
     }
     let Some(list) = text.strip_prefix("block:") else {
-        return Ok(DraftStock::Mesh(text.into()));
+        return Ok(StockOption::Mesh(text.into()));
     };
     let numbers: Result<Vec<f64>, _> = list.split(',').map(|word| word.trim().parse()).collect();
     match numbers.ok().and_then(|n| <[f64; 6]>::try_from(n).ok()) {
         Some([a, b, c, x, y, z]) if a < x && b < y && c < z && [a, b, c, x, y, z].iter().all(|n| n.is_finite()) => {
-            Ok(DraftStock::Block {
-                min: [a, b, c],
-                max: [x, y, z],
-            })
+            Ok(StockOption::Block([[a, b, c], [x, y, z]]))
         }
         _ => Err("expected the lower and the upper corner in millimetres, like block:0,0,-20,60,40,0".to_owned()),
     }

@@ -1,14 +1,12 @@
-//! The summary of `simulate` and `sweep`.
+//! The summary of `simulate`, `sweep` and `verify`.
 
-use super::program::clock;
-use super::task::Task;
-use crate::session::{Failure, JobSession, Lines, words};
-use crate::warnings::is_covered;
-
+use crate::session::{Failure, Lines, Outputs};
 use sweepsim_formats::{Report, ReportedFinding, Verdict, WorkSummary};
+use sweepsim_job::words::{self, clock, found, setup_name};
+use sweepsim_job::{Plan, Task, is_covered};
 
-/// The maximum number of unresolved dexels and missing pieces of the envelope that are listed.
-pub(crate) const NAMED: usize = 10;
+/// The maximum number of findings, tools and unresolved dexels that are listed.
+const NAMED: usize = 10;
 
 /// The report as JSON.
 pub(crate) fn json(report: &Report) -> Result<String, Failure> {
@@ -18,7 +16,7 @@ pub(crate) fn json(report: &Report) -> Result<String, Failure> {
 }
 
 /// The summary at the end of a run.
-pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads: usize, total: f64) -> Lines {
+pub(crate) fn summary(plan: &Plan, report: &Report, outputs: &Outputs, threads: usize, total: f64) -> Lines {
     let mut lines = Lines::default();
     let mut line = |label: &str, value: &str| lines.line(label, value);
     verdict(&mut line, report);
@@ -31,7 +29,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
             words::count(rapid)
         ),
     };
-    let tools = words::counted(session.job.tools.len() as u64, "tool");
+    let tools = words::counted(plan.job().tools.len() as u64, "tool");
     line(
         "job",
         &format!(
@@ -44,7 +42,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
     let volume = report.volume.unwrap_or_default();
     match report.volume_removed {
         Some(removed) => {
-            let stock = if is_covered(&session.job) {
+            let stock = if is_covered(plan.job()) {
                 "the stock"
             } else {
                 "the stock on the grid"
@@ -65,7 +63,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
                 line("", &format!("set-up {}: {}", setup.name, worked(work)));
             }
         }
-        let tools = report.tools.iter().flatten().filter(|_| session.job.tools.len() > 1);
+        let tools = report.tools.iter().flatten().filter(|_| plan.job().tools.len() > 1);
         for summary in tools.take(NAMED) {
             line("", &format!("tool {}: {}", summary.tool, worked(&summary.work)));
         }
@@ -77,7 +75,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
         (0, repaired) => format!("all certified, {} after a repair", words::count(repaired)),
         (open, _) => format!("{} UNRESOLVED", words::count(open)),
     };
-    let what = if task != Task::Sweep {
+    let what = if plan.request().asks_for() != Task::Sweep {
         "with material left"
     } else {
         "touched"
@@ -115,7 +113,7 @@ pub(crate) fn summary(task: Task, session: &JobSession, report: &Report, threads
             ),
         );
     }
-    line("out", &session.outputs.listed());
+    line("out", &outputs.listed());
     lines
 }
 
@@ -145,41 +143,6 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
             line(name, &format!("at most {} mm", words::measure(max)));
         }
     }
-}
-
-/// How many of each kind were found, in words.
-pub(super) fn found(findings: &[ReportedFinding]) -> Vec<String> {
-    let mut counts: Vec<(&str, u64)> = Vec::new();
-    let touching = findings.iter().filter(|finding| !finding.near);
-    for finding in touching {
-        match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
-            Some((_, count)) => *count += 1,
-            None => counts.push((&finding.kind, 1)),
-        }
-    }
-    let near = findings.iter().filter(|finding| finding.near).count() as u64;
-    let near = (near > 0).then(|| format!("{} nearer than it should be", words::counted(near, "move")));
-    counts
-        .iter()
-        .map(|(kind, count)| match *kind {
-            "collision" => words::counted(*count, "collision"),
-            "rapid" => format!("{} through material", words::counted(*count, "rapid move")),
-            "fixture" => format!("{} into a fixture", words::counted(*count, "move")),
-            "gouge" => words::counted(*count, "gouging move"),
-            "excess" => format!("{} with material left", words::counted(*count, "place")),
-            "spindle" => format!("{} with the spindle stopped", words::counted(*count, "cut")),
-            "limit" => format!("{} beyond the machine's limits", words::counted(*count, "move")),
-            "feed" => format!("{} without a feed", words::counted(*count, "cut")),
-            kind => words::counted(*count, kind),
-        })
-        .chain(near)
-        .collect()
-}
-
-/// The name of a set-up, if there are set-ups.
-pub(super) fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
-    let setups = report.setups.as_deref()?;
-    Some(&setups.get(number?)?.name)
 }
 
 /// A finding in one line.

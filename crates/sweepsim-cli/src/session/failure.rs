@@ -4,7 +4,7 @@ use super::interruption::{EXIT_STATUS, complete};
 use std::fmt;
 use std::process::ExitCode;
 use sweepsim_formats::FormatError;
-use sweepsim_nc::NcError;
+use sweepsim_job::JobError;
 
 /// The most problems of a program that are shown after the first.
 const MOST_FURTHER: usize = 9;
@@ -57,15 +57,15 @@ impl From<FormatError> for Failure {
     }
 }
 
-impl From<sweepsim_dexel::MeshError> for Failure {
-    fn from(error: sweepsim_dexel::MeshError) -> Self {
-        Self::message(error.to_string())
-    }
-}
-
-impl From<NcError> for Failure {
-    fn from(error: NcError) -> Self {
-        FormatError::from(error).into()
+impl From<JobError> for Failure {
+    fn from(error: JobError) -> Self {
+        match error {
+            JobError::Format(error) => error.into(),
+            JobError::Cancelled => Self::interrupted(),
+            // Fields of a request are options.
+            error @ JobError::Request { .. } => Self::message(format!("--{error}")),
+            error => Self::message(error),
+        }
     }
 }
 

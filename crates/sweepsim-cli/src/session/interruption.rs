@@ -5,6 +5,7 @@ use super::Failure;
 use indicatif::ProgressBar;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use sweepsim_job::JobError;
 
 /// What an interruption has to know of the run.
 struct Run {
@@ -54,7 +55,7 @@ pub(crate) fn remove_at_end(bar: ProgressBar) {
 }
 
 /// Writes a file, and names it among those that are complete. Fails if the run has been interrupted meanwhile, so that it ends.
-pub(crate) fn writing<T>(name: Option<&str>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+pub(crate) fn writing<T>(name: Option<&str>, write: impl FnOnce() -> Result<T, JobError>) -> Result<T, JobError> {
     run().writing = true;
     let written = write();
     let mut run = run();
@@ -64,7 +65,7 @@ pub(crate) fn writing<T>(name: Option<&str>, write: impl FnOnce() -> Result<T, F
     }
     if interrupted() {
         drop(run);
-        return Err(Failure::interrupted());
+        return Err(JobError::Cancelled);
     }
     written
 }

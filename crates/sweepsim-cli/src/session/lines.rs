@@ -3,6 +3,7 @@
 use super::Failure;
 use std::fmt::Write as _;
 use sweepsim_formats::io_reason;
+use sweepsim_job::Description;
 
 /// Labelled lines, in two columns.
 #[derive(Debug, Default)]
@@ -13,6 +14,16 @@ impl Lines {
     pub fn line(&mut self, label: &str, value: &str) {
         // Writing to a String cannot fail.
         let _ = writeln!(self.0, "{label:>10}  {value}");
+    }
+
+    /// The lines of a description.
+    pub fn described(description: &Description) -> Self {
+        let mut lines = Self::default();
+        description
+            .lines()
+            .iter()
+            .for_each(|(label, value)| lines.line(label, value));
+        lines
     }
 
     /// Prints all lines.

@@ -2,15 +2,14 @@
 
 use super::interruption::{interrupted, remove_at_end};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::ops::ControlFlow;
 use std::time::Duration;
-use sweepsim::Monitor;
+use sweepsim_job::Monitor;
 
 /// How a phase is drawn whose steps are moves, and one that tells only its share.
 const MOVES: &str = "{msg:>10} {bar:40} {human_pos}/{human_len} moves, {eta} left";
 const SHARE: &str = "{msg:>10} {bar:40} {percent} %";
-/// The length of the bar of a phase that tells only its share.
-const WHOLE: u64 = 1000;
+/// The phases that tell only their share.
+const SHARES: [&str; 2] = ["picture", "frames"];
 
 /// A progress bar, drawn on a terminal.
 pub(crate) struct Progress {
@@ -30,34 +29,8 @@ impl Progress {
         bar.set_style(style(MOVES));
         bar.enable_steady_tick(Duration::from_millis(200));
         remove_at_end(bar.clone());
-        Self {
-            bar,
-            moves: moves as u64,
-        }
-    }
-
-    /// Names the current phase, whose steps are moves.
-    pub fn phase(&self, name: &'static str) {
-        self.bar.set_message(name);
-        self.bar.set_style(style(MOVES));
-        self.bar.set_length(self.moves);
-    }
-
-    /// Names the current phase, which tells its share as it goes on.
-    pub fn phase_of_shares(&self, name: &'static str) {
-        self.bar.set_message(name);
-        self.bar.set_style(style(SHARE));
-        self.bar.set_length(WHOLE);
-        self.bar.set_position(0);
-    }
-
-    /// Draws the share of the phase that is done, unless the run has been interrupted.
-    pub fn share(&self, share: f64) -> ControlFlow<()> {
-        self.bar.set_position((share * WHOLE as f64) as u64);
-        if interrupted() {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
+        let moves = moves as u64;
+        Self { bar, moves }
     }
 
     /// Removes the bar.
@@ -67,7 +40,21 @@ impl Progress {
 }
 
 impl Monitor for Progress {
-    fn advance(&self, done: usize, _: usize) {
+    fn phase(&self, name: &'static str) {
+        self.bar.set_message(name);
+        if SHARES.contains(&name) {
+            self.bar.set_style(style(SHARE));
+            self.bar.set_position(0);
+        } else {
+            self.bar.set_style(style(MOVES));
+            self.bar.set_length(self.moves);
+        }
+    }
+
+    fn advance(&self, done: usize, total: usize) {
+        if SHARES.contains(&self.bar.message().as_str()) {
+            self.bar.set_length(total as u64);
+        }
         self.bar.set_position(done as u64);
     }
 

@@ -22,7 +22,7 @@ fn varint(mut value: u64, out: &mut Vec<u8>) {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_dexels_binary(dexels: &Dexels, writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     let grid = dexels.grid();
     let mut header = Vec::with_capacity(HEADER);
     header.extend_from_slice(MAGIC);
@@ -53,7 +53,7 @@ pub fn write_dexels_binary(dexels: &Dexels, writer: &mut impl Write) -> std::io:
     block(END, 0, &(dexels.count() as u64).to_le_bytes(), writer)
 }
 
-fn block(first: u64, lines: u32, payload: &[u8], writer: &mut impl Write) -> std::io::Result<()> {
+fn block(first: u64, lines: u32, payload: &[u8], writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     let length = u32::try_from(payload.len())
         .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidInput, "a line with too many intervals"))?;
     let mut header = [0; BLOCK_HEADER];

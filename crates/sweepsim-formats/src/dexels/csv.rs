@@ -35,7 +35,7 @@ pub struct DexelRow {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_dexels_csv(dexels: &Dexels, writer: &mut impl Write) -> io::Result<()> {
+pub fn write_dexels_csv(dexels: &Dexels, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     writeln!(writer, "{HEADER}")?;
     // Digits take longer than the disk: many blocks are made into text at a time, and not all, for the sake of memory.
     let count = dexels.grid().len();

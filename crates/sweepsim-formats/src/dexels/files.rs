@@ -137,14 +137,23 @@ pub fn write_dexels_file(dexels: &Dexels, file: &Path) -> Result<(), FormatError
     let Some(format) = format else {
         return Err(unknown(file, "dexel", ".csv, .dexels, .npz, .vtu"));
     };
-    write_atomically(file, |out| {
-        match format {
-            DexelFormat::Csv => write_dexels_csv(dexels, out),
-            // One set is not three: refused above.
-            DexelFormat::Binary | DexelFormat::Tri => write_dexels_binary(dexels, out),
-            DexelFormat::Npz => write_dexels_npz(dexels, out),
-            DexelFormat::Vtu => write_dexels_vtu(dexels, out),
-        }?;
-        out.flush()
-    })
+    write_atomically(file, |out| write_dexels(dexels, format, out))
+}
+
+/// Writes dexels along z in a format. One set is not three: [`DexelFormat::Tri`] is refused.
+///
+/// # Errors
+/// Those of the writer, and [`io::ErrorKind::InvalidInput`].
+pub fn write_dexels(dexels: &Dexels, format: DexelFormat, out: &mut (impl Write + ?Sized)) -> io::Result<()> {
+    match format {
+        DexelFormat::Csv => write_dexels_csv(dexels, &mut *out),
+        DexelFormat::Binary => write_dexels_binary(dexels, &mut *out),
+        DexelFormat::Npz => write_dexels_npz(dexels, &mut *out),
+        DexelFormat::Vtu => write_dexels_vtu(dexels, &mut *out),
+        DexelFormat::Tri => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "dexels along three axes cannot be made of those along z",
+        )),
+    }?;
+    out.flush()
 }

@@ -40,7 +40,7 @@ fn npy(kind: &str, shape: &[usize], data: impl IntoIterator<Item = u8>) -> Vec<u
 ///
 /// # Errors
 /// Those of the writer; a path numbered `u32::MAX`.
-pub fn write_dexels_npz(dexels: &Dexels, writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_dexels_npz(dexels: &Dexels, writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     let grid = dexels.grid();
     let intervals = || {
         dexels

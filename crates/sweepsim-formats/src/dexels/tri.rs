@@ -21,7 +21,7 @@ const VERSION: u32 = 1;
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_tri_dexels(dexels: &TriDexels, writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_tri_dexels(dexels: &TriDexels, writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     let mut header = Vec::with_capacity(12);
     header.extend_from_slice(MAGIC);
     header.extend_from_slice(&VERSION.to_le_bytes());

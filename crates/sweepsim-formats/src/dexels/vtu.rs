@@ -15,7 +15,7 @@ const LINE: u8 = 3;
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_dexels_vtu(dexels: &Dexels, writer: &mut impl Write) -> io::Result<()> {
+pub fn write_dexels_vtu(dexels: &Dexels, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let grid = dexels.grid();
     let count = dexels.count();
     let lines = || {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use sweepsim_nc::{CutterKind, ProgramPose, StockDescription, ToolDescription, shortest};
 
 use super::words::{corner, rounded};
-use super::{DraftStock, Drafter, refuse};
+use super::{DraftStock, Drafter, Guess, refuse};
 use crate::error::FormatError;
 use crate::meshes::{MeshFormat, read_mesh_file, read_stl};
 
@@ -47,14 +47,16 @@ impl Drafter<'_> {
         let mut tools = BTreeMap::new();
         let mut missing = Vec::new();
         for number in self.used() {
+            if self.provided.tools.contains_key(&number) {
+                continue;
+            }
             let mut tool = match self.described(number) {
                 Some(tool) => tool,
                 None if self.options.invent => {
                     let mut tool = ToolDescription::new(CutterKind::Flat);
                     tool.diameter = Some(DIAMETER);
-                    let guess =
-                        format!("tool {number}: nothing is known of it; a flat end mill of {DIAMETER} mm: correct it");
-                    self.guessed.push(guess);
+                    let choice = format!("nothing is known of it; a flat end mill of {DIAMETER} mm: correct it");
+                    self.guessed.push(Guess::new(format!("tool {number}"), choice));
                     tool
                 }
                 None => {
@@ -65,7 +67,8 @@ impl Drafter<'_> {
             self.complete(number, &mut tool, top);
             match tool.build() {
                 Ok(_) => {
-                    let notes = tool.notes.iter().map(|note| format!("tool {number}: {note}"));
+                    let notes = tool.notes.iter();
+                    let notes = notes.map(|note| Guess::new(format!("tool {number}"), note.to_string()));
                     self.guessed.extend(notes);
                     tools.insert(number, tool);
                 }
@@ -85,7 +88,7 @@ impl Drafter<'_> {
     /// Guesses what is missing of a tool whose diameter is known.
     fn complete(&mut self, number: u32, tool: &mut ToolDescription, top: Option<f64>) {
         let Some(diameter) = tool.diameter else { return };
-        let mut guess = |what: String| self.guessed.push(format!("tool {number}: {what}"));
+        let mut guess = |what: String| self.guessed.push(Guess::new(format!("tool {number}"), what));
         if tool.kind.is_none() {
             tool.kind = Some(CutterKind::Flat);
             let known = rounded(diameter);
@@ -132,8 +135,8 @@ impl Drafter<'_> {
             Some(StockDescription::Size([x, y, z])) => {
                 let [dx, dy, dz] = [x, y, z].map(rounded);
                 self.found.push(format!("stock: a block of {dx} x {dy} x {dz} mm"));
-                let guess = "stock: the zero of the program is at the lower left corner of its top";
-                self.guessed.push(guess.to_owned());
+                let choice = "the zero of the program is at the lower left corner of its top";
+                self.guessed.push(Guess::new("stock", choice));
                 Ok(Some([[0.0, 0.0, -z], [x, y, 0.0]]))
             }
             _ => self.around_the_path().map(Some),
@@ -143,6 +146,9 @@ impl Drafter<'_> {
     /// A block around the feed moves.
     fn around_the_path(&mut self) -> Result<[[f64; 3]; 2], FormatError> {
         let radius = |number: u32| {
+            if let Some(tool) = self.provided.tools.get(&number) {
+                return tool.bounding_cylinder().radius;
+            }
             let diameter = self.described(number).and_then(|tool| tool.diameter);
             diameter.map_or(0.0, |diameter| 0.5 * diameter)
         };
@@ -193,8 +199,8 @@ impl Drafter<'_> {
             "its top at the highest of them"
         };
         let wider = rounded(margin);
-        let guess = format!("stock: a block around the feed moves, {wider} mm wider on each side, {top}");
-        self.guessed.push(guess);
+        let choice = format!("a block around the feed moves, {wider} mm wider on each side, {top}");
+        self.guessed.push(Guess::new("stock", choice));
         Ok([low, high])
     }
 
@@ -205,7 +211,9 @@ impl Drafter<'_> {
             return None;
         }
         let longer = (high[0] - low[0]).max(high[1] - low[1]);
-        let diameters = tools.values().filter_map(|tool| tool.diameter);
+        let own = self.provided.tools.values();
+        let own = own.map(|tool| 2.0 * tool.bounding_cylinder().radius);
+        let diameters = tools.values().filter_map(|tool| tool.diameter).chain(own);
         let smallest = diameters.fold(f64::INFINITY, f64::min);
         let cell = (0.5 * smallest / ACROSS_RADIUS).clamp(longer / CELLS[1], longer / CELLS[0]);
         // Two digits are enough for a guess.
@@ -215,9 +223,8 @@ impl Drafter<'_> {
             return None;
         }
         let size = shortest(cell);
-        self.guessed.push(format!(
-            "grid: cells of {size} mm, from the smallest tool and the size of the stock"
-        ));
+        let choice = format!("cells of {size} mm, from the smallest tool and the size of the stock");
+        self.guessed.push(Guess::new("grid", choice));
         Some(cell)
     }
 }

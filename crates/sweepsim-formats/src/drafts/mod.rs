@@ -4,13 +4,15 @@
 mod guesses;
 mod words;
 
+use std::fmt;
 use std::path::{Path as FilePath, PathBuf};
 
 use sweepsim_motion::Course;
 use sweepsim_nc::tools::{ToolLibrary, read_library};
-use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units, read_file};
+use sweepsim_nc::{Controller, Format, Machine, Program, ReadOptions, Units};
 
 use crate::error::{FormatError, Problem};
+use crate::jobs::Provided;
 
 /// The stock of a draft.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,7 +69,30 @@ pub struct Draft {
     /// What the program or a library says.
     pub found: Vec<String>,
     /// What nobody says.
-    pub guessed: Vec<String>,
+    pub guessed: Vec<Guess>,
+}
+
+/// What nobody says, and a draft decides.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Guess {
+    /// What it concerns: `stock`, `grid` or a tool, like `tool 3`.
+    pub about: String,
+    /// What was decided, and from what.
+    pub choice: String,
+}
+
+impl Guess {
+    fn new(about: impl Into<String>, choice: impl Into<String>) -> Self {
+        let (about, choice) = (about.into(), choice.into());
+        Self { about, choice }
+    }
+}
+
+impl fmt::Display for Guess {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.about, self.choice)
+    }
 }
 
 /// Writes a job for a program, or for a project of CAMotics that names one.
@@ -80,14 +105,23 @@ pub struct Draft {
 /// let draft = draft(&file, &DraftOptions::default())?;
 /// let job = Job::parse(&draft.text, &file)?;
 /// assert_eq!((job.tools.len(), job.moves(), job.paths[0].rapid_moves()), (1, 2, 0));
-/// assert!(draft.guessed[0].starts_with("stock: a block around the feed moves"));
+/// assert_eq!(draft.guessed[0].about, "stock");
+/// assert!(draft.guessed[0].choice.starts_with("a block around the feed moves"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// [`FormatError`]: the program or a library cannot be read, or a tool's measures are missing: all of them, by name.
 pub fn draft(file: &FilePath, options: &DraftOptions) -> Result<Draft, FormatError> {
-    let mut drafter = Drafter::new(file, options)?;
+    draft_of(file, options, &Provided::default())
+}
+
+/// Writes a job as [`draft`] does, for a program or tools that the caller provides: the job is complete only with them ([`Job::parse_with`](crate::Job::parse_with)).
+///
+/// # Errors
+/// As [`draft`].
+pub fn draft_of(file: &FilePath, options: &DraftOptions, provided: &Provided) -> Result<Draft, FormatError> {
+    let mut drafter = Drafter::new(file, options, provided)?;
     let stock = drafter.stock()?;
     let tools = drafter.tools(stock.map(|[_, high]| high[2]))?;
     drafter.write(stock, &tools)
@@ -96,13 +130,14 @@ pub fn draft(file: &FilePath, options: &DraftOptions) -> Result<Draft, FormatErr
 /// A draft in the making.
 struct Drafter<'a> {
     options: &'a DraftOptions,
+    provided: &'a Provided,
     file: PathBuf,
     program: Program,
     /// The program in chords, if it has arcs.
     chords: Option<Program>,
     library: ToolLibrary,
     found: Vec<String>,
-    guessed: Vec<String>,
+    guessed: Vec<Guess>,
 }
 
 fn refuse(file: &FilePath, message: String) -> FormatError {
@@ -110,7 +145,7 @@ fn refuse(file: &FilePath, message: String) -> FormatError {
 }
 
 impl<'a> Drafter<'a> {
-    fn new(file: &FilePath, options: &'a DraftOptions) -> Result<Self, FormatError> {
+    fn new(file: &FilePath, options: &'a DraftOptions, provided: &'a Provided) -> Result<Self, FormatError> {
         let mut library = ToolLibrary::default();
         let mut file = file.to_owned();
         if file
@@ -154,7 +189,7 @@ impl<'a> Drafter<'a> {
             let name = FilePath::new(name);
             read.machine = Machine::read_file(name).map_err(|error| refuse(name, format!("machine: {error}")))?;
         }
-        let program = read_file(&file, &read)?;
+        let program = provided.program(&file, &read)?;
         // Extents need the arcs' points, but not many.
         let has_arcs = program
             .poses
@@ -162,7 +197,7 @@ impl<'a> Drafter<'a> {
             .any(|pose| matches!(pose.way().course, Course::Arc(_)));
         let chords = if has_arcs {
             (read.exact_arcs, read.arc_tolerance) = (false, 0.01);
-            Some(read_file(&file, &read)?)
+            Some(provided.program(&file, &read)?)
         } else {
             None
         };
@@ -173,6 +208,7 @@ impl<'a> Drafter<'a> {
         }
         Ok(Self {
             options,
+            provided,
             file,
             program,
             chords,

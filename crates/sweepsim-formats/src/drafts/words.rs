@@ -50,7 +50,7 @@ impl Drafter<'_> {
             let _ = writeln!(text, "// {}", one_line(found));
         }
         for guess in &self.guessed {
-            let _ = writeln!(text, "// guessed: {}", one_line(guess));
+            let _ = writeln!(text, "// guessed: {}", one_line(&guess.to_string()));
         }
         for note in &self.program.notes {
             let _ = writeln!(text, "// {}", one_line(&note.to_string()));

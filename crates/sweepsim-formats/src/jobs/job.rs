@@ -9,6 +9,7 @@ use sweepsim_nc::Note;
 
 use super::judging::{Limits, Target};
 use super::paths::JobPath;
+use super::provided::Provided;
 use super::read;
 use super::setups::Setup;
 use crate::error::FormatError;
@@ -96,8 +97,16 @@ impl Job {
     /// # Errors
     /// [`FormatError`] with file, line and column, and what was expected.
     pub fn read(file: &FilePath) -> Result<Self, FormatError> {
+        Self::read_with(file, &Provided::default())
+    }
+
+    /// Reads a job as [`Job::read`] does, but for what the caller provides.
+    ///
+    /// # Errors
+    /// As [`Job::read`].
+    pub fn read_with(file: &FilePath, provided: &Provided) -> Result<Self, FormatError> {
         let text = text::read(file)?;
-        Self::parse(&text, file)
+        Self::parse_with(&text, file, provided)
     }
 
     /// Reads a job from its text. `file` provides the default name, and the folder that relative file names refer to.
@@ -105,7 +114,15 @@ impl Job {
     /// # Errors
     /// As [`Job::read`].
     pub fn parse(text: &str, file: &FilePath) -> Result<Self, FormatError> {
-        read::parse(text, file).map_err(|error| error.in_file(file))
+        Self::parse_with(text, file, &Provided::default())
+    }
+
+    /// Reads a job from its text as [`Job::parse`] does, but for what the caller provides.
+    ///
+    /// # Errors
+    /// As [`Job::read`].
+    pub fn parse_with(text: &str, file: &FilePath, provided: &Provided) -> Result<Self, FormatError> {
+        read::parse(text, file, provided).map_err(|error| error.in_file(file))
     }
 
     /// What people call a set-up: its name, or its number from 1. `None` if the job has no set-ups.

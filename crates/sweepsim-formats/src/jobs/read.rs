@@ -5,6 +5,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use super::job::{Job, Units};
 use super::place::Step;
+use super::provided::Provided;
 use super::schema;
 use super::tools::ToolBox;
 use crate::error::{FormatError, Problem, TextPosition};
@@ -16,7 +17,7 @@ const TOLERANCE: f64 = 1e-6;
 const LARGEST: f64 = 1e12;
 
 /// Reads the text of a job. `file` is, or would be, its file.
-pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
+pub(crate) fn parse(text: &str, file: &FilePath, provided: &Provided) -> Result<Job, FormatError> {
     let raw: schema::Job = text::ron(text)?;
     let units = match raw.units {
         schema::Units::Mm => Units::Mm,
@@ -25,6 +26,7 @@ pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
     let reader = JobReader {
         text,
         file,
+        provided,
         spans: SpanTree::of(text),
         unit: units.in_mm(),
     };
@@ -34,6 +36,7 @@ pub(crate) fn parse(text: &str, file: &FilePath) -> Result<Job, FormatError> {
 pub(crate) struct JobReader<'a> {
     text: &'a str,
     pub(crate) file: &'a FilePath,
+    pub(crate) provided: &'a Provided,
     spans: SpanTree,
     /// Millimetres per unit of the job.
     pub(crate) unit: f64,

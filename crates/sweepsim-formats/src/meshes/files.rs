@@ -92,7 +92,15 @@ pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
     let Some(format) = MeshFormat::of(file) else {
         return Err(unknown(file, "mesh", MESHES));
     };
-    write_atomically(file, |out| match format {
+    write_atomically(file, |out| write_mesh(mesh, format, out))
+}
+
+/// Writes a mesh in a format.
+///
+/// # Errors
+/// Those of the writer; a triangle of the mesh has missing vertices.
+pub fn write_mesh(mesh: &Mesh, format: MeshFormat, out: &mut (impl io::Write + ?Sized)) -> io::Result<()> {
+    match format {
         MeshFormat::Stl => match mesh.soup() {
             Some(soup) => write_stl(&soup.triangles, out),
             None => Err(io::Error::new(
@@ -104,5 +112,5 @@ pub fn write_mesh_file(mesh: &Mesh, file: &Path) -> Result<(), FormatError> {
         MeshFormat::Glb => write_glb(mesh, out),
         MeshFormat::ThreeMf => write_3mf(mesh, out),
         MeshFormat::Vtp => write_vtp(mesh, out),
-    })
+    }
 }

@@ -17,7 +17,7 @@ const U32: u64 = 5125;
 ///
 /// # Errors
 /// Those of the writer; a mesh without triangles, triangles with missing vertices, more than 4 GiB.
-pub fn write_glb(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
+pub fn write_glb(mesh: &Mesh, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     let invalid = |message| io::Error::new(io::ErrorKind::InvalidInput, message);
     let count = mesh.vertices.len();
     super::check_triangles(mesh)?;

@@ -16,7 +16,7 @@ use crate::error::{FormatError, Problem};
 
 pub(crate) use colours::parsed as parsed_colour;
 pub use colours::{Colour, read_coloured_mesh_file};
-pub use files::{MeshFormat, read_mesh_file, write_mesh_file};
+pub use files::{MeshFormat, read_mesh_file, write_mesh, write_mesh_file};
 pub use glb::{read_glb, write_glb};
 pub use ply::{read_ply, write_ply};
 pub use stl::{parse_stl, read_stl, write_stl};

@@ -14,7 +14,7 @@ use crate::error::{FormatError, Problem};
 ///
 /// # Errors
 /// Those of the writer; a triangle with missing vertices.
-pub fn write_ply(mesh: &Mesh, writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_ply(mesh: &Mesh, writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     super::check_triangles(mesh)?;
     let with_normals = mesh.normals.len() == mesh.vertices.len();
     let with_cut = mesh.cut.len() == mesh.vertices.len();

@@ -144,7 +144,7 @@ fn ascii(bytes: &[u8]) -> Result<Vec<Triangle>, FormatError> {
 ///
 /// # Errors
 /// Those of the writer; more than 2³² triangles.
-pub fn write_stl(triangles: &[Triangle], writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_stl(triangles: &[Triangle], writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     let count = u32::try_from(triangles.len())
         .map_err(|_| std::io::Error::new(std::io::ErrorKind::InvalidInput, "too many triangles for STL"))?;
     let mut header = [0_u8; HEADER];

@@ -26,7 +26,7 @@ const RELATIONS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 ///
 /// # Errors
 /// Those of the writer; a triangle with missing vertices.
-pub fn write_3mf(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
+pub fn write_3mf(mesh: &Mesh, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     super::check_triangles(mesh)?;
     let mut text = String::from(
         r#"<?xml version="1.0" encoding="UTF-8"?>

@@ -11,7 +11,7 @@ use crate::vtk::Document;
 ///
 /// # Errors
 /// Those of the writer; a triangle with missing vertices.
-pub fn write_vtp(mesh: &Mesh, writer: &mut impl Write) -> io::Result<()> {
+pub fn write_vtp(mesh: &Mesh, writer: &mut (impl Write + ?Sized)) -> io::Result<()> {
     super::check_triangles(mesh)?;
     let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
     let piece = format!(

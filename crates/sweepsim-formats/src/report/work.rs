@@ -175,7 +175,7 @@ impl WorkSummary {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn write_moves_csv(rows: &[MoveSummary], writer: &mut impl Write) -> std::io::Result<()> {
+pub fn write_moves_csv(rows: &[MoveSummary], writer: &mut (impl Write + ?Sized)) -> std::io::Result<()> {
     writeln!(
         writer,
         "path,move,file,line,tool,rapid,seconds,length,removed,depth,width,rate"

@@ -21,6 +21,11 @@ use crate::Enclosure;
 /// }
 /// ```
 pub trait Monitor: Sync {
+    /// Called when a part of longer work begins, with its name; [`advance`](Self::advance) counts from 0 again.
+    fn phase(&self, name: &'static str) {
+        let _ = name;
+    }
+
     /// Called when `done` of `total` parts of the work are finished. Searches that cannot know their total do not call it.
     fn advance(&self, done: usize, total: usize) {
         let _ = (done, total);
@@ -46,6 +51,10 @@ pub trait Monitor: Sync {
 impl Monitor for () {}
 
 impl<M: Monitor + ?Sized> Monitor for &M {
+    fn phase(&self, name: &'static str) {
+        (**self).phase(name);
+    }
+
     fn advance(&self, done: usize, total: usize) {
         (**self).advance(done, total);
     }

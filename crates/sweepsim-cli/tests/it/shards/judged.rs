@@ -218,7 +218,7 @@ fn pieces_of_verify_are_checked() {
     let message = refused(&folder);
     assert!(message.contains("its command is simulate, not verify"), "{message}");
     shard("1/3", &["--clearance", "1"]);
-    assert!(refused(&folder).contains("its command line"));
+    assert!(refused(&folder).contains("its request is"));
     // The target has changed since.
     fs::write(folder.path(PIECE), &whole).unwrap();
     let target = fs::read(folder.path("part.ply")).unwrap();

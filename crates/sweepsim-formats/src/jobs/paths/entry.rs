@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 use sweepsim_dexel::Frame;
 use sweepsim_motion::{Law, OtherCourses, Path, RotaryTable};
-use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions, read_file};
+use sweepsim_nc::{AxisLaw, Controller, Format, Machine, ReadOptions};
 
 use super::{Flags, JobPath, Origins, PathPlace, inline, program, spline_motion};
 use crate::error::{FormatError, Problem};
@@ -205,14 +205,19 @@ impl JobReader<'_> {
                     )?;
                     return Ok(whole(tool, path, name.clone()));
                 }
-                let read = read_file(&file, &options).map_err(FormatError::from);
+                let read = self.provided.program(&file, &options).map_err(FormatError::from);
                 let program = self.named(read, &file, "path", &steps(&["file".into()]))?;
                 if let Some(number) = raw.tool {
                     tools
                         .need(number, Some((&program.tools, name)))
                         .map_err(|problem| self.error(problem, &steps(&["tool".into()])))?;
                 }
-                program::of_program(program, &file, name, raw.tool, own_law, tools)
+                let origin = program::ProgramOrigin {
+                    file: &file,
+                    shown: name,
+                    provided: self.provided,
+                };
+                program::of_program(program, origin, raw.tool, own_law, tools)
             }
             (Some(_), Some(_)) => {
                 let problem = Problem::syntax("both `poses` and `file` in one path: expected one of them");

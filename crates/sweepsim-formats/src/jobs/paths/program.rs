@@ -9,21 +9,28 @@ use sweepsim_nc::{Call, Event, EventKind, MoveTime, Note, Program, ProgramPose, 
 use super::section::{Known, Section, Whole, with_notes};
 use super::{Flags, JobPath};
 use crate::error::{FormatError, Problem, TextPosition};
+use crate::jobs::provided::Provided;
 use crate::jobs::tools::ToolBox;
-use crate::text::whole;
+
+/// Where a program comes from: its file, and what the job calls it.
+pub(crate) struct ProgramOrigin<'a> {
+    pub file: &'a FilePath,
+    pub shown: &'a str,
+    pub provided: &'a Provided,
+}
 
 /// The paths of a program. The tool axis turns according to `law` where the program does not specify how. `tool` is the job's tool for the whole
 /// program; without it, the program's tool numbers are used.
 pub(crate) fn of_program(
     mut program: Program,
-    file: &FilePath,
-    shown: &str,
+    origin: ProgramOrigin,
     tool: Option<u32>,
     law: Law,
     tools: &mut ToolBox,
 ) -> Result<Vec<JobPath>, FormatError> {
+    let ProgramOrigin { file, shown, provided } = origin;
     let at = |problem: Problem, line: usize| {
-        let whole = whole::line(file, line).unwrap_or_default();
+        let whole = provided.line(file, line).unwrap_or_default();
         let place = TextPosition::in_line(line, &whole, 1, whole.chars().count());
         FormatError::new(problem, Some(place)).in_file(file)
     };

@@ -46,6 +46,9 @@ impl JobReader<'_> {
             }
             bodies.insert(number, made);
         }
+        let provided = self.provided;
+        tools.extend(provided.tools.iter().map(|(number, tool)| (*number, tool.clone())));
+        bodies.extend(provided.bodies.iter().map(|(number, own)| (*number, own.clone())));
         Ok(ToolBox::new(
             (tools, notes),
             bodies,

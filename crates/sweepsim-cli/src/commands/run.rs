@@ -1,0 +1,127 @@
+//! `simulate`, `sweep` and `verify`, whole or in shards, and `merge`.
+
+use super::summary::{json, summary};
+use crate::arguments::{JudgeOptions, MergeOptions, RunOptions};
+use crate::session::{Failure, Outputs, Progress, print};
+use std::path::{Path, absolute};
+use std::process::ExitCode;
+use std::time::Instant;
+use sweepsim_formats::{Verdict, io_reason};
+use sweepsim_job::{JobError, Merge, Plan, ShardNumber, Task, output_folder, words};
+
+/// How the process works, whatever it does.
+struct Process {
+    start: Instant,
+    threads: Option<u16>,
+    quiet: bool,
+    json: bool,
+}
+
+impl Process {
+    fn pool(&self) -> Result<rayon::ThreadPool, Failure> {
+        let mut builder = rayon::ThreadPoolBuilder::new();
+        if let Some(threads) = self.threads {
+            builder = builder.num_threads(usize::from(threads));
+        }
+        builder
+            .build()
+            .map_err(|error| Failure::message(format!("cannot start the threads: {error}")))
+    }
+}
+
+/// Runs a job, or one shard of it, and writes its outputs.
+pub(crate) fn run(task: Task, options: &RunOptions, judging: &JudgeOptions) -> Result<ExitCode, Failure> {
+    let process = Process {
+        start: Instant::now(),
+        threads: options.threads,
+        quiet: options.quiet,
+        json: options.json,
+    };
+    let plan = options.request(task, judging).plan()?;
+    match options.shard {
+        Some(number) => shard(&plan, number, options, &process),
+        None => whole(plan, options.out.as_deref(), &process),
+    }
+}
+
+/// Carries out a plan, and writes its outputs.
+fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, Failure> {
+    plan.check_room()?;
+    let mut outputs = Outputs::new(output_folder(out, &plan.job().name))?;
+    let progress = Progress::new(plan.job().moves(), process.quiet);
+    let pool = process.pool()?;
+    let done = pool.install(|| {
+        let outcome = plan.run(&progress)?;
+        let wanted = outcome.plan().request().wanted();
+        let written = outcome.write_to(&mut outputs, wanted, &progress)?;
+        Ok::<_, JobError>((outcome, written))
+    });
+    progress.finish();
+    let (outcome, written) = done?;
+    let report = &written.report;
+    if process.json {
+        print(&json(report)?)?;
+    } else if !process.quiet {
+        let threads = pool.current_num_threads();
+        let total = process.start.elapsed().as_secs_f64();
+        summary(outcome.plan(), report, &outputs, threads, total).print()?;
+    }
+    Ok(if report.verdict == Some(Verdict::Fail) {
+        ExitCode::FAILURE
+    } else if written.certified {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(3)
+    })
+}
+
+/// Computes a shard, and writes its piece.
+fn shard(plan: &Plan, number: ShardNumber, options: &RunOptions, process: &Process) -> Result<ExitCode, Failure> {
+    let folder = output_folder(options.out.as_deref(), &plan.job().name);
+    let file = folder.join(Plan::piece_name(number));
+    if options.resume && plan.is_shard_done(number, &file)? {
+        if !process.quiet {
+            print(&format!("{} is done: nothing to do\n", file.display()))?;
+        }
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut outputs = Outputs::new(folder)?;
+    let progress = Progress::new(plan.job().moves(), process.quiet);
+    let piece = process.pool()?.install(|| plan.shard(number, &progress));
+    progress.finish();
+    let piece = piece?;
+    piece.write_to(&mut outputs)?;
+    if !process.quiet {
+        print(&format!(
+            "shard {number}: {}, {}; {} ({})\n",
+            words::counted(piece.tiles() as u64, "tile"),
+            words::counted(piece.dexels() as u64, "dexel"),
+            file.display(),
+            words::bytes(piece.size() as u64)
+        ))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Joins the pieces of all shards of a run.
+pub(crate) fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
+    let process = Process {
+        start: Instant::now(),
+        threads: options.threads,
+        quiet: options.quiet,
+        json: options.json,
+    };
+    let merge = Merge::read(&options.pieces)?;
+    let out = output_folder(options.out.as_deref(), merge.job());
+    let out = absolute(&out).map_err(|error| Failure::message(format!("{}: {}", out.display(), io_reason(&error))))?;
+    // Names of files are as they were given there. Where that folder does not exist, as in another container, they are taken from here.
+    let there = merge.folder();
+    if there.is_dir() && std::env::set_current_dir(there).is_err() {
+        return Err(Failure::message(format!(
+            "{}: cannot change to the folder of its run, {}",
+            merge.piece().display(),
+            there.display()
+        )));
+    }
+    whole(merge.plan()?, Some(&out), &process)
+}

@@ -1,0 +1,12 @@
+//! What everything else uses: errors, words for people, and where outputs go.
+
+mod error;
+pub(crate) mod kind;
+mod memory;
+mod sink;
+pub mod words;
+
+pub use error::JobError;
+pub(crate) use memory::check_room;
+pub use memory::least_memory;
+pub use sink::{Content, Folder, Memory, Sink, output_folder};

@@ -1,0 +1,173 @@
+//! Numbers and findings for people.
+
+use sweepsim_formats::{Report, ReportedFinding};
+
+/// `1234567` as `1,234,567`.
+#[must_use]
+pub fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number of things, with an `s` in the plural.
+#[must_use]
+pub fn counted(number: u64, one: &str) -> String {
+    format!("{} {one}{}", count(number), if number == 1 { "" } else { "s" })
+}
+
+/// A measure with five significant digits, and thousands separators.
+#[must_use]
+pub fn measure(value: f64) -> String {
+    if !value.is_finite() {
+        return value.to_string();
+    }
+    let whole = value.abs().log10().floor();
+    let decimals = if value == 0.0 {
+        0
+    } else {
+        (4.0 - whole).clamp(0.0, 12.0) as usize
+    };
+    let text = format!("{:.decimals$}", value.abs());
+    let (front, rest) = text.split_at(text.find('.').unwrap_or(text.len()));
+    let sign = if value < 0.0 { "−" } else { "" };
+    match front.parse() {
+        Ok(front) => format!("{sign}{}{rest}", count(front)),
+        Err(_) => format!("{sign}{text}"),
+    }
+}
+
+/// A length in a sentence: as [`measure`], without zeros at the end.
+#[must_use]
+pub fn length(value: f64) -> String {
+    let text = measure(value);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+/// A duration in seconds.
+#[must_use]
+pub fn seconds(value: f64) -> String {
+    if value >= 100.0 {
+        format!("{value:.0} s")
+    } else if value >= 1.0 {
+        format!("{value:.1} s")
+    } else {
+        format!("{:.0} ms", value * 1e3)
+    }
+}
+
+/// A file size.
+#[must_use]
+pub fn bytes(value: u64) -> String {
+    match value {
+        0..1_000 => format!("{value} B"),
+        1_000..1_000_000 => format!("{:.1} kB", value as f64 / 1e3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", value as f64 / 1e6),
+        _ => format!("{:.1} GB", value as f64 / 1e9),
+    }
+}
+
+/// A point.
+#[must_use]
+pub fn point(place: [f64; 3]) -> String {
+    let [x, y, z] = place.map(measure);
+    format!("({x}, {y}, {z})")
+}
+
+/// A direction of the part: one of its axes by name, or its numbers.
+#[must_use]
+pub fn direction(v: [f64; 3]) -> String {
+    let along = (0..3).find(|k| (v[*k].abs() - 1.0).abs() < 1e-12);
+    match along {
+        Some(k) => format!("{}{}", if v[k] < 0.0 { "−" } else { "+" }, ["X", "Y", "Z"][k]),
+        None => point(v),
+    }
+}
+
+/// A duration on a machine.
+#[must_use]
+pub fn clock(duration: f64) -> String {
+    if duration < 60.0 {
+        return seconds(duration);
+    }
+    let whole = duration.round() as u64;
+    let (hours, minutes, rest) = (whole / 3600, whole / 60 % 60, whole % 60);
+    if hours > 0 {
+        format!("{hours} h {minutes} min")
+    } else {
+        format!("{minutes} min {rest} s")
+    }
+}
+
+/// How many of each kind were found, in words.
+#[must_use]
+pub fn found(findings: &[ReportedFinding]) -> Vec<String> {
+    let mut counts: Vec<(&str, u64)> = Vec::new();
+    let touching = findings.iter().filter(|finding| !finding.near);
+    for finding in touching {
+        match counts.iter_mut().find(|(kind, _)| *kind == finding.kind) {
+            Some((_, count)) => *count += 1,
+            None => counts.push((&finding.kind, 1)),
+        }
+    }
+    let near = findings.iter().filter(|finding| finding.near).count() as u64;
+    let near = (near > 0).then(|| format!("{} nearer than it should be", counted(near, "move")));
+    counts
+        .iter()
+        .map(|(kind, count)| match *kind {
+            "collision" => counted(*count, "collision"),
+            "rapid" => format!("{} through material", counted(*count, "rapid move")),
+            "fixture" => format!("{} into a fixture", counted(*count, "move")),
+            "gouge" => counted(*count, "gouging move"),
+            "excess" => format!("{} with material left", counted(*count, "place")),
+            "spindle" => format!("{} with the spindle stopped", counted(*count, "cut")),
+            "limit" => format!("{} beyond the machine's limits", counted(*count, "move")),
+            "feed" => format!("{} without a feed", counted(*count, "cut")),
+            kind => counted(*count, kind),
+        })
+        .chain(near)
+        .collect()
+}
+
+/// The name of a set-up, if there are set-ups.
+#[must_use]
+pub fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
+    let setups = report.setups.as_deref()?;
+    Some(&setups.get(number?)?.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_easy_to_read() {
+        assert_eq!(count(0), "0");
+        assert_eq!(count(999), "999");
+        assert_eq!(count(1_234_567), "1,234,567");
+        assert_eq!(counted(1, "move"), "1 move");
+        assert_eq!(counted(1000, "move"), "1,000 moves");
+        assert_eq!(measure(60847.04), "60,847");
+        assert_eq!(measure(-0.012_345_67), "−0.012346");
+        assert_eq!(measure(12.0), "12.000");
+        assert_eq!(measure(0.0), "0");
+        assert_eq!(measure(f64::NAN), "NaN");
+        assert_eq!(
+            [12.0, 0.5, -90.25, 1234.0, 0.0].map(length),
+            ["12", "0.5", "−90.25", "1,234", "0"]
+        );
+        assert_eq!(seconds(0.0123), "12 ms");
+        assert_eq!([5.25, 75.4, 3725.0].map(clock), ["5.2 s", "1 min 15 s", "1 h 2 min"]);
+        assert_eq!(bytes(1_500_000), "1.5 MB");
+        assert_eq!(bytes(86_400_000_000), "86.4 GB");
+    }
+}

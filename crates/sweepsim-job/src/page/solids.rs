@@ -1,0 +1,218 @@
+//! Stock, target, fixtures and tools as they are shown.
+
+use crate::request::Task;
+use crate::show::shape;
+use sweepsim::motion::{BodyKind, Tool};
+use sweepsim_dexel::{Stock, TriDexels, TriangleSoup};
+use sweepsim_formats::Job;
+use sweepsim_report::{Solid, SolidKind, ToolPart, ToolShape};
+
+/// Sides of a cylinder, and of a ball from pole to pole.
+const SIDES: usize = 64;
+/// Larger meshes are not shown: a page is no CAD system.
+const LARGEST: usize = 300_000;
+
+/// Stock, target and fixtures.
+pub(super) fn solids(job: &Job, task: Task) -> Vec<Solid> {
+    let mut solids = Vec::new();
+    let mut add = |kind, setup, stock: &Stock| {
+        for (vertices, triangles) in meshes(stock) {
+            solids.push(Solid {
+                kind,
+                setup,
+                vertices,
+                triangles,
+            });
+        }
+    };
+    if task != Task::Sweep {
+        add(SolidKind::Stock, None, &job.stock);
+    }
+    for (number, setup) in job.setups.iter().enumerate() {
+        for fixture in &setup.fixtures {
+            add(SolidKind::Fixture, Some(number as u16), fixture);
+        }
+    }
+    if let Some(target) = &job.target {
+        add(SolidKind::Target, None, &Stock::Mesh(target.mesh.clone()));
+    }
+    solids
+}
+
+type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
+
+/// The surfaces of a solid; of intersections and differences, that of their first part.
+fn meshes(stock: &Stock) -> Vec<Triangles> {
+    match stock {
+        Stock::Block { min, max } => vec![block(*min, *max)],
+        Stock::Cylinder {
+            base,
+            axis,
+            radius,
+            height,
+        } => vec![cylinder(*base, *axis, *radius, *height)],
+        Stock::Ball { centre, radius } => vec![ball(*centre, *radius)],
+        Stock::Mesh(soup) => of_soup(soup).into_iter().collect(),
+        Stock::TriDexels(sets) => {
+            let solid = TriDexels::from_sets((**sets).clone()).ok();
+            let mesh = solid.and_then(|solid| solid.surface().ok());
+            let mesh = mesh.filter(|mesh| mesh.triangles.len() <= LARGEST);
+            mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
+        }
+        Stock::Dexels(dexels) => {
+            let mesh = dexels.surface().ok().filter(|mesh| mesh.triangles.len() <= LARGEST);
+            mesh.into_iter().map(|mesh| (mesh.vertices, mesh.triangles)).collect()
+        }
+        Stock::Union(parts) => {
+            let (mut all, mut count) = (Vec::new(), 0);
+            for part in parts {
+                let found = meshes(part);
+                count += found.iter().map(|(_, triangles)| triangles.len()).sum::<usize>();
+                if count > LARGEST {
+                    return Vec::new();
+                }
+                all.extend(found);
+            }
+            all
+        }
+        Stock::Intersection(parts) => parts.first().map_or(Vec::new(), meshes),
+        Stock::Difference(whole, _) => meshes(whole),
+        // Kinds to come.
+        _ => Vec::new(),
+    }
+}
+
+fn of_soup(soup: &TriangleSoup) -> Option<Triangles> {
+    if soup.triangles.len() > LARGEST {
+        return None;
+    }
+    let mesh = soup.indexed().ok()?;
+    Some((mesh.vertices, mesh.triangles))
+}
+
+fn block(min: [f64; 3], max: [f64; 3]) -> Triangles {
+    let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
+    let faces: [[u32; 4]; 6] = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let triangles = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]);
+    ((0..8).map(corner).collect(), triangles.collect())
+}
+
+/// A ring of triangles between two rings of vertices.
+fn band(from: u32, to: u32, triangles: &mut Vec<[u32; 3]>) {
+    let sides = SIDES as u32;
+    for k in 0..sides {
+        let next = (k + 1) % sides;
+        triangles.push([from + k, from + next, to + next]);
+        triangles.push([from + k, to + next, to + k]);
+    }
+}
+
+fn cylinder(base: [f64; 3], axis: [f64; 3], radius: f64, height: f64) -> Triangles {
+    let length = axis.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let z = axis.map(|c| c / length);
+    let least = (0..3).min_by(|a, b| z[*a].abs().total_cmp(&z[*b].abs())).unwrap_or(0);
+    let helper = [0, 1, 2].map(|k| if k == least { 1.0 } else { 0.0 });
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+    let x = cross(helper, z);
+    let size = x.iter().map(|c| c * c).sum::<f64>().sqrt();
+    let x = x.map(|c| c / size);
+    let y = cross(z, x);
+    let mut vertices = vec![base, [0, 1, 2].map(|k| base[k] + height * z[k])];
+    for up in [0.0, height] {
+        for side in 0..SIDES {
+            let turn = side as f64 / SIDES as f64 * std::f64::consts::TAU;
+            let (s, c) = turn.sin_cos();
+            vertices.push([0, 1, 2].map(|k| base[k] + radius * (c * x[k] + s * y[k]) + up * z[k]));
+        }
+    }
+    let (low, high) = (2, 2 + SIDES as u32);
+    let mut triangles = Vec::new();
+    band(low, high, &mut triangles);
+    for k in 0..SIDES as u32 {
+        let next = (k + 1) % SIDES as u32;
+        triangles.push([0, low + next, low + k]);
+        triangles.push([1, high + k, high + next]);
+    }
+    (vertices, triangles)
+}
+
+fn ball(centre: [f64; 3], radius: f64) -> Triangles {
+    let rings = SIDES / 2;
+    let mut vertices = vec![
+        [centre[0], centre[1], centre[2] - radius],
+        [centre[0], centre[1], centre[2] + radius],
+    ];
+    for ring in 1..rings {
+        let (s, c) = (ring as f64 / rings as f64 * std::f64::consts::PI).sin_cos();
+        for side in 0..SIDES {
+            let (sin, cos) = (side as f64 / SIDES as f64 * std::f64::consts::TAU).sin_cos();
+            vertices.push([
+                centre[0] + radius * s * cos,
+                centre[1] + radius * s * sin,
+                centre[2] - radius * c,
+            ]);
+        }
+    }
+    let mut triangles = Vec::new();
+    let ring = |n: usize| (2 + n * SIDES) as u32;
+    for n in 0..rings - 2 {
+        band(ring(n), ring(n + 1), &mut triangles);
+    }
+    for k in 0..SIDES as u32 {
+        let next = (k + 1) % SIDES as u32;
+        triangles.push([0, ring(0) + next, ring(0) + k]);
+        triangles.push([1, ring(rings - 2) + k, ring(rings - 2) + next]);
+    }
+    (vertices, triangles)
+}
+
+/// The tools with their bodies, in the order of their numbers.
+pub(super) fn tools(job: &Job) -> Vec<ToolPart> {
+    let part = |(number, tool): (&u32, &Tool)| {
+        let bodies = job.bodies.get(number).into_iter().flatten();
+        ToolPart {
+            name: format!("T{number}"),
+            cutter: vec![shape(tool)],
+            bodies: bodies
+                .filter(|body| matches!(body.kind, BodyKind::Shank | BodyKind::Holder))
+                .map(|body| shape(&body.solid))
+                .collect(),
+        }
+    };
+    job.tools.iter().map(part).collect()
+}
+
+fn shape(tool: &Tool) -> ToolShape {
+    match shape::outline(tool) {
+        Some(points) => ToolShape::Profile(points),
+        None => {
+            let (vertices, triangles) = shape::patches(tool);
+            ToolShape::Mesh { vertices, triangles }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_union_is_shown_up_to_a_number_of_triangles() {
+        let balls = |count: usize| {
+            let ball = Stock::Ball {
+                centre: [0.0; 3],
+                radius: 1.0,
+            };
+            meshes(&Stock::Union(vec![ball; count])).len()
+        };
+        assert_eq!([balls(10), balls(70), balls(1000)], [10, 70, 0]);
+    }
+}

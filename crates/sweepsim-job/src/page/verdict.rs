@@ -1,0 +1,110 @@
+//! The answer in words, and the findings.
+
+use super::program::Programs;
+use crate::base::words::{counted, found, setup_name};
+use std::collections::BTreeSet;
+use sweepsim_formats::{Report, ReportedFinding};
+use sweepsim_report::{Finding, Verdict, measure};
+
+/// Whether the program may be run.
+pub(super) fn verdict(report: &Report) -> Option<Verdict> {
+    report.verdict?;
+    let findings = report.findings.as_deref().unwrap_or_default();
+    let harmful: BTreeSet<_> = findings.iter().filter_map(|f| Some((f.path?, f.r#move?))).collect();
+    let left = findings.iter().filter(|f| f.r#move.is_none()).count() as u64;
+    let open = report.dexels.unresolved.len() as u64;
+    let mut verdict = match (harmful.len() as u64, left) {
+        (0, 0) if report.verdict == Some(sweepsim_formats::Verdict::Fail) => {
+            Verdict::bad("May not be run: the part deviates from its target.")
+        }
+        (0, 0) if open > 0 => Verdict::bad("Not decided: nothing was found, but some lines are unresolved."),
+        (0, 0) if report.gouge.is_some() => {
+            Verdict::good("May be run: no move does harm, and the part is within its limits.")
+        }
+        (0, 0) => Verdict::good("May be run: no move does harm."),
+        (0, left) => Verdict::bad(format!(
+            "The part is not finished: material is left in {}.",
+            counted(left, "place")
+        )),
+        (1, _) => Verdict::bad("May not be run: one move does harm."),
+        (moves, _) => Verdict::bad(format!("May not be run: {} do harm.", counted(moves, "move"))),
+    };
+    verdict.details = found(findings);
+    if open > 0 {
+        verdict.details.push(format!("{} unresolved", counted(open, "dexel")));
+    }
+    Some(verdict)
+}
+
+fn title(finding: &ReportedFinding) -> String {
+    let part = finding.body.as_deref().unwrap_or("cutter");
+    let mut initial = part.chars();
+    let part: String = initial
+        .next()
+        .into_iter()
+        .flat_map(char::to_uppercase)
+        .chain(initial)
+        .collect();
+    match finding.kind.as_str() {
+        "fixture" if finding.near => format!("{part} too near to a fixture"),
+        _ if finding.near => format!("{part} too near to the workpiece"),
+        "collision" => format!("{part} hits the workpiece"),
+        "fixture" => format!("{part} hits a fixture"),
+        "rapid" => "Rapid move through material".to_owned(),
+        "gouge" => "Cuts into the part".to_owned(),
+        "excess" => "Material left on the part".to_owned(),
+        "spindle" => "Cuts with the spindle stopped".to_owned(),
+        "feed" => "Cuts without a feed".to_owned(),
+        "limit" => "Beyond the machine's limits".to_owned(),
+        kind => kind.to_owned(),
+    }
+}
+
+/// The findings with the lines around them; `clock` tells the time of a part of a move.
+pub(super) fn findings(
+    report: &Report,
+    programs: &Programs,
+    clock: &dyn Fn(usize, usize, f64) -> Option<f64>,
+) -> Vec<Finding> {
+    let finding = |found: &ReportedFinding| {
+        let mut facts = Vec::new();
+        let mut fact = |label: &str, value: String| facts.push((label.to_owned(), value));
+        if let Some(name) = setup_name(report, found.setup) {
+            fact("Set-up", name.to_owned());
+        }
+        if let Some(tool) = found.tool {
+            fact("Tool", format!("T{tool}"));
+        }
+        if let Some(detail) = &found.detail {
+            fact("Axis", detail.clone());
+        } else {
+            fact("Depth", format!("{} mm", measure(found.depth)));
+            fact("Volume", format!("{} mm³", measure(found.volume)));
+        }
+        if let Some(courses) = &found.courses {
+            fact("Course of the rapid", courses.clone());
+        }
+        if let Some(region) = &found.region {
+            fact("Limits of", format!("region {region}"));
+        }
+        if let Some(time) = found.time {
+            fact("Begins after", format!("{:.1} % of the move", 100.0 * time));
+        }
+        if let (None, Some(path), Some(number)) = (found.line, found.path, found.r#move) {
+            fact("Move", format!("{number} of path {path}"));
+        }
+        let place = found.file.as_deref().zip(found.line);
+        Finding {
+            title: title(found),
+            kind: found.kind.clone(),
+            place: found.place,
+            clock: found.path.zip(found.r#move).and_then(|(path, number)| {
+                // A little later, so that what touches does touch.
+                clock(path, number, found.time.unwrap_or(1.0))
+            }),
+            facts,
+            excerpt: place.and_then(|(file, line)| programs.excerpt(file, line)),
+        }
+    };
+    report.findings.iter().flatten().map(finding).collect()
+}

@@ -1,0 +1,385 @@
+//! How a part differs from its target.
+
+use super::solid::{GridOptions, Solid};
+use crate::base::{JobError, Sink};
+use crate::request::ViewOptions;
+use crate::show::{bounds, picture, share, soup};
+use crate::verify::targets;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::time::Instant;
+use sweepsim::Monitor;
+use sweepsim::verify::deviations;
+use sweepsim_dexel::{
+    Comparison, Dexels, DistanceTo, Grid, Mesh, Nearest, Operation, TriangleSoup, compare_tri_with_mesh,
+    compare_with_mesh,
+};
+use sweepsim_formats::{
+    ComparisonReport, DeviationSummary, Furthest, HistogramBar, Job, LimitRegion, Limits, MeshFormat, RegionPlace,
+    Target as Goal, read_coloured_mesh_file,
+};
+
+/// Bars of the histogram.
+const BARS: usize = 20;
+
+/// The limits of deviations.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DeviationLimits {
+    /// For gouges and for excess, in millimetres.
+    Both([f64; 2]),
+    /// Those of a job, by region if it has regions.
+    Job(PathBuf),
+}
+
+/// A request to compare two parts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct CompareRequest {
+    /// The part: a mesh or dexels.
+    pub part: PathBuf,
+    /// The target: a mesh or dexels.
+    pub target: PathBuf,
+    /// Distances up to this count as 0, in millimetres.
+    pub tolerance: f64,
+    /// The limits. Without them, 0.1 mm each.
+    pub limits: Option<DeviationLimits>,
+    /// The distance at the ends of the picture's colour scale, in millimetres. Without it, the largest.
+    pub range: Option<f64>,
+    /// The grid, where the files do not tell it.
+    pub grid: GridOptions,
+    /// How the picture is drawn.
+    pub view: ViewOptions,
+}
+
+/// Two parts that were read, to be compared.
+pub struct Pair<'a> {
+    request: &'a CompareRequest,
+    part: Solid,
+    target: Solid,
+    mesh: Mesh,
+    goal: Mesh,
+    grid: Grid,
+    report: ComparisonReport,
+}
+
+/// How two parts differ.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Difference {
+    /// Volumes, distances, and regions beyond the limits.
+    pub report: ComparisonReport,
+    /// The part coloured by distance, as PNG.
+    pub picture: Vec<u8>,
+}
+
+impl CompareRequest {
+    /// To compare the parts in two files.
+    #[must_use]
+    pub fn new(part: impl Into<PathBuf>, target: impl Into<PathBuf>) -> Self {
+        Self {
+            part: part.into(),
+            target: target.into(),
+            tolerance: 1e-6,
+            limits: None,
+            range: None,
+            grid: GridOptions::default(),
+            view: ViewOptions::default(),
+        }
+    }
+
+    /// Reads both parts.
+    ///
+    /// # Errors
+    /// [`JobError`]: a file cannot be read, a part is empty, or there is no grid.
+    pub fn read(&self) -> Result<Pair<'_>, JobError> {
+        let mut report = ComparisonReport::default();
+        report.part = self.part.display().to_string();
+        report.target = self.target.display().to_string();
+        report.tolerance = self.tolerance;
+        let start = Instant::now();
+        let [part, target] = self.solids()?;
+        let (mesh, goal) = (part.surface()?, target.surface()?);
+        let around = bounds(&mesh).ok_or_else(|| JobError::file(&self.part, "this part is empty"))?;
+        if bounds(&goal).is_none() {
+            return Err(JobError::file(&self.target, "this target is empty"));
+        }
+        let grid = match (part.grid(), target.grid(), self.grid.grid(Some(around))?) {
+            (Some(grid), ..) | (None, Some(grid), _) | (None, None, Some(grid)) => grid,
+            (None, None, None) => return Err(JobError::run("no grid to compare on")),
+        };
+        report.seconds.insert("read".to_owned(), start.elapsed().as_secs_f64());
+        Ok(Pair {
+            request: self,
+            part,
+            target,
+            mesh,
+            goal,
+            grid,
+            report,
+        })
+    }
+
+    /// Both parts. A table of dexels takes the grid of the other part, unless the options name one.
+    fn solids(&self) -> Result<[Solid; 2], JobError> {
+        let given = if self.grid.grid.is_some() || self.grid.area.is_some() {
+            self.grid.grid(None)?
+        } else {
+            None
+        };
+        let is_table = |file: &PathBuf| file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        if is_table(&self.part) && !is_table(&self.target) {
+            let target = Solid::read(&self.target, given.as_ref())?;
+            let grid = given.or(target.grid());
+            return Ok([Solid::read(&self.part, grid.as_ref())?, target]);
+        }
+        let part = Solid::read(&self.part, given.as_ref())?;
+        let grid = given.or(part.grid());
+        let target = Solid::read(&self.target, grid.as_ref())?;
+        Ok([part, target])
+    }
+}
+
+impl Pair<'_> {
+    /// Compares them.
+    ///
+    /// # Errors
+    /// [`JobError`]: a part cannot be compared, or [`JobError::Cancelled`].
+    pub fn compare(self, monitor: &dyn Monitor) -> Result<Difference, JobError> {
+        let Self {
+            request,
+            part,
+            target,
+            mesh,
+            goal,
+            grid,
+            mut report,
+        } = self;
+        let start = Instant::now();
+        let dexels = part.dexels(&request.part, &grid)?;
+        let surface = match &target {
+            Solid::Dexels(_) | Solid::TriDexels(_) => soup(&goal),
+            Solid::Mesh(target) => soup(target),
+        };
+        let found = match &part {
+            Solid::TriDexels(part) => compare_tri_with_mesh(part, &surface),
+            Solid::Dexels(_) | Solid::Mesh(_) => compare_with_mesh(&dexels, &surface),
+        };
+        let found = found.map_err(|error| JobError::file(&request.target, error))?;
+        describe(&mut report, request, &found);
+        regions(&mut report, request, &dexels, surface)?;
+        report.cells = grid.cells();
+        let tree = DistanceTo::new(&soup(&goal))?;
+        let [dx, dy] = grid.spacing();
+        let spacing = dx.min(dy);
+        // Of dexels only the ends are exact, not the triangles between them.
+        report.furthest_of_part = match &part {
+            Solid::Mesh(_) => tree.furthest(&soup(&mesh), spacing).map(furthest_of),
+            Solid::Dexels(dexels) => furthest_end(dexels, |place, _| tree.nearest(place)),
+            Solid::TriDexels(part) => {
+                let of = |set| furthest_end(set, |place, _| tree.nearest(place));
+                part.sets().iter().filter_map(of).reduce(further)
+            }
+        };
+        let own = DistanceTo::new(&soup(&mesh))?;
+        report.furthest_of_target = match &target {
+            Solid::Mesh(_) => own.most_missing(&soup(&goal), &tree, spacing).map(furthest_of),
+            Solid::Dexels(dexels) => furthest_end(dexels, |place, normal| own.missing_at(place, normal, &tree)),
+            Solid::TriDexels(target) => {
+                let of = |set| furthest_end(set, |place, normal| own.missing_at(place, normal, &tree));
+                target.sets().iter().filter_map(of).reduce(further)
+            }
+        };
+        worst(&mut report, request.tolerance);
+        let seconds = start.elapsed().as_secs_f64();
+        report.seconds.insert("compare".to_owned(), seconds);
+        let start = Instant::now();
+        let values = values(&mesh, &tree);
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let largest = finite.fold(0.0, |a: f32, v| a.max(v.abs()));
+        let range = request
+            .range
+            .unwrap_or(round(f64::from(largest).max(request.tolerance)));
+        let go_on = share(monitor, |part| part);
+        let (picture, missed) = picture(&request.view, &mesh, Some((&values, range)), &go_on)?;
+        report.warnings = missed;
+        let seconds = start.elapsed().as_secs_f64();
+        report.seconds.insert("picture".to_owned(), seconds);
+        Ok(Difference { report, picture })
+    }
+}
+
+impl Difference {
+    /// The report as JSON.
+    ///
+    /// # Errors
+    /// [`JobError`] if it has no notation.
+    pub fn json(&self) -> Result<String, JobError> {
+        let text = self.report.to_json();
+        text.map_err(|error| JobError::run(format!("cannot make the report: {error}")))
+    }
+
+    /// Passes `comparison.png` and `comparison.json` to a sink.
+    ///
+    /// # Errors
+    /// [`JobError`] of the sink.
+    pub fn write_to(&self, sink: &mut dyn Sink) -> Result<(), JobError> {
+        let json = self.json()?;
+        sink.write("comparison.png", &mut |file| file.write_all(&self.picture))?;
+        sink.write("comparison.json", &mut |file| file.write_all(json.as_bytes()))
+    }
+}
+
+/// The connected regions beyond the limits: those of `--limits`.
+fn regions(
+    report: &mut ComparisonReport,
+    options: &CompareRequest,
+    dexels: &Dexels,
+    surface: TriangleSoup,
+) -> Result<(), JobError> {
+    let limits = match &options.limits {
+        None => Limits::new(targets::LIMIT, targets::LIMIT),
+        Some(DeviationLimits::Both([gouge, excess])) => Limits::new(*gouge, *excess),
+        Some(DeviationLimits::Job(file)) => Job::read(file)?
+            .limits
+            .ok_or_else(|| JobError::file(file, "this job has no limits"))?,
+    };
+    let by_colour = |region: &LimitRegion| matches!(region.place, RegionPlace::Colour(_));
+    let colours = if limits.regions.iter().any(by_colour) && MeshFormat::of(&options.target).is_some() {
+        read_coloured_mesh_file(&options.target)?.1
+    } else {
+        Vec::new()
+    };
+    let failed = |error: &dyn std::fmt::Display| JobError::file(&options.target, error);
+    let parts = Goal::new(options.target.clone(), surface.clone(), colours).by_region(&limits);
+    let target = targets::with_limits(&surface, Some(parts), Some(&limits), dexels.grid(), options.tolerance);
+    let target = target.map_err(|error| failed(&error))?;
+    // What is missing is missing, whatever the stock was.
+    let mut stock = dexels.clone();
+    stock
+        .combine(Operation::Union, target.solid())
+        .map_err(|error| failed(&error))?;
+    let found = deviations(&stock, dexels, &target);
+    report.limits = [limits.gouge, limits.excess];
+    report.regions = targets::regions(&found, Some(&limits));
+    Ok(())
+}
+
+/// The worst is the worst: of the ends of the dexels, of the part's surface between them, and of what of the target has no counterpart.
+fn worst(report: &mut ComparisonReport, tolerance: f64) {
+    let of_part = report.furthest_of_part.map(|furthest| furthest.distance);
+    // A point of the target outside the part: there the part is missing.
+    let of_target = report.furthest_of_target.map(|furthest| -furthest.distance);
+    for distance in [of_part, of_target].into_iter().flatten() {
+        let side = if distance < 0.0 {
+            &mut report.gouge
+        } else {
+            &mut report.excess
+        };
+        if distance.abs() > tolerance {
+            side.max = side.max.max(distance.abs());
+        }
+    }
+}
+
+/// The end of dexels that is farthest from another surface: `of` gets its place and its normal.
+fn furthest_end(dexels: &Dexels, of: impl Fn([f64; 3], [f64; 3]) -> Option<Nearest> + Sync) -> Option<Furthest> {
+    use rayon::prelude::*;
+    let (grid, frame) = (dexels.grid(), dexels.grid().frame());
+    let lines: Vec<usize> = dexels.iter().map(|(line, _)| line).collect();
+    let of_line = |line: &usize| {
+        let (i, j) = grid.place(*line);
+        let ends = dexels
+            .at(*line)
+            .iter()
+            .flat_map(|interval| [interval.lower, interval.upper]);
+        let found = ends.filter_map(|end| {
+            let place = frame.to_world([grid.x(i), grid.y(j), end.z]);
+            let near = of(place, frame.turn_to_world(end.normal.map(f64::from)))?;
+            Some(furthest_of((place, near)))
+        });
+        found.reduce(further)
+    };
+    let found: Vec<Option<Furthest>> = lines.par_iter().map(of_line).collect();
+    found.into_iter().flatten().reduce(further)
+}
+
+fn further(a: Furthest, b: Furthest) -> Furthest {
+    if b.distance.abs() > a.distance.abs() { b } else { a }
+}
+
+fn furthest_of((place, near): ([f64; 3], Nearest)) -> Furthest {
+    Furthest {
+        place,
+        distance: near.distance,
+    }
+}
+
+/// Rounds up to a number of one or two digits, for a readable scale.
+fn round(value: f64) -> f64 {
+    let whole = 10_f64.powf(value.log10().floor());
+    let steps = [1.0, 1.2, 1.6, 2.0, 2.4, 3.0, 4.0, 5.0, 6.0, 8.0];
+    // For values beyond the last step, or if the logarithm was rounded down.
+    steps
+        .into_iter()
+        .map(|step| step * whole)
+        .find(|step| *step >= value)
+        .unwrap_or(10.0 * whole)
+}
+
+/// The distance of each vertex from the target, positive outside.
+fn values(mesh: &Mesh, tree: &DistanceTo) -> Vec<f32> {
+    use rayon::prelude::*;
+    let places = mesh.vertices.par_iter();
+    places
+        .map(|p| tree.nearest(*p).map_or(f32::NAN, |near| near.distance as f32))
+        .collect()
+}
+
+/// Fills in the report.
+fn describe(report: &mut ComparisonReport, options: &CompareRequest, found: &Comparison) {
+    report.volume = found.volume;
+    report.target_volume = found.target;
+    report.excess_volume = found.excess;
+    report.missing_volume = found.missing;
+    report.area = found.area();
+    report.unmatched = found.unmatched();
+    report.mean = found.mean();
+    report.rms = found.rms();
+    let side = |sign: f64| {
+        let mut all = DeviationSummary::default();
+        for (distance, area) in found
+            .deviations
+            .iter()
+            .filter_map(|d| Some((sign * d.distance?, d.area)))
+        {
+            if distance > options.tolerance {
+                all.max = all.max.max(distance);
+                all.mean += area * distance;
+                all.rms += area * distance * distance;
+                all.area += area;
+                all.count += 1;
+            }
+        }
+        if all.area > 0.0 {
+            all.mean /= all.area;
+            all.rms = (all.rms / all.area).sqrt();
+        }
+        all
+    };
+    report.gouge = side(-1.0);
+    report.excess = side(1.0);
+    if let Some([low, high]) = found.range() {
+        let step = (high - low) / BARS as f64;
+        let limit = |k: usize| low + step * k as f64;
+        let limits: Vec<f64> = (1..BARS).map(limit).collect();
+        let areas = found.histogram(&limits);
+        let bars = areas.iter().enumerate().map(|(k, area)| HistogramBar {
+            from: limit(k),
+            to: limit(k + 1),
+            area: *area,
+        });
+        report.histogram = bars.collect();
+    }
+}

@@ -1,0 +1,9 @@
+//! Parts in files: how they differ, and conversions.
+
+mod compare;
+mod convert;
+mod solid;
+
+pub use compare::{CompareRequest, DeviationLimits, Difference, Pair};
+pub use convert::{ConvertRequest, WritingOptions};
+pub use solid::GridOptions;

@@ -1,0 +1,133 @@
+//! The dexels along z, and what is said of them.
+
+use super::merge::gathered;
+use crate::base::JobError;
+use crate::request::Task;
+use crate::session::{Pieces, Session, phase, reported};
+use crate::shards::Gathered;
+use crate::verify::{Verified, setups, verified};
+use crate::warnings;
+use sweepsim::verify::Target;
+use sweepsim::{BoundaryOperator, Statistics, simulate, sweep_all};
+use sweepsim_dexel::Dexels;
+use sweepsim_formats::{JobPath, MoveSummary, Report, ReportedDexel};
+
+/// What was computed.
+#[derive(Debug)]
+pub(super) struct Computed {
+    pub dexels: Dexels,
+    pub crossings: u64,
+    pub repaired: usize,
+    pub unresolved: Vec<ReportedDexel>,
+    pub volume_removed: Option<f64>,
+    /// The number of uncertified dexels along x and y, and of fixtures.
+    pub uncertified: usize,
+    /// What shards found along x and y.
+    pub aside: Vec<Gathered>,
+    /// The target that the result was compared with.
+    pub target: Option<Target>,
+    /// What each move does, if asked for.
+    pub moves: Vec<MoveSummary>,
+}
+
+impl Computed {
+    fn new(dexels: Dexels, statistics: &Statistics) -> Self {
+        Self {
+            dexels,
+            crossings: statistics.crossings,
+            repaired: statistics.repaired,
+            unresolved: reported(&statistics.unresolved),
+            volume_removed: None,
+            uncertified: 0,
+            aside: Vec::new(),
+            target: None,
+            moves: Vec::new(),
+        }
+    }
+}
+
+impl From<Verified> for Computed {
+    fn from(done: Verified) -> Self {
+        Self {
+            dexels: done.remaining,
+            crossings: done.crossings,
+            repaired: 0,
+            unresolved: done.unresolved,
+            volume_removed: Some(done.volume_removed),
+            uncertified: done.uncertified,
+            aside: Vec::new(),
+            target: done.target,
+            moves: done.moves,
+        }
+    }
+}
+
+/// Computes the dexels along z, or takes what shards have computed, and describes them in the report.
+pub(super) fn computed(session: Session, pieces: Option<Pieces>, report: &mut Report) -> Result<Computed, JobError> {
+    let done = match pieces {
+        Some(pieces) => gathered(session, pieces, report)?,
+        None => compute(session, report)?,
+    };
+    describe(session, &done, report);
+    Ok(done)
+}
+
+fn compute(session: Session, report: &mut Report) -> Result<Computed, JobError> {
+    let job = session.job;
+    let cuts = session.cuts();
+    let sweeping = session.request.sweep_options(job);
+    let failed = |error| session.failed(error);
+    match session.request.task {
+        Task::Simulate => {
+            session.phase("stock");
+            let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
+            let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
+            let before = stock.volume();
+            session.phase("cut");
+            let done = phase(report, "sweep", || simulate(stock, &cuts, &sweeping, session.monitor));
+            let done = done.map_err(failed)?;
+            Ok(Computed {
+                volume_removed: Some(before - done.remaining.volume()),
+                ..Computed::new(done.remaining, &done.statistics)
+            })
+        }
+        Task::Verify => Ok(verified(session, report)?.into()),
+        Task::Sweep | Task::Section => {
+            session.phase("sweep");
+            let done = phase(report, "sweep", || {
+                sweep_all(&cuts, &job.grid, &sweeping, session.monitor)
+            });
+            let done = done.map_err(failed)?;
+            Ok(Computed::new(done.volume, &done.statistics))
+        }
+    }
+}
+
+/// Describes the result in the report.
+fn describe(session: Session, done: &Computed, report: &mut Report) {
+    let (job, request) = (session.job, session.request);
+    report.job.clone_from(&job.name);
+    report.method = request.sweeping.method.to_string();
+    report.cells = job.grid.cells();
+    report.moves = job.moves();
+    report.rapid_moves = job.paths.iter().map(JobPath::rapid_moves).sum();
+    report.crossings = done.crossings;
+    report.dexels.covered = done.dexels.covered();
+    report.dexels.repaired = done.repaired;
+    report.dexels.unresolved.clone_from(&done.unresolved);
+    report.volume_removed = done.volume_removed;
+    report.volume = Some(done.dexels.volume());
+    report.setups = report.setups.take().or_else(|| setups(job));
+    report.notes.splice(0..0, session.plan.notes());
+    report.warnings = session.plan.warnings();
+    if request.task != Task::Sweep {
+        let paths = report.paths.as_ref();
+        let removed: Option<Vec<f64>> = paths.map(|paths| paths.iter().map(|path| path.removed).collect());
+        let more = warnings::after(job, &done.dexels, report.volume_removed, removed.as_deref());
+        report.warnings.extend(more);
+    }
+    if request.sweeping.boundary == BoundaryOperator::Paper {
+        let note = "intervals were found by the paper's boundary operator, which fails where a sweep overlaps itself; nothing was audited";
+        report.notes.push(note.to_owned());
+    }
+}

@@ -1,0 +1,85 @@
+//! What all parts of a run work with: the plan, and who watches.
+
+mod plan;
+mod three_axes;
+
+pub(crate) use plan::Pieces;
+pub use plan::{Guess, Plan};
+pub(crate) use sweepsim::solve::CancelOnly;
+pub(crate) use three_axes::{
+    TriSolid, check, grids_aside, heights, joined, lattice, solid, stock, stock_heights, surface, too_many,
+};
+
+use crate::base::JobError;
+use crate::request::Request;
+use std::fmt::Display;
+use std::path::Path;
+use std::time::Instant;
+use sweepsim::{Cut, Monitor, SweepError, UnresolvedDexel};
+use sweepsim_formats::{Job, Report, ReportedDexel};
+
+/// A job that is worked on.
+#[derive(Clone, Copy)]
+pub(crate) struct Session<'a> {
+    pub plan: &'a Plan,
+    pub request: &'a Request,
+    pub job: &'a Job,
+    pub monitor: &'a dyn Monitor,
+}
+
+impl<'a> Session<'a> {
+    pub fn new(plan: &'a Plan, monitor: &'a dyn Monitor) -> Self {
+        let (request, job) = (&plan.request, &plan.job);
+        Self {
+            plan,
+            request,
+            job,
+            monitor,
+        }
+    }
+
+    /// The job's file.
+    pub fn file(&self) -> &'a Path {
+        self.request.input.name()
+    }
+
+    /// The folder that the names of programs refer to.
+    pub fn folder(&self) -> &'a Path {
+        self.file().parent().unwrap_or(Path::new(""))
+    }
+
+    /// Names the phase that begins.
+    pub fn phase(&self, name: &'static str) {
+        self.monitor.phase(name);
+    }
+
+    /// The tools of the job, and their paths.
+    pub fn cuts(&self) -> Vec<Cut<'a>> {
+        let cut = |path: &'a sweepsim_formats::JobPath| Cut::new(&self.job.tools[&path.tool], &path.path);
+        self.job.paths.iter().map(cut).collect()
+    }
+
+    /// The error if a sweep fails.
+    pub fn failed(&self, error: SweepError) -> JobError {
+        JobError::of_sweep(error, self.file())
+    }
+
+    /// An error that concerns the job.
+    pub fn failure(&self, why: impl Display) -> JobError {
+        JobError::file(self.file(), why)
+    }
+}
+
+/// Runs a phase of the work, and adds its duration to the report.
+pub(crate) fn phase<T>(report: &mut Report, name: &str, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let result = work();
+    *report.seconds.entry(name.to_owned()).or_default() += start.elapsed().as_secs_f64();
+    result
+}
+
+/// Uncertified dexels as they are reported.
+pub(crate) fn reported(unresolved: &[UnresolvedDexel]) -> Vec<ReportedDexel> {
+    let one = |dexel: &UnresolvedDexel| ReportedDexel::new(dexel.i, dexel.j, dexel.reason.to_string());
+    unresolved.iter().map(one).collect()
+}

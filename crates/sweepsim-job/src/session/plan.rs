@@ -1,0 +1,229 @@
+//! What will be done: the request with everything read, found or guessed.
+
+use super::{Session, check};
+use crate::base::kind::Kind;
+use crate::base::{JobError, check_room, least_memory};
+use crate::request::{Directions, Input, Output, ProgramOptions, Request, Task};
+use crate::shards::PieceFile;
+use crate::warnings;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use sweepsim_dexel::Grid;
+pub use sweepsim_formats::Guess;
+use sweepsim_formats::{Draft, Job, Limits, Provided, draft_of};
+
+/// A request that can be carried out: the job, what was found in a program, and what had to be guessed.
+///
+/// Nothing has been computed yet. [`Plan::run`] computes it.
+#[derive(Debug)]
+pub struct Plan {
+    pub(crate) request: Request,
+    pub(crate) job: Job,
+    pub(crate) found: Vec<String>,
+    pub(crate) guessed: Vec<Guess>,
+    /// When the reading began, and how long it took.
+    pub(crate) began: Instant,
+    pub(crate) reading: Duration,
+    /// What shards have computed of it.
+    pub(crate) pieces: Option<Pieces>,
+}
+
+/// The pieces of all shards of a run.
+#[derive(Debug)]
+pub(crate) struct Pieces {
+    pub files: Vec<(PathBuf, PieceFile)>,
+}
+
+impl Request {
+    /// Reads all that the request refers to, and checks that it can be carried out.
+    ///
+    /// # Errors
+    /// [`JobError`]: a file with line and column, a field of the request, or too little memory for the dexels.
+    pub fn plan(self) -> Result<Plan, JobError> {
+        let began = Instant::now();
+        self.check()?;
+        let (mut job, found, guessed) = read(&self)?;
+        if let Some(cells) = self.cells {
+            job.grid = Grid::new(job.grid.min(), job.grid.max(), cells)
+                .map(|grid| grid.in_frame(*job.grid.frame()))
+                .map_err(|error| JobError::request("cells", error.to_string()))?;
+        }
+        job.tolerance = self.tolerance.unwrap_or(job.tolerance);
+        if let Some([gouge, excess]) = self.limits {
+            job.limits = Some(Limits::new(gouge, excess));
+        }
+        let plan = Plan {
+            request: self,
+            job,
+            found,
+            guessed,
+            began,
+            reading: began.elapsed(),
+            pieces: None,
+        };
+        if plan.request.task != Task::Section {
+            plan.check_directions()?;
+            if plan.request.frames.is_some() && plan.request.task == Task::Sweep {
+                return Err(JobError::request("frames", "expected `simulate` or `verify`"));
+            }
+        }
+        Ok(plan)
+    }
+}
+
+/// The job of a request, and what was found and guessed if it was made for a program.
+fn read(request: &Request) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
+    let options = &request.program;
+    let given = Provided {
+        text: None,
+        tools: request.given.tools.clone(),
+        bodies: request.given.bodies.clone(),
+    };
+    let (mut job, found, guessed) = match &request.input {
+        Input::File(file) => match Kind::of(file)? {
+            Kind::Job => {
+                refuse_options(options, &file.display().to_string())?;
+                (Job::read_with(file, &given)?, Vec::new(), Vec::new())
+            }
+            Kind::Path => of_program(file, request, given)?,
+            Kind::Tools if is_project(file) => of_program(file, request, given)?,
+            Kind::Mesh | Kind::Dexels | Kind::Tools => {
+                return Err(JobError::file(file, "expected a job (.ron) or a program (.nc .cls …)"));
+            }
+        },
+        Input::Job { name, text } => {
+            refuse_options(options, &name.display().to_string())?;
+            (Job::parse_with(text, name, &given)?, Vec::new(), Vec::new())
+        }
+        Input::Program { name, text } => {
+            let text = Some(text.clone());
+            of_program(name, request, Provided { text, ..given })?
+        }
+    };
+    let given = &request.given;
+    if let Some(stock) = &given.stock {
+        job.stock = stock.clone();
+    }
+    for setup in &mut job.setups {
+        setup.fixtures.extend(given.fixtures.iter().cloned());
+    }
+    if let Some(mesh) = &given.target {
+        let target = sweepsim_formats::Target::new("target".into(), mesh.clone(), Vec::new());
+        job.target = Some(target);
+    }
+    Ok((job, found, guessed))
+}
+
+fn is_project(file: &Path) -> bool {
+    file.extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("camotics"))
+}
+
+/// A job says itself what options say of a program.
+fn refuse_options(options: &ProgramOptions, job: &str) -> Result<(), JobError> {
+    match options.first() {
+        Some(field) => Err(JobError::request(
+            field,
+            format!("is for programs: {job} is a job, which says it itself"),
+        )),
+        None => Ok(()),
+    }
+}
+
+fn of_program(file: &Path, request: &Request, given: Provided) -> Result<(Job, Vec<String>, Vec<Guess>), JobError> {
+    let mut options = request.program.draft(file.parent().unwrap_or(Path::new("")));
+    options.cells = request.cells;
+    if let Some(corners) = request.given.stock.as_ref().and_then(|stock| stock.bounds()) {
+        let [min, max] = corners;
+        options.stock = sweepsim_formats::DraftStock::Block { min, max };
+    }
+    let draft: Draft = draft_of(file, &options, &given)?;
+    let job = Job::parse_with(&draft.text, &draft.program, &given)?;
+    Ok((job, draft.found, draft.guessed))
+}
+
+impl Plan {
+    /// The job as it will be run.
+    #[must_use]
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// The request.
+    #[must_use]
+    pub fn request(&self) -> &Request {
+        &self.request
+    }
+
+    /// What was found in a program, its project or its tool library, in words.
+    #[must_use]
+    pub fn found(&self) -> &[String] {
+        &self.found
+    }
+
+    /// What nobody says, and was guessed.
+    #[must_use]
+    pub fn guessed(&self) -> &[Guess] {
+        &self.guessed
+    }
+
+    /// What is odd about the job although it can be run, in words.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        warnings::before(&self.job, self.request.task.uses())
+    }
+
+    /// The guesses, and the notes of the job and of the files that it refers to.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let file = self.request.input.name().display();
+        let guessed = self.guessed.iter().map(|guess| format!("guessed: {guess}"));
+        let own = self.job.notes.iter().map(|note| format!("{file}: {note}"));
+        let paths = self.job.paths.iter();
+        let of_paths = paths.flat_map(|path| path.notes.iter().map(|note| format!("{}: {note}", path.source)));
+        guessed.chain(own).chain(of_paths).collect()
+    }
+
+    /// The least memory in bytes that the dexels along z take: runs take several times as much.
+    #[must_use]
+    pub fn memory(&self) -> u64 {
+        least_memory(&self.job.grid)
+    }
+
+    /// An estimate of the work, in solved lines: about a microsecond each of one thread.
+    ///
+    /// # Errors
+    /// [`JobError`] if the grids of the run cannot be made.
+    pub fn work(&self) -> Result<f64, JobError> {
+        let session = Session::new(self, &());
+        let tiling = crate::run::tiling(session)?;
+        Ok(tiling.work(&self.job, &session.cuts()))
+    }
+
+    /// Refuses a grid for whose dexels there is no room in memory; shards need less of it.
+    ///
+    /// # Errors
+    /// [`JobError`] with both sizes, where the system tells how much memory is left.
+    pub fn check_room(&self) -> Result<(), JobError> {
+        let advice = match self.request.task {
+            Task::Sweep => "",
+            _ => ", or a run in parts (--shard)",
+        };
+        check_room(&self.job.grid, advice)
+    }
+
+    /// The directions that were asked for must be possible.
+    fn check_directions(&self) -> Result<(), JobError> {
+        let tridexels = self.request.outputs.contains(&Output::Tridexels);
+        let asked = match (self.request.directions, tridexels) {
+            (Some(Directions::Z), true) => {
+                let why = "part.tridexels has dexels along x, y and z: expected --directions xyz";
+                return Err(JobError::request("directions z", why));
+            }
+            (_, true) => "only tridexels",
+            (Some(Directions::Xyz), _) => "directions xyz",
+            _ => return Ok(()),
+        };
+        check(&self.job).map_err(|what| JobError::request(asked, format!("expected {what}")))
+    }
+}

@@ -1,0 +1,116 @@
+//! Findings as they are reported: with their lines, sorted, and with the verdict.
+
+use super::texts::ProgramTexts;
+use super::{axes, targets, work};
+use crate::session::Session;
+use sweepsim::motion::BodyKind;
+use sweepsim::verify::{DeviationKind, Deviations, Finding, Judgement, RapidCourses};
+use sweepsim_formats::{Job, PathSummary, Report, ReportedFinding, Verdict};
+
+pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, found: Option<&Deviations>) {
+    let job = session.job;
+    let mut texts = ProgramTexts::new(session);
+    let mut findings: Vec<ReportedFinding> = done
+        .findings
+        .iter()
+        .map(|finding| reported(finding, job, &mut texts))
+        .collect();
+    findings.extend(axes::findings(job, report, &mut texts));
+    // A stable sort: of one move, what happens first comes first.
+    let when = |finding: &ReportedFinding| (finding.path, finding.r#move);
+    findings.sort_by(|a, b| {
+        let time = |finding: &ReportedFinding| finding.time.unwrap_or_default();
+        when(a).cmp(&when(b)).then(time(a).total_cmp(&time(b)))
+    });
+    if done.stopped {
+        // The first was asked for.
+        findings.truncate(1);
+    }
+    let paths = job.paths.iter().zip(&done.paths).map(|(path, removal)| {
+        let mut summary = PathSummary::default();
+        (summary.tool, summary.moves, summary.removed) = (path.tool, path.path.moves(), removal.volume);
+        summary.setup = job.has_setups.then_some(path.setup);
+        summary
+    });
+    report.paths = Some(paths.collect());
+    if let Some(found) = found {
+        report.gouge = Some(targets::summed(&found.gouge));
+        report.excess = Some(targets::summed(&found.excess));
+        report.regions = Some(targets::regions(found, job.limits.as_ref()));
+        let excess = found
+            .regions
+            .iter()
+            .filter(|region| region.kind == DeviationKind::Excess);
+        findings.extend(excess.map(|region| {
+            let mut finding = ReportedFinding::default();
+            finding.kind = "excess".to_owned();
+            (finding.place, finding.depth, finding.volume) = (region.place, region.depth, region.volume);
+            finding.region = targets::name(region, job.limits.as_ref());
+            finding
+        }));
+        if found.beyond_stock > 0.0 {
+            report.notes.push(format!(
+                "{:.3} mm³ of the target are outside the stock: they were missing before the first cut",
+                found.beyond_stock
+            ));
+        }
+        if job.limits.is_none() {
+            report.notes.push(format!(
+                "the job has no limits: gouges and excess of more than {} mm count",
+                targets::LIMIT
+            ));
+        }
+    } else if job.target.is_none() {
+        report
+            .notes
+            .push("the job has no target: gouges and excess were not looked for".to_owned());
+    }
+    for (number, moved) in &done.undecided {
+        report.notes.push(format!(
+            "path {number}, move {moved}: a body follows its cutter so closely that it is not known whether it touches the workpiece"
+        ));
+    }
+    let missed = found.is_some_and(|found| !found.regions.is_empty());
+    report.verdict = Some(if findings.is_empty() && !missed {
+        Verdict::Pass
+    } else {
+        Verdict::Fail
+    });
+    report.findings = Some(findings);
+}
+
+fn reported(finding: &Finding, job: &Job, texts: &mut ProgramTexts) -> ReportedFinding {
+    let path = &job.paths[finding.path];
+    let bodies = job.bodies.get(&path.tool);
+    let body = finding
+        .body
+        .and_then(|number| bodies?.get(number))
+        .map(|body| match body.kind {
+            BodyKind::Shank => "shank",
+            BodyKind::Holder => "holder",
+            _ => "body",
+        });
+    let mut reported = ReportedFinding::default();
+    reported.kind = finding.kind.name().to_owned();
+    reported.tool = Some(path.tool);
+    reported.body = body.map(str::to_owned);
+    reported.path = Some(finding.path);
+    reported.setup = job.has_setups.then_some(path.setup);
+    reported.r#move = Some(finding.number);
+    if let Some((file, line)) = work::place(path, finding.number, &texts.folder) {
+        reported.text = texts.line(&file, line);
+        (reported.file, reported.line) = (Some(file), Some(line));
+    }
+    reported.near = finding.near;
+    reported.courses = finding.courses.map(|courses| {
+        match courses {
+            RapidCourses::Own => "straight",
+            RapidCourses::Other => "dog-leg",
+            _ => "both",
+        }
+        .to_owned()
+    });
+    reported.time = Some(finding.time);
+    (reported.place, reported.depth, reported.volume) = (finding.place, finding.depth, finding.volume);
+    reported
+}

@@ -1,0 +1,205 @@
+//! `verify`: what is wrong with a program, and how far its result is from the target.
+
+mod axes;
+mod findings;
+mod fixtures;
+mod program;
+pub(crate) mod targets;
+mod texts;
+mod work;
+
+pub(crate) use work::setups;
+
+use crate::base::{JobError, words};
+use crate::request::{Directions, Output};
+use crate::session::{Session, grids_aside, phase, reported};
+use crate::shards::{Gathered, Purpose, TilingSet};
+use program::{JudgedProgram, JudgedTile};
+use std::collections::BTreeMap;
+use sweepsim::verify::{Judgement, Target, TileDeviation, deviations_of_tiles, joined};
+use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
+
+/// Longer programs are judged move by move only if that is asked for: each move takes a sweep of its own.
+const PLOTTED: usize = 1000;
+
+/// What remains of the stock.
+pub(crate) struct Verified {
+    pub remaining: Dexels,
+    pub crossings: u64,
+    pub unresolved: Vec<ReportedDexel>,
+    pub volume_removed: f64,
+    /// The number of uncertified dexels along x and y, and of fixtures.
+    pub uncertified: usize,
+    pub target: Option<Target>,
+    /// What each move does, if asked for.
+    pub moves: Vec<MoveSummary>,
+}
+
+/// The tiles on which a program is judged: along z first, along x and y if asked for, then the fixtures of each set-up as seen along each of these.
+pub(crate) fn sets(session: Session) -> Result<Vec<TilingSet>, JobError> {
+    let (job, request) = (session.job, session.request);
+    let (judging, tile) = (&request.judging, request.sweeping.tile);
+    // The page plots what each move does, where that costs little.
+    let plotted = request.wants(Output::Report) && job.moves() <= PLOTTED;
+    let each_move = judging.moves || plotted;
+    let compare = job.target.is_some() && !judging.first;
+    let along_z = Purpose::Judge { each_move, compare };
+    let mut sets = vec![TilingSet::new("verify", job.grid, None, tile).to(along_z)];
+    if request.directions == Some(Directions::Xyz) {
+        let aside = grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
+        if let Some((grids, within)) = aside {
+            for (grid, name) in grids.into_iter().zip(["along x", "along y"]) {
+                let set = TilingSet::new(name, grid, Some(within.clone()), tile);
+                sets.push(set.to(Purpose::Judge {
+                    each_move: false,
+                    compare: false,
+                }));
+            }
+        }
+    }
+    let grids: Vec<Grid> = sets.iter().map(|set| set.grid).collect();
+    for grid in grids {
+        for (number, setup) in job.setups.iter().enumerate() {
+            let fixtures = fixtures::grid(session, &grid, &setup.fixtures)?;
+            let set = fixtures.map(|grid| TilingSet::new("fixtures", grid, None, tile));
+            sets.extend(set.map(|set| set.to(Purpose::Fixtures(number))));
+        }
+    }
+    Ok(sets)
+}
+
+/// Judges some tiles of a set, for a shard.
+pub(crate) fn judged_tiles(session: Session, set: &TilingSet, tiles: &[usize]) -> Result<Vec<JudgedTile>, JobError> {
+    JudgedProgram::new(session)?.judge(set, tiles, (None, None), None)
+}
+
+/// Verifies the job of a session, and describes the findings in the report.
+pub(crate) fn verified(session: Session, report: &mut Report) -> Result<Verified, JobError> {
+    let judging = &session.request.judging;
+    let sets = sets(session)?;
+    let program = JudgedProgram::new(session)?;
+    let before = Before::new(session, report)?;
+    let mut order: Vec<usize> = (0..sets.len()).collect();
+    // The first finding ends it all: fixtures cost least.
+    if judging.first {
+        order.sort_by_key(|number| !matches!(sets[*number].purpose, Purpose::Fixtures(_)));
+    }
+    let mut until = None;
+    let mut looks = BTreeMap::new();
+    for number in order {
+        let set = &sets[number];
+        session.phase(set.name);
+        let all: Vec<usize> = (0..set.tiles.len()).collect();
+        let stock = Some(&before.stock).filter(|_| number == 0);
+        let known = (stock, before.target.as_ref());
+        let done = phase(report, "sweep", || program.judge(set, &all, known, until))?;
+        if judging.first {
+            let first = done.iter().filter_map(|(tile, _)| tile.record.first()).min();
+            until = [until, first].into_iter().flatten().min();
+        }
+        looks.insert(number, joined_tiles(set, done)?);
+    }
+    before.concluded(session, &sets, looks.into_values().collect(), report)
+}
+
+/// The same of what shards have found on all tiles of these sets.
+pub(crate) fn merged(
+    session: Session,
+    sets: &[TilingSet],
+    looks: Vec<Gathered>,
+    report: &mut Report,
+) -> Result<Verified, JobError> {
+    Before::new(session, report)?.concluded(session, sets, looks, report)
+}
+
+/// What the tiles of a set find together.
+fn joined_tiles(set: &TilingSet, done: Vec<JudgedTile>) -> Result<Gathered, JobError> {
+    let mut all = Gathered::empty(set);
+    let mut remaining = Vec::with_capacity(done.len());
+    for (tile, deviation) in done {
+        all.deviations.extend(deviation);
+        all.crossings += tile.crossings;
+        all.unresolved.extend(reported(&tile.unresolved));
+        all.records.push(tile.record);
+        remaining.push(tile.remaining);
+    }
+    all.unresolved.sort_by_key(|dexel| (dexel.i, dexel.j));
+    let wrong = |error| JobError::run(format!("the tiles do not make up the grid: {error}"));
+    all.dexels = Dexels::from_tiles(set.grid, remaining).map_err(wrong)?;
+    Ok(all)
+}
+
+/// The stock before the first move, and the target, on the lines along z.
+struct Before {
+    stock: Dexels,
+    target: Option<Target>,
+}
+
+impl Before {
+    fn new(session: Session, report: &mut Report) -> Result<Self, JobError> {
+        let job = session.job;
+        session.phase("stock");
+        let stock = phase(report, "stock", || job.stock.dexels(&job.grid));
+        let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
+        session.phase("target");
+        let target = phase(report, "target", || targets::of_job(job, &job.grid));
+        let target = target.map_err(|error| session.failure(format!("target: {error}")))?;
+        Ok(Self { stock, target })
+    }
+
+    /// Describes what was found in the report.
+    fn concluded(
+        self,
+        session: Session,
+        sets: &[TilingSet],
+        looks: Vec<Gathered>,
+        report: &mut Report,
+    ) -> Result<Verified, JobError> {
+        let Self { stock, target } = self;
+        program::note_margins(session.job, &session.request.judging, report);
+        let mut looks = sets.iter().zip(looks);
+        let (_, along_z) = looks.next().ok_or_else(|| JobError::run("nothing was judged"))?;
+        let mut done = Judgement::of_tiles(&along_z.records);
+        let mut findings = vec![std::mem::take(&mut done.findings)];
+        let mut uncertified = 0;
+        for (_, look) in looks {
+            let more = Judgement::of_tiles(&look.records);
+            findings.push(more.findings);
+            done.undecided.extend(more.undecided);
+            done.stopped |= more.stopped;
+            uncertified += look.unresolved.len();
+        }
+        done.findings = joined(findings);
+        done.undecided.sort_unstable();
+        done.undecided.dedup();
+        if uncertified > 0 {
+            let lines = words::counted(uncertified as u64, "dexel");
+            report.notes.push(format!(
+                "{lines} along x or y, or of fixtures, could not be certified: what touches there may be missing"
+            ));
+        }
+        session.phase("deviation");
+        let remaining = along_z.dexels;
+        let differ = |target: &Target| {
+            // Not known where the first finding was looked for, but nothing was found.
+            let own: Vec<TileDeviation> = match &along_z.deviations[..] {
+                [] => vec![TileDeviation::new(&stock, &remaining, target)],
+                known => known.to_vec(),
+            };
+            deviations_of_tiles(&own, &stock, &remaining, target)
+        };
+        let compared = target.as_ref().filter(|_| !done.stopped);
+        let found = compared.map(|target| phase(report, "deviation", || differ(target)));
+        findings::describe(report, session, &done, found.as_ref());
+        Ok(Verified {
+            volume_removed: stock.volume() - remaining.volume(),
+            moves: work::describe(report, session, &done),
+            remaining,
+            crossings: along_z.crossings,
+            unresolved: along_z.unresolved,
+            uncertified,
+            target,
+        })
+    }
+}
