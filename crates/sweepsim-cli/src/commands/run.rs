@@ -77,6 +77,7 @@ fn whole(plan: Plan, out: Option<&Path>, process: &Process) -> Result<ExitCode, 
 
 /// Computes a shard, and writes its piece.
 fn shard(plan: &Plan, number: ShardNumber, options: &RunOptions, process: &Process) -> Result<ExitCode, Failure> {
+    plan.check_shards()?;
     let folder = output_folder(options.out.as_deref(), &plan.job().name);
     let file = folder.join(Plan::piece_name(number));
     if options.resume && plan.is_shard_done(number, &file)? {

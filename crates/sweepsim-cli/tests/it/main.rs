@@ -5,6 +5,7 @@ mod directions;
 mod exchange;
 mod frames;
 mod inspect;
+mod library;
 mod page;
 mod programs;
 mod setups;

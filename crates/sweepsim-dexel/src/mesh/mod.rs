@@ -167,6 +167,31 @@ impl Mesh {
 }
 
 impl TriangleSoup {
+    /// The surface of a box between its lower and its upper corner.
+    ///
+    /// ```
+    /// use sweepsim_dexel::TriangleSoup;
+    /// let block = TriangleSoup::block([0.0; 3], [2.0, 3.0, 4.0]);
+    /// assert_eq!(block.check_closed(), Ok(()));
+    /// assert_eq!(block.volume(), 24.0);
+    /// ```
+    #[must_use]
+    pub fn block(min: [f64; 3], max: [f64; 3]) -> Self {
+        // Of each side, the corners counter-clockwise as seen from outside; bit k of a corner says whether it is at the upper end of axis k.
+        const SIDES: [[usize; 4]; 6] = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let corner = |n: usize| [0, 1, 2].map(|k| if n >> k & 1 == 0 { min[k] } else { max[k] });
+        let halves = SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let triangles = halves.map(|half| half.map(corner)).collect();
+        Self { triangles }
+    }
+
     /// The triangles of the world in the coordinates of a frame.
     pub(crate) fn seen_from(&self, frame: &Frame) -> Cow<'_, Self> {
         if frame.is_world() {

@@ -53,6 +53,14 @@ impl ShardPiece {
 }
 
 impl Plan {
+    /// Refuses what cannot be shared out: only stock is divided into tiles, and no shard knows of another's findings.
+    ///
+    /// # Errors
+    /// [`JobError::Request`] with the field.
+    pub fn check_shards(&self) -> Result<(), JobError> {
+        check(&self.request)
+    }
+
     /// The name of the file of a shard's piece.
     #[must_use]
     pub fn piece_name(number: ShardNumber) -> String {

@@ -25,7 +25,7 @@ const SMALL: [&str; 6] = ["--tile", "8", "--size", "64x48", "--moments", "0"];
 const OUTPUTS: &str = "dexels,mesh,picture,report,binary";
 
 /// The page without its table of computing times.
-fn timeless(html: &str) -> String {
+pub fn timeless(html: &str) -> String {
     let (before, rest) = html.split_once("<h2>Computing time</h2>").expect("such a table");
     let (_, after) = rest.split_once("</table>").expect("the end of a table");
     before.to_owned() + after
