@@ -51,7 +51,6 @@ mod page;
 mod parts;
 mod request;
 mod run;
-mod section;
 mod session;
 mod shards;
 mod show;
@@ -65,8 +64,7 @@ pub use request::{
     DialectOptions, Directions, Input, Judging, Output, ProgramOptions, Request, StockOption, SweepOptions, Task,
     ViewOptions,
 };
-pub use run::{Merge, Outcome, ShardPiece, Written};
-pub use section::PlaneSection;
+pub use run::{Merge, Outcome, PlaneSection, ShardPiece, Written};
 pub use session::{Guess, Plan};
 pub use shards::ShardNumber;
 pub use sweepsim::Monitor;
@@ -74,3 +72,8 @@ pub use sweepsim_dexel as dexel;
 pub use sweepsim_formats::{Job, MoveSummary, Report, ReportedFinding, Verdict};
 pub use sweepsim_motion as motion;
 pub use warnings::is_covered;
+
+/// The examples of the README are tested as well.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,9 +5,10 @@ mod envelope;
 mod files;
 mod merge;
 mod outcome;
+mod section;
 mod shard;
 
 pub use merge::Merge;
 pub use outcome::{Outcome, Written};
+pub use section::PlaneSection;
 pub use shard::ShardPiece;
-pub(crate) use shard::tiling;

@@ -53,6 +53,16 @@ impl ShardPiece {
 }
 
 impl Plan {
+    /// An estimate of the work, in solved lines: about a microsecond each of one thread.
+    ///
+    /// # Errors
+    /// [`JobError`] if the grids of the run cannot be made.
+    pub fn work(&self) -> Result<f64, JobError> {
+        let session = Session::new(self, &());
+        let tiling = tiling(session)?;
+        Ok(tiling.work(&self.job, &session.cuts()))
+    }
+
     /// Refuses what cannot be shared out: only stock is divided into tiles, and no shard knows of another's findings.
     ///
     /// # Errors
@@ -123,7 +133,7 @@ pub(super) fn check(request: &Request) -> Result<(), JobError> {
 }
 
 /// The tiles of a run, which follow from the job and the request alone.
-pub(crate) fn tiling(session: Session) -> Result<Tiling, JobError> {
+pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
     let (job, request) = (session.job, session.request);
     let tile = request.sweeping.tile;
     let mut sets = match request.task {

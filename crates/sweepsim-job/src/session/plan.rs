@@ -1,6 +1,6 @@
 //! What will be done: the request with everything read, found or guessed.
 
-use super::{Session, check};
+use super::check;
 use crate::base::kind::Kind;
 use crate::base::{JobError, check_room, least_memory};
 use crate::request::{Directions, Input, Output, ProgramOptions, Request, Task};
@@ -188,16 +188,6 @@ impl Plan {
     #[must_use]
     pub fn memory(&self) -> u64 {
         least_memory(&self.job.grid)
-    }
-
-    /// An estimate of the work, in solved lines: about a microsecond each of one thread.
-    ///
-    /// # Errors
-    /// [`JobError`] if the grids of the run cannot be made.
-    pub fn work(&self) -> Result<f64, JobError> {
-        let session = Session::new(self, &());
-        let tiling = crate::run::tiling(session)?;
-        Ok(tiling.work(&self.job, &session.cuts()))
     }
 
     /// Refuses a grid for whose dexels there is no room in memory; shards need less of it.
