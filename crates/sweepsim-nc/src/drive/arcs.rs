@@ -38,24 +38,30 @@ impl Track {
             ));
         };
         self.begin(false)?;
-        if !self.kept_arcs.none() && abc == self.abc {
-            let [from, to, centre, above] = self.tips([
-                start,
-                arc.end,
-                arc.centre,
-                std::array::from_fn(|k| arc.centre[k] + arc.normal[k]),
-            ])?;
-            let normal = if self.coordinates == Coordinates::Tip {
-                self.frame.direction(arc.normal)
-            } else {
-                std::array::from_fn(|k| above[k] - centre[k])
+        let target = Position::new(self.frame.point(arc.end), abc);
+        if !self.kept_arcs.none() && !self.turns_by_axes(abc) {
+            let above = std::array::from_fn(|k| arc.centre[k] + arc.normal[k]);
+            let [from, to, centre, above] = self.tips([start, arc.end, arc.centre, above])?;
+            let normal = match self.coordinates {
+                Coordinates::Tip => self.frame.direction(arc.normal),
+                Coordinates::Axes => std::array::from_fn(|k| above[k] - centre[k]),
             };
             let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
                 .map_err(|error| NcProblem::syntax(error.to_string()))?
                 .through(from, to);
-            let axis = self.direction()?;
-            if self.kept_arcs.keep(&exact, [from, to], Some(axis)) {
-                return self.exact_arc(arc, exact);
+            let steady = if abc == self.abc { Some(self.direction()?) } else { None };
+            if self.kept_arcs.keep(&exact, [from, to], steady) {
+                let turning = match self.driver.turning(self.abc, abc, self.coordinates)? {
+                    Turning::Slerp => Turning::Even,
+                    other => other,
+                };
+                if steady.is_none() {
+                    self.direct = None;
+                }
+                let course = Course::Arc(exact);
+                self.push(target, Move { course, turning }, false)?;
+                self.arrive(arc.end, abc);
+                return Ok(());
             }
         }
         let normal = Vector3::from(arc.normal);
@@ -109,14 +115,8 @@ impl Track {
         Ok(tips)
     }
 
-    fn exact_arc(&mut self, arc: &Arc, exact: TipArc) -> Result<(), NcProblem> {
-        let abc = self.abc;
-        let way = Move {
-            course: Course::Arc(exact),
-            turning: Turning::Even,
-        };
-        self.push(Position::new(self.frame.point(arc.end), abc), way, false)?;
-        self.arrive(arc.end, abc);
-        Ok(())
+    /// Whether a move of the axes is not the same as one of the tip.
+    fn turns_by_axes(&self, abc: [f64; 3]) -> bool {
+        self.coordinates == Coordinates::Axes && self.driver.kinematics().is_some() && abc != self.abc
     }
 }

@@ -22,4 +22,5 @@ mod siemens;
 mod tables;
 mod tilted_turns;
 mod tools;
+mod turning_arcs;
 mod written;
