@@ -7,14 +7,14 @@ use super::driver::Coordinates;
 use super::track::Track;
 use crate::machines::Position;
 use crate::text::error::NcProblem;
-use crate::text::numbers::rounded;
 
 /// The most chords per arc.
 const MOST_CHORDS: f64 = 1e6;
 
-/// An arc in the coordinates of the frame: from the current position about `centre` to `end`.
+/// An arc or helix in the coordinates of the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
+    pub start: [f64; 3],
     pub end: [f64; 3],
     pub centre: [f64; 3],
     /// A coordinate axis or another unit vector.
@@ -23,25 +23,57 @@ pub(crate) struct Arc {
     pub sweep: f64,
 }
 
+impl Arc {
+    /// From the axis to a point, across it and along it.
+    fn radial(&self, point: [f64; 3]) -> (Vector3<f64>, f64) {
+        let normal = Vector3::from(self.normal);
+        let out = Vector3::from(point) - Vector3::from(self.centre);
+        let height = normal.dot(&out);
+        (out - normal * height, height)
+    }
+
+    /// The number of chords that stay within `tolerance` (mm) of the arc.
+    pub fn chords(&self, tolerance: f64) -> Result<usize, String> {
+        let radius = self.radial(self.start).0.norm().max(self.radial(self.end).0.norm());
+        // A chord over 2h leaves r (1 − cos h) = 2 r sin²(h/2).
+        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
+        let chords = (self.sweep.abs() / (2.0 * half)).ceil().max(1.0);
+        if chords <= MOST_CHORDS {
+            Ok(chords as usize)
+        } else {
+            Err(format!(
+                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
+            ))
+        }
+    }
+
+    /// The point at `s` in `[0, 1]`; at 1 exactly the end. If the radii at the ends differ a little, the radius changes linearly between them.
+    pub fn at(&self, s: f64) -> [f64; 3] {
+        if s >= 1.0 {
+            return self.end;
+        }
+        let ((from, low), (to, high)) = (self.radial(self.start), self.radial(self.end));
+        let normal = Vector3::from(self.normal);
+        let growth = 1.0 + s * (to.norm() / from.norm() - 1.0);
+        let out = Rotation3::from_axis_angle(&Unit::new_normalize(normal), s * self.sweep) * from * growth;
+        (Vector3::from(self.centre) + out + normal * (low + s * (high - low))).into()
+    }
+}
+
 impl Track {
-    /// A feed move of the tool along an arc, while the rotary axes turn to `abc`.
+    /// A feed move of the tool along an arc from where it is, while the rotary axes turn to `abc`.
     pub(super) fn bend(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
-        let Some(start) = self.known() else {
-            return Err(NcProblem::syntax(
-                "an arc from an unknown position: expected a move before it",
-            ));
-        };
         let Some(scale) = self.frame.scale() else {
             return Err(NcProblem::unsupported(
-                "arcs under a scale that is not the same in all directions are",
-                "they would be ellipses; expected short lines",
+                "arcs in coordinates with unequal scales are",
+                "expected the same scale for all axes",
             ));
         };
         self.begin(false)?;
         let target = Position::new(self.frame.point(arc.end), abc);
         if !self.kept_arcs.none() && !self.turns_by_axes(abc) {
             let above = std::array::from_fn(|k| arc.centre[k] + arc.normal[k]);
-            let [from, to, centre, above] = self.tips([start, arc.end, arc.centre, above])?;
+            let [from, to, centre, above] = self.tips([arc.start, arc.end, arc.centre, above])?;
             let normal = match self.coordinates {
                 Coordinates::Tip => self.frame.direction(arc.normal),
                 Coordinates::Axes => std::array::from_fn(|k| above[k] - centre[k]),
@@ -64,38 +96,13 @@ impl Track {
                 return Ok(());
             }
         }
-        let normal = Vector3::from(arc.normal);
-        let centre = Vector3::from(arc.centre);
-        let across = |point: [f64; 3]| {
-            let out = Vector3::from(point) - centre;
-            out - normal * normal.dot(&out)
-        };
-        let (from, to) = (across(start), across(arc.end));
-        let radius = from.norm().max(to.norm()) * scale.abs();
-        // A chord over 2h leaves r (1 − cos h) = 2 r sin²(h/2).
-        let half = 2.0 * (self.arc_tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
-        let chords = (arc.sweep.abs() / (2.0 * half)).ceil().max(1.0);
-        if !(chords <= MOST_CHORDS) {
-            return Err(NcProblem::syntax(format!(
-                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {} mm, more than {MOST_CHORDS}",
-                self.arc_tolerance
-            )));
-        }
-        self.note(format!(
-            "arcs are divided into chords within {} mm",
-            rounded(self.arc_tolerance)
-        ));
-        let axis = Unit::new_normalize(normal);
-        let height = |point: [f64; 3]| normal.dot(&(Vector3::from(point) - centre));
-        let (low, high) = (height(start), height(arc.end));
-        let angles = self.abc;
-        for chord in 1..chords as usize {
-            let s = chord as f64 / chords;
-            let growth = 1.0 + s * (to.norm() / from.norm() - 1.0);
-            let out = Rotation3::from_axis_angle(&axis, s * arc.sweep) * from * growth;
-            let point = centre + out + normal * (low + s * (high - low));
-            let between = Position::new([0.0; 3], angles).towards(&Position::new([0.0; 3], abc), s);
-            self.straight(point.into(), between.abc, false)?;
+        let chords = arc.chords(self.arc_tolerance / scale.abs()).map_err(NcProblem::syntax)?;
+        self.notes.add_str(self.place.line, &self.chord_note);
+        let from = Position::new([0.0; 3], self.abc);
+        let to = Position::new([0.0; 3], abc);
+        for chord in 1..chords {
+            let s = chord as f64 / chords as f64;
+            self.straight(arc.at(s), from.towards(&to, s).abc, false)?;
         }
         self.straight(arc.end, abc, false)
     }

@@ -1,13 +1,15 @@
 //! Running programs on machines: from the coordinates of blocks to poses, and checks of axes.
 
 mod arcs;
-mod beside;
 mod check;
+mod circular_arc;
 mod contour;
+mod contour_queue;
 mod driver;
 mod excursions;
 mod rapids;
 mod recorded;
+mod trace;
 mod track;
 mod turns;
 
@@ -15,6 +17,8 @@ pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use arcs::Arc;
-pub(crate) use contour::{ArcPlane, Bend, Compensation, Corner, CornerShape, Corners, Item, Place, Side, Stroke};
-pub(crate) use driver::{Coordinates, Driver, Sense};
+pub(crate) use circular_arc::CircularArc;
+pub(crate) use contour::{ArcPlane, Bend, Corner, CornerShape, Corners, Place, Side, Stroke};
+pub(crate) use driver::{Coordinates, Sense};
+pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;

@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 use sweepsim_motion::{Course, Move, Pose, Turning};
 
-use super::beside::Contour;
 use super::contour::Place;
+use super::contour_queue::Contour;
 use super::driver::{Coordinates, Driver, Sense};
+use super::trace::Trace;
 use crate::machines::{Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
@@ -13,6 +14,13 @@ use crate::model::positions::ProgramPositions;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
 use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::numbers::rounded;
+
+/// Whether two poses are the same but for the rounding of a change of coordinates.
+fn is_same(a: &Pose, b: &Pose) -> bool {
+    let near = |(a, b): (f64, f64)| (a - b).abs() <= 1e-14 * (1.0 + a.abs());
+    a.axis() == b.axis() && a.tip().into_iter().zip(b.tip()).all(near)
+}
 
 /// The course of a tool.
 pub(crate) struct Track {
@@ -28,15 +36,17 @@ pub(crate) struct Track {
     pub feed_mode: FeedMode,
     pub exact_stop: bool,
     /// The direction of the tool, where the program gives it rather than the angles of axes.
-    pub(super) direct: Option<[f64; 3]>,
+    pub direct: Option<[f64; 3]>,
     pub(super) frame: WorkFrame,
-    pub(super) coordinates: Coordinates,
+    pub coordinates: Coordinates,
     /// The tip, where its axes' coordinates are not known, until an axis moves.
     pub(super) parked: Option<([f64; 3], [f64; 3])>,
     pub(super) joined: bool,
     pub(super) most_poses: usize,
-    pub(super) arc_tolerance: f64,
+    pub arc_tolerance: f64,
     pub(super) kept_arcs: KeptArcs,
+    pub(super) chord_note: String,
+    pub trace: Option<Trace>,
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
@@ -71,6 +81,11 @@ impl Track {
             most_poses: options.most_poses,
             arc_tolerance: options.arc_tolerance,
             kept_arcs: KeptArcs::new(options),
+            chord_note: format!(
+                "arcs are divided into chords within {} mm",
+                rounded(options.arc_tolerance)
+            ),
+            trace: None,
             contour: Contour::default(),
             text: 0,
         }
@@ -101,6 +116,8 @@ impl Track {
 
     pub fn finish(mut self) -> Program {
         self.program.notes = self.notes.finish();
+        let machine = &mut self.program.machine;
+        machine.table = machine.table.or(self.driver.implied_table());
         if self.program.positions.len() != self.program.poses.len() {
             self.program.positions = ProgramPositions::default();
         }
@@ -109,13 +126,6 @@ impl Track {
 
     pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
         self.notes.add(self.place.line, message);
-    }
-
-    pub fn event(&mut self, kind: EventKind) -> Result<(), NcProblem> {
-        match self.event_waits(kind) {
-            Some(kind) => self.record(kind),
-            None => Ok(()),
-        }
     }
 
     /// Returns to the calling place.
@@ -139,6 +149,32 @@ impl Track {
 
     pub fn frame(&self) -> &WorkFrame {
         &self.frame
+    }
+
+    /// Whether there is a pose yet.
+    pub fn has_moved(&self) -> bool {
+        !self.program.poses.is_empty()
+    }
+
+    /// Another frame, in which the programmed point is `xyz`: the path breaks where that turns out to be another place.
+    pub fn enter(&mut self, frame: WorkFrame, xyz: [Option<f64>; 3]) {
+        let (before, after) = (self.frame.partial(self.xyz), frame.partial(xyz));
+        let elsewhere = |(before, after): (Option<f64>, Option<f64>)| match (before, after) {
+            (Some(a), Some(b)) => (a - b).abs() > 1e-9 * (1.0 + a.abs()),
+            _ => true,
+        };
+        if let Some(actual) = self.contour.actual.as_mut() {
+            let at = frame.inverse_point(self.frame.point(*actual));
+            *actual = at.unwrap_or(*actual);
+        } else if before.iter().all(Option::is_some) && before.into_iter().zip(after).any(elsewhere) {
+            self.joined = false;
+        }
+        self.rename(frame, xyz);
+    }
+
+    /// Another frame, in which the programmed point has other coordinates.
+    pub fn rename(&mut self, frame: WorkFrame, xyz: [Option<f64>; 3]) {
+        (self.frame, self.xyz) = (frame, xyz);
     }
 
     /// Another frame: the tool stays where it is.
@@ -204,11 +240,16 @@ impl Track {
         if let Some(number) = tool.filter(|_| tool != self.tool) {
             self.refuse_contour("a tool change")?;
             self.event(EventKind::ToolChange(number))?;
-            self.tool = tool;
-            self.driver.change_tool(tool);
+            self.take_tool(tool);
             self.joined = false;
         }
         Ok(())
+    }
+
+    /// Has a tool in the spindle from now on.
+    pub fn take_tool(&mut self, tool: Option<u32>) {
+        self.tool = tool;
+        self.driver.change_tool(tool);
     }
 
     /// Takes the tool for longer than it is by `oversize`: the tool stays where it is, and its coordinates change.
@@ -276,7 +317,14 @@ impl Track {
             let from = Position::new(self.frame.point(xyz), self.abc);
             let parts = self.driver.division(&from, &to, self.coordinates)?;
             if parts > 1 {
-                self.note("rotary axes turn far in one block: intermediate poses inserted");
+                self.note(match self.coordinates {
+                    Coordinates::Tip => {
+                        "the axis turns by more than 90 degrees in one block: intermediate poses inserted"
+                    }
+                    Coordinates::Axes => {
+                        "rotary axes turn without tip control: the tip's course is divided into chords"
+                    }
+                });
             }
             let mut last = from.abc;
             for part in 1..parts {
@@ -295,7 +343,7 @@ impl Track {
     }
 
     /// The start of a feed move, if the path does not lead there.
-    pub(super) fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
+    pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
         if rapid || self.joined {
             return Ok(());
         }
@@ -324,15 +372,9 @@ impl Track {
             _ => self.driver.pose(&to, self.coordinates)?,
         };
         let moves = matches!(way.course, Course::Arc(_)) || matches!(way.turning, Turning::Rotary { .. });
-        let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| last.pose == pose);
+        let same = !moves && self.joined && self.program.poses.last().is_some_and(|last| is_same(&last.pose, &pose));
         if !same {
-            if self.program.poses.len() >= self.most_poses {
-                return Err(NcProblem::value(
-                    "the number of poses",
-                    self.program.poses.len(),
-                    "smaller: divide the program, or allow a larger arc tolerance",
-                ));
-            }
+            self.check_room(self.program.poses.len())?;
             let mut made = ProgramPose::new(pose, self.place.line);
             made.rapid = rapid;
             made.file = self.place.file;

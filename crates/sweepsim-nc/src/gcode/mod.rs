@@ -24,16 +24,13 @@ mod codes;
 mod dialect;
 mod flow;
 mod modes;
-mod motion;
 mod offsets;
 mod run;
 mod syntax;
-mod trace;
 
 use std::path::Path;
 use std::rc::Rc;
 
-pub(crate) use self::motion::arc::CircularArc;
 use self::run::interpreter::{self, Input};
 use crate::model::program::Program;
 use crate::model::read_options::ReadOptions;

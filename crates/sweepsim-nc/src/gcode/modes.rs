@@ -1,8 +1,8 @@
 //! What stays in effect until another word changes it.
 
 use super::codes::{MotionMode, Turning};
-use super::motion::arc::ArcPlane;
-use super::motion::map::Map;
+use crate::drive::ArcPlane;
+use crate::machines::WorkFrame;
 use crate::model::program::FeedMode;
 
 /// The words of drilling cycles, which stay until the cycle ends.
@@ -44,12 +44,12 @@ pub(crate) struct Modes {
     /// G16.
     pub polar: bool,
     /// G68 and G51.
-    pub rotation: Option<Map>,
-    pub scaling: Option<Map>,
+    pub rotation: Option<WorkFrame>,
+    pub scaling: Option<WorkFrame>,
     /// G51.1: where the mirror of each axis is.
     pub mirror: [Option<f64>; 3],
     /// G68.2 or G254: a plane that the tool is turned to.
-    pub tilt: Option<Map>,
+    pub tilt: Option<WorkFrame>,
     /// G254: the plane follows the table.
     pub dynamic: bool,
 }
@@ -82,18 +82,15 @@ impl Modes {
     }
 
     /// From the program's coordinates to those that work offsets apply to.
-    pub(crate) fn local_map(&self) -> Map {
+    pub(crate) fn local_map(&self) -> WorkFrame {
         // Fanuc mirrors and scales first, then turns.
-        let mut map = Map::default();
+        let mut map = WorkFrame::default();
         if self.mirror.iter().any(Option::is_some) {
-            let mut matrix = [[0.0; 3]; 3];
-            for (k, row) in matrix.iter_mut().enumerate() {
-                row[k] = if self.mirror[k].is_some() { -1.0 } else { 1.0 };
-            }
-            map = Map::about(matrix, self.mirror.map(|at| at.unwrap_or(0.0)));
+            let factors = self.mirror.map(|at| if at.is_some() { -1.0 } else { 1.0 });
+            map = WorkFrame::scaled(factors).about(self.mirror.map(|at| at.unwrap_or(0.0)));
         }
         for step in [&self.scaling, &self.rotation, &self.tilt].into_iter().flatten() {
-            map = step.after(&map);
+            map = step.then(&map);
         }
         map
     }

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::motion::map::Map;
+use crate::machines::WorkFrame;
 use crate::text::error::NcProblem;
 
 /// The number of a work offset: 0 … 8 for G54 … G59.3, 100 + P for G54.1 P.
@@ -64,11 +64,11 @@ fn describe(frame: Option<WorkOffset>) -> String {
 
 impl Offsets {
     /// From coordinates after scaling and rotation (G51, G68) to the frame of the poses.
-    pub(crate) fn map(&self) -> Map {
+    pub(crate) fn map(&self) -> WorkFrame {
         let Placed { origin, turn } = self.placed(self.active).unwrap_or_default();
-        let shift = Map::shift(std::array::from_fn(|k| self.shift[k] + self.local[k]));
-        let outer = Map::shift(std::array::from_fn(|k| origin[k] + self.external[k]));
-        outer.after(&Map::turn([0, 1, 2], turn).after(&shift))
+        let shift = WorkFrame::shifted(std::array::from_fn(|k| self.shift[k] + self.local[k]));
+        let outer = WorkFrame::shifted(std::array::from_fn(|k| origin[k] + self.external[k]));
+        outer.then(&WorkFrame::turned(2, turn).then(&shift))
     }
 
     pub(crate) fn placed(&self, index: WorkOffset) -> Option<Placed> {

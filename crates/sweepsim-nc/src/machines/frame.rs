@@ -115,6 +115,40 @@ impl WorkFrame {
         (self.matrix * Vector3::from(direction)).into()
     }
 
+    /// The same turn, scale or mirror with `centre` in its place.
+    pub(crate) fn about(self, centre: [f64; 3]) -> Self {
+        let centre = Vector3::from(centre);
+        Self {
+            origin: centre - self.matrix * centre,
+            ..self
+        }
+    }
+
+    /// From the part's frame to this one; `None` if a scale of 0 has lost it.
+    pub(crate) fn inverse(&self) -> Option<Self> {
+        let matrix = if self.is_rigid() {
+            self.matrix.transpose()
+        } else {
+            self.matrix.try_inverse()?
+        };
+        let origin = -(matrix * self.origin);
+        Some(Self { matrix, origin })
+    }
+
+    /// From this frame to the part's, where some coordinates may be unknown.
+    pub(crate) fn partial(&self, point: [Option<f64>; 3]) -> [Option<f64>; 3] {
+        std::array::from_fn(|i| {
+            let mut sum = self.origin[i];
+            for (k, coordinate) in point.into_iter().enumerate() {
+                let factor = self.matrix[(i, k)];
+                if factor != 0.0 {
+                    sum += factor * coordinate?;
+                }
+            }
+            Some(sum)
+        })
+    }
+
     /// Its origin.
     #[must_use]
     pub fn origin(&self) -> [f64; 3] {
@@ -137,7 +171,7 @@ impl WorkFrame {
     #[must_use]
     pub fn scale(&self) -> Option<f64> {
         let square = self.matrix.column(0).norm_squared();
-        let same = (self.matrix.transpose() * self.matrix - Matrix3::identity() * square).amax() < 1e-12 * square;
+        let same = (self.matrix.transpose() * self.matrix - Matrix3::identity() * square).amax() < 1e-9 * square;
         (same && square > 0.0).then(|| square.sqrt().copysign(self.matrix.determinant()))
     }
 }
@@ -190,5 +224,23 @@ mod tests {
             WorkFrame::shifted([5.0, 0.0, 0.0]).then(&turned).point([1.0, 0.0, 0.0]),
             [5.0, 1.0, 0.0]
         );
+    }
+    #[test]
+    fn inverses_and_products() {
+        let turn = WorkFrame::turned(2, 30.0);
+        let frame = WorkFrame::shifted([1.0, 2.0, 3.0])
+            .then(&turn)
+            .then(&WorkFrame::shifted([5.0, 0.0, 0.0]));
+        let x = [0.3, -4.0, 2.5];
+        let back = frame.inverse().unwrap().point(frame.point(x));
+        assert!((0..3).all(|k| (back[k] - x[k]).abs() < 1e-12), "{back:?}");
+        assert!((turn.scale().unwrap() - 1.0).abs() < 1e-12);
+        let mirror = WorkFrame::scaled([-1.0, 1.0, 1.0]).about([5.0, 0.0, 0.0]);
+        assert_eq!(mirror.point([6.0, 1.0, 2.0]), [4.0, 1.0, 2.0]);
+        assert!((mirror.scale().unwrap() + 1.0).abs() < 1e-12);
+        assert_eq!(WorkFrame::scaled([2.0, 1.0, 1.0]).about([0.0; 3]).scale(), None);
+        // A turn about Z needs both X and Y.
+        assert_eq!(turn.partial([Some(1.0), None, Some(2.0)]), [None, None, Some(2.0)]);
+        assert_eq!(frame.inverse().unwrap().partial([None, None, Some(4.0)])[2], Some(1.0));
     }
 }

@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 use super::interpreter::Reader;
 use super::line::{Line, Located};
 use super::moves::Words;
-use crate::drive::{Arc, Corner, CornerShape, Place};
-use crate::gcode::CircularArc;
+use crate::drive::{CircularArc, Corner, CornerShape, Place};
 use crate::text::error::NcProblem;
 
 /// Whether a block moves along the contour.
@@ -117,7 +116,7 @@ impl Reader<'_> {
     ) -> Result<(), NcProblem> {
         let Some(start) = self.track.known() else { return Ok(()) };
         let plane = self.plane;
-        let [u, v, w] = plane;
+        let [u, v, _] = plane;
         let ends = (start, target);
         let sense = words.counter_clockwise;
         let need_sense = || NcProblem::syntax("an arc without its sense: expected DR+ or DR-");
@@ -166,18 +165,6 @@ impl Reader<'_> {
             }
         }
         .map_err(NcProblem::syntax)?;
-        let mut centre = [0.0; 3];
-        let mut normal = [0.0; 3];
-        centre[u] = arc.centre[0];
-        centre[v] = arc.centre[1];
-        centre[w] = start[w];
-        normal[w] = 1.0;
-        let made = Arc {
-            end: arc.end,
-            centre,
-            normal,
-            sweep: arc.sweep,
-        };
-        self.track.arc(&made, abc)
+        self.track.circle(&arc, abc)
     }
 }

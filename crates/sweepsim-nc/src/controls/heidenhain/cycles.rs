@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use super::interpreter::Reader;
 use super::line::{Line, Located};
 use super::planes::is_frame_cycle;
-use crate::drive::Arc;
+use crate::drive::CircularArc;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
@@ -325,23 +325,22 @@ impl Reader<'_> {
                     return Err(NcProblem::value("the number of turns of one hole", turns, "smaller"));
                 }
                 let sense = if counter_clockwise { 1.0 } else { -1.0 };
-                let mut normal = [0.0; 3];
-                normal[w] = 1.0;
                 let (sin, cos) = (sense * turns * TAU).sin_cos();
                 let mut end = here;
                 end[u] += radius * cos;
                 end[v] += radius * sin;
                 end[w] = bottom;
                 for (turns, height) in [(turns, above), (1.0, bottom)] {
-                    let mut centre = here;
-                    centre[w] = height;
-                    let arc = Arc {
+                    let mut start = here;
+                    start[w] = height;
+                    let arc = CircularArc {
+                        start,
                         end,
-                        centre,
-                        normal,
+                        plane: self.plane,
+                        centre: [here[u], here[v]],
                         sweep: sense * turns * TAU,
                     };
-                    self.track.arc(&arc, abc)?;
+                    self.track.circle(&arc, abc)?;
                 }
                 go(self, [0.0; 2], bottom, into)?;
             }

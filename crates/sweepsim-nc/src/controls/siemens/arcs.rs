@@ -5,8 +5,7 @@ use nalgebra::Vector3;
 use super::interpreter::Reader;
 use super::language::cursor::Located;
 use super::words::{Meaning, Motion, Words};
-use crate::drive::Arc;
-use crate::gcode::CircularArc;
+use crate::drive::{Arc, CircularArc};
 use crate::text::error::NcProblem;
 
 impl Reader<'_> {
@@ -88,19 +87,7 @@ impl Reader<'_> {
     }
 
     fn go_along(&mut self, arc: &CircularArc, abc: [f64; 3], whole: std::ops::Range<usize>) -> Result<(), Located> {
-        let [u, v, w] = arc.plane;
-        let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
-        centre[u] = arc.centre[0];
-        centre[v] = arc.centre[1];
-        centre[w] = arc.start[w];
-        normal[w] = 1.0;
-        let arc = Arc {
-            end: arc.end,
-            centre,
-            normal,
-            sweep: arc.sweep,
-        };
-        self.track.arc(&arc, abc).map_err(|problem| (problem, whole))
+        self.track.circle(arc, abc).map_err(|problem| (problem, whole))
     }
 
     /// An arc through an intermediate point (`CIP` with `I1`, `J1`, `K1`), in any plane.
@@ -137,6 +124,7 @@ impl Reader<'_> {
             .atan2(from.dot(&to))
             .rem_euclid(std::f64::consts::TAU);
         let arc = Arc {
+            start,
             end,
             centre: centre.into(),
             normal: unit_normal.into(),

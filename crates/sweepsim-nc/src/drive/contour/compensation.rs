@@ -68,11 +68,6 @@ impl Compensation {
         }
     }
 
-    /// Where the tool is after the waiting moves.
-    pub(crate) fn current(&self) -> [f64; 3] {
-        self.current
-    }
-
     /// Something that happens after the waiting moves.
     pub(crate) fn event(&mut self, kind: EventKind, place: Place) {
         self.waiting.push_back(Item::Event(kind, place));

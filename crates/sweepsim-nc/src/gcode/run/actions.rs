@@ -2,10 +2,10 @@
 
 use super::interpreter::Reader;
 use crate::gcode::codes::{Code, MotionMode};
-use crate::gcode::motion::map::Map;
 use crate::gcode::offsets::{EXTENDED, Placed, WorkOffset, known};
 use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::expression::Variables;
+use crate::machines::WorkFrame;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -24,12 +24,12 @@ impl Reader {
 
     pub(crate) fn act(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let here_unknown = (0..3).any(|k| words[k].is_some() && self.at[k].is_none());
+        let here_unknown = (0..3).any(|k| words[k].is_some() && self.track.xyz[k].is_none());
         match code {
             // An earlier problem has made the position unknown; see `Reader::go_on`.
             Code::SetOffsets | Code::ShiftHere if self.uncertain && here_unknown => {}
             Code::RestoreShift if self.uncertain => {}
-            Code::Ignored(note) => self.state.note(note),
+            Code::Ignored(note) => self.track.note(note),
             Code::Length(code) => self.set_length(code, block)?,
             Code::EndCurve => self.end_curve()?,
             Code::CircularPocket { counter_clockwise } => self.circular_pocket(counter_clockwise, block)?,
@@ -69,21 +69,20 @@ impl Reader {
             Code::ShiftHere => {
                 self.check_angles(block, "G92")?;
                 self.refuse_compensation("G92")?;
-                if self.modes.local_map() != Map::default() {
+                if self.modes.local_map() != WorkFrame::default() {
                     return Err(NcProblem::unsupported(
                         "G92 in scaled or turned coordinates is",
                         "expected G50, G69 or G50.1 before it",
                     ));
                 }
-                let fresh = !self.state.has_moved();
-                let before = self.at;
-                self.offsets.shift_here(words, &mut self.at, fresh)?;
-                self.update_map();
-                if (0..3).any(|k| before[k].is_none() && self.at[k].is_some()) {
-                    self.state
+                let fresh = !self.track.has_moved();
+                let before = self.track.xyz;
+                self.offsets.shift_here(words, &mut self.track.xyz, fresh)?;
+                self.update_frame();
+                if (0..3).any(|k| before[k].is_none() && self.track.xyz[k].is_some()) {
+                    self.track
                         .note("G92 before the first move: the tool is taken to be there, in the part's frame");
                 }
-                self.state.xyz = self.map.partial(self.at);
                 self.trace_offsets();
             }
             Code::CancelShift { forget } => {
@@ -97,15 +96,14 @@ impl Reader {
                 // Fanuc names the axes: G92.1 X0.
                 let any = block.first("XYZABC").is_some();
                 let axes = words.map(|word| !any || word.is_some());
-                let fresh = !self.state.has_moved();
+                let fresh = !self.track.has_moved();
                 let mut unknown = [false; 3];
                 self.reframe(|reader| {
                     unknown = reader.offsets.cancel_shift(forget, axes, fresh);
                     Ok(())
                 })?;
                 for k in (0..3).filter(|&k| unknown[k]) {
-                    self.at[k] = None;
-                    self.state.xyz[k] = None;
+                    self.track.xyz[k] = None;
                 }
                 self.trace_offsets();
             }
@@ -191,7 +189,7 @@ impl Reader {
             }
             1 | 10..=13 => self.set_tool(l, block),
             _ => {
-                self.state
+                self.track
                     .note(format!("G10 L{l} sets the control's own data: ignored"));
                 Ok(())
             }
@@ -203,13 +201,13 @@ impl Reader {
         let index = if p == 0 { self.offsets.active } else { p - 1 };
         let mut placed = self.offsets.placed(index).unwrap_or_default();
         let local = self.modes.local_map();
-        if local != Map::default() {
+        if local != WorkFrame::default() {
             return Err(NcProblem::unsupported(
                 "G10 L20 in scaled or turned coordinates is",
                 "expected G50, G69 or G50.1 before it",
             ));
         }
-        let here = self.frame_map().partial(self.at);
+        let here = self.frame_map().partial(self.track.xyz);
         let shift: [f64; 3] = std::array::from_fn(|k| self.offsets.shift[k] + self.offsets.local[k]);
         if placed.turn == 0.0 {
             for k in 0..3 {
@@ -220,8 +218,10 @@ impl Reader {
             }
         } else {
             // The coordinates that are not given stay as they are in that offset.
-            let turn = Map::turn([0, 1, 2], placed.turn);
-            let there = Map::shift(placed.origin).after(&turn).after(&Map::shift(shift));
+            let turn = WorkFrame::turned(2, placed.turn);
+            let there = WorkFrame::shifted(placed.origin)
+                .then(&turn)
+                .then(&WorkFrame::shifted(shift));
             let now = there.inverse().unwrap_or_default().partial(here);
             let mut wanted = [0.0; 3];
             for k in 0..3 {
@@ -230,7 +230,7 @@ impl Reader {
                     None => known(now[k])?,
                 };
             }
-            let from = turn.apply(std::array::from_fn(|k| wanted[k] + shift[k]));
+            let from = turn.point(std::array::from_fn(|k| wanted[k] + shift[k]));
             for k in 0..3 {
                 placed.origin[k] = known(here[k])? - from[k];
             }
@@ -245,7 +245,7 @@ impl Reader {
 
     /// Rotary words of a code that sets coordinates: allowed where they change nothing.
     fn check_angles(&self, block: &Block, code: &str) -> Result<(), NcProblem> {
-        for (angle, letter) in self.state.abc.into_iter().zip(['A', 'B', 'C']) {
+        for (angle, letter) in self.track.abc.into_iter().zip(['A', 'B', 'C']) {
             if block.get(letter).is_some_and(|value| value != angle) {
                 return Err(NcProblem::unsupported(
                     format!("{code} with {letter} other than the current {angle} degrees is"),
@@ -259,19 +259,14 @@ impl Reader {
     /// G68, G51, G51.1 and their ends.
     fn transform(&mut self, code: Code, block: &Block) -> Result<(), NcProblem> {
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let centre: [f64; 3] = std::array::from_fn(|k| words[k].or(self.at[k]).unwrap_or(0.0));
-        let mut matrix = [[0.0; 3]; 3];
-        for (k, row) in matrix.iter_mut().enumerate() {
-            row[k] = 1.0;
-        }
+        let centre: [f64; 3] = std::array::from_fn(|k| words[k].or(self.track.xyz[k]).unwrap_or(0.0));
         let change: Box<dyn FnOnce(&mut Self)> = match code {
             Code::Rotate => {
                 let Some(angle) = block.get('R') else {
                     return Err(NcProblem::syntax("G68 without R: expected the angle"));
                 };
                 // In G91, the angle adds to the one before.
-                let turn = Map::turn(self.modes.plane, angle).matrix.unwrap_or(matrix);
-                let map = Map::about(turn, centre);
+                let map = WorkFrame::turned(self.modes.plane[2], angle).about(centre);
                 Box::new(move |reader| reader.modes.rotation = Some(map))
             }
             Code::CancelRotation => {
@@ -282,13 +277,11 @@ impl Reader {
                 // `G51 P` may be in thousandths: without a decimal point it is on Fanuc.
                 let whole = self.fanuc() && block.word('P').is_some_and(|word| word.whole);
                 let all = block.get('P').map(|p| if whole { p / 1000.0 } else { p });
-                for (k, letter) in ['I', 'J', 'K'].into_iter().enumerate() {
-                    matrix[k][k] = block.get(letter).or(all).unwrap_or(1.0);
-                }
-                if (0..3).any(|k| matrix[k][k] == 0.0) {
+                let factors = ['I', 'J', 'K'].map(|letter| block.get(letter).or(all).unwrap_or(1.0));
+                if factors.contains(&0.0) {
                     return Err(NcProblem::value("the scale of G51", 0, "a number other than 0"));
                 }
-                let map = Map::about(matrix, centre);
+                let map = WorkFrame::scaled(factors).about(centre);
                 Box::new(move |reader| reader.modes.scaling = Some(map))
             }
             Code::CancelScale => Box::new(|reader| reader.modes.scaling = None),
@@ -318,13 +311,13 @@ impl Reader {
         self.refuse_compensation("a move to the machine's home")?;
         let words = self.lengths(block, ['X', 'Y', 'Z']);
         let any = block.first("XYZABC").is_some();
-        let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.at[k].is_some());
-        if (any || self.trace.is_some()) && known && !self.uncertain {
+        let known = (0..3).all(|k| words[k].is_none() || self.modes.absolute || self.track.xyz[k].is_some());
+        if (any || self.track.trace.is_some()) && known && !self.uncertain {
             self.offsets.use_active()?;
             self.go(MotionMode::Rapid, block)?;
         }
         let named = |k: usize| !any || words[k].is_some();
-        for (angle, letter) in self.state.abc.iter_mut().zip(['A', 'B', 'C']) {
+        for (angle, letter) in self.track.abc.iter_mut().zip(['A', 'B', 'C']) {
             if !any || block.has(letter) {
                 *angle = 0.0;
             }
@@ -335,12 +328,9 @@ impl Reader {
             let now = [x, y, z];
             return self.go_to_control(std::array::from_fn(|k| if named(k) { home[k] } else { now[k] }), true);
         }
-        for k in (0..3).filter(|&k| named(k)) {
-            self.forget(k);
-        }
-        self.state
+        self.track
             .note("moves to the machine's home are left out: the path breaks here");
-        self.state.leave();
+        self.track.leave([0, 1, 2].map(named));
         Ok(())
     }
 }

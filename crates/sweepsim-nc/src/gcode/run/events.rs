@@ -1,29 +1,17 @@
 //! What a program does besides moving, in its order.
 
 use super::interpreter::Reader;
+use crate::drive::Canonical;
 use crate::gcode::syntax::block::Target;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::{Values, Variables};
-use crate::gcode::trace::Canonical;
-use crate::model::event::{EventKind, MOST_TEXT};
+use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
 /// Longer texts for the operator are cut.
 const LONGEST: usize = 500;
 
 impl Reader {
-    /// Something happens after the moves so far.
-    pub(crate) fn event(&mut self, kind: EventKind) -> Result<(), NcProblem> {
-        let place = self.state.place;
-        match &mut self.compensation {
-            Some(compensation) if !compensation.is_idle() => {
-                compensation.event(kind, place);
-                Ok(())
-            }
-            _ => self.state.event(kind, place),
-        }
-    }
-
     /// The tool rests.
     pub(crate) fn rest(&mut self, seconds: f64) -> Result<(), NcProblem> {
         if !(0.0..=1e9).contains(&seconds) {
@@ -33,11 +21,9 @@ impl Reader {
                 "a number of seconds from 0 on",
             ));
         }
-        if let Some(trace) = &mut self.trace {
-            trace.push(Canonical::Dwell(seconds));
-        }
+        self.trace([Canonical::Dwell(seconds)]);
         if seconds > 0.0 {
-            self.event(EventKind::Dwell { seconds })
+            self.track.event(EventKind::Dwell { seconds })
         } else {
             Ok(())
         }
@@ -50,25 +36,22 @@ impl Reader {
         };
         if kind.eq_ignore_ascii_case("MSG") {
             let text: String = text.trim().chars().take(LONGEST).collect();
-            self.state.text += text.len();
             // Texts beyond the limit, of bytes or of events, are no loss.
-            if self.state.text > MOST_TEXT || self.event(EventKind::Message(text)).is_err() {
-                self.state
+            if self.track.event(EventKind::Message(text)).is_err() {
+                self.track
                     .note("a message beyond 64 MiB of them, or among too many events: left out");
             }
             return;
         }
-        if self.trace.is_none() {
+        if self.track.trace.is_none() {
             return;
         }
         let text = self.filled_in(text);
-        if let Some(trace) = &mut self.trace {
-            trace.push(if kind.eq_ignore_ascii_case("DEBUG") {
-                Canonical::Message(text)
-            } else {
-                Canonical::Print(text)
-            });
-        }
+        self.trace([if kind.eq_ignore_ascii_case("DEBUG") {
+            Canonical::Message(text)
+        } else {
+            Canonical::Print(text)
+        }]);
     }
 
     /// A text with the values of its variables. `%d`, `%f` and `%.Nf` set the decimals of those that follow.

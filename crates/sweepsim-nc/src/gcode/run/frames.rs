@@ -1,8 +1,8 @@
 //! Where the tool is, in the program's, the poses' and the machine's coordinates.
 
 use super::interpreter::Reader;
-use crate::gcode::motion::map::Map;
-use crate::gcode::trace::Canonical;
+use crate::drive::Canonical;
+use crate::machines::WorkFrame;
 use crate::text::error::NcProblem;
 
 /// Millimetres per inch.
@@ -14,33 +14,14 @@ impl Reader {
         if self.modes.inch { INCH } else { 1.0 }
     }
 
-    /// The programmed position, in the program's coordinates (mm).
-    pub(crate) fn current(&self) -> [Option<f64>; 3] {
-        self.at
-    }
-
-    /// The programmed position, if all of it is known.
-    pub(crate) fn known_position(&self) -> Option<[f64; 3]> {
-        match self.at {
-            [Some(x), Some(y), Some(z)] => Some([x, y, z]),
-            _ => None,
-        }
-    }
-
     /// From the program's coordinates to those of the active work offset, without length offsets.
-    pub(crate) fn frame_map(&self) -> Map {
-        let local = self.modes.local_map();
-        let offsets = self.offsets.map();
-        if local == Map::default() {
-            offsets
-        } else {
-            offsets.after(&local)
-        }
+    pub(crate) fn frame_map(&self) -> WorkFrame {
+        self.offsets.map().then(&self.modes.local_map())
     }
 
     /// The position of the machine that the control counts: the tip's plus the length offset.
     pub(crate) fn control_position(&self) -> [Option<f64>; 3] {
-        let there = self.frame_map().partial(self.at);
+        let there = self.frame_map().partial(self.track.xyz);
         std::array::from_fn(|k| there[k].map(|at| at + self.length[k]))
     }
 
@@ -55,7 +36,7 @@ impl Reader {
 
     /// What the length offset in effect moves the tip by, if that is known: its length less the tool's own.
     fn tip_shift(&self) -> f64 {
-        let own = self.state.tool.and_then(|tool| self.tools.get(tool));
+        let own = self.track.tool.and_then(|tool| self.tools.get(tool));
         match own {
             Some(own) if self.uses_length && (self.length_known || self.length == [0.0; 3]) => {
                 self.length[2] - own.offset[2]
@@ -65,11 +46,14 @@ impl Reader {
         }
     }
 
-    /// Brings the map from the program's coordinates to the tip up to date.
-    pub(crate) fn update_map(&mut self) {
-        let mut map = self.frame_map();
-        map.add[2] += self.tip_shift();
-        self.map = map;
+    /// The frame of the program's coordinates now, in which the poses are.
+    fn frame_now(&self) -> WorkFrame {
+        WorkFrame::shifted([0.0, 0.0, self.tip_shift()]).then(&self.frame_map())
+    }
+
+    /// Brings the frame up to date; coordinates stay as they are.
+    pub(crate) fn update_frame(&mut self) {
+        self.track.rename(self.frame_now(), self.track.xyz);
     }
 
     /// Changes offsets; the machine stays where it is.
@@ -77,41 +61,25 @@ impl Reader {
         let (before, length) = (self.frame_map(), self.length);
         change(self)?;
         let after = self.frame_map();
+        let mut xyz = self.track.xyz;
         if before != after || length != self.length {
             self.refuse_compensation("a change of coordinates")?;
-            if before.is_shift() && after.is_shift() {
-                for k in 0..3 {
-                    let by = before.add[k] - after.add[k] + length[k] - self.length[k];
-                    self.at[k] = self.at[k].map(|at| at + by);
-                }
-            } else {
-                let Some(inverse) = after.inverse() else {
-                    return Err(NcProblem::syntax("these coordinates have no inverse: a scale is 0"));
-                };
-                let there = before.partial(self.at);
-                let there = std::array::from_fn(|k| there[k].map(|at| at + length[k] - self.length[k]));
-                self.at = inverse.partial(there);
-            }
+            let Some(inverse) = after.inverse() else {
+                return Err(NcProblem::syntax("these coordinates have no inverse: a scale is 0"));
+            };
+            let there = before.partial(xyz);
+            xyz = inverse.partial(std::array::from_fn(|k| {
+                there[k].map(|at| at + length[k] - self.length[k])
+            }));
         }
-        self.update_map();
         // Where lengths become known, the tip may turn out to be elsewhere.
-        let tip = self.map.partial(self.at);
-        let elsewhere = |k: usize| match (tip[k], self.state.xyz[k]) {
-            (Some(a), Some(b)) => (a - b).abs() > 1e-9 * (1.0 + a.abs()),
-            _ => true,
-        };
-        if (0..3).any(elsewhere) && !self.straight_next {
-            if self.state.known().is_some() && tip != self.state.xyz {
-                self.state.leave();
-            }
-            self.state.xyz = tip;
-        }
+        self.track.enter(self.frame_now(), xyz);
         Ok(())
     }
 
     /// Refuses what cannot happen while cutter compensation is on.
     pub(crate) fn refuse_compensation(&self, what: &str) -> Result<(), NcProblem> {
-        if self.compensation.is_none() {
+        if !self.track.compensates() {
             return Ok(());
         }
         Err(NcProblem::syntax(format!(
@@ -119,25 +87,23 @@ impl Reader {
         )))
     }
 
-    pub(crate) fn trace_offsets(&mut self) {
-        let unit = self.unit();
-        let placed = self.offsets.placed(self.offsets.active).unwrap_or_default();
-        let index = self.offsets.active + 1;
-        let shift = self.offsets.shift.map(|x| x / unit);
-        if let Some(trace) = &mut self.trace {
-            trace.push(Canonical::WorkOffset {
-                index,
-                origin: placed.origin.map(|x| x / unit),
-            });
-            trace.push(Canonical::Shift(shift));
-            trace.push(Canonical::Rotation(placed.turn));
+    /// Commands besides moves, if they are traced.
+    pub(crate) fn trace(&mut self, commands: impl IntoIterator<Item = Canonical>) {
+        if let Some(trace) = &mut self.track.trace {
+            trace.commands.extend(commands);
         }
     }
 
-    pub(crate) fn trace_tool_offset(&mut self) {
-        let length = self.length.map(|x| x / self.unit());
-        if let Some(trace) = &mut self.trace {
-            trace.push(Canonical::ToolOffset(length));
-        }
+    pub(crate) fn trace_offsets(&mut self) {
+        let unit = self.unit();
+        let placed = self.offsets.placed(self.offsets.active).unwrap_or_default();
+        self.trace([
+            Canonical::WorkOffset {
+                index: self.offsets.active + 1,
+                origin: placed.origin.map(|x| x / unit),
+            },
+            Canonical::Shift(self.offsets.shift.map(|x| x / unit)),
+            Canonical::Rotation(placed.turn),
+        ]);
     }
 }

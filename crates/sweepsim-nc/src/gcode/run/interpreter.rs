@@ -10,23 +10,18 @@ use super::control::variables::{Store, given_work_offsets};
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
-use crate::drive::{Compensation, Place};
+use crate::drive::{Canonical, Place, Sense, Trace, Track};
 use crate::gcode::flow::keywords::{Label, after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::modes::Modes;
-use crate::gcode::motion::map::Map;
-use crate::gcode::motion::state::State;
 use crate::gcode::offsets::Offsets;
 use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
-use crate::gcode::trace::Canonical;
-use crate::model::kept_arcs::KeptArcs;
 use crate::model::names::Format;
-use crate::model::program::Program;
+use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::text::error::{NcError, NcProblem, TextPosition};
-use crate::text::numbers::rounded;
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
@@ -43,7 +38,7 @@ pub(crate) enum Step {
 
 /// The interpreter.
 pub(crate) struct Reader {
-    pub state: State,
+    pub track: Track,
     pub modes: Modes,
     pub offsets: Offsets,
     pub variables: Store,
@@ -62,28 +57,16 @@ pub(crate) struct Reader {
     pub loop_ends: BTreeMap<Spot, Option<usize>>,
     /// Where the last jump backwards led.
     pub turned: Option<Spot>,
-    pub arc_tolerance: f64,
-    pub kept_arcs: KeptArcs,
-    pub chord_note: String,
     pub block_delete: bool,
     pub lenient: bool,
     /// Whether positions in machine coordinates are known: the control's variables were given.
     pub machine_known: bool,
-    /// The programmed position, in the program's coordinates (mm).
-    pub at: [Option<f64>; 3],
-    /// Where the tool really is, in the program's coordinates (mm): beside the programmed position while cutter compensation is on.
-    pub actual: [f64; 3],
-    /// From the program's coordinates to the tip's place in the frame of the poses.
-    pub map: Map,
-    pub compensation: Option<Compensation>,
     /// The curve of G5.2 so far.
     pub nurbs: Option<Nurbs>,
     /// The plane of G68.2 so far, if it takes several blocks.
     pub plane_blocks: Option<PlaneBlocks>,
     /// The last move was one of G45 to G48.
     pub stretched: bool,
-    /// After G40, an arc cannot come first.
-    pub straight_next: bool,
     /// The length offset in effect,
     pub length: [f64; 3],
     /// and whether it is a known one.
@@ -106,7 +89,8 @@ pub(crate) struct Reader {
     pub begun: bool,
     /// After a problem: what the program has said so far is not fully known.
     pub uncertain: bool,
-    pub trace: Option<Vec<Canonical>>,
+    /// The units of the first move.
+    pub units: Option<Units>,
 }
 
 /// A text that is read, and where it comes from.
@@ -141,18 +125,19 @@ pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome
         ));
     }
     let mut reader = Reader::new(input, options);
-    reader.trace = trace.then(Vec::new);
+    reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
-    let trace = reader.trace.take().unwrap_or_default();
+    let trace = reader.track.trace.take().unwrap_or_default().commands;
     let program = match NcError::all(errors) {
         Some(error) => Err(error),
-        None if !reader.state.has_moved() && !options.lenient => {
+        None if !reader.track.has_moved() && !options.lenient => {
             let line = input.text.lines().count().max(1);
             let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
             Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))))
         }
         None => {
-            let mut program = reader.state.finish();
+            let mut program = reader.track.finish();
+            program.units = reader.units.unwrap_or_default();
             program.format = Some(Format::Gcode);
             program.controller = reader.controller;
             program.files = reader.files;
@@ -174,7 +159,13 @@ impl Reader {
             Some([value(0)?, value(1)?, value(2)?])
         };
         let mut reader = Self {
-            state: State::new(options),
+            track: Track::new(
+                options,
+                match options.controller {
+                    Some(Controller::Haas | Controller::Fanuc) => Sense::Tool,
+                    _ => Sense::Part,
+                },
+            ),
             modes: Modes::new(options.inch),
             offsets,
             variables: Store::new(&options.variables),
@@ -190,23 +181,12 @@ impl Reader {
             call_numbers: BTreeMap::new(),
             loop_ends: BTreeMap::new(),
             turned: None,
-            arc_tolerance: options.arc_tolerance,
-            kept_arcs: KeptArcs::new(options),
-            chord_note: format!(
-                "arcs are divided into chords within {} mm",
-                rounded(options.arc_tolerance)
-            ),
             block_delete: options.block_delete,
             lenient: options.lenient,
             machine_known: !options.variables.is_empty(),
-            at: [None; 3],
-            actual: [0.0; 3],
-            map: Map::default(),
-            compensation: None,
             nurbs: None,
             plane_blocks: None,
             stretched: false,
-            straight_next: false,
             length: [0.0; 3],
             length_known: false,
             uses_length: input.text.contains("G43") || input.text.contains("g43"),
@@ -219,14 +199,12 @@ impl Reader {
             numbered: false,
             begun: false,
             uncertain: false,
-            trace: None,
+            units: None,
         };
-        reader.update_map();
-        if let Some(start) = options.start
-            && let Some(inverse) = reader.map.inverse()
-        {
-            reader.at = inverse.apply(start).map(Some);
-            reader.state.xyz = start.map(Some);
+        reader.update_frame();
+        if let Some(start) = options.start {
+            let xyz = reader.track.frame().inverse_point(start);
+            reader.track.xyz = xyz.map_or([None; 3], |xyz| xyz.map(Some));
         }
         reader
     }
@@ -236,7 +214,7 @@ impl Reader {
         let mut errors: Vec<NcError> = Vec::new();
         let mut messages = BTreeSet::new();
         if leader > 0 {
-            self.state.notes.add(1, "text before the first `%`: ignored");
+            self.track.notes.add(1, "text before the first `%`: ignored");
         }
         let mut here = Spot {
             source: 0,
@@ -275,7 +253,7 @@ impl Reader {
                     self.go_on(&block);
                     let text = problem.to_string();
                     if self.lenient {
-                        self.state.note(format!("left out: {text}"));
+                        self.track.note(format!("left out: {text}"));
                     } else if messages.insert(text) {
                         errors.push(self.error(problem, &source, here.line, span));
                         left = left.min(AFTER_PROBLEM);
@@ -293,12 +271,12 @@ impl Reader {
                 }
                 Step::End => break,
             }
-            if errors.len() > MOST_FURTHER || self.trace.is_some() && !errors.is_empty() {
+            if errors.len() > MOST_FURTHER || self.track.trace.is_some() && !errors.is_empty() {
                 break;
             }
         }
-        for ended in [Self::finish_compensation, Self::check_curve] {
-            let Err(problem) = ended(self) else { continue };
+        for ended in [self.track.end_compensation(None), self.check_curve()] {
+            let Err(problem) = ended else { continue };
             let last = here.line.min(source.len().saturating_sub(1));
             errors.push(self.error(problem, &source, last, 0..usize::MAX));
         }
@@ -328,12 +306,9 @@ impl Reader {
     /// Goes on after a problem, to find others: where the tool is now is not known.
     fn go_on(&mut self, block: &Block) {
         self.uncertain = true;
-        self.compensation = None;
         self.nurbs = None;
         self.plane_blocks = None;
-        self.at = [None; 3];
-        self.state.xyz = [None; 3];
-        self.state.leave();
+        self.track.leave([true; 3]);
         let cycle = matches!(self.modes.motion, Some(crate::gcode::codes::MotionMode::Cycle(_)));
         if cycle || !self.lenient || block.has('G') {
             self.modes.motion = None;
@@ -342,17 +317,17 @@ impl Reader {
 
     fn line(&mut self, source: &Source, here: Spot, block: &mut Block) -> Result<Step, Located> {
         let line = source.line(here.line);
-        self.state.place = Place {
+        self.track.place = Place {
             file: source.file,
             line: here.line + 1,
             call: self.frame().call,
         };
-        if !self.state.has_moved()
+        if !self.track.has_moved()
             && let Some(title) = title::of(line)
         {
             self.begun = true;
             block.clear();
-            self.state.title.get_or_insert(title);
+            self.track.program.title.get_or_insert(title);
             return Ok(Step::Next);
         }
         let mut cursor = Cursor::new(line);
@@ -362,7 +337,7 @@ impl Reader {
             _ => {}
         }
         if line.as_bytes().get(cursor.at) == Some(&b'/') && self.block_delete {
-            self.state.note("optional blocks (`/`) are skipped");
+            self.track.note("optional blocks (`/`) are skipped");
             return Ok(Step::Next);
         }
         if let Some(cursor) = after_letter(line) {
@@ -385,7 +360,7 @@ impl Reader {
             self.message(&line[message]);
         }
         if block.optional && !(block.is_empty() && block.assignments.is_empty()) {
-            self.state.note("optional blocks (`/`) are executed");
+            self.track.note("optional blocks (`/`) are executed");
         }
         if block.is_empty() && block.assignments.is_empty() {
             return Ok(Step::Next);

@@ -25,9 +25,9 @@ impl Reader {
             let tool = Self::tool_number(word.value).map_err(|problem| (problem, word.span()))?;
             self.selected_tool = Some(tool);
             // Programs without a tool change name their tool by a T word alone.
-            if self.state.tool.is_none() {
-                self.state.tool = Some(tool);
-                self.update_map();
+            if self.track.tool.is_none() {
+                self.track.take_tool(Some(tool));
+                self.update_frame();
             }
         }
         if !block.has('M') {
@@ -39,13 +39,13 @@ impl Reader {
             match codes::m(word.value) {
                 Misc::Harmless => {}
                 Misc::End => step = Step::End,
-                Misc::Stop => self.event(EventKind::Stop).map_err(at)?,
-                Misc::OptionalStop => self.event(EventKind::OptionalStop).map_err(at)?,
+                Misc::Stop => self.track.event(EventKind::Stop).map_err(at)?,
+                Misc::OptionalStop => self.track.event(EventKind::OptionalStop).map_err(at)?,
                 Misc::Spindle(turning) => {
                     self.modes.spindle = turning;
                     self.spindle().map_err(at)?;
                 }
-                Misc::Coolant(coolant) => self.event(EventKind::Coolant(coolant)).map_err(at)?,
+                Misc::Coolant(coolant) => self.track.event(EventKind::Coolant(coolant)).map_err(at)?,
                 Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
                 Misc::SetTool => {
                     let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
@@ -86,7 +86,7 @@ impl Reader {
                     let what = format!("{}: {what}", word.name());
                     return Err(at(NcProblem::unsupported(what, "expected a program without them")));
                 }
-                Misc::Unknown => self.state.note(format!("{} is not understood: ignored", word.name())),
+                Misc::Unknown => self.track.note(format!("{} is not understood: ignored", word.name())),
             }
         }
         Ok(step)
@@ -94,7 +94,7 @@ impl Reader {
 
     fn spindle(&mut self) -> Result<(), NcProblem> {
         let rpm = self.modes.speed;
-        self.event(EventKind::Spindle(match self.modes.spindle {
+        self.track.event(EventKind::Spindle(match self.modes.spindle {
             Turning::Stopped => Spindle::Stopped,
             Turning::Clockwise => Spindle::Clockwise { rpm },
             Turning::CounterClockwise => Spindle::CounterClockwise { rpm },
@@ -116,16 +116,14 @@ impl Reader {
     pub(super) fn command(&mut self, line: &str, cursor: Cursor) -> Result<Step, Located> {
         let upper = line.trim().to_ascii_uppercase();
         if upper.starts_with("$H") {
-            self.state
+            self.track
                 .note("moves to the machine's home are left out: the path breaks here");
-            self.at = [None; 3];
-            self.state.xyz = [None; 3];
-            self.state.leave();
+            self.track.leave([true; 3]);
         } else if upper.starts_with("$J") {
             let problem = NcProblem::unsupported("jogging ($J) is", "expected G0 or G1");
             return Err((problem, cursor.at..line.len()));
         } else {
-            self.state.note("settings of the control (`$…`, `{…}`) are ignored");
+            self.track.note("settings of the control (`$…`, `{…}`) are ignored");
         }
         Ok(Step::Next)
     }

@@ -50,6 +50,10 @@ impl Reader {
         self.check_plane_blocks(block)
             .map_err(|problem| (problem, block.all()))?;
         let plan = self.modal(block)?;
+        let unit = self.unit();
+        if let Some(trace) = &mut self.track.trace {
+            trace.unit = unit;
+        }
         if let Some(word) = plan.macro_call {
             return self.call_macro(block, here).map_err(|problem| (problem, word.span()));
         }
@@ -134,7 +138,7 @@ impl Reader {
             // The block with the motion code may be the one with the problem.
             (Some(_), None) if self.uncertain => {
                 if self.lenient {
-                    self.state
+                    self.track
                         .note("left out: a move after a problem, until its kind is known again");
                 }
                 Ok(())
@@ -156,8 +160,8 @@ impl Reader {
                         "a feed move without a feed: expected F before it",
                     )));
                 }
-                if self.state.units.is_none() {
-                    self.state.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
+                if self.units.is_none() {
+                    self.units = Some(if self.modes.inch { Units::Inch } else { Units::Mm });
                 }
                 if plan.machine_coordinates {
                     self.go_in_machine_coordinates(motion, block).map_err(whole)
@@ -209,7 +213,7 @@ impl Reader {
                 Code::Inch(inch) => self.modes.inch = inch,
                 Code::InchOrCycle(inch) => {
                     self.modes.inch = inch;
-                    self.state.note("G70 and G71 are taken as inches and millimetres");
+                    self.track.note("G70 and G71 are taken as inches and millimetres");
                 }
                 Code::StopHere => self.modes.stops_here = true,
                 // Grbl's G61 is its only mode: an exact path.
@@ -217,7 +221,7 @@ impl Reader {
                 Code::Blending => {
                     self.modes.exact_stop = false;
                     if let Some(tolerance) = block.get('P').filter(|p| *p > 0.0) {
-                        self.state.note(format!(
+                        self.track.note(format!(
                             "G64 P{tolerance}: corners may be rounded by as much; the path is read as programmed"
                         ));
                     }
@@ -235,7 +239,7 @@ impl Reader {
                     self.vectors = true;
                 }
                 Code::TipControlByLetters => {
-                    self.state.driver.prefer(Sense::Tool);
+                    self.track.driver.prefer(Sense::Tool);
                     self.length_control = true;
                     self.vectors = false;
                 }
@@ -261,7 +265,10 @@ impl Reader {
                 Code::Compensation { left, by_words } => self
                     .compensate(left, by_words, block)
                     .map_err(|problem| (problem, word.span()))?,
-                Code::CancelCompensation => self.finish_compensation().map_err(|problem| (problem, word.span()))?,
+                Code::CancelCompensation => self
+                    .track
+                    .end_compensation(None)
+                    .map_err(|problem| (problem, word.span()))?,
                 Code::MachineCoordinates => plan.machine_coordinates = true,
                 Code::Polar(on) => self.modes.polar = on,
                 code @ (Code::CancelRotation | Code::CancelScale) => {
@@ -342,14 +349,14 @@ impl Reader {
                         "O within a block: expected it at the beginning of a line",
                     ));
                 }
-                letter => self.state.note(format!("{letter} words are not understood: ignored")),
+                letter => self.track.note(format!("{letter} words are not understood: ignored")),
             }
             if word.whole
                 && matches!(self.controller, Some(Controller::Fanuc | Controller::Haas))
                 && "XYZIJKR".contains(word.letter)
                 && word.value != 0.0
             {
-                self.state.note(
+                self.track.note(
                     "lengths without a decimal point are taken as whole units; without its calculator mode, the control takes them in its smallest increment",
                 );
             }

@@ -1,58 +1,42 @@
 //! Tilted planes, tip control and tool vectors: what the rotary axes have to do with coordinates.
 
+use nalgebra::Vector3;
+
 use super::interpreter::Reader;
 use crate::drive::{Coordinates, Sense};
 use crate::gcode::codes::{Code, MotionMode};
-use crate::gcode::motion::map::Map;
 use crate::gcode::syntax::block::Block;
-use crate::machines::{Position, SHORTEST, WorkFrame};
+use crate::machines::{SHORTEST, WorkFrame};
 use crate::text::error::NcProblem;
 
-/// A frame as a map from the program's coordinates.
-fn map_of(frame: &WorkFrame) -> Map {
-    let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| frame.direction(unit));
-    Map {
-        matrix: Some(std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]))),
-        add: frame.origin(),
-    }
-}
-
 impl Reader {
+    /// Whether coordinates are those of the tip, outside of tilted planes as well.
+    fn tip_control(&self) -> bool {
+        self.kinematics || self.length_control
+    }
+
     /// Switches tip control as the codes of a block say: the tool stays where it is.
     pub(crate) fn switch_control(&mut self) -> Result<(), NcProblem> {
-        let on = self.kinematics || self.length_control;
-        self.change_coordinates(|reader| reader.state.tip_control = on)
+        self.set_coordinates(self.modes.tilt.is_some())
     }
 
-    /// A change of what coordinates are. Where that is another place, and a machine's pivots are not known, the path breaks.
-    fn change_coordinates(&mut self, change: impl FnOnce(&mut Self)) -> Result<(), NcProblem> {
-        let before = self.state.coordinates();
-        change(self);
-        let after = self.state.coordinates();
-        if before == after || self.state.abc == [0.0; 3] {
+    /// What coordinates are from now on. Where that is another place, and a machine's pivots are not known, the path breaks.
+    fn set_coordinates(&mut self, tilted: bool) -> Result<(), NcProblem> {
+        let coordinates = if tilted || self.tip_control() {
+            Coordinates::Tip
+        } else {
+            Coordinates::Axes
+        };
+        if coordinates == self.track.coordinates || self.track.abc == [0.0; 3] {
+            self.track.coordinates = coordinates;
             return Ok(());
         }
         self.refuse_compensation("a change of tip control")?;
-        let abc = self.state.abc;
-        let there = self.state.known().and_then(|xyz| match after {
-            Coordinates::Tip => self.state.driver.tip(&Position::new(xyz, abc)).ok(),
-            Coordinates::Axes => self.state.driver.axes_at(xyz, abc),
-        });
-        match there.zip(self.map.inverse()) {
-            Some((xyz, inverse)) => {
-                self.at = inverse.apply(xyz).map(Some);
-                self.state.xyz = xyz.map(Some);
-            }
-            None => self.lose_place(),
+        self.track.set_coordinates(coordinates)?;
+        if self.track.known().is_none() {
+            self.track.leave([true; 3]);
         }
         Ok(())
-    }
-
-    /// Where the tip is becomes unknown: the path breaks.
-    fn lose_place(&mut self) {
-        self.at = [None; 3];
-        self.state.xyz = [None; 3];
-        self.state.leave();
     }
 
     /// G68.2 and G268, G68.4, G53.1 and G253, G254 and G255, G43.5, G234.
@@ -62,7 +46,7 @@ impl Reader {
                 let Some(frame) = self.plane_of(block)? else {
                     return Ok(());
                 };
-                self.set_tilt(Some(map_of(&frame)))
+                self.set_tilt(Some(frame))
             }
             Code::FurtherTilt => {
                 let Some(before) = self.modes.tilt else {
@@ -73,7 +57,7 @@ impl Reader {
                 let Some(frame) = self.plane_of(block)? else {
                     return Ok(());
                 };
-                self.set_tilt(Some(before.after(&map_of(&frame))))
+                self.set_tilt(Some(before.then(&frame)))
             }
             Code::AlignTool => {
                 let Some(tilt) = self.modes.tilt else {
@@ -81,18 +65,14 @@ impl Reader {
                         "G53.1 without a tilted plane: expected G68.2 before it",
                     ));
                 };
-                self.align(tilt.apply_direction([0.0, 0.0, 1.0]))
+                self.align(tilt.direction([0.0, 0.0, 1.0]))
             }
             Code::DynamicOffset(true) => {
-                self.state.driver.prefer(Sense::Tool);
+                self.track.driver.prefer(Sense::Tool);
                 // The work offset turns with the table, and the axes do not: the tool is along Z in these coordinates.
-                let turn = self.state.driver.orientation(self.state.abc)?;
-                let map = Map {
-                    matrix: Some(std::array::from_fn(|i| std::array::from_fn(|j| turn[(i, j)]))),
-                    add: [0.0; 3],
-                };
+                let turn = self.track.driver.orientation(self.track.abc)?;
                 self.modes.dynamic = true;
-                self.set_tilt(Some(map))
+                self.set_tilt(Some(WorkFrame::with_matrix(turn, Vector3::zeros())))
             }
             Code::DynamicOffset(false) | Code::CancelTilt => {
                 self.modes.dynamic = false;
@@ -103,52 +83,32 @@ impl Reader {
     }
 
     /// Another tilted plane, or none.
-    pub(crate) fn set_tilt(&mut self, tilt: Option<Map>) -> Result<(), NcProblem> {
+    pub(crate) fn set_tilt(&mut self, tilt: Option<WorkFrame>) -> Result<(), NcProblem> {
         if tilt == self.modes.tilt {
             return Ok(());
         }
         // In tilted planes coordinates are the tip's; the frame changes while they are.
         if tilt.is_some() {
-            self.change_coordinates(|reader| reader.state.tilted = true)?;
+            self.set_coordinates(true)?;
         }
         self.reframe(|reader| {
             reader.modes.tilt = tilt;
             Ok(())
         })?;
         if tilt.is_none() {
-            self.change_coordinates(|reader| reader.state.tilted = false)?;
+            self.set_coordinates(false)?;
         }
         Ok(())
     }
 
     /// Turns the tool into a direction of the part's frame.
     fn align(&mut self, direction: [f64; 3]) -> Result<(), NcProblem> {
-        let now = match self.state.direct {
-            Some(direct) => direct,
-            None => self.state.driver.axis(self.state.abc)?,
-        };
-        let length = direction.iter().map(|c| c * c).sum::<f64>().sqrt();
-        if now.iter().zip(direction).all(|(a, b)| (a - b / length).abs() < 1e-12) {
-            return Ok(());
-        }
         self.refuse_compensation("a turn of the tool")?;
-        if self.state.driver.knows_rotaries() {
-            let abc = self.state.driver.angles(direction, self.state.abc)?;
-            let rapid = self.modes.motion != Some(MotionMode::Feed);
-            if let (true, Some(inverse)) = (self.known_position().is_some(), self.map.inverse())
-                && let Some(xyz) = self.state.turn_in_place(abc, rapid)?
-            {
-                self.at = inverse.apply(xyz).map(Some);
-                return Ok(());
-            }
-            self.state.abc = abc;
-            self.state.direct = None;
-        } else {
-            self.state.direct = Some(direction);
+        let rapid = self.modes.motion != Some(MotionMode::Feed);
+        if self.track.turn_to(direction, Some(rapid))? {
+            self.track
+                .note("the tool is turned into a tilted plane: the path breaks here");
         }
-        self.state
-            .note("the tool is turned into a tilted plane: the path breaks here");
-        self.lose_place();
         Ok(())
     }
 
@@ -163,11 +123,11 @@ impl Reader {
                 "the tool vector I J K is (0, 0, 0): expected a direction",
             ));
         }
-        let direction = self.map.apply_direction(vector);
-        if self.state.driver.knows_rotaries() {
-            return self.state.driver.angles(direction, abc);
+        let direction = self.track.frame().direction(vector);
+        if self.track.driver.knows_rotaries() {
+            return self.track.driver.angles(direction, abc);
         }
-        if !self.state.tip_control {
+        if !self.tip_control() {
             return Err(NcProblem::syntax(
                 "a tool vector without tip control: expected G43.5 before it",
             ));
@@ -175,9 +135,9 @@ impl Reader {
         self.refuse_compensation("a turn of the tool")?;
         // The start of the move still has the old direction.
         if motion != MotionMode::Rapid {
-            self.state.start_here()?;
+            self.track.begin(false)?;
         }
-        self.state.direct = Some(direction);
+        self.track.direct = Some(direction);
         Ok(abc)
     }
 
@@ -191,11 +151,11 @@ impl Reader {
 
     /// A block that turns rotary axes where coordinates say nothing of the tip: whether that is all it does.
     pub(crate) fn turn_alone(&mut self, block: &Block, motion: MotionMode, abc: [f64; 3]) -> Result<bool, NcProblem> {
-        if abc == self.state.abc {
+        if abc == self.track.abc {
             return Ok(false);
         }
         let alone = block.first("XYZIJKR").is_none();
-        if self.state.tilted && !self.state.tip_control {
+        if self.modes.tilt.is_some() && !self.tip_control() {
             if !(self.modes.dynamic && alone && motion == MotionMode::Rapid) {
                 return Err(NcProblem::unsupported(
                     "turning an axis in a tilted plane is",
@@ -206,7 +166,7 @@ impl Reader {
             self.tilt(Code::DynamicOffset(true), block)?;
             return Ok(true);
         }
-        let unknown = self.state.coordinates() == Coordinates::Axes && self.state.driver.kinematics().is_none();
+        let unknown = self.track.coordinates == Coordinates::Axes && self.track.driver.kinematics().is_none();
         if unknown && alone && motion == MotionMode::Rapid {
             self.turn_away(abc)?;
             return Ok(true);
@@ -216,12 +176,8 @@ impl Reader {
 
     fn turn_away(&mut self, abc: [f64; 3]) -> Result<(), NcProblem> {
         self.refuse_compensation("a turn of the rotary axes")?;
-        self.state.driver.axis(abc)?;
-        self.state
+        self.track
             .note("rotary axes turn where only the machine knows the tip: the path breaks here");
-        self.state.abc = abc;
-        self.state.direct = None;
-        self.lose_place();
-        Ok(())
+        self.track.turn_unknown(abc)
     }
 }

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 
 use super::interpreter::Reader;
+use crate::drive::Canonical;
 use crate::gcode::codes::LengthCode;
 use crate::gcode::offsets::known;
 use crate::gcode::syntax::block::Block;
+use crate::machines::WorkFrame;
 use crate::model::event::EventKind;
 use crate::model::read_options::ToolOffset;
 use crate::text::error::NcProblem;
@@ -61,15 +63,12 @@ impl Reader {
     pub(crate) fn change_tool(&mut self, tool: Option<u32>) -> Result<(), NcProblem> {
         self.refuse_compensation("a tool change")?;
         let Some(tool) = tool else { return Ok(()) };
-        if Some(tool) != self.state.tool || !self.tool_changed {
-            self.event(EventKind::ToolChange(tool))?;
+        if Some(tool) == self.track.tool && !self.tool_changed {
+            self.track.event(EventKind::ToolChange(tool))?;
         }
         self.tool_changed = true;
-        if Some(tool) != self.state.tool {
-            self.state.tool = Some(tool);
-            self.state.leave();
-            self.update_map();
-        }
+        self.track.change_tool(Some(tool))?;
+        self.update_frame();
         Ok(())
     }
 
@@ -81,13 +80,13 @@ impl Reader {
         if table && (block.has('H') || code != LengthCode::Add) {
             let number = match block.get('H') {
                 Some(h) => Self::tool_number(h)?,
-                None => self.state.tool.unwrap_or(0),
+                None => self.track.tool.unwrap_or(0),
             };
             let row = match self.tools.get(number) {
                 Some(row) => row,
                 None => {
                     if number != 0 && !self.tools.rows.is_empty() {
-                        self.state.note(format!(
+                        self.track.note(format!(
                             "the length of tool offset H{number} is not in the table: taken as that of the tool"
                         ));
                     }
@@ -122,7 +121,8 @@ impl Reader {
             reader.length = offset;
             Ok(())
         })?;
-        self.trace_tool_offset();
+        let length = self.length.map(|x| x / self.unit());
+        self.trace([Canonical::ToolOffset(length)]);
         Ok(())
     }
 
@@ -168,7 +168,7 @@ impl Reader {
             }
         }
         self.tools.rows.insert(number, row);
-        self.update_map();
+        self.update_frame();
         Ok(())
     }
 
@@ -178,7 +178,7 @@ impl Reader {
         let mut frame = self.frame_map();
         if fixture {
             let placed = self.offsets.placed(8).unwrap_or_default();
-            frame = crate::gcode::motion::map::Map::shift(placed.origin);
+            frame = WorkFrame::shifted(placed.origin);
         }
         let control = self.control_position();
         // Where the tip is in the frame's own directions, with the offset of the table.
@@ -194,7 +194,7 @@ impl Reader {
                 (None, None) => 0.0,
             };
         }
-        let tip = frame.apply(wanted);
+        let tip = frame.point(wanted);
         for k in 0..3 {
             if words[k].is_some() || !frame.is_shift() && k < 2 {
                 row.offset[k] = known(control[k])? - tip[k];

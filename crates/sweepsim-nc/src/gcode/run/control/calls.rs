@@ -274,11 +274,11 @@ impl Reader {
             )));
         }
         let parent = self.frame().call;
-        let key = (self.state.place.file, self.state.place.line, parent);
-        let next = self.state.calls.len() as u32;
+        let key = (self.track.place.file, self.track.place.line, parent);
+        let next = self.track.program.calls.len() as u32;
         let call = *self.call_numbers.entry(key).or_insert(next);
         if call == next {
-            self.state.calls.push(Call::new(key.0, key.1, parent));
+            self.track.program.calls.push(Call::new(key.0, key.1, parent));
         }
         frame.call = Some(call);
         frame.back = Spot {
@@ -337,7 +337,7 @@ impl Reader {
         match &mut self.frame().kind {
             FrameKind::Main if to_number.is_some() => jump(self, here),
             FrameKind::Main => {
-                self.state
+                self.track
                     .note("M99 ends the program here; a machine may start it again");
                 Ok(Step::End)
             }

@@ -58,7 +58,7 @@ impl Reader {
                 Err((problem, span))
             }
             word => {
-                self.state.note(format!("{word} writes to a port: ignored"));
+                self.track.note(format!("{word} writes to a port: ignored"));
                 Ok(Step::Next)
             }
         }

@@ -247,14 +247,14 @@ impl Reader {
         let main = self.frame().kind == FrameKind::Main;
         match main {
             true if self.numbered => {
-                self.state
+                self.track
                     .note(format!("{name} begins another program: this one ends here"));
                 return Ok(Step::End);
             }
             true => {
                 self.numbered = true;
-                if self.state.title.is_none() {
-                    self.state.title = Some(name.to_string());
+                if self.track.program.title.is_none() {
+                    self.track.program.title = Some(name.to_string());
                 }
             }
             false => {

@@ -85,7 +85,7 @@ impl Reader {
             at.map(|mm| self.in_units(mm))
                 .ok_or_else(|| NcProblem::syntax(format!("#{index} is the current position, which is not known here")))
         };
-        let at = self.current();
+        let at = self.track.xyz;
         if let Some((offset, part)) = of_work_offset(index) {
             let placed = self.offsets.placed(offset)?;
             return Some(Ok(match part {
@@ -113,7 +113,7 @@ impl Reader {
                 4014 if self.offsets.active < 6 => Ok(f64::from(54 + self.offsets.active)),
                 4109 => Ok(self.modes.feed.unwrap_or(0.0)),
                 4119 => Ok(self.modes.speed.unwrap_or(0.0)),
-                4120 => Ok(f64::from(self.state.tool.unwrap_or(0))),
+                4120 => Ok(f64::from(self.track.tool.unwrap_or(0))),
                 _ => return None,
             }
         } else {
@@ -123,17 +123,17 @@ impl Reader {
                 5211..=5213 => Ok(self.in_units(self.offsets.saved_shift()[axis(index, 5211)?])),
                 5214..=5219 => Ok(0.0),
                 5220 => Ok(f64::from(self.offsets.active + 1)),
-                5400 => Ok(f64::from(self.state.tool.unwrap_or(0))),
+                5400 => Ok(f64::from(self.track.tool.unwrap_or(0))),
                 5401..=5403 => {
-                    let row = self.tools.get(self.state.tool.unwrap_or(0));
+                    let row = self.tools.get(self.track.tool.unwrap_or(0));
                     Ok(self.in_units(row.map_or(0.0, |row| row.offset[(index - 5401) as usize])))
                 }
                 5410 => {
-                    let row = self.tools.get(self.state.tool.unwrap_or(0));
+                    let row = self.tools.get(self.track.tool.unwrap_or(0));
                     Ok(self.in_units(row.map_or(0.0, |row| row.diameter)))
                 }
                 5420..=5422 => position(at[axis(index, 5420)?]),
-                5423..=5425 => Ok(self.state.abc[(index - 5423) as usize]),
+                5423..=5425 => Ok(self.track.abc[(index - 5423) as usize]),
                 _ => return None,
             }
         };
@@ -148,19 +148,19 @@ impl Reader {
                 .ok_or_else(|| NcProblem::syntax(format!("#<{name}> is the current position, which is not known here")))
         };
         Some(match name {
-            "_x" | "_y" | "_z" => position(self.current()[name.as_bytes()[1] as usize - usize::from(b'x')]),
+            "_x" | "_y" | "_z" => position(self.track.xyz[name.as_bytes()[1] as usize - usize::from(b'x')]),
             "_abs_x" | "_abs_y" | "_abs_z" => {
                 position(self.machine_position()[name.as_bytes()[5] as usize - usize::from(b'x')])
             }
-            "_a" | "_b" | "_c" => Ok(self.state.abc[name.as_bytes()[1] as usize - usize::from(b'a')]),
-            "_line" => Ok(self.state.place.line as f64),
+            "_a" | "_b" | "_c" => Ok(self.track.abc[name.as_bytes()[1] as usize - usize::from(b'a')]),
+            "_line" => Ok(self.track.place.line as f64),
             "_metric" => Ok(truth(!self.modes.inch)),
             "_imperial" => Ok(truth(self.modes.inch)),
             "_absolute" => Ok(truth(self.modes.absolute)),
             "_incremental" => Ok(truth(!self.modes.absolute)),
             "_feed" => Ok(self.modes.feed.unwrap_or(0.0)),
             "_rpm" => Ok(self.modes.speed.unwrap_or(0.0)),
-            "_current_tool" => Ok(f64::from(self.state.tool.unwrap_or(0))),
+            "_current_tool" => Ok(f64::from(self.track.tool.unwrap_or(0))),
             "_selected_tool" => Ok(f64::from(self.selected_tool.unwrap_or(0))),
             "_coord_system" => Ok(f64::from(match self.offsets.active {
                 index @ 0..=5 => 540 + 10 * index,
@@ -220,7 +220,7 @@ impl Reader {
                     "the program stops here with an alarm of its own (#3000)",
                 )),
                 3001..=3006 | 3901 | 3902 => {
-                    self.state.note(format!("#{index} is set: ignored"));
+                    self.track.note(format!("#{index} is set: ignored"));
                     Ok(())
                 }
                 _ => Err(NcProblem::unsupported(

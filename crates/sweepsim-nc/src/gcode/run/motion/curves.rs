@@ -131,7 +131,7 @@ impl Reader {
             }
             None => 0,
         };
-        let Some(start) = self.known_position() else {
+        let Some(start) = self.track.known() else {
             if self.uncertain {
                 return Ok(());
             }
@@ -201,16 +201,16 @@ impl Reader {
                 format!("at least its order, {}", curve.order),
             ));
         }
-        let Some(start) = self.known_position() else {
+        let Some(start) = self.track.known() else {
             return Ok(());
         };
-        self.state
+        self.track
             .note("splines are divided into chords within the tolerance of arcs");
         let [u, v, _] = self.modes.plane;
-        for [x, y] in curve.chords(self.arc_tolerance)? {
+        for [x, y] in curve.chords(self.track.arc_tolerance)? {
             let mut end = start;
             (end[u], end[v]) = (x, y);
-            let stroke = self.stroke_to(end, self.state.abc, false);
+            let stroke = self.stroke_to(end, self.track.abc, false);
             self.give(stroke)?;
         }
         Ok(())
@@ -236,7 +236,7 @@ impl Reader {
     ) -> Result<(), NcProblem> {
         self.refuse_compensation("a spline")?;
         let name = if cubic { "G5" } else { "G5.1" };
-        if self.modes.plane != [0, 1, 2] || block.has('Z') || stroke.abc != self.state.abc {
+        if self.modes.plane != [0, 1, 2] || block.has('Z') || stroke.abc != self.track.abc {
             return Err(NcProblem::unsupported(
                 format!("{name} outside of the plane XY is"),
                 "expected X and Y in G17",
@@ -272,7 +272,7 @@ impl Reader {
             .map(|p| (p[0][0] - 2.0 * p[1][0] + p[2][0]).hypot(p[0][1] - 2.0 * p[1][1] + p[2][1]))
             .fold(0.0, f64::max);
         let second = (degree * (degree - 1)) as f64 * bend;
-        let chords = (second / (8.0 * self.arc_tolerance)).sqrt().ceil().max(1.0);
+        let chords = (second / (8.0 * self.track.arc_tolerance)).sqrt().ceil().max(1.0);
         if chords > 1e6 {
             return Err(NcProblem::value(
                 "the number of chords of this spline",
@@ -280,7 +280,7 @@ impl Reader {
                 "at most 1000000",
             ));
         }
-        self.state
+        self.track
             .note("splines are divided into chords within the tolerance of arcs");
         for k in 1..=chords as usize {
             let t = k as f64 / chords;

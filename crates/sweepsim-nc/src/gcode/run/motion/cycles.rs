@@ -54,7 +54,7 @@ impl Reader {
             cycle => cycle,
         };
         self.refuse_compensation("a drilling cycle")?;
-        for (angle, letter) in self.state.abc.into_iter().zip(['A', 'B', 'C']) {
+        for (angle, letter) in self.track.abc.into_iter().zip(['A', 'B', 'C']) {
             if block.get(letter).is_some_and(|value| value != angle) {
                 return Err(NcProblem::syntax(format!(
                     "{letter} in a drilling cycle: expected G80 before it"
@@ -158,13 +158,13 @@ impl Reader {
 
     /// Where the tool is when the cycle begins; `None` if a problem before has made that unknown.
     fn cycle_start(&mut self, words: [Option<f64>; 3], plane: f64) -> Result<Option<[f64; 3]>, NcProblem> {
-        if let Some(at) = self.known_position() {
+        if let Some(at) = self.track.known() {
             return Ok(Some(at));
         }
         let [u, v, w] = self.modes.plane;
         if self.uncertain {
             for k in [u, v] {
-                self.at[k] = words[k].filter(|_| self.modes.absolute);
+                self.track.xyz[k] = words[k].filter(|_| self.modes.absolute);
             }
             return Ok(None);
         }
@@ -173,23 +173,22 @@ impl Reader {
         }
         let axis = |k: usize| ['X', 'Y', 'Z'][k];
         for k in [u, v] {
-            if self.at[k].is_none() {
+            if self.track.xyz[k].is_none() {
                 let known = words[k].filter(|_| self.modes.absolute);
                 if known.is_none() {
-                    self.state.note(format!("{} is not known here: taken as 0", axis(k)));
+                    self.track.note(format!("{} is not known here: taken as 0", axis(k)));
                 }
-                self.at[k] = Some(known.unwrap_or(0.0));
+                self.track.xyz[k] = Some(known.unwrap_or(0.0));
             }
         }
-        if self.at[w].is_none() {
-            self.state.note(format!(
+        if self.track.xyz[w].is_none() {
+            self.track.note(format!(
                 "{} is not known before this cycle: taken as that of its plane R",
                 axis(w)
             ));
-            self.at[w] = Some(if self.modes.absolute { plane } else { 0.0 });
+            self.track.xyz[w] = Some(if self.modes.absolute { plane } else { 0.0 });
         }
-        self.state.xyz = self.map.partial(self.at);
-        Ok(self.known_position())
+        Ok(self.track.known())
     }
 
     /// Back boring: down to R beside the axis of the hole, across, up to Z, and out again.
@@ -254,7 +253,7 @@ impl Reader {
     }
 
     fn straight(&mut self, end: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
-        let stroke = self.stroke_to(end, self.state.abc, rapid);
+        let stroke = self.stroke_to(end, self.track.abc, rapid);
         self.give(stroke)
     }
 
@@ -330,7 +329,7 @@ impl Reader {
                 let [u, v, _] = self.modes.plane;
                 let shift = words.shift.unwrap_or_default();
                 if words.shift.is_none() && words.peck.is_some() {
-                    self.state
+                    self.track
                         .note("the direction of G76's shift Q is a setting of the machine: read as no shift");
                 }
                 let aside = |mut point: [f64; 3]| {
@@ -356,7 +355,7 @@ impl Reader {
                     self.turn_spindle(Turning::Stopped)?;
                 }
                 if cycle == 88 {
-                    self.event(EventKind::Stop)?;
+                    self.track.event(EventKind::Stop)?;
                 }
                 self.straight(clear, true)?;
                 if matches!(cycle, 86 | 88) {
@@ -374,7 +373,7 @@ impl Reader {
 
     fn turn_spindle(&mut self, turning: Turning) -> Result<(), NcProblem> {
         let rpm = self.modes.speed;
-        self.event(EventKind::Spindle(match turning {
+        self.track.event(EventKind::Spindle(match turning {
             Turning::Stopped => Spindle::Stopped,
             Turning::Clockwise => Spindle::Clockwise { rpm },
             Turning::CounterClockwise => Spindle::CounterClockwise { rpm },

@@ -1,34 +1,25 @@
 //! The moves of a block.
 
+use crate::drive::CircularArc;
 use crate::drive::{Bend, Stroke};
 use crate::gcode::codes::MotionMode;
-use crate::gcode::motion::arc::CircularArc;
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::{Block, Word};
 use crate::gcode::syntax::expression::Variables;
+use crate::machines::WorkFrame;
 use crate::model::program::FeedMode;
 use crate::text::error::NcProblem;
 
 impl Reader {
     /// The rotary angles at the end of a block.
     fn angles(&self, block: &Block) -> [f64; 3] {
-        let mut abc = self.state.abc;
+        let mut abc = self.track.abc;
         for (angle, letter) in abc.iter_mut().zip(['A', 'B', 'C']) {
             if let Some(value) = block.get(letter) {
                 *angle = if self.modes.absolute { value } else { *angle + value };
             }
         }
         abc
-    }
-
-    /// The position along an axis is not known from now on.
-    pub(crate) fn forget(&mut self, k: usize) {
-        self.at[k] = None;
-        if !self.map.is_shift() {
-            // Turned coordinates need both X and Y.
-            self.at = [None; 3];
-        }
-        self.state.xyz = self.map.partial(self.at);
     }
 
     /// G53: a move in machine coordinates. Unless those are known, its end in the part's frame is not.
@@ -44,15 +35,10 @@ impl Reader {
         {
             return self.go_to_control([x, y, z], motion == MotionMode::Rapid);
         }
-        self.state
+        self.track
             .note("moves in machine coordinates are left out: the path breaks here");
-        for k in 0..3 {
-            if words[k].is_some() {
-                self.forget(k);
-            }
-        }
-        self.state.abc = self.angles(block);
-        self.state.leave();
+        self.track.abc = self.angles(block);
+        self.track.leave(words.map(|word| word.is_some()));
         Ok(())
     }
 
@@ -61,8 +47,8 @@ impl Reader {
         let Some(inverse) = self.frame_map().inverse() else {
             return Ok(());
         };
-        let end = inverse.apply(std::array::from_fn(|k| control[k] - self.length[k]));
-        let stroke = self.stroke_to(end, self.state.abc, rapid);
+        let end = inverse.point(std::array::from_fn(|k| control[k] - self.length[k]));
+        let stroke = self.stroke_to(end, self.track.abc, rapid);
         self.give(stroke)
     }
 
@@ -73,7 +59,7 @@ impl Reader {
             rapid,
             bend: None,
             plane: self.modes.plane,
-            place: self.state.place,
+            place: self.track.place,
             feed: if rapid { None } else { self.modes.feed },
             feed_mode: self.modes.feed_mode,
             exact_stop: self.modes.exact_stop || self.modes.stops_here,
@@ -109,13 +95,12 @@ impl Reader {
     /// Takes unknown coordinates as 0, before a move that needs them.
     fn assume(&mut self, needed: impl Fn(usize) -> bool) {
         for k in 0..3 {
-            if self.at[k].is_none() && needed(k) {
+            if self.track.xyz[k].is_none() && needed(k) {
                 let axis = ['X', 'Y', 'Z'][k];
-                self.state.note(format!("{axis} is not known here: taken as 0"));
-                self.at[k] = Some(0.0);
+                self.track.note(format!("{axis} is not known here: taken as 0"));
+                self.track.xyz[k] = Some(0.0);
             }
         }
-        self.state.xyz = self.map.partial(self.at);
     }
 
     /// A move in the program's coordinates.
@@ -128,30 +113,29 @@ impl Reader {
         let abc = self.aim(block, motion, abc)?;
         let vector = self.has_vector(block, motion);
         let cuts = motion != MotionMode::Rapid;
-        let unknown = self.known_position().is_none();
+        let unknown = self.track.known().is_none();
         if self.uncertain && unknown && (cuts || !self.modes.absolute) {
             // Nothing is assumed about a position that an earlier problem has made unknown.
             for k in 0..3 {
                 if let Some(word) = words[k] {
-                    self.at[k] = self.modes.absolute.then_some(word);
+                    self.track.xyz[k] = self.modes.absolute.then_some(word);
                 }
             }
-            self.state.xyz = self.map.partial(self.at);
-            self.state.abc = abc;
+            self.track.abc = abc;
             if self.lenient {
-                self.state
+                self.track
                     .note("left out: a move after a problem, until its start is known again");
             }
             return Ok(());
         }
         if unknown && (cuts || !self.modes.absolute) {
-            for k in (0..3).filter(|&k| self.at[k].is_none()) {
+            for k in (0..3).filter(|&k| self.track.xyz[k].is_none()) {
                 self.offsets.know(k)?;
             }
             let relative = !self.modes.absolute || matches!(motion, MotionMode::Arc { .. });
             self.assume(|k| words[k].is_none() || relative);
         }
-        let mut to = self.at;
+        let mut to = self.track.xyz;
         for k in 0..3 {
             if let Some(word) = words[k] {
                 to[k] = Some(match to[k] {
@@ -163,8 +147,8 @@ impl Reader {
                 });
             }
         }
-        if self.modes.tilt.is_none() && (!self.map.is_shift() || self.map.add != [0.0; 3]) {
-            self.state.note(if self.offsets.made_by_shift() {
+        if self.modes.tilt.is_none() && *self.track.frame() != WorkFrame::default() {
+            self.track.note(if self.offsets.made_by_shift() {
                 "work offsets set by the program are applied"
             } else {
                 "work offsets set by the program are applied: poses are in machine coordinates"
@@ -172,27 +156,22 @@ impl Reader {
         }
         let [Some(x), Some(y), Some(z)] = to else {
             // A rapid towards the first known position.
-            self.at = to;
-            self.state.xyz = self.map.partial(to);
-            self.state.abc = abc;
+            self.track.xyz = to;
+            self.track.abc = abc;
             return Ok(());
         };
         let end = [x, y, z];
         if !matches!(motion, MotionMode::Curve { .. }) {
             self.modes.curve_tangent = None;
         }
-        if cuts && self.known_position().is_none() {
-            self.state
-                .note("the start of this feed move is unknown: the path begins at its end");
-        }
         let mut stroke = self.stroke_to(end, abc, !cuts);
         if matches!(motion, MotionMode::Thread | MotionMode::RigidTap) {
             stroke.feed = Some(self.pitch(motion, block)?);
             stroke.feed_mode = FeedMode::PerRevolution;
         }
-        match (motion, self.known_position()) {
+        match (motion, self.track.known()) {
             (MotionMode::Arc { counter_clockwise }, Some(start)) => {
-                if self.straight_next {
+                if self.track.starts_beside() {
                     return Err(NcProblem::syntax(
                         "an arc right after the end of cutter compensation: expected a straight move first",
                     ));

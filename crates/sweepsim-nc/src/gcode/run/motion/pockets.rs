@@ -95,12 +95,12 @@ impl Reader {
         }
         self.go_by(MotionMode::Rapid, block, ['X', 'Y', ' '])?;
         let motion = self.modes.motion;
-        self.state.note(format!(
+        self.track.note(format!(
             "{name}: the tool goes to its circles and back on semicircles towards +X: the control may choose others"
         ));
         for _ in 0..repeats as usize {
             self.go_by(MotionMode::Feed, block, [' ', ' ', 'Z'])?;
-            let Some(centre) = self.known_position() else { break };
+            let Some(centre) = self.track.known() else { break };
             let turn = if counter_clockwise { TAU } else { -TAU };
             let mut at = 0.0;
             for circle in circles.iter().map(|circle| circle - radius).chain([0.0]) {
@@ -125,7 +125,7 @@ impl Reader {
     }
 
     fn bow(&mut self, end: [f64; 3], centre: [f64; 2], sweep: f64) -> Result<(), NcProblem> {
-        let mut stroke = self.stroke_to(end, self.state.abc, false);
+        let mut stroke = self.stroke_to(end, self.track.abc, false);
         stroke.bend = Some(Bend { centre, sweep });
         self.give(stroke)
     }
@@ -194,7 +194,7 @@ impl Reader {
             _ => -2.0 * offset,
         };
         let words = self.lengths(block, ['X', 'Y', 'Z']);
-        let mut end = match self.known_position() {
+        let mut end = match self.track.known() {
             Some(here) => here,
             None if self.uncertain => return Ok(()),
             None => {
@@ -211,7 +211,7 @@ impl Reader {
             }
         }
         let rapid = motion == MotionMode::Rapid;
-        let stroke = self.stroke_to(end, self.state.abc, rapid);
+        let stroke = self.stroke_to(end, self.track.abc, rapid);
         self.give(stroke)?;
         self.stretched = true;
         Ok(())

@@ -1,14 +1,12 @@
-//! Circles and helices of G2 and G3, exact or divided into chords.
+//! Circles and helices in a plane of the axes, from what programs give of them.
 //!
 //! Notation: *u* and *v* are the axes of the plane, such that a counter-clockwise turn (G3) goes from u to v; *w* is the third axis.
 //! G17: XY, Z. G18: ZX, Y. G19: YZ, X.
 
 use std::f64::consts::TAU;
 
-use sweepsim_motion::{ArcError, TipArc};
-
-use super::map::Map;
-pub(crate) use crate::drive::ArcPlane;
+use super::arcs::Arc;
+use super::contour::ArcPlane;
 
 /// A circular arc or helix.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +26,6 @@ const RADIUS_SLACK: f64 = 0.0127;
 const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
 /// and at most. These are LinuxCNC's limits, for which many programs are written.
 const RADIUS_SLACK_LARGEST: f64 = 0.5;
-
-/// The most chords per arc.
-const MOST_CHORDS: f64 = 1e6;
 
 impl CircularArc {
     /// The arc about `centre`. `turns` is 1 for less than a full turn, and one more for each further full turn.
@@ -138,39 +133,6 @@ impl CircularArc {
         Self::about((start, end), plane, centre, across > 0.0, 1.0)
     }
 
-    /// The arc's image under a map: `None` if that is no arc in one of the three planes.
-    fn mapped(&self, map: &Map) -> Option<Self> {
-        let [u, v, w] = self.plane;
-        if map.is_shift() {
-            let add = map.add;
-            return Some(Self {
-                start: map.apply(self.start),
-                end: map.apply(self.end),
-                centre: [self.centre[0] + add[u], self.centre[1] + add[v]],
-                ..*self
-            });
-        }
-        let scale = map.scale()?;
-        let mut normal = [0.0; 3];
-        normal[w] = 1.0;
-        // A mirrored arc turns the other way; its plane must still be one of the three.
-        let side = map.apply_direction(normal)[w] / scale.abs();
-        if (side.abs() - 1.0).abs() > 1e-9 {
-            return None;
-        }
-        let mut centre = self.start;
-        centre[u] = self.centre[0];
-        centre[v] = self.centre[1];
-        let centre = map.apply(centre);
-        Some(Self {
-            start: map.apply(self.start),
-            end: map.apply(self.end),
-            centre: [centre[u], centre[v]],
-            sweep: self.sweep * scale.signum() * side.signum(),
-            ..*self
-        })
-    }
-
     /// Checks the word of the third axis (K in G17), which says nothing that the end does not: the pitch of a helix, or its rise. With
     /// absolute centres it may also be the `height` of either end.
     pub(crate) fn check_third(&self, word: f64, height: Option<f64>) -> Result<(), String> {
@@ -198,104 +160,21 @@ impl CircularArc {
         })
     }
 
-    /// The arc as a single move of the tip.
-    pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
+    /// The same about its axis.
+    pub(crate) fn about_axis(&self) -> Arc {
         let [u, v, w] = self.plane;
         let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
         centre[u] = self.centre[0];
         centre[v] = self.centre[1];
         centre[w] = self.start[w];
         normal[w] = 1.0;
-        Ok(TipArc::new(centre, normal, self.sweep)?.through(self.start, self.end))
-    }
-
-    /// The number of chords that stay within `tolerance` (mm) of the arc.
-    pub(crate) fn chords(&self, tolerance: f64) -> Result<usize, String> {
-        let [u, v, _] = self.plane;
-        let radius = |p: &[f64; 3]| (p[u] - self.centre[0]).hypot(p[v] - self.centre[1]);
-        let radius = radius(&self.start).max(radius(&self.end));
-        // A chord over 2h leaves r (1 - cos h) = 2 r sin²(h/2).
-        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
-        let chords = (self.sweep.abs() / (2.0 * half)).ceil().max(1.0);
-        if chords <= MOST_CHORDS {
-            Ok(chords as usize)
-        } else {
-            Err(format!(
-                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
-            ))
+        Arc {
+            start: self.start,
+            end: self.end,
+            centre,
+            normal,
+            sweep: self.sweep,
         }
-    }
-
-    /// The point at `s` in `[0, 1]`; at 0 and 1 exactly the ends.
-    pub(crate) fn at(&self, s: f64) -> [f64; 3] {
-        if s >= 1.0 {
-            return self.end;
-        }
-        let [u, v, w] = self.plane;
-        let from = [self.start[u] - self.centre[0], self.start[v] - self.centre[1]];
-        let to = [self.end[u] - self.centre[0], self.end[v] - self.centre[1]];
-        let (ra, rb) = (from[0].hypot(from[1]), to[0].hypot(to[1]));
-        // If the radii at the ends differ a little, the radius changes linearly between them.
-        let scale = (ra + s * (rb - ra)) / ra;
-        let (sin, cos) = (s * self.sweep).sin_cos();
-        let mut point = self.start;
-        point[u] = self.centre[0] + scale * (cos * from[0] - sin * from[1]);
-        point[v] = self.centre[1] + scale * (sin * from[0] + cos * from[1]);
-        point[w] = self.start[w] + s * (self.end[w] - self.start[w]);
-        point
-    }
-}
-
-/// An arc where the tool goes.
-#[derive(Clone, Debug)]
-pub(crate) struct PlacedArc {
-    arc: CircularArc,
-    /// What turns it into its plane, if that is none of the three, and the scale.
-    tilt: Option<(Map, f64)>,
-}
-
-impl PlacedArc {
-    /// The image under a map: `None` if that is no arc.
-    pub(crate) fn new(arc: CircularArc, map: &Map) -> Option<Self> {
-        if let Some(arc) = arc.mapped(map) {
-            return Some(Self { arc, tilt: None });
-        }
-        let scale = map.scale()?;
-        let tilt = Some((*map, scale));
-        Some(Self { arc, tilt })
-    }
-
-    fn placed(&self, point: [f64; 3]) -> [f64; 3] {
-        match &self.tilt {
-            Some((map, _)) => map.apply(point),
-            None => point,
-        }
-    }
-
-    pub(crate) fn ends(&self) -> [[f64; 3]; 2] {
-        [self.placed(self.arc.start), self.placed(self.arc.end)]
-    }
-
-    /// The arc, about an axis of any direction.
-    pub(crate) fn exact(&self) -> Result<TipArc, ArcError> {
-        let arc = self.arc.exact()?;
-        let Some((map, scale)) = &self.tilt else { return Ok(arc) };
-        let [start, end] = self.ends();
-        let normal = map.apply_direction(arc.normal()).map(|c| c / scale.abs());
-        // A mirrored arc turns the other way.
-        let angle = arc.angle() * scale.signum();
-        Ok(TipArc::new(map.apply(arc.centre()), normal, angle)?.through(start, end))
-    }
-
-    /// The number of chords that stay within `tolerance` (mm) of the arc.
-    pub(crate) fn chords(&self, tolerance: f64) -> Result<usize, String> {
-        let scale = self.tilt.as_ref().map_or(1.0, |(_, scale)| scale.abs());
-        self.arc.chords(tolerance / scale)
-    }
-
-    /// The point at `s` in `[0, 1]`.
-    pub(crate) fn at(&self, s: f64) -> [f64; 3] {
-        self.placed(self.arc.at(s))
     }
 }
 
@@ -309,7 +188,7 @@ mod tests {
     fn quarter_and_full_circle() {
         let quarter = CircularArc::about(([1.0, 0.0, 0.0], [0.0, 1.0, 2.0]), XY, [0.0; 2], true, 1.0).unwrap();
         assert!((quarter.sweep - TAU / 4.0).abs() < 1e-15);
-        let middle = quarter.at(0.5);
+        let middle = quarter.about_axis().at(0.5);
         assert!((middle[0] - 0.5_f64.sqrt()).abs() < 1e-15 && (middle[2] - 1.0).abs() < 1e-15);
         let full = CircularArc::about(([1.0, 0.0, 0.0], [1.0, 0.0, 0.0]), XY, [0.0; 2], false, 2.0).unwrap();
         assert!((full.sweep + 2.0 * TAU).abs() < 1e-15);
@@ -331,7 +210,9 @@ mod tests {
 
     #[test]
     fn chords_keep_the_tolerance() {
-        let arc = CircularArc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0).unwrap();
+        let arc = CircularArc::about(([5.0, 0.0, 0.0], [5.0, 0.0, 1.0]), XY, [0.0; 2], true, 1.0)
+            .unwrap()
+            .about_axis();
         for tolerance in [1.0, 0.1, 1e-3, 1e-5] {
             let n = arc.chords(tolerance).unwrap();
             let sagitta = |n: usize| 5.0 * (1.0 - (0.5 * arc.sweep / n as f64).cos());

@@ -1,6 +1,9 @@
 //! From programmed moves to those of the tool: rounded corners and chamfers first, then cutter compensation.
 
+use nalgebra::Vector3;
+
 use super::arcs::Arc;
+use super::circular_arc::CircularArc;
 use super::contour::{ArcPlane, Bend, Compensation, Corner, Item, Outcome, Place, Side, Stroke, blend};
 use super::track::Track;
 use crate::model::event::EventKind;
@@ -11,7 +14,7 @@ use crate::text::error::NcProblem;
 pub(super) struct Contour {
     compensation: Option<Compensation>,
     /// Where the tool is, if not at the programmed point: beside a contour, and until the move after it.
-    actual: Option<[f64; 3]>,
+    pub actual: Option<[f64; 3]>,
     /// A move whose end becomes a corner with the next one, and where it starts.
     waiting: Option<([f64; 3], Stroke, Corner)>,
     /// What happens after that move.
@@ -23,6 +26,11 @@ pub(super) struct Contour {
 }
 
 impl Track {
+    /// Whether the next move starts beside its programmed start: after the end of cutter compensation.
+    pub fn starts_beside(&self) -> bool {
+        self.contour.actual.is_some() && !self.compensates()
+    }
+
     /// Whether cutter compensation is on.
     pub fn compensates(&self) -> bool {
         self.contour.compensation.is_some()
@@ -115,51 +123,67 @@ impl Track {
 
     /// A straight programmed move to coordinates in the frame and angles.
     pub fn line(&mut self, target: [f64; 3], abc: [f64; 3], rapid: bool) -> Result<(), NcProblem> {
+        let stroke = self.stroke(target, abc, rapid, None, [0, 1, 2]);
+        self.go(stroke)
+    }
+
+    /// A programmed move in the frame.
+    pub fn go(&mut self, stroke: Stroke) -> Result<(), NcProblem> {
         let from = self.known();
         match from {
-            Some(from) if self.contour.is_busy() => {
-                let stroke = self.stroke(target, abc, rapid, None, [0, 1, 2]);
-                self.programmed(from, stroke)?;
-            }
+            Some(from) if self.contour.is_busy() => self.programmed(from, stroke)?,
             _ => {
                 self.contour.next = None;
-                self.straight(target, abc, rapid)?;
+                self.emit(&stroke)?;
             }
         }
-        let way = from.map(|from| std::array::from_fn(|k| target[k] - from[k]));
+        let [u, v, _] = stroke.plane;
+        let way: Option<[f64; 3]> = match stroke.bend {
+            None => from.map(|from| std::array::from_fn(|k| stroke.end[k] - from[k])),
+            Some(bend) => {
+                let out = [stroke.end[u] - bend.centre[0], stroke.end[v] - bend.centre[1]];
+                let mut way = [0.0; 3];
+                (way[u], way[v]) = (-out[1] * bend.sweep.signum(), out[0] * bend.sweep.signum());
+                Some(way)
+            }
+        };
         if way.is_none_or(|way| way != [0.0; 3]) {
             self.contour.direction = way;
         }
         Ok(())
     }
 
-    /// A programmed feed move along an arc, while the rotary axes turn to `abc`.
+    /// A programmed feed move along an arc in a plane of the axes, while the rotary axes turn to `abc`.
+    pub fn circle(&mut self, arc: &CircularArc, abc: [f64; 3]) -> Result<(), NcProblem> {
+        let bend = Bend {
+            centre: arc.centre,
+            sweep: arc.sweep,
+        };
+        let stroke = self.stroke(arc.end, abc, false, Some(bend), arc.plane);
+        self.go(stroke)
+    }
+
+    /// A programmed feed move along an arc about any axis, while the rotary axes turn to `abc`.
     pub fn arc(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
-        match self.known() {
-            Some(from) if self.contour.is_busy() => {
-                let Some(w) = (0..3).find(|&w| arc.normal[w].abs() == 1.0) else {
-                    return Err(NcProblem::unsupported(
-                        "arcs out of the plane, beside a contour or at a corner, are",
-                        "expected G2 or G3",
-                    ));
-                };
-                let (u, v) = ((w + 1) % 3, (w + 2) % 3);
-                let bend = Bend {
-                    centre: [arc.centre[u], arc.centre[v]],
-                    sweep: arc.sweep * arc.normal[w],
-                };
-                let stroke = self.stroke(arc.end, abc, false, Some(bend), [u, v, w]);
-                self.programmed(from, stroke)?;
-            }
-            _ => self.bend(arc, abc)?,
+        if let Some(w) = (0..3).find(|&w| arc.normal[w].abs() == 1.0) {
+            let plane @ [u, v, _] = [(w + 1) % 3, (w + 2) % 3, w];
+            let bend = Bend {
+                centre: [arc.centre[u], arc.centre[v]],
+                sweep: arc.sweep * arc.normal[w],
+            };
+            let stroke = self.stroke(arc.end, abc, false, Some(bend), plane);
+            return self.go(stroke);
         }
-        let out: [f64; 3] = std::array::from_fn(|k| arc.end[k] - arc.centre[k]);
-        let n = arc.normal;
-        let along: [f64; 3] = std::array::from_fn(|k| {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            (n[i] * out[j] - n[j] * out[i]) * arc.sweep.signum()
-        });
-        self.contour.direction = Some(along);
+        if self.contour.is_busy() {
+            return Err(NcProblem::unsupported(
+                "arcs out of the plane, beside a contour or at a corner, are",
+                "expected G2 or G3",
+            ));
+        }
+        self.bend(arc, abc)?;
+        let out = Vector3::from(arc.end) - Vector3::from(arc.centre);
+        let along = Vector3::from(arc.normal).cross(&out) * arc.sweep.signum();
+        self.contour.direction = Some(along.into());
         Ok(())
     }
 
@@ -251,9 +275,7 @@ impl Track {
                     "an arc right after the end of cutter compensation: expected a straight move first",
                 ));
             }
-            self.emit(&stroke)?;
-            self.contour.actual = None;
-            return Ok(());
+            return self.emit(&stroke);
         };
         if stroke.abc != self.abc {
             return Err(NcProblem::unsupported(
@@ -271,7 +293,11 @@ impl Track {
         let programmed = self.xyz;
         for item in items {
             match item {
-                Item::Stroke(stroke) => self.emit(&stroke)?,
+                Item::Stroke(stroke) => {
+                    let result = self.emit(&stroke);
+                    self.contour.actual = Some(stroke.end);
+                    result?;
+                }
                 Item::Event(kind, place) => {
                     let here = std::mem::replace(&mut self.place, place);
                     let result = self.record(kind);
@@ -287,8 +313,11 @@ impl Track {
 
     /// A move of the tool from where it is.
     fn emit(&mut self, stroke: &Stroke) -> Result<(), NcProblem> {
-        if let Some(actual) = self.contour.actual {
+        if let Some(actual) = self.contour.actual.take() {
             self.xyz = actual.map(Some);
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.stroke(stroke);
         }
         let place = std::mem::replace(&mut self.place, stroke.place);
         let feed = std::mem::replace(&mut self.feed, stroke.feed);
@@ -296,25 +325,22 @@ impl Track {
         let exact_stop = std::mem::replace(&mut self.exact_stop, stroke.exact_stop);
         let result = match (stroke.bend, self.known()) {
             (Some(bend), Some(start)) => {
-                let [u, v, w] = stroke.plane;
-                let (mut centre, mut normal) = ([0.0; 3], [0.0; 3]);
-                centre[u] = bend.centre[0];
-                centre[v] = bend.centre[1];
-                centre[w] = start[w];
-                normal[w] = 1.0;
-                let arc = Arc {
+                let arc = CircularArc {
+                    start,
                     end: stroke.end,
-                    centre,
-                    normal,
+                    plane: stroke.plane,
+                    centre: bend.centre,
                     sweep: bend.sweep,
                 };
-                self.bend(&arc, stroke.abc)
+                self.bend(&arc.about_axis(), stroke.abc)
             }
-            _ => self.straight(stroke.end, stroke.abc, stroke.rapid),
+            (Some(_), None) => Err(NcProblem::syntax(
+                "an arc from an unknown position: expected a move before it",
+            )),
+            (None, _) => self.straight(stroke.end, stroke.abc, stroke.rapid),
         };
         (self.place, self.feed, self.feed_mode) = (place, feed, mode);
         self.exact_stop = exact_stop;
-        self.contour.actual = Some(stroke.end);
         result
     }
 }

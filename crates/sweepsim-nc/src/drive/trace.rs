@@ -3,9 +3,10 @@
 //! Source: *The NIST RS274/NGC Interpreter, version 3*, section 4 (canonical machining functions), as LinuxCNC's stand-alone interpreter
 //! prints them.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
-use super::motion::arc::ArcPlane;
+use super::contour::{ArcPlane, Stroke};
 
 /// A canonical command, in the program's units and coordinates.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +31,36 @@ pub(crate) enum Canonical {
     Dwell(f64),
     Message(String),
     Print(String),
+}
+
+/// The canonical commands of a program so far.
+#[derive(Default)]
+pub(crate) struct Trace {
+    pub commands: Vec<Canonical>,
+    /// Millimetres per unit of the program.
+    pub unit: f64,
+}
+
+impl Trace {
+    /// A move of the tool.
+    pub fn stroke(&mut self, stroke: &Stroke) {
+        let [x, y, z] = stroke.end.map(|x| x / self.unit);
+        let [a, b, c] = stroke.abc;
+        self.commands.push(match stroke.bend {
+            Some(bend) => {
+                let turns = ((bend.sweep.abs() - 1e-6) / TAU).floor() as i32 + 1;
+                Canonical::Arc {
+                    plane: stroke.plane,
+                    end: [x, y, z],
+                    centre: bend.centre.map(|x| x / self.unit),
+                    turns: if bend.sweep > 0.0 { turns } else { -turns },
+                    abc: stroke.abc,
+                }
+            }
+            None if stroke.rapid => Canonical::Traverse([x, y, z, a, b, c]),
+            None => Canonical::Feed([x, y, z, a, b, c]),
+        });
+    }
 }
 
 /// A number with four decimals, never `-0.0000`.
