@@ -96,7 +96,9 @@ impl Track {
                 return Ok(());
             }
         }
-        let chords = arc.chords(self.arc_tolerance / scale.abs()).map_err(NcProblem::syntax)?;
+        let chords = arc
+            .chords(self.arc_tolerance / scale.abs())
+            .map_err(NcProblem::syntax)?;
         self.notes.add_str(self.place.line, &self.chord_note);
         let from = Position::new([0.0; 3], self.abc);
         let to = Position::new([0.0; 3], abc);

@@ -1,9 +1,11 @@
-//! What a program does besides moving, and where it is called from: as much as may be kept.
+//! What a program does besides moving, where it is called from, and its end: as much as may be kept.
 
+use super::contour::Place;
 use super::track::Track;
 use crate::model::event::{Event, EventKind, MOST_TEXT};
-use crate::model::program::Call;
-use crate::text::error::NcProblem;
+use crate::model::positions::ProgramPositions;
+use crate::model::program::{Call, Program};
+use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The most calls: bounds the memory that a file of a few bytes can demand.
 const MOST_CALLS: usize = 5_000_000;
@@ -61,5 +63,49 @@ impl Track {
         self.place.call = Some(self.program.calls.len() as u32);
         self.program.calls.push(call);
         Ok(())
+    }
+
+    /// Returns to the calling place.
+    pub fn returns(&mut self) {
+        if let Some(call) = self.place.call.and_then(|call| self.program.calls.get(call as usize)) {
+            self.place = Place {
+                file: call.file,
+                line: call.line,
+                call: call.parent,
+            };
+        }
+    }
+
+    /// Ends the contour that may be on, after all blocks of `text`. The problems found so far, and what is wrong with the program as a whole.
+    pub fn close(&mut self, text: &str, lenient: bool, mut errors: Vec<NcError>) -> Result<(), NcError> {
+        if let Err(problem) = self.end_compensation(None) {
+            if lenient {
+                self.note(format!("left out: {problem}"));
+            } else {
+                let line = self.place.line.max(1);
+                let whole = text.lines().nth(line - 1).unwrap_or("");
+                let position = TextPosition::in_line(line, whole, 1, whole.chars().count());
+                errors.push(NcError::new(problem, Some(position)));
+            }
+        }
+        if let Some(error) = NcError::all(errors) {
+            return Err(error);
+        }
+        if self.program.poses.is_empty() {
+            let line = text.lines().count().max(1);
+            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
+            return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
+        }
+        Ok(())
+    }
+
+    pub fn finish(mut self) -> Program {
+        self.program.notes = self.notes.finish();
+        let machine = &mut self.program.machine;
+        machine.table = machine.table.or(self.driver.implied_table());
+        if self.program.positions.len() != self.program.poses.len() {
+            self.program.positions = ProgramPositions::default();
+        }
+        self.program
     }
 }

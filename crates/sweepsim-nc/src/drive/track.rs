@@ -10,10 +10,9 @@ use super::trace::Trace;
 use crate::machines::{Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
-use crate::model::positions::ProgramPositions;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
 use crate::model::read_options::ReadOptions;
-use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::error::NcProblem;
 use crate::text::numbers::rounded;
 
 /// Whether two poses are the same but for the rounding of a change of coordinates.
@@ -91,52 +90,8 @@ impl Track {
         }
     }
 
-    /// Ends the contour that may be on, after all blocks of `text`. The problems found so far, and what is wrong with the program as a whole.
-    pub fn close(&mut self, text: &str, lenient: bool, mut errors: Vec<NcError>) -> Result<(), NcError> {
-        if let Err(problem) = self.end_compensation(None) {
-            if lenient {
-                self.note(format!("left out: {problem}"));
-            } else {
-                let line = self.place.line.max(1);
-                let whole = text.lines().nth(line - 1).unwrap_or("");
-                let position = TextPosition::in_line(line, whole, 1, whole.chars().count());
-                errors.push(NcError::new(problem, Some(position)));
-            }
-        }
-        if let Some(error) = NcError::all(errors) {
-            return Err(error);
-        }
-        if self.program.poses.is_empty() {
-            let line = text.lines().count().max(1);
-            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
-            return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
-        }
-        Ok(())
-    }
-
-    pub fn finish(mut self) -> Program {
-        self.program.notes = self.notes.finish();
-        let machine = &mut self.program.machine;
-        machine.table = machine.table.or(self.driver.implied_table());
-        if self.program.positions.len() != self.program.poses.len() {
-            self.program.positions = ProgramPositions::default();
-        }
-        self.program
-    }
-
     pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
         self.notes.add(self.place.line, message);
-    }
-
-    /// Returns to the calling place.
-    pub fn returns(&mut self) {
-        if let Some(call) = self.place.call.and_then(|call| self.program.calls.get(call as usize)) {
-            self.place = Place {
-                file: call.file,
-                line: call.line,
-                call: call.parent,
-            };
-        }
     }
 
     /// The position in the frame, if it is known.
