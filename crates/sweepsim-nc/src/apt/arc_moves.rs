@@ -1,33 +1,26 @@
 //! Moves along arcs: the statements `CIRCLE` and `MOVARC`, and the moves that they become.
 
-use sweepsim_motion::{Course, Move, Turning};
-
-use super::arcs::{Arc, PendingArc};
-use super::frames::{Vector, add, norm};
-use super::motion::Target;
+use super::arcs::PendingArc;
+use super::frames::{Vector, norm};
 use super::reader::{Located, Reader, numbers};
 use super::statement::Statement;
-use crate::model::kept_arcs::KeptArcs;
+use crate::drive::Arc;
 use crate::text::error::NcProblem;
 
 impl Reader<'_> {
     /// `MOVARC` that no `GOTO` ends.
     pub fn own_arc(&mut self, arc: &PendingArc) -> Result<(), NcProblem> {
-        let Some(start) = self.tip else {
+        let Some(start) = self.track.known() else {
             return Err(NcProblem::syntax("an arc without a start: expected a GOTO before it"));
         };
         let Some(end) = arc.own_end(start) else {
             return Err(NcProblem::syntax("an arc without an end: expected a GOTO after CIRCLE"));
         };
         let made = arc.to(start, end).map_err(NcProblem::syntax)?;
-        let target = Target {
-            tip: end,
-            axis: self.axis,
-            rapid: false,
-            line: arc.line,
-            call: None,
-        };
-        self.along(&made, target)
+        let line = std::mem::replace(&mut self.track.place.line, arc.line);
+        let result = self.along(&made, self.axis());
+        self.track.place.line = line;
+        result
     }
 
     /// Ends an arc that no `GOTO` has ended.
@@ -126,41 +119,13 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Moves along an arc, exactly or in chords.
-    pub fn along(&mut self, arc: &Arc, target: Target) -> Result<(), NcProblem> {
-        if !self.joined {
-            let start = Target {
-                tip: arc.start,
-                axis: self.axis,
-                rapid: true,
-                ..target
-            };
-            self.push(start, Move::default())?;
+    /// Moves along an arc, while the tool turns into a direction.
+    pub fn along(&mut self, arc: &Arc, axis: Vector) -> Result<(), NcProblem> {
+        self.load_next();
+        if !self.track.joined {
+            self.line_to(arc.start, self.axis(), true)?;
         }
-        let kept = KeptArcs::new(self.options);
-        if !kept.none() {
-            let exact = arc.exact().map_err(|error| NcProblem::syntax(error.to_string()))?;
-            let axis = Some(self.axis).filter(|axis| *axis == target.axis);
-            if kept.keep(&exact, [arc.start, arc.end], axis) {
-                let (course, turning) = (Course::Arc(exact), Turning::Even);
-                return self.push(target, Move { course, turning });
-            }
-        }
-        let chords = arc.chords(self.options.arc_tolerance).map_err(NcProblem::syntax)?;
-        if chords > 1 {
-            self.notes.add(target.line, "arcs are divided into chords");
-        }
-        let from = self.axis;
-        for chord in 1..=chords {
-            let s = chord as f64 / chords as f64;
-            let axis = if from == target.axis || chord == chords {
-                target.axis
-            } else {
-                add(from.map(|c| c * (1.0 - s)), s, target.axis)
-            };
-            let tip = arc.at(s);
-            self.line_to(Target { tip, axis, ..target })?;
-        }
-        Ok(())
+        self.check_turn(axis)?;
+        self.track.arc_towards(arc, axis)
     }
 }

@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use sweepsim_motion::{ArcError, TipArc};
-
 use super::frames::{Vector, add, cross, dot, norm, sub, turned};
+use crate::drive::Arc;
 
 /// An arc whose end is not known yet, in millimetres in the frame of the poses.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,22 +28,10 @@ const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
 const RADIUS_SLACK_LARGEST: f64 = 0.5;
 /// Ends within this distance, in mm, are the same: files have four to six decimals.
 const SAME_END: f64 = 2e-4;
-/// The most chords per arc.
-const MOST_CHORDS: f64 = 1e6;
 
 fn differs(a: f64, b: f64) -> bool {
     let apart = (a - b).abs();
     !(apart <= RADIUS_SLACK_LARGEST && apart <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * a.max(b)))
-}
-
-/// An arc or helix with both ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Arc {
-    pub start: Vector,
-    pub end: Vector,
-    centre: Vector,
-    normal: Vector,
-    pub angle: f64,
 }
 
 impl PendingArc {
@@ -101,50 +88,7 @@ impl PendingArc {
             end,
             centre: self.centre,
             normal: self.normal,
-            angle,
+            sweep: angle,
         })
-    }
-}
-
-impl Arc {
-    /// The arc as a single move of the tip.
-    pub fn exact(&self) -> Result<TipArc, ArcError> {
-        Ok(TipArc::new(self.centre, self.normal, self.angle)?.through(self.start, self.end))
-    }
-
-    fn radial(&self) -> Vector {
-        let from = sub(self.start, self.centre);
-        add(from, -dot(from, self.normal), self.normal)
-    }
-
-    /// The number of chords that stay within `tolerance` (mm) of the arc.
-    pub fn chords(&self, tolerance: f64) -> Result<usize, String> {
-        let radius = norm(self.radial());
-        // A chord over 2h leaves r (1 - cos h) = 2 r sin²(h/2).
-        let half = 2.0 * (tolerance / (2.0 * radius)).sqrt().min(0.7).asin();
-        let chords = (self.angle.abs() / (2.0 * half)).ceil().max(1.0);
-        if chords <= MOST_CHORDS {
-            Ok(chords as usize)
-        } else {
-            Err(format!(
-                "an arc of radius {radius} mm needs {chords:.0} chords at an arc tolerance of {tolerance} mm, more than {MOST_CHORDS}"
-            ))
-        }
-    }
-
-    /// The point at `s` in `[0, 1]`; at 0 and 1 exactly the ends. What is left between the arc and its end is added in proportion.
-    pub fn at(&self, s: f64) -> Vector {
-        if s >= 1.0 {
-            return self.end;
-        }
-        let radial = self.radial();
-        let place = |s: f64| {
-            add(
-                self.start,
-                1.0,
-                sub(turned(radial, self.normal, s * self.angle), radial),
-            )
-        };
-        add(place(s), s, sub(self.end, place(1.0)))
     }
 }

@@ -1,51 +1,33 @@
 //! Moves: `GOTO`, `GODLTA`, `FROM`, arcs and the points of cycles.
 
-use sweepsim_motion::{Course, Move, Pose, Turning};
-
 use super::frames::{Vector, add, dot, norm, sub};
 use super::reader::{Located, Reader, numbers};
 use super::statement::Statement;
 use super::words;
 use crate::model::event::EventKind;
-use crate::model::program::{FeedMode, ProgramPose};
+use crate::model::program::FeedMode;
 use crate::model::read_options::AxisLaw;
 use crate::text::error::NcProblem;
 
-/// The most poses of one program: bounds the memory that a file of a few bytes can demand.
-const MOST_POSES: usize = 20_000_000;
 /// How far a tool axis may be from unit length without a note: files have few digits.
 const UNIT_LENGTH: f64 = 1e-3;
 
-/// Where a move leads.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Target {
-    pub tip: Vector,
-    pub axis: Vector,
-    pub rapid: bool,
-    pub line: usize,
-    /// An index of the program's calls.
-    pub call: Option<u32>,
-}
-
 impl Reader<'_> {
+    /// The direction from the tip to the holder, of any length.
+    pub fn axis(&self) -> Vector {
+        self.track.direct.unwrap_or([0.0, 0.0, 1.0])
+    }
+
     /// A point in the frame of the poses.
     pub fn placed(&self, point: Vector) -> Vector {
-        let point = point.map(|c| c * self.unit);
-        match &self.frames {
-            Some([first, current]) => current.point_in(first, point),
-            None => point,
-        }
+        self.frame.point(point.map(|c| c * self.unit))
     }
 
     pub fn directed(&self, direction: Vector) -> Vector {
-        match &self.frames {
-            Some([first, current]) => current.direction_in(first, direction),
-            None => direction,
-        }
+        self.frame.direction(direction)
     }
 
     pub fn goto(&mut self, statement: &Statement) -> Result<(), Located> {
-        let line = statement.line;
         if let Some(word) = statement.items.iter().find(|item| item.number.is_none()) {
             let named = word.text.starts_with(|c: char| c.is_ascii_alphabetic());
             let problem = if named && !words::is_geometry(statement.major, "") {
@@ -72,7 +54,7 @@ impl Reader<'_> {
                 expected,
             )));
         }
-        let mut axis = self.axis;
+        let mut axis = self.axis();
         if let (2, false) = (triples.len(), several) {
             axis = self.directed(triples[1]);
             let length = norm(axis);
@@ -82,7 +64,7 @@ impl Reader<'_> {
                 return Err(whole(NcProblem::value("the tool axis", found, "a direction")));
             }
             if (length - 1.0).abs() > UNIT_LENGTH {
-                self.notes.add(line, "a tool axis is not of unit length: normalised");
+                self.track.note("a tool axis is not of unit length: normalised");
             }
         }
         let tip = self.placed(if several {
@@ -91,32 +73,20 @@ impl Reader<'_> {
             triples[0]
         });
         let rapid = std::mem::take(&mut self.rapid);
-        let mut target = Target {
-            tip,
-            axis,
-            rapid,
-            line,
-            call: None,
-        };
         if let Some(arc) = self.arc.take() {
-            let Some(start) = self.tip else {
+            let Some(start) = self.track.known() else {
                 return Err(whole(NcProblem::syntax(
                     "an arc without a start: expected a GOTO before it",
                 )));
             };
             if arc.ends_at(start, tip) {
                 let made = arc.to(start, tip).map_err(NcProblem::syntax).map_err(whole)?;
-                return self.along(&made, target).map_err(whole);
+                return self.along(&made, axis).map_err(whole);
             }
             // MOVARC ends by its angle, and this is another move.
-            target.rapid = false;
             self.own_arc(&arc).map_err(|problem| (problem, arc.bytes.clone()))?;
-            target.rapid = rapid;
         }
-        match self.cycle.clone() {
-            Some(cycle) if !rapid => self.drill(&cycle, target).map_err(whole),
-            _ => self.line_to(target).map_err(whole),
-        }
+        self.point(tip, axis, rapid).map_err(whole)
     }
 
     pub fn from(&mut self, statement: &Statement) -> Result<(), Located> {
@@ -128,31 +98,25 @@ impl Reader<'_> {
         let axis = if list.len() == 6 {
             self.directed([list[3], list[4], list[5]])
         } else {
-            self.axis
+            self.axis()
         };
-        self.leave();
-        let target = Target {
-            tip: self.placed([list[0], list[1], list[2]]),
-            axis,
-            rapid: true,
-            line: statement.line,
-            call: None,
-        };
-        self.line_to(target)
+        self.track.joined = false;
+        let tip = self.placed([list[0], list[1], list[2]]);
+        self.line_to(tip, axis, true)
             .map_err(|problem| (problem, statement.bytes.clone()))
     }
 
     pub fn godlta(&mut self, statement: &Statement) -> Result<(), Located> {
         let whole = |problem| (problem, statement.bytes.clone());
         let list = numbers(statement);
-        let Some(tip) = self.tip else {
+        let Some(tip) = self.track.known() else {
             return Err(whole(NcProblem::syntax(
                 "GODLTA without a start: expected a GOTO before it",
             )));
         };
         let by = match list[..] {
             // Along the tool axis.
-            [distance] => add([0.0; 3], distance * self.unit / norm(self.axis), self.axis),
+            [distance] => add([0.0; 3], distance * self.unit / norm(self.axis()), self.axis()),
             [x, y, z] => self.directed([x, y, z].map(|c| c * self.unit)),
             _ => {
                 let expected = "1 (along the tool axis) or 3";
@@ -163,133 +127,99 @@ impl Reader<'_> {
                 )));
             }
         };
-        let target = Target {
-            tip: add(tip, 1.0, by),
-            axis: self.axis,
-            rapid: std::mem::take(&mut self.rapid),
-            line: statement.line,
-            call: None,
-        };
-        match self.cycle.clone() {
-            Some(cycle) if !target.rapid => self.drill(&cycle, target).map_err(whole),
-            _ => self.line_to(target).map_err(whole),
-        }
+        let rapid = std::mem::take(&mut self.rapid);
+        self.point(add(tip, 1.0, by), self.axis(), rapid).map_err(whole)
     }
 
-    pub fn line_to(&mut self, target: Target) -> Result<(), NcProblem> {
-        let turning = match self.options.law {
-            AxisLaw::ConstantSpeed => Turning::Even,
-            AxisLaw::Slerp | AxisLaw::Rotary => Turning::Slerp,
-        };
-        self.push(target, Move::straight(turning))
+    /// A point of the program: of a move, or of a cycle.
+    fn point(&mut self, tip: Vector, axis: Vector, rapid: bool) -> Result<(), NcProblem> {
+        match self.cycle.clone() {
+            Some(cycle) if !rapid => self.drill(&cycle, tip, axis),
+            _ => self.line_to(tip, axis, rapid),
+        }
     }
 
     /// A point of a cycle.
-    fn drill(&mut self, cycle: &super::cycles::Cycle, target: Target) -> Result<(), NcProblem> {
-        let up = target.axis.map(|c| c / norm(target.axis));
-        let call = Some(cycle.call);
-        let at = |level: f64, rapid: bool| Target {
-            tip: add(target.tip, level, up),
-            rapid,
-            call,
-            ..target
-        };
-        let level = |tip: Vector| dot(sub(tip, target.tip), up);
-        let same_axis = dot(self.axis, up) > (1.0 - 1e-9) * norm(self.axis);
-        let before = self.tip.filter(|_| same_axis).map_or(cycle.rapid_level, level);
+    fn drill(&mut self, cycle: &super::cycles::Cycle, point: Vector, axis: Vector) -> Result<(), NcProblem> {
+        let up = axis.map(|c| c / norm(axis));
+        let at = |level: f64| add(point, level, up);
+        let now = self.axis();
+        let same_axis = dot(now, up) > (1.0 - 1e-9) * norm(now);
+        let level = |tip: Vector| dot(sub(tip, point), up);
+        let before = self
+            .track
+            .known()
+            .filter(|_| same_axis)
+            .map_or(cycle.rapid_level, level);
         let top = before.max(cycle.rapid_level);
+        self.track.place.call = Some(cycle.call);
         // Up first, then across, then down.
-        if let (Some(tip), true, true) = (self.tip, self.joined && same_axis, before < cycle.rapid_level) {
-            let tip = add(tip, cycle.rapid_level - before, up);
-            self.line_to(Target { tip, ..at(0.0, true) })?;
+        if let (Some(tip), true, true) = (
+            self.track.known(),
+            self.track.joined && same_axis,
+            before < cycle.rapid_level,
+        ) {
+            self.line_to(add(tip, cycle.rapid_level - before, up), axis, true)?;
         }
         let return_level = cycle.return_level.unwrap_or(before);
         let across = if same_axis { top } else { top.max(return_level) };
-        self.line_to(at(across, true))?;
-        let (feed, mode) = (self.feed, self.feed_mode);
+        self.line_to(at(across), axis, true)?;
+        let modal = (self.track.feed, self.feed_mode);
         if let Some((own, own_mode)) = cycle.feed {
-            (self.feed, self.feed_mode) = (Some(own), own_mode);
+            (self.track.feed, self.feed_mode) = (Some(own), own_mode);
         }
         for step in cycle.steps(before) {
-            self.line_to(at(step.level, step.rapid))?;
+            self.line_to(at(step.level), axis, step.rapid)?;
             if let (true, Some(seconds)) = (step.dwell, cycle.dwell) {
-                self.event(target.line, EventKind::Dwell { seconds });
+                self.track.event(EventKind::Dwell { seconds })?;
             }
         }
-        (self.feed, self.feed_mode) = (feed, mode);
+        (self.track.feed, self.feed_mode) = modal;
+        self.track.place.call = None;
         Ok(())
     }
 
-    pub fn push(&mut self, target: Target, way: Move) -> Result<(), NcProblem> {
-        let pose = Pose::new(target.tip, target.axis).map_err(NcProblem::Pose)?;
-        if self.joined
+    /// Refuses half a turn of the tool, whose plane would be unknown.
+    pub fn check_turn(&self, axis: Vector) -> Result<(), NcProblem> {
+        let now = self.axis();
+        if self.track.joined
             && self.options.law == AxisLaw::Slerp
-            && dot(target.axis, self.axis) <= -(1.0 - 1e-9) * norm(target.axis) * norm(self.axis)
+            && dot(axis, now) <= -(1.0 - 1e-9) * norm(axis) * norm(now)
         {
             let found = "the opposite of the one before";
             return Err(NcProblem::value("the tool axis", found, "less than half a turn away"));
         }
-        let (tool, note) = self.tools.for_move();
-        if let Some(note) = note {
-            self.notes.add(target.line, note);
-            self.joined = false;
-        }
-        let same_tool = self.poses.last().is_none_or(|last| last.tool == tool);
-        let joined = self.joined && same_tool;
-        let is_arc = matches!(way.course, Course::Arc(_));
-        let same = !is_arc && joined && self.poses.last().is_some_and(|last| last.pose == pose);
-        if !same {
-            if self.poses.len() >= MOST_POSES {
-                let expected = "smaller: divide the program, or allow a larger arc tolerance";
-                return Err(NcProblem::value("the number of poses", self.poses.len(), expected));
-            }
-            let mut made = ProgramPose::new(pose, target.line);
-            made.rapid = target.rapid;
-            made.joined = joined;
-            made.tool = tool;
-            made.call = target.call;
-            made.set_way(way);
-            made.feed_mode = if target.rapid {
-                FeedMode::default()
-            } else {
-                self.feed_mode
-            };
-            made.feed = if target.rapid { None } else { self.feed };
-            self.poses.push(made);
-        }
-        self.joined = true;
-        self.tip = Some(target.tip);
-        self.axis = target.axis;
         Ok(())
     }
 
-    /// The straight moves along a curve, in the frame of the poses.
-    pub fn follow(&mut self, points: &[Vector], line: usize) -> Result<(), NcProblem> {
-        for &tip in points {
-            let target = Target {
-                tip,
-                axis: self.axis,
-                rapid: false,
-                line,
-                call: None,
-            };
-            self.line_to(target)?;
+    /// Puts the described tool into the spindle: the path breaks where it is another one.
+    pub fn load_next(&mut self) {
+        let (tool, note) = self.tools.for_move();
+        self.track.joined &= note.is_none() && tool == self.track.tool;
+        self.track.take_tool(tool);
+        if let Some(note) = note {
+            self.track.note(note);
         }
-        Ok(())
+    }
+
+    pub fn line_to(&mut self, tip: Vector, axis: Vector, rapid: bool) -> Result<(), NcProblem> {
+        self.check_turn(axis)?;
+        self.load_next();
+        self.track.feed_mode = if rapid { FeedMode::default() } else { self.feed_mode };
+        self.track.line_towards(tip, axis, rapid)
     }
 
     /// Ends the statements of a curve, and follows it.
     pub fn end_of_nurbs(&mut self) -> Result<(), NcProblem> {
         let curve = self.nurbs.take()?;
-        let tolerance = self.options.arc_tolerance;
-        let placed: Vec<Vector> = curve.points.iter().map(|&point| self.placed_mm(point)).collect();
-        let points = curve.chords(&placed, tolerance)?;
-        self.notes.add(curve.line, "NURBS curves are divided into chords");
-        self.follow(&points, curve.line)
-    }
-
-    /// A point in millimetres, in the frame of the poses.
-    fn placed_mm(&self, point: Vector) -> Vector {
-        self.placed(point.map(|c| c / self.unit))
+        let placed: Vec<Vector> = curve.points.iter().map(|&point| self.frame.point(point)).collect();
+        let points = curve.chords(&placed, self.options.arc_tolerance)?;
+        let line = std::mem::replace(&mut self.track.place.line, curve.line);
+        self.track.note("NURBS curves are divided into chords");
+        let result = points
+            .into_iter()
+            .try_for_each(|tip| self.line_to(tip, self.axis(), false));
+        self.track.place.line = line;
+        result
     }
 }

@@ -5,17 +5,16 @@ use std::ops::Range;
 
 use super::arcs::PendingArc;
 use super::cycles::{Cycle, CycleStatement};
-use super::frames::Frame;
 use super::loaded::LoadedTools;
 use super::nurbs::Nurbs;
 use super::statement::{Statement, Statements};
 use super::words::{IGNORED, REFUSED, ROTARY, is_geometry};
-use crate::model::event::{Event, EventKind};
+use crate::drive::Track;
+use crate::machines::WorkFrame;
+use crate::model::event::EventKind;
 use crate::model::names::Format;
-use crate::model::poses::ProgramPoses;
-use crate::model::program::{Call, FeedMode, NoteList, Program, Units};
+use crate::model::program::{Call, FeedMode, Program, Units};
 use crate::model::read_options::ReadOptions;
-use crate::model::stock::StockDescription;
 use crate::text::error::{NcError, NcProblem, TextPosition};
 
 /// The most problems after the first one.
@@ -28,27 +27,18 @@ pub(super) struct Reader<'o> {
     pub options: &'o ReadOptions,
     /// Millimetres per unit.
     pub unit: f64,
-    /// The frame of the first `MSYS`, which is that of the poses, and the one in effect.
-    pub frames: Option<[Frame; 2]>,
-    /// Where the tool is, in the frame of the poses.
-    pub tip: Option<[f64; 3]>,
-    pub axis: [f64; 3],
+    pub track: Track,
+    /// The frame of the first `MSYS`, which is that of the poses, in the frame of the file;
+    pub first_frame: Option<WorkFrame>,
+    /// and the one in effect, in that of the poses.
+    pub frame: WorkFrame,
     pub rapid: bool,
-    pub feed: Option<f64>,
     pub feed_mode: FeedMode,
     pub arc: Option<PendingArc>,
     pub cycle: Option<Cycle>,
     last_cycle: Option<Cycle>,
     pub nurbs: Nurbs,
-    /// Whether the tool moves to the next pose from the last one.
-    pub joined: bool,
-    pub poses: ProgramPoses,
-    pub calls: Vec<Call>,
-    pub events: Vec<Event>,
-    pub notes: NoteList,
     pub tools: LoadedTools,
-    pub stock: Option<StockDescription>,
-    title: Option<String>,
     pub units: Option<Units>,
     pub csys: Option<[f64; 12]>,
     /// Whether coordinates are those of the part, if the file has said so.
@@ -64,37 +54,30 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
     let mut reader = Reader {
         options,
         unit: 1.0,
-        frames: None,
-        tip: None,
-        axis: [0.0, 0.0, 1.0],
+        track: Track::of_poses(options),
+        first_frame: None,
+        frame: WorkFrame::default(),
         rapid: false,
-        feed: None,
         feed_mode: FeedMode::PerMinute,
         arc: None,
         cycle: None,
         last_cycle: None,
         nurbs: Nurbs::default(),
-        joined: false,
-        poses: ProgramPoses::default(),
-        calls: Vec::new(),
-        events: Vec::new(),
-        notes: NoteList::default(),
         tools: LoadedTools::default(),
-        stock: None,
-        title: None,
         units: None,
         csys: None,
         world: None,
         ended: false,
     };
+    reader.track.chord_note = "arcs are divided into chords".to_owned();
     reader.default_unit(text);
     let mut errors: Vec<NcError> = Vec::new();
     let mut messages = HashSet::new();
     for statement in Statements::of(text) {
         if let Err((problem, bytes)) = reader.statement(&statement, text) {
-            reader.leave();
+            reader.track.joined = false;
             if options.lenient && !matches!(problem, NcProblem::Unsupported { ref what, .. } if what == PART_PROGRAM) {
-                reader.notes.add(statement.line, format!("left out: {problem}"));
+                reader.track.note(format!("left out: {problem}"));
             } else if messages.insert(problem.to_string()) {
                 errors.push(NcError::new(problem, Some(TextPosition::of_bytes(text, bytes))));
             }
@@ -113,7 +96,7 @@ pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError
     if let Some(error) = NcError::all(errors) {
         return Err(error);
     }
-    if reader.poses.is_empty() {
+    if !reader.track.has_moved() {
         let line = text.lines().count().max(1);
         let problem = NcProblem::syntax("this program has no move: expected at least one GOTO");
         return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
@@ -126,19 +109,12 @@ const PART_PROGRAM: &str = "APT part programs, whose path follows from geometry,
 
 impl Reader<'_> {
     fn finish(mut self) -> Program {
-        let tools = self.tools.finish(&mut self.notes);
+        let tools = self.tools.finish(&mut self.track.notes);
         Program {
             format: Some(Format::Apt),
-            title: self.title,
             units: self.units.unwrap_or_default(),
-            poses: self.poses,
-            calls: self.calls,
-            events: self.events,
             tools,
-            stock: self.stock,
-            machine: self.options.machine.clone(),
-            notes: self.notes.finish(),
-            ..Program::default()
+            ..self.track.finish()
         }
     }
 
@@ -151,13 +127,15 @@ impl Reader<'_> {
                 break;
             }
             if statement.is("FEDRAT") && word(&statement, ["MMPM", "MMPR"]) {
-                self.notes
+                self.track
+                    .notes
                     .add(statement.line, "no units are given: millimetres, as in the feeds");
                 inch = false;
                 break;
             }
             if statement.is("FEDRAT") && word(&statement, ["IPM", "IPR"]) {
-                self.notes
+                self.track
+                    .notes
                     .add(statement.line, "no units are given: inches, as in the feeds");
                 inch = true;
                 break;
@@ -169,13 +147,9 @@ impl Reader<'_> {
         }
     }
 
-    /// Breaks the path.
-    pub fn leave(&mut self) {
-        self.joined = false;
-    }
-
     fn statement(&mut self, statement: &Statement, text: &str) -> Result<(), Located> {
         let line = statement.line;
+        (self.track.place.line, self.track.place.call) = (line, None);
         let whole = |problem| (problem, statement.bytes.clone());
         let is = |word: &str| statement.is(word);
         // An arc whose end is not given by the next move ends by its angle.
@@ -200,18 +174,15 @@ impl Reader<'_> {
             "FROM" => self.from(statement)?,
             "GODLTA" => self.godlta(statement)?,
             "GOHOME" => {
-                self.notes.add(
-                    line,
-                    "GOHOME: the tool leaves for a place that only the machine knows; the path breaks",
-                );
-                self.tip = None;
-                self.leave();
+                self.track
+                    .note("GOHOME: the tool leaves for a place that only the machine knows; the path breaks");
+                self.track.leave([true; 3]);
             }
             "CIRCLE" => self.circle(statement)?,
             "MOVARC" => self.movarc(statement)?,
             "CYCLE" => {
-                self.calls.push(Call::new(0, line, None));
-                let call = (self.calls.len() - 1) as u32;
+                self.track.program.calls.push(Call::new(0, line, None));
+                let call = (self.track.program.calls.len() - 1) as u32;
                 match CycleStatement::of(statement, self.unit, call).map_err(whole)? {
                     CycleStatement::Off => self.cycle = None,
                     CycleStatement::On => self.cycle = self.last_cycle.clone(),
@@ -221,11 +192,11 @@ impl Reader<'_> {
                         return Ok(());
                     }
                 }
-                self.calls.pop();
+                self.track.program.calls.pop();
             }
             "CUTTER" | "TLDATA" => {
                 if let Some(note) = self.tools.describe(statement, self.unit).map_err(whole)? {
-                    self.notes.add(line, note);
+                    self.track.note(note);
                 }
             }
             "LOAD" | "LOADTL" | "TURRET" | "TOOLNO" => self.load(statement).map_err(whole)?,
@@ -233,31 +204,36 @@ impl Reader<'_> {
             "UNITS" | "UNIT" => self.set_unit(statement).map_err(whole)?,
             "MSYS" => self.msys(statement).map_err(whole)?,
             "CSYS" | "TRNTYP" => self.frame_of_coordinates(statement).map_err(whole)?,
-            "ORIGIN" | "SETUP" => self.notes.add(
-                line,
-                format!(
-                    "{} is for the post-processor: ignored",
-                    statement.major.to_ascii_uppercase()
-                ),
-            ),
+            "ORIGIN" | "SETUP" => self.track.note(format!(
+                "{} is for the post-processor: ignored",
+                statement.major.to_ascii_uppercase()
+            )),
             "CUTCOM" => {
                 if !statement.has("OFF") && !statement.has("ON") {
                     let note =
                         "CUTCOM: the coordinates are taken as those of the tool's axis, as CAM systems write them";
-                    self.notes.add(line, note);
+                    self.track.note(note);
                 }
             }
-            "SPINDL" => self.spindle(statement),
-            "COOLNT" => self.coolant(statement),
+            "SPINDL" => self.spindle(statement).map_err(whole)?,
+            "COOLNT" => self.coolant(statement).map_err(whole)?,
             "DELAY" | "DWELL" => {
                 if let Some(seconds) = statement.number().filter(|seconds| *seconds >= 0.0) {
-                    self.event(line, EventKind::Dwell { seconds });
+                    self.track.event(EventKind::Dwell { seconds }).map_err(whole)?;
                 }
             }
-            "STOP" => self.event(line, EventKind::Stop),
-            "OPSTOP" => self.event(line, EventKind::OptionalStop),
-            "PARTNO" => self.title = self.title.take().or_else(|| Some(statement.rest.to_owned())),
-            "PPRINT" | "DISPLY" | "TPRINT" => self.event(line, EventKind::Message(statement.rest.to_owned())),
+            "STOP" => self.track.event(EventKind::Stop).map_err(whole)?,
+            "OPSTOP" => self.track.event(EventKind::OptionalStop).map_err(whole)?,
+            "PARTNO" => {
+                self.track
+                    .program
+                    .title
+                    .get_or_insert_with(|| statement.rest.to_owned());
+            }
+            "PPRINT" | "DISPLY" | "TPRINT" => {
+                let text = statement.rest.to_owned();
+                self.track.event(EventKind::Message(text)).map_err(whole)?;
+            }
             "INSERT" => self.insert(statement),
             "REMARK" | "LETTER" => {}
             "CSI_SET_FLUTE_LENGTH" => self
@@ -265,10 +241,9 @@ impl Reader<'_> {
                 .flute_length(statement.number().map(|value| value * self.unit)),
             "CSI_SET_EXTENSION_LENGTH" => self.tools.stick_out(statement.number().map(|value| value * self.unit)),
             "NURBS" | "KNOT" | "CNTRL" | "WEIGHT" => self.nurbs.statement(statement, self.unit).map_err(whole)?,
-            "MOVNRB" => self.notes.add(
-                line,
-                "MOVNRB: the points that approximate the curve are read, not the curve",
-            ),
+            "MOVNRB" => self
+                .track
+                .note("MOVNRB: the points that approximate the curve are read, not the curve"),
             "FINI" => self.ended = true,
             _ => self.other(statement, text)?,
         }
@@ -297,11 +272,12 @@ impl Reader<'_> {
         } else if ROTARY.contains(&upper.as_str()) {
             if upper != "MULTAX" {
                 let note = format!("{upper}: the tool axes of GOTO say how the part is turned; ignored");
-                self.notes.add(statement.line, note);
+                self.track.notes.add(statement.line, note);
             }
         } else if !IGNORED.contains(&upper.as_str()) && !upper.starts_with("CSI_") {
             let shown: String = upper.chars().take(40).collect();
-            self.notes
+            self.track
+                .notes
                 .add(statement.line, format!("{shown} is not understood: ignored"));
         }
         Ok(())

@@ -1,10 +1,11 @@
 //! Statements that do not move the tool: feeds, units, frames, tools, spindle, coolant and texts.
 
 use super::cycles::feed;
-use super::frames::Frame;
+use super::frames::frame;
 use super::reader::{Located, Reader, numbers};
 use super::statement::{Item, Statement};
-use crate::model::event::{Coolant, Event, EventKind, Spindle};
+use crate::machines::WorkFrame;
+use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Units};
 use crate::model::stock::StockDescription;
 use crate::text::error::NcProblem;
@@ -16,30 +17,26 @@ impl Reader<'_> {
         if statement.is("CUTTER") {
             let note = self.tools.describe(statement, self.unit).map_err(whole)?;
             if let Some(note) = note {
-                self.notes.add(statement.line, note);
+                self.track.note(note);
             }
         } else if statement.is("CSYS") {
             let numbers: Option<[f64; 12]> = numbers(statement).try_into().ok();
             if numbers.is_some_and(|numbers| !is_identity(&numbers)) {
                 let note = "$$-> CSYS: the coordinates are those of the machine coordinate system, as Creo writes them";
-                self.notes.add(statement.line, note);
+                self.track.note(note);
             }
         }
         Ok(())
     }
 
-    pub fn event(&mut self, line: usize, kind: EventKind) {
-        self.events.push(Event::new(self.poses.len(), line, kind));
-    }
-
     pub fn fedrat(&mut self, statement: &Statement) {
         if statement.has("INVERS") || statement.has("INVERSE") {
             self.feed_mode = FeedMode::InverseTime;
-            self.feed = statement.number();
+            self.track.feed = statement.number();
         } else if let Some((value, mode)) = feed(statement, self.unit) {
-            (self.feed, self.feed_mode) = (Some(value), mode);
+            (self.track.feed, self.feed_mode) = (Some(value), mode);
         } else if let Some(value) = statement.number() {
-            self.feed = Some(value);
+            self.track.feed = Some(value);
         }
     }
 
@@ -60,7 +57,7 @@ impl Reader<'_> {
             }
         };
         let units = if self.unit == 25.4 { Units::Inch } else { Units::Mm };
-        if self.poses.is_empty() {
+        if !self.track.has_moved() {
             self.units = Some(units);
         }
         Ok(())
@@ -76,11 +73,10 @@ impl Reader<'_> {
         let name = statement.items.iter().find(named).map(|item| item.text);
         let (number, note) = self.tools.load(number, name);
         if let Some(note) = note {
-            self.notes.add(statement.line, note);
+            self.track.note(note);
         }
-        self.event(statement.line, EventKind::ToolChange(number));
-        self.leave();
-        Ok(())
+        self.track.joined = false;
+        self.track.event(EventKind::ToolChange(number))
     }
 
     pub fn msys(&mut self, statement: &Statement) -> Result<(), NcProblem> {
@@ -89,20 +85,18 @@ impl Reader<'_> {
             NcProblem::value("the number of numbers in MSYS", list.len(), expected)
         })?;
         let [ox, oy, oz, a, b, c, d, e, f] = numbers;
-        let frame = Frame::new([ox, oy, oz].map(|c| c * self.unit), [a, b, c], [d, e, f])?;
-        match &mut self.frames {
-            None => self.frames = Some([frame; 2]),
-            Some([_, current]) if *current == frame => {}
-            Some([first, current]) => {
-                *current = frame;
-                if frame != *first {
-                    self.notes.add(
-                        statement.line,
-                        "another MSYS: coordinates are converted to that of the first one",
-                    );
-                }
-            }
+        let frame = frame([ox, oy, oz].map(|c| c * self.unit), [a, b, c], [d, e, f])?;
+        let first = *self.first_frame.get_or_insert(frame);
+        let relative = if frame == first {
+            WorkFrame::default()
+        } else {
+            first.inverse().unwrap_or_default().then(&frame)
+        };
+        if relative != self.frame && frame != first {
+            self.track
+                .note("another MSYS: coordinates are converted to that of the first one");
         }
+        self.frame = relative;
         Ok(())
     }
 
@@ -121,14 +115,14 @@ impl Reader<'_> {
             }
             None if moved => {
                 let note = "CSYS without TRNTYP: the coordinates are taken as those of the part, not of CSYS";
-                self.notes.add(statement.line, note);
+                self.track.note(note);
             }
             _ => {}
         }
         Ok(())
     }
 
-    pub fn spindle(&mut self, statement: &Statement) {
+    pub fn spindle(&mut self, statement: &Statement) -> Result<(), NcProblem> {
         let rpm = statement.number();
         let spindle = if statement.has("OFF") {
             Spindle::Stopped
@@ -137,10 +131,10 @@ impl Reader<'_> {
         } else {
             Spindle::Clockwise { rpm }
         };
-        self.event(statement.line, EventKind::Spindle(spindle));
+        self.track.event(EventKind::Spindle(spindle))
     }
 
-    pub fn coolant(&mut self, statement: &Statement) {
+    pub fn coolant(&mut self, statement: &Statement) -> Result<(), NcProblem> {
         let coolant = if statement.has("OFF") {
             Coolant::Off
         } else if statement.has("MIST") {
@@ -150,7 +144,7 @@ impl Reader<'_> {
         } else {
             Coolant::Flood
         };
-        self.event(statement.line, EventKind::Coolant(coolant));
+        self.track.event(EventKind::Coolant(coolant))
     }
 
     /// `INSERT` carries the stock and the name of the next tool (SolidWorks).
@@ -165,7 +159,7 @@ impl Reader<'_> {
                 word.parse::<f64>().ok().filter(|side| *side > 0.0 && side.is_finite())
             };
             if let (Some(x), Some(y), Some(z)) = (side('X'), side('Y'), side('Z')) {
-                self.stock = Some(StockDescription::Size([x, y, z].map(|c| c * self.unit)));
+                self.track.program.stock = Some(StockDescription::Size([x, y, z].map(|c| c * self.unit)));
             }
         } else {
             self.tools.name(text);

@@ -61,8 +61,13 @@ impl Arc {
 }
 
 impl Track {
-    /// A feed move of the tool along an arc from where it is, while the rotary axes turn to `abc`.
-    pub(super) fn bend(&mut self, arc: &Arc, abc: [f64; 3]) -> Result<(), NcProblem> {
+    /// A feed move of the tool along an arc from where it is, while it turns into a direction of the part's frame.
+    pub fn arc_towards(&mut self, arc: &Arc, direction: [f64; 3]) -> Result<(), NcProblem> {
+        self.bend(arc, self.abc, Some(direction))
+    }
+
+    /// A feed move of the tool along an arc from where it is, while the rotary axes turn to `abc` or the tool into a direction.
+    pub(super) fn bend(&mut self, arc: &Arc, abc: [f64; 3], direction: Option<[f64; 3]>) -> Result<(), NcProblem> {
         let Some(scale) = self.frame.scale() else {
             return Err(NcProblem::unsupported(
                 "arcs in coordinates with unequal scales are",
@@ -81,14 +86,15 @@ impl Track {
             let exact = TipArc::new(centre, normal, arc.sweep.copysign(arc.sweep * scale))
                 .map_err(|error| NcProblem::syntax(error.to_string()))?
                 .through(from, to);
-            let steady = if abc == self.abc { Some(self.direction()?) } else { None };
+            let turns = abc != self.abc || direction.is_some() && direction != self.direct;
+            let steady = if turns { None } else { Some(self.direction()?) };
             if self.kept_arcs.keep(&exact, [from, to], steady) {
                 let turning = match self.driver.turning(self.abc, abc, self.coordinates)? {
                     Turning::Slerp => Turning::Even,
                     other => other,
                 };
-                if steady.is_none() {
-                    self.direct = None;
+                if turns {
+                    self.direct = direction;
                 }
                 let course = Course::Arc(exact);
                 self.push(target, Move { course, turning }, false)?;
@@ -102,10 +108,15 @@ impl Track {
         self.notes.add_str(self.place.line, &self.chord_note);
         let from = Position::new([0.0; 3], self.abc);
         let to = Position::new([0.0; 3], abc);
+        let directions = self.direct.zip(direction).filter(|(from, to)| from != to);
         for chord in 1..chords {
             let s = chord as f64 / chords as f64;
+            if let Some((from, to)) = directions {
+                self.direct = Some(std::array::from_fn(|k| from[k] * (1.0 - s) + s * to[k]));
+            }
             self.straight(arc.at(s), from.towards(&to, s).abc, false)?;
         }
+        self.direct = direction.or(self.direct);
         self.straight(arc.end, abc, false)
     }
 

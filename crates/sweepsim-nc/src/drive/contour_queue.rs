@@ -180,7 +180,7 @@ impl Track {
                 "expected G2 or G3",
             ));
         }
-        self.bend(arc, abc)?;
+        self.bend(arc, abc, None)?;
         let out = Vector3::from(arc.end) - Vector3::from(arc.centre);
         let along = Vector3::from(arc.normal).cross(&out) * arc.sweep.signum();
         self.contour.direction = Some(along.into());
@@ -332,7 +332,7 @@ impl Track {
                     centre: bend.centre,
                     sweep: bend.sweep,
                 };
-                self.bend(&arc.about_axis(), stroke.abc)
+                self.bend(&arc.about_axis(), stroke.abc, None)
             }
             (Some(_), None) => Err(NcProblem::syntax(
                 "an arc from an unknown position: expected a move before it",

@@ -7,7 +7,7 @@ use super::contour::Place;
 use super::contour_queue::Contour;
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
-use crate::machines::{Position, WorkFrame};
+use crate::machines::{Machine, Position, WorkFrame};
 use crate::model::event::EventKind;
 use crate::model::kept_arcs::KeptArcs;
 use crate::model::program::{FeedMode, NoteList, Program, ProgramPose};
@@ -40,12 +40,15 @@ pub(crate) struct Track {
     pub coordinates: Coordinates,
     /// The tip, where its axes' coordinates are not known, until an axis moves.
     pub(super) parked: Option<([f64; 3], [f64; 3])>,
-    pub(super) joined: bool,
+    /// Whether the tool moves to the next pose from the last one.
+    pub joined: bool,
     pub(super) most_poses: usize,
     pub arc_tolerance: f64,
     pub(super) kept_arcs: KeptArcs,
-    pub(super) chord_note: String,
+    pub chord_note: String,
     pub trace: Option<Trace>,
+    /// A path begins at the end of its first move, wherever the tool was before (CL files).
+    pub(super) begins_at_ends: bool,
     pub(super) contour: Contour,
     /// The bytes of the messages so far.
     pub(super) text: usize,
@@ -85,9 +88,24 @@ impl Track {
                 rounded(options.arc_tolerance)
             ),
             trace: None,
+            begins_at_ends: false,
             contour: Contour::default(),
             text: 0,
         }
+    }
+
+    /// The course of a tool whose program gives its tips and directions, whatever the machine is.
+    pub fn of_poses(options: &ReadOptions) -> Self {
+        let without_machine = ReadOptions {
+            machine: Machine::default(),
+            ..options.clone()
+        };
+        let mut track = Self::new(&without_machine, Sense::Part);
+        track.program.machine = options.machine.clone();
+        track.coordinates = Coordinates::Tip;
+        track.direct = Some([0.0, 0.0, 1.0]);
+        track.begins_at_ends = true;
+        track
     }
 
     pub fn note(&mut self, message: impl Into<std::borrow::Cow<'static, str>>) {
@@ -251,12 +269,9 @@ impl Track {
             return self.line(target, abc, rapid);
         }
         self.begin(rapid)?;
+        let way = Move::straight(self.driver.turning(self.abc, self.abc, self.coordinates)?);
         self.direct = Some(direction);
-        self.push(
-            Position::new(self.frame.point(target), self.abc),
-            Move::default(),
-            rapid,
-        )?;
+        self.push(Position::new(self.frame.point(target), self.abc), way, rapid)?;
         self.arrive(target, self.abc);
         Ok(())
     }
@@ -299,7 +314,7 @@ impl Track {
 
     /// The start of a feed move, if the path does not lead there.
     pub fn begin(&mut self, rapid: bool) -> Result<(), NcProblem> {
-        if rapid || self.joined {
+        if rapid || self.joined || self.begins_at_ends {
             return Ok(());
         }
         match self.known() {

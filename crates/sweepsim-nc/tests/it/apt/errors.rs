@@ -64,3 +64,31 @@ fn all_problems_at_once() {
     options.arc_tolerance = f64::NAN;
     assert!(apt::read("GOTO/0,0,0", &options).is_err());
 }
+
+#[test]
+fn poses_and_events_have_a_limit() {
+    let mut options = ReadOptions::default();
+    options.most_poses = 3;
+    let moves = "GOTO/0,0,0\nGOTO/1,0,0\nGOTO/2,0,0\n";
+    assert_eq!(
+        apt::read(&format!("UNITS/MM\n{moves}FINI\n"), &options)
+            .unwrap()
+            .poses
+            .len(),
+        3
+    );
+    let error = apt::read(&format!("UNITS/MM\n{moves}GOTO/3,0,0\nFINI\n"), &options).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("5:1: the number of poses and events is 3"),
+        "{error}"
+    );
+    let error = apt::read(&format!("UNITS/MM\n{moves}STOP\nSTOP\nSTOP\nOPSTOP\nFINI\n"), &options).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("8:1: the number of poses and events is 3"),
+        "{error}"
+    );
+}
