@@ -1,4 +1,4 @@
-//! Grazing curves of any patch: see `docs/algorithms/translations.md`.
+//! Grazing curves of any patch: see `docs/algorithms/grazing-curves.md`.
 //!
 //! On moves without rotation, and on arcs about the dexels' direction of a tool that turns with them, `g(u, v)` does not contain the time, so that `(p, g) = (p of the line, 0)` is a system of two equations in `(u, v)`. Cells in which the map `(p, g)` is
 //! injective are found along the curve once for all moves of nearly the same direction, and divided only as far as lines ask for it. Sharp edges are solved in the same way, with their own curve in the place of the grazing curve.
