@@ -47,10 +47,7 @@ pub(super) struct Reader<'o> {
 }
 
 pub(super) fn read(text: &str, options: &ReadOptions) -> Result<Program, NcError> {
-    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
-        let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
-        return Err(NcError::new(problem, None));
-    }
+    options.check()?;
     let mut reader = Reader {
         options,
         unit: 1.0,

@@ -2,4 +2,5 @@
 
 pub mod heidenhain;
 mod recent;
+mod run;
 pub mod siemens;

@@ -91,12 +91,17 @@ impl Track {
         if let Some(error) = NcError::all(errors) {
             return Err(error);
         }
-        if self.program.poses.is_empty() {
-            let line = text.lines().count().max(1);
-            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
-            return Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))));
+        self.check_moves(text)
+    }
+
+    /// Whether the program, all of `text`, has moved the tool.
+    pub fn check_moves(&self, text: &str) -> Result<(), NcError> {
+        if self.has_moved() {
+            return Ok(());
         }
-        Ok(())
+        let line = text.lines().count().max(1);
+        let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
+        Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))))
     }
 
     pub fn finish(mut self) -> Program {

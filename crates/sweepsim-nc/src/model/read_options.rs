@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use crate::machines::Machine;
 use crate::model::names::Format;
+use crate::text::error::{NcError, NcProblem};
 
 /// How to read a program.
 ///
@@ -86,6 +87,17 @@ impl Default for ReadOptions {
             most_poses: 20_000_000,
             start: None,
         }
+    }
+}
+
+impl ReadOptions {
+    /// Whether programs can be read so.
+    pub(crate) fn check(&self) -> Result<(), NcError> {
+        if self.arc_tolerance > 0.0 && self.arc_tolerance.is_finite() {
+            return Ok(());
+        }
+        let problem = NcProblem::value("the arc tolerance", self.arc_tolerance, "a positive number of mm");
+        Err(NcError::new(problem, None))
     }
 }
 

@@ -168,6 +168,24 @@ impl NcError {
         }))
     }
 
+    /// A problem at some bytes of a line of one of a program's files, of which the first is the main one.
+    pub(crate) fn on_line(
+        problem: NcProblem,
+        (line, whole): (usize, &str),
+        bytes: Range<usize>,
+        (files, file): (&[PathBuf], usize),
+    ) -> Self {
+        let position = TextPosition {
+            line,
+            ..TextPosition::of_bytes(whole, bytes)
+        };
+        let error = Self::new(problem, Some(position));
+        match files.get(file).filter(|_| file > 0) {
+            Some(file) => error.in_file(file),
+            None => error,
+        }
+    }
+
     pub(crate) fn in_file(mut self, file: &Path) -> Self {
         self.0.file.get_or_insert_with(|| file.to_owned());
         for error in &mut self.0.further {

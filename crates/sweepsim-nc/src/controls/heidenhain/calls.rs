@@ -1,15 +1,12 @@
 //! Calls and jumps.
 
-use std::path::PathBuf;
 use std::rc::Rc;
 
 use super::interpreter::{Level, LevelKind, Reader};
 use super::line::{Line, Located};
 use super::unit::Unit;
+use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::NcProblem;
-
-/// The most calls within each other.
-const DEEPEST_CALL: usize = 32;
 
 impl Reader<'_> {
     pub(super) fn push(&mut self, level: Level, line: &Line) -> Result<(), Located> {
@@ -73,12 +70,7 @@ impl Reader<'_> {
                     );
                     return Err((problem, line.all()));
                 };
-                let files = &mut self.track.program.files;
-                if files.is_empty() {
-                    files.push(PathBuf::new());
-                }
-                files.push(file);
-                let unit = Unit::new(files.len() - 1, Rc::new(text));
+                let unit = Unit::new(self.track.add_file(file), Rc::new(text));
                 self.units.push(unit);
                 self.names.insert(name, self.units.len() - 1);
                 self.units.len() - 1

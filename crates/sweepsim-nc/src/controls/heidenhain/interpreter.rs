@@ -1,7 +1,6 @@
 //! Runs a program: blocks in order, labels, calls and jumps.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::cycles::Cycle;
@@ -9,22 +8,14 @@ use super::line::{self, Line, Located};
 use super::planes::Frames;
 use super::unit::Unit;
 use super::values::Parameters;
+use crate::controls::run::{self, BlockIndex, Library, Running};
 use crate::drive::{Place, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::model::stock::StockDescription;
-use crate::text::error::{NcError, NcProblem, TextPosition};
-
-/// The most problems after the first one.
-const MOST_FURTHER: usize = 100;
-/// The most blocks that a program runs, repeats included, and more for each of its lines.
-const MOST_BLOCKS: usize = 1_000_000;
-const BLOCKS_PER_LINE: usize = 10;
-
-/// Finds the text of a program by its name, with the file it came from.
-pub type Library<'a> = &'a dyn Fn(&str) -> Option<(PathBuf, String)>;
+use crate::text::error::{NcError, NcProblem};
 
 /// A program, subprogram or repeated section on its way.
 pub(super) struct Level {
@@ -78,10 +69,7 @@ pub(super) struct Reader<'a> {
 }
 
 pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
-    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
-        let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
-        return Err(NcError::new(problem, None));
-    }
+    options.check()?;
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         parameters: Parameters::default(),
@@ -112,83 +100,18 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         spindle: Spindle::Stopped,
         stock: [[None; 3]; 2],
     };
-    let mut errors: Vec<NcError> = Vec::new();
-    let mut messages = BTreeSet::new();
-    let most_blocks = usize::try_from(options.most_blocks)
-        .unwrap_or(usize::MAX)
-        .min(MOST_BLOCKS + BLOCKS_PER_LINE * text.lines().count());
-    let mut blocks = 0;
-    while !reader.ended && errors.len() <= MOST_FURTHER {
-        let Some((unit, index)) = reader.advance() else { break };
-        let line = reader.units[unit].block(index);
-        blocks += 1;
-        let result = if blocks > most_blocks {
-            reader.ended = true;
-            let found = format!("over {most_blocks}");
-            let problem = NcProblem::value(
-                "the number of blocks that this program runs",
-                found,
-                "smaller: it may never end",
-            );
-            Err((problem, line.all()))
-        } else {
-            reader.block(&line, unit, index)
-        };
-        if let Err((problem, span)) = result {
-            reader.uncertain = true;
-            reader.rounded = false;
-            reader.track.leave([true; 3]);
-            let message = problem.to_string();
-            if messages.insert(message.clone()) {
-                if options.lenient {
-                    reader.track.note(format!("left out: {message}"));
-                } else {
-                    errors.push(reader.located(unit, index, problem, span));
-                }
-            }
-        }
-    }
-    reader.track.close(text, options.lenient, errors)?;
+    run::run(&mut reader, text, options)?;
     Ok(reader.finish())
 }
 
-impl Reader<'_> {
-    fn finish(mut self) -> Program {
-        if let [[Some(x0), Some(y0), Some(z0)], [Some(x1), Some(y1), Some(z1)]] = self.stock {
-            self.track.program.stock = Some(StockDescription::Block {
-                min: [x0.min(x1), y0.min(y1), z0.min(z1)],
-                max: [x0.max(x1), y0.max(y1), z0.max(z1)],
-            });
-        }
-        self.track.program.format = Some(Format::Gcode);
-        self.track.program.controller = Some(Controller::Heidenhain);
-        self.track.program.units = if self.inch { Units::Inch } else { Units::Mm };
-        self.track.finish()
-    }
-
-    fn located(&self, unit: usize, index: usize, problem: NcProblem, span: std::ops::Range<usize>) -> NcError {
-        let unit = &self.units[unit];
-        let text = unit.text(index);
-        let floor = |mut byte: usize| {
-            byte = byte.min(text.len());
-            while !text.is_char_boundary(byte) {
-                byte -= 1;
-            }
-            byte
-        };
-        let (start, end) = (floor(span.start), floor(span.end.max(span.start)));
-        let column = 1 + text[..start].chars().count();
-        let position = TextPosition::in_line(index + 1, text, column, text[start..end].chars().count());
-        let error = NcError::new(problem, Some(position));
-        match self.track.program.files.get(unit.file).filter(|_| unit.file > 0) {
-            Some(file) => error.in_file(file),
-            None => error,
-        }
+impl Running for Reader<'_> {
+    fn track(&mut self) -> &mut Track {
+        &mut self.track
     }
 
     /// The next block, back to the caller where a program ends.
-    fn advance(&mut self) -> Option<(usize, usize)> {
-        loop {
+    fn advance(&mut self) -> Option<BlockIndex> {
+        while !self.ended {
             let level = self.stack.last_mut()?;
             if let LevelKind::Section { from, end, times } = &mut level.kind
                 && level.next >= *end
@@ -214,6 +137,37 @@ impl Reader<'_> {
                 return Some((unit, index));
             }
         }
+        None
+    }
+
+    fn run(&mut self, (unit, index): BlockIndex) -> Result<(), Located> {
+        let line = self.units[unit].block(index);
+        self.block(&line, unit, index)
+    }
+
+    fn doubt(&mut self) {
+        self.uncertain = true;
+        self.rounded = false;
+    }
+
+    fn line_of(&self, (unit, index): BlockIndex) -> (usize, usize, &str) {
+        let unit = &self.units[unit];
+        (unit.file, index + 1, unit.text(index))
+    }
+}
+
+impl Reader<'_> {
+    fn finish(mut self) -> Program {
+        if let [[Some(x0), Some(y0), Some(z0)], [Some(x1), Some(y1), Some(z1)]] = self.stock {
+            self.track.program.stock = Some(StockDescription::Block {
+                min: [x0.min(x1), y0.min(y1), z0.min(z1)],
+                max: [x0.max(x1), y0.max(y1), z0.max(z1)],
+            });
+        }
+        self.track.program.format = Some(Format::Gcode);
+        self.track.program.controller = Some(Controller::Heidenhain);
+        self.track.program.units = if self.inch { Units::Inch } else { Units::Mm };
+        self.track.finish()
     }
 
     pub(super) fn back(&mut self) {

@@ -20,7 +20,7 @@ mod settings;
 mod unit;
 mod values;
 
-pub use interpreter::Library;
+pub use super::run::Library;
 pub(crate) use interpreter::read as read_kept;
 
 use crate::model::program::Program;

@@ -1,7 +1,6 @@
 //! Runs a program: jumps, loops, calls and variables.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::PathBuf;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::frames::Frames;
@@ -9,24 +8,16 @@ use super::language::block::{Item, Statement};
 use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Value};
 use super::language::unit::{Unit, parts};
-use super::variables::{DEEPEST_CALL, MOST_VARIABLES};
+use super::variables::MOST_VARIABLES;
 use super::words::Modes;
+use crate::controls::run::{self, BlockIndex, DEEPEST_CALL, Library, Running};
 use crate::drive::{Sense, Track};
 use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
-use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::error::{NcError, NcProblem};
 use crate::text::kept::KeptText;
 use crate::tools::comments;
-
-/// The most problems after the first one.
-const MOST_FURTHER: usize = 100;
-/// The most blocks that a program runs, repeats included, and more for each of its lines: programs that run for ever end here.
-const MOST_BLOCKS: usize = 1_000_000;
-const BLOCKS_PER_LINE: usize = 10;
-
-/// Finds the text of a subprogram by its name in capitals, with the file it came from.
-pub type Library<'a> = &'a dyn Fn(&str) -> Option<(PathBuf, String)>;
 
 /// A part of a program that is repeated.
 pub(super) struct Section {
@@ -64,10 +55,7 @@ pub(super) struct Reader<'a> {
 }
 
 pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -> Result<Program, NcError> {
-    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
-        let problem = NcProblem::value("the arc tolerance", options.arc_tolerance, "a positive number of mm");
-        return Err(NcError::new(problem, None));
-    }
+    options.check()?;
     let mut reader = Reader {
         track: Track::new(options, Sense::Tool),
         modes: Modes::new(options),
@@ -84,41 +72,7 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     };
     reader.add(Rc::clone(text), 0);
     reader.stack.push(Level::new(0, BTreeMap::new(), 1));
-    let mut errors: Vec<NcError> = Vec::new();
-    let mut messages = BTreeSet::new();
-    let most_blocks = usize::try_from(options.most_blocks)
-        .unwrap_or(usize::MAX)
-        .min(MOST_BLOCKS + BLOCKS_PER_LINE * text.lines().count());
-    let mut blocks = 0_usize;
-    while !reader.ended && errors.len() <= MOST_FURTHER {
-        blocks += 1;
-        let Some((unit, index)) = reader.advance() else { break };
-        let result = if blocks > most_blocks {
-            reader.ended = true;
-            let problem = NcProblem::value(
-                "the number of blocks that this program runs",
-                format!("over {most_blocks}"),
-                "smaller: it may never end",
-            );
-            Err((problem, reader.whole(unit, index)))
-        } else {
-            reader.line(unit, index)
-        };
-        if let Err((problem, span)) = result {
-            reader.uncertain = true;
-            reader.track.leave([true; 3]);
-            let message = problem.to_string();
-            if messages.insert(message.clone()) {
-                let unit = &reader.units[unit];
-                if options.lenient {
-                    reader.track.note(format!("left out: {message}"));
-                } else {
-                    errors.push(located(unit, index, problem, span, &reader.track.program.files));
-                }
-            }
-        }
-    }
-    reader.track.close(text, options.lenient, errors)?;
+    run::run(&mut reader, text, options)?;
     let mut program = reader.track.finish();
     program.format = Some(Format::Gcode);
     program.controller = Some(Controller::Siemens);
@@ -126,30 +80,6 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
     program.tools = comments.tools;
     program.stock = comments.stock;
     Ok(program)
-}
-
-fn located(unit: &Unit, index: usize, problem: NcProblem, span: std::ops::Range<usize>, files: &[PathBuf]) -> NcError {
-    let text = unit.text(index);
-    let floor = |mut byte: usize| {
-        byte = byte.min(text.len());
-        while !text.is_char_boundary(byte) {
-            byte -= 1;
-        }
-        byte
-    };
-    let (start, end) = (floor(span.start), floor(span.end.max(span.start)));
-    let column = 1 + text[..start].chars().count();
-    let position = TextPosition::in_line(
-        unit.first_line() + index,
-        text,
-        column,
-        text[start..end].chars().count(),
-    );
-    let error = NcError::new(problem, Some(position));
-    match files.get(unit.file).filter(|_| unit.file > 0) {
-        Some(file) => error.in_file(file),
-        None => error,
-    }
 }
 
 impl Level {
@@ -164,19 +94,14 @@ impl Level {
     }
 }
 
-impl Reader<'_> {
-    /// Adds the programs of a text. The first is the main one.
-    pub(super) fn add(&mut self, text: Rc<String>, file: usize) {
-        let text = Rc::new(KeptText::new(text));
-        for (name, lines) in parts(&text) {
-            self.names.entry(name).or_insert(self.units.len());
-            self.units.push(Unit::new(file, Rc::clone(&text), lines));
-        }
+impl Running for Reader<'_> {
+    fn track(&mut self) -> &mut Track {
+        &mut self.track
     }
 
     /// The next line to run, back to the calling program where one ends.
-    fn advance(&mut self) -> Option<(usize, usize)> {
-        loop {
+    fn advance(&mut self) -> Option<BlockIndex> {
+        while !self.ended {
             let level = self.stack.last_mut()?;
             if let Some(section) = level.sections.last_mut()
                 && level.next == section.end
@@ -201,6 +126,31 @@ impl Reader<'_> {
             self.track.place.file = unit.file;
             self.track.place.line = unit.first_line() + index;
             return Some((level.unit, index));
+        }
+        None
+    }
+
+    fn run(&mut self, (unit, index): BlockIndex) -> Result<(), Located> {
+        self.line(unit, index)
+    }
+
+    fn doubt(&mut self) {
+        self.uncertain = true;
+    }
+
+    fn line_of(&self, (unit, index): BlockIndex) -> (usize, usize, &str) {
+        let unit = &self.units[unit];
+        (unit.file, unit.first_line() + index, unit.text(index))
+    }
+}
+
+impl Reader<'_> {
+    /// Adds the programs of a text. The first is the main one.
+    pub(super) fn add(&mut self, text: Rc<String>, file: usize) {
+        let text = Rc::new(KeptText::new(text));
+        for (name, lines) in parts(&text) {
+            self.names.entry(name).or_insert(self.units.len());
+            self.units.push(Unit::new(file, Rc::clone(&text), lines));
         }
     }
 

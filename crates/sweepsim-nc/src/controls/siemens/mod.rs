@@ -21,7 +21,7 @@ mod moves;
 mod variables;
 mod words;
 
-pub use interpreter::Library;
+pub use super::run::Library;
 pub(crate) use interpreter::read as read_kept;
 
 use crate::model::program::Program;

@@ -1,18 +1,16 @@
 //! Variables, and calls of subprograms.
 
-use std::path::PathBuf;
 use std::rc::Rc;
 
 use super::interpreter::{Level, Reader};
 use super::language::block::Item;
 use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Value};
+use crate::controls::run::DEEPEST_CALL;
 use crate::text::error::NcProblem;
 
 /// The most variables.
 pub(super) const MOST_VARIABLES: usize = 100_000;
-/// The most calls within each other. The control has 11 or 15 levels.
-pub(super) const DEEPEST_CALL: usize = 32;
 
 impl Reader<'_> {
     /// The counter of a FOR loop.
@@ -102,13 +100,7 @@ impl Reader<'_> {
         let Some((file, text)) = (self.library)(name) else {
             return false;
         };
-        // Text without a file is the main program's own, at index 0.
-        let files = &mut self.track.program.files;
-        if files.is_empty() {
-            files.push(PathBuf::new());
-        }
-        files.push(file);
-        let index = files.len() - 1;
+        let index = self.track.add_file(file);
         self.names.insert(name.to_owned(), self.units.len());
         self.add(Rc::new(text), index);
         true

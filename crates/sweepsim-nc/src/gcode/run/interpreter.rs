@@ -21,7 +21,7 @@ use crate::gcode::syntax::{title, words};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
-use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::error::{NcError, NcProblem};
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
@@ -106,44 +106,33 @@ pub(crate) struct Outcome {
 }
 
 pub(crate) fn read(input: &Input, options: &ReadOptions, trace: bool) -> Outcome {
-    let fail = |problem| Outcome {
-        program: Err(NcError::new(problem, None)),
+    let fail = |error| Outcome {
+        program: Err(error),
         trace: Vec::new(),
     };
-    if !(options.arc_tolerance > 0.0 && options.arc_tolerance.is_finite()) {
-        return fail(NcProblem::value(
-            "the arc tolerance",
-            options.arc_tolerance,
-            "a positive number of mm",
-        ));
+    if let Err(error) = options.check() {
+        return fail(error);
     }
     if input.text.len() > LONGEST {
-        return fail(NcProblem::value(
-            "the size of a program",
-            input.text.len(),
-            "less than 2 GB",
-        ));
+        let problem = NcProblem::value("the size of a program", input.text.len(), "less than 2 GB");
+        return fail(NcError::new(problem, None));
     }
     let mut reader = Reader::new(input, options);
     reader.track.trace = trace.then(Trace::default);
     let errors = reader.run(options.most_blocks, title::leader(input.text));
     let trace = reader.track.trace.take().unwrap_or_default().commands;
-    let program = match NcError::all(errors) {
-        Some(error) => Err(error),
-        None if !reader.track.has_moved() && !options.lenient => {
-            let line = input.text.lines().count().max(1);
-            let problem = NcProblem::syntax("this program has no move: expected at least one with X, Y and Z known");
-            Err(NcError::new(problem, Some(TextPosition::in_line(line, "", 1, 1))))
-        }
-        None => {
-            let mut program = reader.track.finish();
-            program.units = reader.units.unwrap_or_default();
-            program.format = Some(Format::Gcode);
-            program.controller = reader.controller;
-            program.files = reader.files;
-            Ok(program)
-        }
-    };
+    let program = NcError::all(errors).map_or(Ok(()), Err);
+    let program = program.and_then(|()| match options.lenient {
+        true => Ok(()),
+        false => reader.track.check_moves(input.text),
+    });
+    let program = program.map(|()| Program {
+        units: reader.units.unwrap_or_default(),
+        format: Some(Format::Gcode),
+        controller: reader.controller,
+        files: reader.files,
+        ..reader.track.finish()
+    });
     Outcome { program, trace }
 }
 
@@ -286,21 +275,8 @@ impl Reader {
     }
 
     fn error(&self, problem: NcProblem, source: &Source, line: usize, span: std::ops::Range<usize>) -> NcError {
-        let whole = source.line(line);
-        let floor = |byte: usize| {
-            (0..=byte.min(whole.len()))
-                .rev()
-                .find(|&b| whole.is_char_boundary(b))
-                .unwrap_or(0)
-        };
-        let (start, end) = (floor(span.start), floor(span.end));
-        let column = 1 + whole[..start].chars().count();
-        let width = whole[start..end.max(start)].chars().count();
-        let error = NcError::new(problem, Some(TextPosition::in_line(line + 1, whole, column, width)));
-        match self.files.get(source.file).filter(|_| source.file > 0) {
-            Some(file) => error.in_file(file),
-            None => error,
-        }
+        let files = (&self.files[..], source.file);
+        NcError::on_line(problem, (line + 1, source.line(line)), span, files)
     }
 
     /// Goes on after a problem, to find others: where the tool is now is not known.

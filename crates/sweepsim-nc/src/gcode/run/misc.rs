@@ -4,7 +4,7 @@ use super::interpreter::{Reader, Step};
 use crate::gcode::codes::{self, Misc, Turning};
 use crate::gcode::syntax::block::{Block, Located};
 use crate::gcode::syntax::cursor::Cursor;
-use crate::model::event::{EventKind, Spindle};
+use crate::model::event::EventKind;
 use crate::model::read_options::Controller;
 use crate::text::error::NcProblem;
 
@@ -18,7 +18,7 @@ impl Reader {
         if let Some(speed) = block.get('S') {
             let changed = self.modes.speed.replace(speed) != Some(speed);
             if changed && self.modes.spindle != Turning::Stopped && !block.has('M') {
-                self.spindle().map_err(whole)?;
+                self.turn_spindle(self.modes.spindle).map_err(whole)?;
             }
         }
         if let Some(word) = block.word('T') {
@@ -43,7 +43,7 @@ impl Reader {
                 Misc::OptionalStop => self.track.event(EventKind::OptionalStop).map_err(at)?,
                 Misc::Spindle(turning) => {
                     self.modes.spindle = turning;
-                    self.spindle().map_err(at)?;
+                    self.turn_spindle(self.modes.spindle).map_err(at)?;
                 }
                 Misc::Coolant(coolant) => self.track.event(EventKind::Coolant(coolant)).map_err(at)?,
                 Misc::ToolChange => self.change_tool(self.selected_tool).map_err(at)?,
@@ -90,15 +90,6 @@ impl Reader {
             }
         }
         Ok(step)
-    }
-
-    fn spindle(&mut self) -> Result<(), NcProblem> {
-        let rpm = self.modes.speed;
-        self.track.event(EventKind::Spindle(match self.modes.spindle {
-            Turning::Stopped => Spindle::Stopped,
-            Turning::Clockwise => Spindle::Clockwise { rpm },
-            Turning::CounterClockwise => Spindle::CounterClockwise { rpm },
-        }))
     }
 
     /// G4: P in seconds; in milliseconds on Fanuc and Haas, if it has no decimal point; X in seconds there.

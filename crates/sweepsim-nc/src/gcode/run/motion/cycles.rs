@@ -371,7 +371,7 @@ impl Reader {
         self.rest(if self.fanuc() { p / 1000.0 } else { p })
     }
 
-    fn turn_spindle(&mut self, turning: Turning) -> Result<(), NcProblem> {
+    pub(crate) fn turn_spindle(&mut self, turning: Turning) -> Result<(), NcProblem> {
         let rpm = self.modes.speed;
         self.track.event(EventKind::Spindle(match turning {
             Turning::Stopped => Spindle::Stopped,
