@@ -2,10 +2,10 @@
 
 use super::arcs::PendingArc;
 use super::frames::{Vector, norm};
-use super::reader::{Located, Reader, numbers};
+use super::reader::{Reader, numbers};
 use super::statement::Statement;
 use crate::drive::Arc;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     /// `MOVARC` that no `GOTO` ends.

@@ -1,13 +1,13 @@
 //! Moves: `GOTO`, `GODLTA`, `FROM`, arcs and the points of cycles.
 
 use super::frames::{Vector, add, dot, norm, sub};
-use super::reader::{Located, Reader, numbers};
+use super::reader::{Reader, numbers};
 use super::statement::Statement;
 use super::words;
 use crate::model::event::EventKind;
 use crate::model::program::FeedMode;
 use crate::model::read_options::AxisLaw;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// How far a tool axis may be from unit length without a note: files have few digits.
 const UNIT_LENGTH: f64 = 1e-3;

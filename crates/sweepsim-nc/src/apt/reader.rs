@@ -1,7 +1,6 @@
 //! Executes the statements of a CL file.
 
 use std::collections::HashSet;
-use std::ops::Range;
 
 use super::arcs::PendingArc;
 use super::cycles::{Cycle, CycleStatement};
@@ -15,13 +14,10 @@ use crate::model::event::EventKind;
 use crate::model::names::Format;
 use crate::model::program::{Call, FeedMode, Program, Units};
 use crate::model::read_options::ReadOptions;
-use crate::text::error::{NcError, NcProblem, TextPosition};
+use crate::text::error::{Located, NcError, NcProblem, TextPosition};
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
-
-/// A problem, and the bytes of the text at fault.
-pub(super) type Located = (NcProblem, Range<usize>);
 
 pub(super) struct Reader<'o> {
     pub options: &'o ReadOptions,

@@ -2,13 +2,13 @@
 
 use super::cycles::feed;
 use super::frames::frame;
-use super::reader::{Located, Reader, numbers};
+use super::reader::{Reader, numbers};
 use super::statement::{Item, Statement};
 use crate::machines::WorkFrame;
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::program::{FeedMode, Units};
 use crate::model::stock::StockDescription;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     /// Comments of Creo.

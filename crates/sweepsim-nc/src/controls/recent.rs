@@ -7,10 +7,10 @@ use std::rc::Rc;
 const KEPT: usize = 1024;
 
 /// The blocks read last, each in the place that its number has modulo [`KEPT`].
-pub(super) struct Recent<T>(RefCell<Vec<Place<T>>>);
+pub(super) struct Recent<T>(RefCell<Vec<KeptBlock<T>>>);
 
 /// A block with its number.
-type Place<T> = Option<(usize, Rc<T>)>;
+type KeptBlock<T> = Option<(usize, Rc<T>)>;
 
 impl<T> Default for Recent<T> {
     fn default() -> Self {

@@ -6,13 +6,10 @@ use std::path::PathBuf;
 
 use crate::drive::Track;
 use crate::model::read_options::ReadOptions;
-use crate::text::error::{NcError, NcProblem};
+use crate::text::error::{Located, NcError, NcProblem};
 
 /// Finds the text of a subprogram by its name in capitals, with the file it came from.
 pub type Library<'a> = &'a dyn Fn(&str) -> Option<(PathBuf, String)>;
-
-/// A problem, and the bytes of the line at fault.
-pub(super) type Located = (NcProblem, Range<usize>);
 
 /// The most calls within each other. Siemens's control has 11 or 15 levels.
 pub(super) const DEEPEST_CALL: usize = 32;
@@ -39,6 +36,9 @@ pub(super) trait Running {
 
     /// The file, the number and the text of a block's line.
     fn line_of(&self, at: BlockIndex) -> (usize, usize, &str);
+
+    /// The bytes of a block in its line.
+    fn whole(&self, at: BlockIndex) -> Range<usize>;
 }
 
 /// Runs the main program, whose text this is, to its end.
@@ -60,7 +60,7 @@ pub(super) fn run(running: &mut impl Running, text: &str, options: &ReadOptions)
                 format!("over {most_blocks}"),
                 "smaller: it may never end",
             );
-            Err((problem, 0..usize::MAX))
+            Err((problem, running.whole(at)))
         } else {
             running.run(at)
         };

@@ -4,7 +4,9 @@ use nalgebra::Vector3;
 
 use super::arcs::Arc;
 use super::circular_arc::CircularArc;
-use super::contour::{ArcPlane, Bend, Compensation, Corner, Item, Outcome, Place, Side, Stroke, blend};
+use super::contour::{
+    ArcPlane, Bend, Compensation, CompensationSettings, Corner, Item, Outcome, ProgramPlace, Stroke, blend,
+};
 use super::track::Track;
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
@@ -18,7 +20,7 @@ pub(super) struct Contour {
     /// A move whose end becomes a corner with the next one, and where it starts.
     waiting: Option<([f64; 3], Stroke, Corner)>,
     /// What happens after that move.
-    events: Vec<(EventKind, Place)>,
+    events: Vec<(EventKind, ProgramPlace)>,
     /// A corner at the end of the next move.
     next: Option<Corner>,
     /// The direction in which the last move ended.
@@ -42,7 +44,7 @@ impl Track {
     }
 
     /// Switches cutter compensation on: from the next move on.
-    pub fn compensate(&mut self, side: Side, plane: ArcPlane) -> Result<(), NcProblem> {
+    pub fn compensate(&mut self, side: CompensationSettings, plane: ArcPlane) -> Result<(), NcProblem> {
         if self.compensates() {
             return Err(NcProblem::unsupported(
                 "a change of cutter compensation without its end is",

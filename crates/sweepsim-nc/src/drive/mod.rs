@@ -18,7 +18,7 @@ pub use rapids::RapidPoint;
 
 pub(crate) use arcs::Arc;
 pub(crate) use circular_arc::CircularArc;
-pub(crate) use contour::{ArcPlane, Bend, Corner, CornerShape, Corners, Place, Side, Stroke};
+pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
 pub(crate) use driver::{Coordinates, Sense};
 pub(crate) use trace::{Canonical, Trace};
 pub(crate) use track::Track;

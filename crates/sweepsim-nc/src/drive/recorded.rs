@@ -1,6 +1,6 @@
 //! What a program does besides moving, where it is called from, and its end: as much as may be kept.
 
-use super::contour::Place;
+use super::contour::ProgramPlace;
 use super::track::Track;
 use crate::model::event::{Event, EventKind, MOST_TEXT};
 use crate::model::positions::ProgramPositions;
@@ -68,7 +68,7 @@ impl Track {
     /// Returns to the calling place.
     pub fn returns(&mut self) {
         if let Some(call) = self.place.call.and_then(|call| self.program.calls.get(call as usize)) {
-            self.place = Place {
+            self.place = ProgramPlace {
                 file: call.file,
                 line: call.line,
                 call: call.parent,

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use sweepsim_motion::{Course, Move, Pose, Turning};
 
-use super::contour::Place;
+use super::contour::ProgramPlace;
 use super::contour_queue::Contour;
 use super::driver::{Coordinates, Driver, Sense};
 use super::trace::Trace;
@@ -26,7 +26,7 @@ pub(crate) struct Track {
     pub driver: Driver,
     pub notes: NoteList,
     pub program: Program,
-    pub place: Place,
+    pub place: ProgramPlace,
     /// Coordinates in the frame, in millimetres; `None` until the program has given them.
     pub xyz: [Option<f64>; 3],
     pub abc: [f64; 3],
@@ -64,7 +64,7 @@ impl Track {
             driver: Driver::new(options, sense),
             notes: NoteList::default(),
             program,
-            place: Place::default(),
+            place: ProgramPlace::default(),
             xyz: options.start.map_or([None; 3], |start| start.map(Some)),
             abc: [0.0; 3],
             tool: None,
@@ -156,17 +156,11 @@ impl Track {
             return Ok(());
         }
         self.refuse_contour("another frame")?;
-        self.xyz = match self.known() {
-            Some(xyz) => frame
-                .inverse_point(self.frame.point(xyz))
-                .map_or([None; 3], |xyz| xyz.map(Some)),
-            None if frame.is_shift() && self.frame.is_shift() => {
-                let shift: [f64; 3] = std::array::from_fn(|k| self.frame.origin()[k] - frame.origin()[k]);
-                std::array::from_fn(|k| self.xyz[k].map(|c| c + shift[k]))
-            }
+        let xyz = match frame.inverse() {
+            Some(inverse) => inverse.partial(self.frame.partial(self.xyz)),
             None => [None; 3],
         };
-        self.frame = frame;
+        self.enter(frame, xyz);
         Ok(())
     }
 

@@ -281,7 +281,7 @@ pub(crate) enum Misc {
     End,
     Stop,
     OptionalStop,
-    Spindle(Turning),
+    Spindle(SpindleTurning),
     Coolant(Coolant),
     TipControl(bool),
     /// M98, M97.
@@ -301,7 +301,7 @@ pub(crate) enum Misc {
 
 /// How the spindle turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Turning {
+pub(crate) enum SpindleTurning {
     Clockwise,
     CounterClockwise,
     Stopped,
@@ -316,9 +316,9 @@ pub(crate) fn m(value: f64) -> Misc {
         0 => Misc::Stop,
         1 => Misc::OptionalStop,
         2 | 30 => Misc::End,
-        3 => Misc::Spindle(Turning::Clockwise),
-        4 => Misc::Spindle(Turning::CounterClockwise),
-        5 => Misc::Spindle(Turning::Stopped),
+        3 => Misc::Spindle(SpindleTurning::Clockwise),
+        4 => Misc::Spindle(SpindleTurning::CounterClockwise),
+        5 => Misc::Spindle(SpindleTurning::Stopped),
         6 => Misc::ToolChange,
         7 => Misc::Coolant(Coolant::Mist),
         8 => Misc::Coolant(Coolant::Flood),

@@ -1,6 +1,6 @@
 //! What stays in effect until another word changes it.
 
-use super::codes::{MotionMode, Turning};
+use super::codes::{MotionMode, SpindleTurning};
 use crate::drive::ArcPlane;
 use crate::machines::WorkFrame;
 use crate::model::program::FeedMode;
@@ -33,7 +33,7 @@ pub(crate) struct Modes {
     pub stops_here: bool,
     pub feed: Option<f64>,
     pub speed: Option<f64>,
-    pub spindle: Turning,
+    pub spindle: SpindleTurning,
     /// The way along a thread in one revolution, as given.
     pub pitch: Option<f64>,
     /// Where the last cubic curve came from, relative to its end: the next one may go on smoothly.
@@ -67,7 +67,7 @@ impl Modes {
             stops_here: false,
             feed: None,
             speed: None,
-            spindle: Turning::Stopped,
+            spindle: SpindleTurning::Stopped,
             pitch: None,
             curve_tangent: None,
             retract_to_plane: false,

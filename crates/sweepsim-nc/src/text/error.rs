@@ -83,6 +83,9 @@ impl TextPosition {
     }
 }
 
+/// A problem, and the bytes at fault: of its line, or in CL files of the text.
+pub(crate) type Located = (NcProblem, Range<usize>);
+
 /// What is wrong, without the position.
 #[derive(Debug, Error)]
 #[non_exhaustive]

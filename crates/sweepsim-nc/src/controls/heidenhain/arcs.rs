@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::interpreter::Reader;
-use super::line::{Line, Located};
+use super::line::Line;
 use super::moves::Words;
-use crate::drive::{CircularArc, Corner, CornerShape, Place};
-use crate::text::error::NcProblem;
+use crate::drive::{CircularArc, Corner, CornerShape, ProgramPlace};
+use crate::text::error::{Located, NcProblem};
 
 /// Whether a block moves along the contour.
 fn is_contour(word: &str) -> bool {
@@ -77,7 +77,7 @@ impl Reader<'_> {
                 CornerShape::Cut(size)
             },
             plane: self.plane,
-            place: Place::default(),
+            place: ProgramPlace::default(),
             feed,
             word,
             strict: true,

@@ -3,10 +3,10 @@
 use std::rc::Rc;
 
 use super::interpreter::{Level, LevelKind, Reader};
-use super::line::{Line, Located};
+use super::line::Line;
 use super::unit::Unit;
 use crate::controls::run::DEEPEST_CALL;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     pub(super) fn push(&mut self, level: Level, line: &Line) -> Result<(), Located> {

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use super::interpreter::Reader;
-use super::line::{Line, Located};
+use super::line::Line;
 use super::planes::is_frame_cycle;
 use crate::drive::CircularArc;
 use crate::model::event::EventKind;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The most infeeds of one hole.
 const MOST_PECKS: usize = 10_000;

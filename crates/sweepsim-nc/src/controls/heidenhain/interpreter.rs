@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::cycles::Cycle;
-use super::line::{self, Line, Located};
+use super::line::{self, Line};
 use super::planes::Frames;
 use super::unit::Unit;
 use super::values::Parameters;
 use crate::controls::run::{self, BlockIndex, Library, Running};
-use crate::drive::{Place, Sense, Track};
+use crate::drive::{ProgramPlace, Sense, Track};
 use crate::model::event::{EventKind, Spindle};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
 use crate::model::stock::StockDescription;
-use crate::text::error::{NcError, NcProblem};
+use crate::text::error::{Located, NcError, NcProblem};
 
 /// A program, subprogram or repeated section on its way.
 pub(super) struct Level {
@@ -154,6 +154,10 @@ impl Running for Reader<'_> {
         let unit = &self.units[unit];
         (unit.file, index + 1, unit.text(index))
     }
+
+    fn whole(&self, (unit, index): BlockIndex) -> std::ops::Range<usize> {
+        self.units[unit].block(index).all()
+    }
 }
 
 impl Reader<'_> {
@@ -190,11 +194,11 @@ impl Reader<'_> {
     }
 
     /// The block after this one, and where it is.
-    pub(super) fn following_with_place(&self) -> Option<(Rc<Line>, Place)> {
+    pub(super) fn following_with_place(&self) -> Option<(Rc<Line>, ProgramPlace)> {
         let (line, found) = self.following_lines().next()?;
         Some((
             found,
-            Place {
+            ProgramPlace {
                 line,
                 ..self.track.place
             },

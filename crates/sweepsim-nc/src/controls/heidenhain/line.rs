@@ -2,11 +2,6 @@
 
 use std::ops::Range;
 
-use crate::text::error::NcProblem;
-
-/// A problem, and the bytes of the line that it is about.
-pub(super) type Located = (NcProblem, Range<usize>);
-
 /// A word of a block: `X+10`, `IX-5`, `R0`, `FMAX`, `Q5=`, `+Q1`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Token {

@@ -1,10 +1,10 @@
 //! Moves: lines, arcs, rounded corners and chamfers.
 
 use super::interpreter::Reader;
-use super::line::{Line, Located};
-use crate::drive::{Corners, Side};
+use super::line::Line;
+use crate::drive::{CompensationSettings, Corners};
 use crate::machines::SHORTEST;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The words of a move.
 #[derive(Clone, Debug, Default)]
@@ -324,7 +324,7 @@ impl Reader<'_> {
             )));
         };
         self.compensated = Some(left);
-        let side = Side {
+        let side = CompensationSettings {
             left: left == (radius >= 0.0),
             radius: radius.abs(),
             corners: Corners::Arcs,

@@ -3,9 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::interpreter::Reader;
-use super::line::{Line, Located};
+use super::line::Line;
 use crate::machines::WorkFrame;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The frames in effect.
 #[derive(Clone, Debug)]

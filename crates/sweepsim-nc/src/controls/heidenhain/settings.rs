@@ -1,10 +1,10 @@
 //! Tools, stock and M codes.
 
 use super::interpreter::Reader;
-use super::line::{Line, Located};
+use super::line::Line;
 use crate::drive::Coordinates;
 use crate::model::event::{Coolant, EventKind, Spindle};
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     /// `BLK FORM 0.1 Z X-50 Y-50 Z-20`, `BLK FORM 0.2 X+50 Y+50 Z+0`.

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::line::{Line, Located};
-use crate::text::error::NcProblem;
+use super::line::Line;
+use crate::text::error::{Located, NcProblem};
 
 /// The most Q parameters.
 const MOST: usize = 100_000;

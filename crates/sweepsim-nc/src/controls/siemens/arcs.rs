@@ -3,10 +3,9 @@
 use nalgebra::Vector3;
 
 use super::interpreter::Reader;
-use super::language::cursor::Located;
 use super::words::{Meaning, Motion, Words};
 use crate::drive::{Arc, CircularArc};
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader<'_> {
     pub(super) fn arc(&mut self, words: &Words, target: [f64; 3], abc: [f64; 3]) -> Result<(), Located> {

@@ -1,11 +1,10 @@
 //! Contours: cutter compensation, rounded corners and chamfers, polar coordinates.
 
 use super::interpreter::Reader;
-use super::language::cursor::Located;
 use super::language::expression::Value;
 use super::words::{Action, Meaning, Motion, Words};
-use crate::drive::{Corner, CornerShape, Corners, Side};
-use crate::text::error::NcProblem;
+use crate::drive::{CompensationSettings, Corner, CornerShape, Corners};
+use crate::text::error::{Located, NcProblem};
 
 /// What a pole is measured from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +39,7 @@ impl Reader<'_> {
                 "0: other corners than arcs are not read",
             )));
         }
-        let side = Side {
+        let side = CompensationSettings {
             left: left == (radius >= 0.0),
             radius: radius.abs(),
             corners: self.modes.corners,

@@ -1,11 +1,10 @@
 //! Frames: work offsets, programmable frames and swivelled planes.
 
 use super::interpreter::Reader;
-use super::language::cursor::Located;
 use super::words::Words;
 use crate::drive::Coordinates;
 use crate::machines::WorkFrame;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The frames in effect.
 #[derive(Clone, Debug, Default)]
@@ -24,13 +23,13 @@ pub(super) struct Frames {
 /// An operation on the programmable frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Operation {
-    pub kind: Kind,
+    pub kind: FrameChange,
     /// Added to the frame rather than replacing it.
     pub additive: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum FrameChange {
     Shift,
     Turn,
     Scale,
@@ -40,14 +39,14 @@ pub(super) enum Kind {
 impl Operation {
     pub fn named(name: &str) -> Option<Self> {
         let (kind, additive) = match name {
-            "TRANS" => (Kind::Shift, false),
-            "ATRANS" => (Kind::Shift, true),
-            "ROT" => (Kind::Turn, false),
-            "AROT" => (Kind::Turn, true),
-            "SCALE" => (Kind::Scale, false),
-            "ASCALE" => (Kind::Scale, true),
-            "MIRROR" => (Kind::Mirror, false),
-            "AMIRROR" => (Kind::Mirror, true),
+            "TRANS" => (FrameChange::Shift, false),
+            "ATRANS" => (FrameChange::Shift, true),
+            "ROT" => (FrameChange::Turn, false),
+            "AROT" => (FrameChange::Turn, true),
+            "SCALE" => (FrameChange::Scale, false),
+            "ASCALE" => (FrameChange::Scale, true),
+            "MIRROR" => (FrameChange::Mirror, false),
+            "AMIRROR" => (FrameChange::Mirror, true),
             _ => return None,
         };
         Some(Self { kind, additive })
@@ -91,20 +90,20 @@ impl Reader<'_> {
         }
         let or = |missing: f64| values.map(|value| value.unwrap_or(missing));
         let change = match operation.kind {
-            Kind::Shift => WorkFrame::shifted(or(0.0).map(|value| value * unit)),
-            Kind::Turn => match words.plain("RPL") {
+            FrameChange::Shift => WorkFrame::shifted(or(0.0).map(|value| value * unit)),
+            FrameChange::Turn => match words.plain("RPL") {
                 Some(angle) => WorkFrame::turned(self.modes.plane[2], angle),
                 // About Z, then about the new Y, then about the new X.
                 None => WorkFrame::spatial(or(0.0)),
             },
-            Kind::Scale => {
+            FrameChange::Scale => {
                 let factors = or(1.0);
                 if factors.contains(&0.0) {
                     return Err((NcProblem::value("a scale", 0, "other than 0"), words.span("X")));
                 }
                 WorkFrame::scaled(factors)
             }
-            Kind::Mirror => WorkFrame::scaled(values.map(|value| if value.is_some() { -1.0 } else { 1.0 })),
+            FrameChange::Mirror => WorkFrame::scaled(values.map(|value| if value.is_some() { -1.0 } else { 1.0 })),
         };
         self.frames.programmed = if operation.additive {
             self.frames.programmed.then(&change)

@@ -5,7 +5,6 @@ use std::rc::Rc;
 
 use super::frames::Frames;
 use super::language::block::{Item, Statement};
-use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Value};
 use super::language::unit::{Unit, parts};
 use super::variables::MOST_VARIABLES;
@@ -15,7 +14,7 @@ use crate::drive::{Sense, Track};
 use crate::model::names::Format;
 use crate::model::program::Program;
 use crate::model::read_options::{Controller, ReadOptions};
-use crate::text::error::{NcError, NcProblem};
+use crate::text::error::{Located, NcError, NcProblem};
 use crate::text::kept::KeptText;
 use crate::tools::comments;
 
@@ -142,6 +141,10 @@ impl Running for Reader<'_> {
         let unit = &self.units[unit];
         (unit.file, unit.first_line() + index, unit.text(index))
     }
+
+    fn whole(&self, (unit, index): BlockIndex) -> std::ops::Range<usize> {
+        0..self.units[unit].text(index).len()
+    }
 }
 
 impl Reader<'_> {
@@ -216,7 +219,7 @@ impl Reader<'_> {
                     self.block(items)?;
                     if let Some((name, arguments, times)) = self.pending.take() {
                         self.call(&name, arguments, times)
-                            .map_err(|problem| (problem, self.whole(unit, index)))?;
+                            .map_err(|problem| (problem, self.whole((unit, index))))?;
                     }
                 }
             }
@@ -291,16 +294,16 @@ impl Reader<'_> {
                 let times = times.as_ref().map_or(Ok(1.0), |times| self.number(times))?;
                 if !(times >= 0.0 && times.fract() == 0.0) {
                     let problem = NcProblem::value("the number of repeats P", times, "a whole number from 0 on");
-                    return Err((problem, self.whole(unit, index)));
+                    return Err((problem, self.whole((unit, index))));
                 }
                 if times >= 1.0 && start < end {
                     self.track
                         .calls()
-                        .map_err(|problem| (problem, self.whole(unit, index)))?;
+                        .map_err(|problem| (problem, self.whole((unit, index))))?;
                     if let Some(level) = self.stack.last_mut() {
                         if level.sections.len() > DEEPEST_CALL {
                             let problem = NcProblem::syntax("repeats within repeats: nested too deeply");
-                            return Err((problem, self.whole(unit, index)));
+                            return Err((problem, self.whole((unit, index))));
                         }
                         level.sections.push(Section {
                             from: start,
@@ -330,9 +333,5 @@ impl Reader<'_> {
             Statement::Proc(_) => {}
         }
         Ok(())
-    }
-
-    fn whole(&self, unit: usize, index: usize) -> std::ops::Range<usize> {
-        0..self.units[unit].text(index).len()
     }
 }

@@ -1,10 +1,9 @@
 //! The moves of a block.
 
 use super::interpreter::Reader;
-use super::language::cursor::Located;
 use super::words::{Action, Meaning, Modal, Motion, Word, Words};
 use crate::machines::SHORTEST;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 const LINEAR: [&str; 3] = ["X", "Y", "Z"];
 const ROTARY: [&str; 3] = ["A", "B", "C"];

@@ -4,10 +4,9 @@ use std::rc::Rc;
 
 use super::interpreter::{Level, Reader};
 use super::language::block::Item;
-use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Value};
 use crate::controls::run::DEEPEST_CALL;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The most variables.
 pub(super) const MOST_VARIABLES: usize = 100_000;

@@ -8,12 +8,11 @@ use super::cycles::Cycle;
 use super::frames::Operation;
 use super::interpreter::Reader;
 use super::language::block::Item;
-use super::language::cursor::Located;
 use super::language::expression::{self, Expression, Kind, Value};
 use crate::drive::{CornerShape, Corners};
 use crate::model::event::{Coolant, EventKind, Spindle};
 use crate::model::read_options::ReadOptions;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// How the tool moves, until another word says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, meetings, minus, plus};
-use super::stroke::{ArcPlane, Bend, Place, Stroke};
+use super::stroke::{ArcPlane, Bend, ProgramPlace, Stroke};
 use crate::text::error::NcProblem;
 
 /// What is made of a corner.
@@ -22,7 +22,7 @@ pub(crate) enum CornerShape {
 pub(crate) struct Corner {
     pub shape: CornerShape,
     pub plane: ArcPlane,
-    pub place: Place,
+    pub place: ProgramPlace,
     /// The feed along it, if not that of the next move.
     pub feed: Option<f64>,
     /// Its word, for messages.
@@ -54,7 +54,7 @@ pub(crate) enum Outcome {
 }
 
 /// A move in the plane of its corner.
-struct Side {
+struct CornerSide {
     curve: Curve,
     start: Flat,
     end: Flat,
@@ -62,7 +62,7 @@ struct Side {
     length: f64,
 }
 
-impl Side {
+impl CornerSide {
     fn new([u, v, _]: ArcPlane, from: [f64; 3], stroke: &Stroke) -> Self {
         let (start, end) = ([from[u], from[v]], [stroke.end[u], stroke.end[v]]);
         match stroke.bend {
@@ -189,7 +189,7 @@ pub(crate) fn blend(start: [f64; 3], first: &Stroke, second: &Stroke, corner: &C
             "expected a corner of moves in the plane",
         );
     }
-    let (a, b) = (Side::new(plane, start, first), Side::new(plane, p, second));
+    let (a, b) = (CornerSide::new(plane, start, first), CornerSide::new(plane, p, second));
     if !(a.length > 0.0 && b.length > 0.0) {
         return Ok(Outcome::InLine);
     }

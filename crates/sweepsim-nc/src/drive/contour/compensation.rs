@@ -15,14 +15,14 @@ use std::f64::consts::TAU;
 
 use super::corner::{Curve, Flat, arc_tangent, cross, dot, length, minus, plus};
 use super::narrow::{Narrow, TooNarrow};
-use super::stroke::{ArcPlane, Bend, Item, Place, Side, Stroke, flat, set};
+use super::stroke::{ArcPlane, Bend, CompensationSettings, Item, ProgramPlace, Stroke, flat, set};
 use crate::model::event::EventKind;
 use crate::text::error::NcProblem;
 
 /// Compensation while it is on.
 #[derive(Clone, Debug)]
 pub(crate) struct Compensation {
-    pub side: Side,
+    pub side: CompensationSettings,
     pub(super) plane: ArcPlane,
     /// No move has been compensated yet.
     first: bool,
@@ -47,7 +47,7 @@ pub(crate) struct Compensation {
 }
 
 impl Compensation {
-    pub(crate) fn new(side: Side, plane: ArcPlane, at: [f64; 3]) -> Self {
+    pub(crate) fn new(side: CompensationSettings, plane: ArcPlane, at: [f64; 3]) -> Self {
         Self {
             side,
             plane,
@@ -69,7 +69,7 @@ impl Compensation {
     }
 
     /// Something that happens after the waiting moves.
-    pub(crate) fn event(&mut self, kind: EventKind, place: Place) {
+    pub(crate) fn event(&mut self, kind: EventKind, place: ProgramPlace) {
         self.waiting.push_back(Item::Event(kind, place));
     }
 
@@ -153,7 +153,7 @@ impl Compensation {
         out.extend(warnings);
     }
 
-    fn warning(&self, found: TooNarrow, place: Place) -> Item {
+    fn warning(&self, found: TooNarrow, place: ProgramPlace) -> Item {
         let [a, b] = found.lines;
         let text = format!(
             "the tool of radius {} mm does not fit between the moves of lines {} and {}: it goes {:.3} mm into the contour",

@@ -9,4 +9,4 @@ mod stroke;
 
 pub(crate) use blend::{Corner, CornerShape, Outcome, blend};
 pub(crate) use compensation::Compensation;
-pub(crate) use stroke::{ArcPlane, Bend, Corners, Item, Place, Side, Stroke};
+pub(crate) use stroke::{ArcPlane, Bend, CompensationSettings, Corners, Item, ProgramPlace, Stroke};

@@ -6,7 +6,7 @@ use crate::model::program::FeedMode;
 
 /// A place in the program.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct ProgramPlace {
     pub file: usize,
     pub line: usize,
     pub call: Option<u32>,
@@ -31,7 +31,7 @@ pub(crate) struct Stroke {
     pub rapid: bool,
     pub bend: Option<Bend>,
     pub plane: ArcPlane,
-    pub place: Place,
+    pub place: ProgramPlace,
     pub feed: Option<f64>,
     pub feed_mode: FeedMode,
     pub exact_stop: bool,
@@ -41,9 +41,9 @@ pub(crate) struct Stroke {
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
     Stroke(Stroke),
-    Event(EventKind, Place),
+    Event(EventKind, ProgramPlace),
     /// Something to note.
-    Warning(String, Place),
+    Warning(String, ProgramPlace),
 }
 
 /// How the tool goes round outside corners.
@@ -59,7 +59,7 @@ pub(crate) enum Corners {
 
 /// What compensation is switched on with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Side {
+pub(crate) struct CompensationSettings {
     pub left: bool,
     /// The tool's radius, at least 0.
     pub radius: f64,

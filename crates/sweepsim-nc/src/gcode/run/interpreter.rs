@@ -4,24 +4,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use super::control::calls::{Frame, Spot};
+use super::control::calls::{CallLevel, SourceLine};
 use super::control::lookup::folders;
 use super::control::variables::{Store, given_work_offsets};
 use super::motion::Nurbs;
 use super::planes::PlaneBlocks;
 use super::tools::ToolTable;
-use crate::drive::{Canonical, Place, Sense, Trace, Track};
+use crate::drive::{Canonical, ProgramPlace, Sense, Trace, Track};
 use crate::gcode::flow::keywords::{Label, after_letter, is_statement, skip_head};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::gcode::modes::Modes;
 use crate::gcode::offsets::Offsets;
-use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::{title, words};
 use crate::model::names::Format;
 use crate::model::program::{Program, Units};
 use crate::model::read_options::{Controller, ReadOptions};
-use crate::text::error::{NcError, NcProblem};
+use crate::text::error::{Located, NcError, NcProblem};
 
 /// The most problems after the first one.
 const MOST_FURTHER: usize = 100;
@@ -32,7 +32,7 @@ const AFTER_PROBLEM: u64 = 200_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
     Next,
-    Jump(Spot),
+    Jump(SourceLine),
     End,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Reader {
     pub controller: Option<Controller>,
     /// Whether the control is given, not guessed: its own rules about missing and spare words then count.
     pub strict: bool,
-    pub frames: Vec<Frame>,
+    pub levels: Vec<CallLevel>,
     /// The block of G66, and how deep in calls it is.
     pub modal_macro: Option<(Block, usize)>,
     pub sources: Vec<Rc<Source>>,
@@ -54,9 +54,9 @@ pub(crate) struct Reader {
     pub folders: Vec<PathBuf>,
     pub looked_for: BTreeSet<Label>,
     pub call_numbers: BTreeMap<(usize, usize, Option<u32>), u32>,
-    pub loop_ends: BTreeMap<Spot, Option<usize>>,
+    pub loop_ends: BTreeMap<SourceLine, Option<usize>>,
     /// Where the last jump backwards led.
-    pub turned: Option<Spot>,
+    pub turned: Option<SourceLine>,
     pub block_delete: bool,
     pub lenient: bool,
     /// Whether positions in machine coordinates are known: the control's variables were given.
@@ -162,7 +162,7 @@ impl Reader {
             controller: options.controller.or_else(|| crate::gcode::dialect::of(input.text)),
             strict: options.controller.is_some(),
             modal_macro: None,
-            frames: vec![Frame::main()],
+            levels: vec![CallLevel::main()],
             sources: vec![Rc::new(Source::new(0, Rc::clone(input.text)))],
             files: input.file.map(Path::to_owned).into_iter().collect(),
             folders: folders(input.file, &options.subprograms),
@@ -205,7 +205,7 @@ impl Reader {
         if leader > 0 {
             self.track.notes.add(1, "text before the first `%`: ignored");
         }
-        let mut here = Spot {
+        let mut here = SourceLine {
             source: 0,
             line: leader,
         };
@@ -214,7 +214,7 @@ impl Reader {
         let mut left = most_blocks;
         loop {
             if here.line >= source.len() {
-                if here.source == 0 && self.frames.len() == 1 {
+                if here.source == 0 && self.levels.len() == 1 {
                     break;
                 }
                 let problem = NcProblem::syntax("the file ends within a subprogram: expected M99, or `endsub`");
@@ -291,12 +291,12 @@ impl Reader {
         }
     }
 
-    fn line(&mut self, source: &Source, here: Spot, block: &mut Block) -> Result<Step, Located> {
+    fn line(&mut self, source: &Source, here: SourceLine, block: &mut Block) -> Result<Step, Located> {
         let line = source.line(here.line);
-        self.track.place = Place {
+        self.track.place = ProgramPlace {
             file: source.file,
             line: here.line + 1,
-            call: self.frame().call,
+            call: self.level().call,
         };
         if !self.track.has_moved()
             && let Some(title) = title::of(line)
@@ -329,7 +329,7 @@ impl Reader {
         }
         words::read(line, self, block)?;
         if block.tape {
-            let ends = self.begun && self.frames.len() == 1;
+            let ends = self.begun && self.levels.len() == 1;
             return Ok(if ends { Step::End } else { Step::Next });
         }
         if let Some(message) = block.message.clone() {

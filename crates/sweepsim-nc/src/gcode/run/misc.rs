@@ -1,12 +1,12 @@
 //! Speeds, tools, spindle, coolant, stops and dwells.
 
 use super::interpreter::{Reader, Step};
-use crate::gcode::codes::{self, Misc, Turning};
-use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::codes::{self, Misc, SpindleTurning};
+use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::model::event::EventKind;
 use crate::model::read_options::Controller;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader {
     /// Executes F, S, T and M words. What comes after the block, unless it calls.
@@ -17,7 +17,7 @@ impl Reader {
         }
         if let Some(speed) = block.get('S') {
             let changed = self.modes.speed.replace(speed) != Some(speed);
-            if changed && self.modes.spindle != Turning::Stopped && !block.has('M') {
+            if changed && self.modes.spindle != SpindleTurning::Stopped && !block.has('M') {
                 self.turn_spindle(self.modes.spindle).map_err(whole)?;
             }
         }
@@ -62,19 +62,19 @@ impl Reader {
                         ))));
                     }
                 }
-                Misc::SaveModes => self.frame().modes = Some(Box::new(self.modes.clone())),
+                Misc::SaveModes => self.level().modes = Some(Box::new(self.modes.clone())),
                 Misc::SaveModesForCall => {
                     let modes = Some(Box::new(self.modes.clone()));
-                    let frame = self.frame();
+                    let frame = self.level();
                     frame.modes = modes;
                     frame.restore_modes = true;
                 }
                 Misc::ForgetModes => {
-                    let frame = self.frame();
+                    let frame = self.level();
                     frame.modes = None;
                     frame.restore_modes = false;
                 }
-                Misc::RestoreModes => match self.frame().modes.clone() {
+                Misc::RestoreModes => match self.level().modes.clone() {
                     Some(modes) => self.modes = *modes,
                     None => {
                         return Err(at(NcProblem::syntax(

@@ -1,13 +1,13 @@
 //! What a block does, in the order in which controls do it: modes, speeds, tool, spindle and coolant, offsets, the move, the end.
 
-use super::control::calls::Spot;
+use super::control::calls::SourceLine;
 use super::interpreter::{Reader, Step};
 use crate::drive::Sense;
 use crate::gcode::codes::{self, Code, LengthCode, Misc, MotionMode};
-use crate::gcode::syntax::block::{Block, Located, Word};
+use crate::gcode::syntax::block::{Block, Word};
 use crate::model::program::Units;
 use crate::model::read_options::Controller;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// What the G words of a block ask for besides modes.
 #[derive(Default)]
@@ -23,7 +23,7 @@ struct Plan {
 
 impl Reader {
     /// Executes a block.
-    pub(crate) fn perform(&mut self, block: &Block, here: Spot) -> Result<Step, Located> {
+    pub(crate) fn perform(&mut self, block: &Block, here: SourceLine) -> Result<Step, Located> {
         for (target, value) in &block.assignments {
             self.assign(target, *value)
                 .map_err(|problem| (problem, 0..usize::MAX))?;
@@ -93,7 +93,7 @@ impl Reader {
         if plan.action.is_none()
             && block.first("XYZABC").is_some()
             && let Some((arguments, depth)) = self.modal_macro.clone()
-            && depth == self.frames.len()
+            && depth == self.levels.len()
         {
             step = self.call_macro(&arguments, here).map_err(whole)?;
         }

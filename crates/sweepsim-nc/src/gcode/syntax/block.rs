@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use crate::text::error::NcProblem;
-
-/// A problem, and the bytes of the line that it concerns.
-pub(crate) type Located = (NcProblem, Range<usize>);
+use crate::text::error::{Located, NcProblem};
 
 /// A letter and its number.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-use super::block::Located;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// Powers of ten that are exact as `f64`.
 const TENS: [f64; 23] = [

@@ -3,10 +3,10 @@
 //! LinuxCNC's grammar (RS-274/NGC, section 3.3.2) and Fanuc's custom macro B. They agree but for the precedence of `AND`, `OR` and `XOR`,
 //! the rounding functions, and variables without a value.
 
-use super::block::{Located, Target};
+use super::block::Target;
 use super::cursor::{Cursor, Digits};
 use super::functions::{Operator, apply, call};
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The variables of a program, as an expression reads them.
 pub(crate) trait Variables {

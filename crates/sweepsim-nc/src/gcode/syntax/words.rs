@@ -3,10 +3,10 @@
 //! Numbers are read as `f64` (`+1.`, `.5`, `-0.25`, no exponents). Spaces within a word are allowed; comments in `( )` and after `;` are
 //! skipped, except for those that speak to the operator.
 
-use super::block::{Block, Located, Word};
+use super::block::{Block, Word};
 use super::cursor::Cursor;
 use super::expression::{NoVariables, Values, Variables};
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// The words of `line` in `block`, which is cleared before.
 pub(crate) fn read(line: &str, variables: &dyn Variables, block: &mut Block) -> Result<(), Located> {

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::cursor::{Cursor, Located, without_comment};
+use super::cursor::{Cursor, without_comment};
 use super::expression::Expression;
 use super::structures::{define, repeat};
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// A part of a block.
 #[derive(Clone, Debug, PartialEq)]

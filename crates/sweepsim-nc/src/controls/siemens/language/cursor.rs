@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use crate::text::error::NcProblem;
-
-/// A problem, and the bytes of the line that it is about.
-pub(crate) type Located = (NcProblem, Range<usize>);
+use crate::text::error::{Located, NcProblem};
 
 /// A position in a line without its comment.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::cursor::{Cursor, Located};
-use crate::text::error::NcProblem;
+use super::cursor::Cursor;
+use crate::text::error::{Located, NcProblem};
 
 /// The deepest nesting of an expression.
 const DEEPEST: usize = 60;

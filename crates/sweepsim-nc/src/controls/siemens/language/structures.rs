@@ -1,8 +1,9 @@
 //! Repeats by label, and definitions of variables.
 
 use super::block::Statement;
-use super::cursor::{Cursor, Located};
+use super::cursor::Cursor;
 use super::expression::Expression;
+use crate::text::error::Located;
 
 pub(crate) fn repeat(cursor: &mut Cursor) -> Result<Statement, Located> {
     let block = cursor.name().is_some_and(|(name, _)| name == "REPEATB");

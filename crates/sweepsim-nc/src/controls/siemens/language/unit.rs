@@ -5,10 +5,9 @@ use std::ops::Range;
 use std::rc::Rc;
 
 use super::block::{self, Line, Search, Statement};
-use super::cursor::Located;
 use super::labels::Labels;
 use crate::controls::recent::Recent;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 use crate::text::kept::KeptText;
 
 /// A program or subprogram.

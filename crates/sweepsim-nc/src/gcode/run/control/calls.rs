@@ -15,30 +15,30 @@ pub(super) const DEEPEST: usize = 100;
 
 /// A line of one of the texts, both from 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Spot {
+pub(crate) struct SourceLine {
     pub source: usize,
     pub line: usize,
 }
 
 /// What is being executed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum FrameKind {
+pub(crate) enum CallKind {
     Main,
     /// A subroutine of LinuxCNC.
     Subroutine(Label),
     /// M98, M97 and G65: where it starts, and how often it is still to be executed.
     Program {
-        start: Spot,
+        start: SourceLine,
         left: u32,
     },
 }
 
 /// A call that has not returned yet.
 #[derive(Clone, Debug)]
-pub(crate) struct Frame {
-    pub kind: FrameKind,
+pub(crate) struct CallLevel {
+    pub kind: CallKind,
     /// Where to go on afterwards.
-    pub back: Spot,
+    pub back: SourceLine,
     /// The call, in the program's list.
     pub call: Option<u32>,
     /// What it has to restore.
@@ -53,11 +53,11 @@ pub(crate) struct Frame {
     pub loops: Vec<(u32, usize)>,
 }
 
-impl Frame {
+impl CallLevel {
     pub(crate) fn main() -> Self {
         Self {
-            kind: FrameKind::Main,
-            back: Spot::default(),
+            kind: CallKind::Main,
+            back: SourceLine::default(),
             call: None,
             locals: None,
             named: None,
@@ -95,17 +95,22 @@ const ARGUMENTS: [(char, usize); 21] = [
 ];
 
 impl Reader {
-    pub(crate) fn frame(&mut self) -> &mut Frame {
-        // There is always the frame of the main program.
-        if self.frames.is_empty() {
-            self.frames.push(Frame::main());
+    pub(crate) fn level(&mut self) -> &mut CallLevel {
+        // There is always the level of the main program.
+        if self.levels.is_empty() {
+            self.levels.push(CallLevel::main());
         }
-        let last = self.frames.len() - 1;
-        &mut self.frames[last]
+        let last = self.levels.len() - 1;
+        &mut self.levels[last]
     }
 
     /// Calls a subroutine of LinuxCNC.
-    pub(crate) fn call_subroutine(&mut self, label: Label, arguments: &[f64], here: Spot) -> Result<Step, NcProblem> {
+    pub(crate) fn call_subroutine(
+        &mut self,
+        label: Label,
+        arguments: &[f64],
+        here: SourceLine,
+    ) -> Result<Step, NcProblem> {
         let spot = self.find(&label, here.source, Some(Keyword::Sub))?;
         self.end_of_subroutine(&label, spot)?;
         let mut locals = [Some(0.0); 34];
@@ -116,13 +121,13 @@ impl Reader {
         locals[0] = None;
         locals[31..].copy_from_slice(&saved[31..]);
         self.variables.locals = locals;
-        let mut frame = Frame::main();
-        frame.kind = FrameKind::Subroutine(label);
-        frame.locals = Some((Box::new(saved), 31));
-        frame.named = Some(std::mem::take(&mut self.variables.named));
+        let mut level = CallLevel::main();
+        level.kind = CallKind::Subroutine(label);
+        level.locals = Some((Box::new(saved), 31));
+        level.named = Some(std::mem::take(&mut self.variables.named));
         self.enter(
-            frame,
-            Spot {
+            level,
+            SourceLine {
                 line: spot.line + 1,
                 ..spot
             },
@@ -131,7 +136,12 @@ impl Reader {
     }
 
     /// M98, M97.
-    pub(crate) fn call_program(&mut self, block: &Block, by_block_number: bool, here: Spot) -> Result<Step, NcProblem> {
+    pub(crate) fn call_program(
+        &mut self,
+        block: &Block,
+        by_block_number: bool,
+        here: SourceLine,
+    ) -> Result<Step, NcProblem> {
         let code = if by_block_number { "M97" } else { "M98" };
         let Some(p) = block.get('P') else {
             return Err(NcProblem::syntax(format!(
@@ -162,21 +172,21 @@ impl Reader {
         let start = if by_block_number {
             let line = self.sources[here.source].labels().number(number, here.line);
             let line = line.ok_or_else(|| NcProblem::syntax(format!("M97 P{number}: there is no block N{number}")))?;
-            Spot { line, ..here }
+            SourceLine { line, ..here }
         } else {
             let spot = self.find(&Label::Number(number), here.source, None)?;
-            Spot {
+            SourceLine {
                 line: spot.line + 1,
                 ..spot
             }
         };
-        let mut frame = Frame::main();
-        frame.kind = FrameKind::Program { start, left: times };
-        self.enter(frame, start, here)
+        let mut level = CallLevel::main();
+        level.kind = CallKind::Program { start, left: times };
+        self.enter(level, start, here)
     }
 
     /// G65.
-    pub(crate) fn call_macro(&mut self, block: &Block, here: Spot) -> Result<Step, NcProblem> {
+    pub(crate) fn call_macro(&mut self, block: &Block, here: SourceLine) -> Result<Step, NcProblem> {
         let Some(p) = block
             .get('P')
             .filter(|p| p.fract() == 0.0 && (0.0..=99_999_999.0).contains(p))
@@ -226,14 +236,14 @@ impl Reader {
             return Ok(Step::Next);
         }
         let saved = std::mem::replace(&mut self.variables.locals, locals);
-        let start = Spot {
+        let start = SourceLine {
             line: spot.line + 1,
             ..spot
         };
-        let mut frame = Frame::main();
-        frame.kind = FrameKind::Program { start, left: times };
-        frame.locals = Some((Box::new(saved), 34));
-        self.enter(frame, start, here)
+        let mut level = CallLevel::main();
+        level.kind = CallKind::Program { start, left: times };
+        level.locals = Some((Box::new(saved), 34));
+        self.enter(level, start, here)
     }
 
     /// G66: calls the macro after each block that moves, as G65 does, until G67. Moves within the macro do not call it again.
@@ -247,9 +257,9 @@ impl Reader {
         if block.get('P').is_none() {
             return Err(NcProblem::syntax("G66 without the number of a program: expected P"));
         }
-        // Calls return to the frame they were made from: the main program's is the first.
-        self.frame();
-        self.modal_macro = Some((block.clone(), self.frames.len()));
+        // Calls return to the level they were made from: the main program's is the first.
+        self.level();
+        self.modal_macro = Some((block.clone(), self.levels.len()));
         Ok(Step::Next)
     }
 
@@ -266,94 +276,94 @@ impl Reader {
         }
     }
 
-    fn enter(&mut self, mut frame: Frame, to: Spot, here: Spot) -> Result<Step, NcProblem> {
-        if self.frames.len() > DEEPEST {
-            self.leave_frame_of(frame);
+    fn enter(&mut self, mut level: CallLevel, to: SourceLine, here: SourceLine) -> Result<Step, NcProblem> {
+        if self.levels.len() > DEEPEST {
+            self.leave_level(level);
             return Err(NcProblem::syntax(format!(
                 "calls within calls are more than {DEEPEST} deep: a subprogram calls itself without end"
             )));
         }
-        let parent = self.frame().call;
+        let parent = self.level().call;
         let key = (self.track.place.file, self.track.place.line, parent);
         let next = self.track.program.calls.len() as u32;
         let call = *self.call_numbers.entry(key).or_insert(next);
         if call == next {
             self.track.program.calls.push(Call::new(key.0, key.1, parent));
         }
-        frame.call = Some(call);
-        frame.back = Spot {
+        level.call = Some(call);
+        level.back = SourceLine {
             line: here.line + 1,
             ..here
         };
-        self.frames.push(frame);
+        self.levels.push(level);
         Ok(Step::Jump(to))
     }
 
     /// Restores what a call has saved.
-    fn leave_frame_of(&mut self, frame: Frame) {
-        if let Some((saved, count)) = frame.locals {
+    fn leave_level(&mut self, level: CallLevel) {
+        if let Some((saved, count)) = level.locals {
             self.variables.locals[..count].copy_from_slice(&saved[..count]);
         }
-        if let Some(named) = frame.named {
+        if let Some(named) = level.named {
             self.variables.named = named;
         }
-        if let (true, Some(modes)) = (frame.restore_modes, frame.modes) {
+        if let (true, Some(modes)) = (level.restore_modes, level.modes) {
             self.modes = *modes;
         }
     }
 
     /// Returns from a subroutine of LinuxCNC.
     pub(crate) fn leave_subroutine(&mut self, value: Option<f64>) -> Result<Step, NcProblem> {
-        if !matches!(self.frame().kind, FrameKind::Subroutine(_)) {
+        if !matches!(self.level().kind, CallKind::Subroutine(_)) {
             return Err(NcProblem::syntax(
                 "this ends a subroutine that was not called by `O… call`: a subprogram called by M98 ends with M99",
             ));
         }
-        let Some(frame) = self.frames.pop() else {
+        let Some(level) = self.levels.pop() else {
             return Ok(Step::Next);
         };
-        let back = frame.back;
-        self.leave_frame_of(frame);
+        let back = level.back;
+        self.leave_level(level);
         self.variables.set_returned(value);
         Ok(Step::Jump(back))
     }
 
     /// M99.
-    pub(crate) fn leave_program(&mut self, block: &Block, here: Spot) -> Result<Step, NcProblem> {
+    pub(crate) fn leave_program(&mut self, block: &Block, here: SourceLine) -> Result<Step, NcProblem> {
         let to_number = match block.get('P') {
             None => None,
             Some(p) if p.fract() == 0.0 && (0.0..=1e8).contains(&p) => Some(p as u32),
             Some(p) => return Err(NcProblem::value("P of M99", p, "the number of a block")),
         };
-        let jump = |reader: &Self, from: Spot| match to_number {
+        let jump = |reader: &Self, from: SourceLine| match to_number {
             None => Ok(Step::Jump(from)),
             Some(number) => match reader.sources[from.source].labels().number(number, from.line) {
-                Some(line) => Ok(Step::Jump(Spot { line, ..from })),
+                Some(line) => Ok(Step::Jump(SourceLine { line, ..from })),
                 None => Err(NcProblem::syntax(format!(
                     "M99 P{number}: there is no block N{number} to return to"
                 ))),
             },
         };
-        match &mut self.frame().kind {
-            FrameKind::Main if to_number.is_some() => jump(self, here),
-            FrameKind::Main => {
+        match &mut self.level().kind {
+            CallKind::Main if to_number.is_some() => jump(self, here),
+            CallKind::Main => {
                 self.track
                     .note("M99 ends the program here; a machine may start it again");
                 Ok(Step::End)
             }
-            FrameKind::Subroutine(label) => Err(NcProblem::syntax(format!(
+            CallKind::Subroutine(label) => Err(NcProblem::syntax(format!(
                 "M99 in a subroutine that was called by `{label} call`: expected `{label} endsub` or `{label} return`"
             ))),
-            FrameKind::Program { start, left } if *left > 1 && to_number.is_none() => {
+            CallKind::Program { start, left } if *left > 1 && to_number.is_none() => {
                 *left -= 1;
                 Ok(Step::Jump(*start))
             }
-            FrameKind::Program { .. } => {
-                let Some(frame) = self.frames.pop() else {
+            CallKind::Program { .. } => {
+                let Some(level) = self.levels.pop() else {
                     return Ok(Step::End);
                 };
-                let back = frame.back;
-                self.leave_frame_of(frame);
+                let back = level.back;
+                self.leave_level(level);
                 jump(self, back)
             }
         }

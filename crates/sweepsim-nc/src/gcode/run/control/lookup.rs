@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use super::super::interpreter::Reader;
-use super::calls::Spot;
+use super::calls::SourceLine;
 use crate::gcode::flow::keywords::{Keyword, Label};
 use crate::gcode::flow::source::{LONGEST, Source};
 use crate::text::error::NcProblem;
@@ -16,7 +16,7 @@ const MOST_FILES: usize = 500;
 
 impl Reader {
     /// Where a label is, in the texts that have been read.
-    pub(crate) fn find_in_texts(&self, label: &Label, source: usize) -> Option<(Spot, Option<Keyword>)> {
+    pub(crate) fn find_in_texts(&self, label: &Label, source: usize) -> Option<(SourceLine, Option<Keyword>)> {
         let order = std::iter::once(source).chain(0..self.sources.len());
         for source in order {
             let lines = self.sources[source].labels().lines(label);
@@ -24,7 +24,7 @@ impl Reader {
                 .iter()
                 .find(|found| matches!(found.keyword, None | Some(Keyword::Sub)));
             if let Some(found) = found {
-                let spot = Spot {
+                let spot = SourceLine {
                     source,
                     line: found.line,
                 };
@@ -35,7 +35,12 @@ impl Reader {
     }
 
     /// Where a subroutine or a program begins: in these texts, or in a file.
-    pub(crate) fn find(&mut self, label: &Label, source: usize, keyword: Option<Keyword>) -> Result<Spot, NcProblem> {
+    pub(crate) fn find(
+        &mut self,
+        label: &Label,
+        source: usize,
+        keyword: Option<Keyword>,
+    ) -> Result<SourceLine, NcProblem> {
         if self.find_in_texts(label, source).is_none() {
             self.load(label)?;
         }

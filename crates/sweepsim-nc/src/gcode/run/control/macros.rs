@@ -3,17 +3,17 @@
 //! Source: Fanuc Series 30i operator's manual B-63944EN, *Custom macro*.
 
 use super::super::interpreter::{Reader, Step};
-use super::calls::{DEEPEST, Spot};
+use super::calls::{DEEPEST, SourceLine};
 use crate::gcode::flow::labels::loop_number;
-use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::Values;
 use crate::gcode::syntax::words;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 impl Reader {
     /// A statement; the cursor is where it begins.
-    pub(crate) fn statement(&mut self, mut cursor: Cursor, here: Spot) -> Result<Step, Located> {
+    pub(crate) fn statement(&mut self, mut cursor: Cursor, here: SourceLine) -> Result<Step, Located> {
         let start = cursor.at;
         let word = cursor.letters().to_ascii_uppercase();
         cursor.at += word.len();
@@ -47,10 +47,10 @@ impl Reader {
             "DO" => self.open_loop(cursor, true, here),
             "END" => {
                 let number = number(&mut cursor)?;
-                let loops = &mut self.frame().loops;
+                let loops = &mut self.level().loops;
                 while let Some(&(open, line)) = loops.last() {
                     if open == number {
-                        return Ok(self.turn(Spot { line, ..here }));
+                        return Ok(self.turn(SourceLine { line, ..here }));
                     }
                     loops.pop();
                 }
@@ -64,7 +64,7 @@ impl Reader {
         }
     }
 
-    fn go_to(&mut self, cursor: Cursor, here: Spot) -> Result<Step, Located> {
+    fn go_to(&mut self, cursor: Cursor, here: SourceLine) -> Result<Step, Located> {
         let mut values = Values::new(cursor, self);
         values.cursor.peek();
         let start = values.cursor.at;
@@ -76,8 +76,8 @@ impl Reader {
             return Err((problem, span));
         }
         match self.sources[here.source].labels().number(number as u32, here.line) {
-            Some(line) if line <= here.line => Ok(self.turn(Spot { line, ..here })),
-            Some(line) => Ok(Step::Jump(Spot { line, ..here })),
+            Some(line) if line <= here.line => Ok(self.turn(SourceLine { line, ..here })),
+            Some(line) => Ok(Step::Jump(SourceLine { line, ..here })),
             None => {
                 let problem = NcProblem::syntax(format!("there is no block N{number} to go to"));
                 Err((problem, span))
@@ -85,10 +85,10 @@ impl Reader {
         }
     }
 
-    fn open_loop(&mut self, mut cursor: Cursor, holds: bool, here: Spot) -> Result<Step, Located> {
+    fn open_loop(&mut self, mut cursor: Cursor, holds: bool, here: SourceLine) -> Result<Step, Located> {
         let span = 0..cursor.at;
         let number = number(&mut cursor)?;
-        let loops = &mut self.frame().loops;
+        let loops = &mut self.level().loops;
         // Jumps may have left loops, or come back to this one.
         if let Some(open) = loops
             .iter()
@@ -107,7 +107,7 @@ impl Reader {
             return Ok(Step::Next);
         }
         match self.end_of_loop(number, here) {
-            Some(line) => Ok(Step::Jump(Spot { line: line + 1, ..here })),
+            Some(line) => Ok(Step::Jump(SourceLine { line: line + 1, ..here })),
             None => {
                 let problem = NcProblem::syntax(format!("there is no END{number} after this line"));
                 Err((problem, span))
@@ -115,7 +115,7 @@ impl Reader {
         }
     }
 
-    fn end_of_loop(&mut self, number: u32, here: Spot) -> Option<usize> {
+    fn end_of_loop(&mut self, number: u32, here: SourceLine) -> Option<usize> {
         if let Some(line) = self.loop_ends.get(&here) {
             return *line;
         }

@@ -3,20 +3,20 @@
 //! Source: *LinuxCNC G-code reference, O Codes*.
 
 use super::super::interpreter::{Reader, Step};
-use super::calls::{FrameKind, Spot};
+use super::calls::{CallKind, SourceLine};
 use crate::gcode::flow::keywords::{Keyword, Label, after_letter, keyword, label};
-use crate::gcode::syntax::block::{Block, Located};
+use crate::gcode::syntax::block::Block;
 use crate::gcode::syntax::cursor::Cursor;
 use crate::gcode::syntax::expression::Values;
 use crate::gcode::syntax::words;
-use crate::text::error::NcProblem;
+use crate::text::error::{Located, NcProblem};
 
 /// Arguments of a call, at most.
 const MOST_ARGUMENTS: usize = 30;
 
 impl Reader {
     /// A line that begins with `O`; the cursor is behind it.
-    pub(crate) fn labelled(&mut self, mut cursor: Cursor, here: Spot) -> Result<Step, Located> {
+    pub(crate) fn labelled(&mut self, mut cursor: Cursor, here: SourceLine) -> Result<Step, Located> {
         let start = cursor.at.saturating_sub(1);
         let name = match label(&mut cursor) {
             Some(name) => name,
@@ -45,7 +45,7 @@ impl Reader {
             Keyword::Sub => at(self.skip_subroutine(&name, here)),
             Keyword::EndSub | Keyword::Return => {
                 let value = self.optional_bracket(cursor)?;
-                if let (Keyword::EndSub, FrameKind::Subroutine(called)) = (keyword, &self.frame().kind)
+                if let (Keyword::EndSub, CallKind::Subroutine(called)) = (keyword, &self.level().kind)
                     && *called != name
                 {
                     let problem = format!("`{name} endsub` in the subroutine {called}: expected `{called} endsub`");
@@ -70,13 +70,13 @@ impl Reader {
             Keyword::While => {
                 let go_on = self.condition(cursor)?;
                 match (self.loop_start(&name, here), go_on) {
-                    (Some(line), true) => Ok(self.turn(Spot { line: line + 1, ..here })),
+                    (Some(line), true) => Ok(self.turn(SourceLine { line: line + 1, ..here })),
                     (Some(_), false) | (None, true) => Ok(Step::Next),
                     (None, false) => at(self.after(&name, here, &[Keyword::EndWhile], "endwhile")),
                 }
             }
             Keyword::EndWhile => match self.preceding(&name, here, Keyword::While) {
-                Some(line) => Ok(self.turn(Spot { line, ..here })),
+                Some(line) => Ok(self.turn(SourceLine { line, ..here })),
                 None => at(Err(NcProblem::syntax(format!(
                     "`{name} endwhile` without `{name} while` before it"
                 )))),
@@ -87,7 +87,7 @@ impl Reader {
                 if count < 1.0 {
                     return at(self.after(&name, here, &[Keyword::EndRepeat], "endrepeat"));
                 }
-                self.frame().repeats.insert(here.line, count as u64);
+                self.level().repeats.insert(here.line, count as u64);
                 Ok(Step::Next)
             }
             Keyword::EndRepeat => {
@@ -95,10 +95,10 @@ impl Reader {
                     let problem = format!("`{name} endrepeat` without `{name} repeat` before it");
                     return at(Err(NcProblem::syntax(problem)));
                 };
-                let left = self.frame().repeats.entry(line).or_insert(1);
+                let left = self.level().repeats.entry(line).or_insert(1);
                 *left = left.saturating_sub(1);
                 if *left > 0 {
-                    Ok(self.turn(Spot { line: line + 1, ..here }))
+                    Ok(self.turn(SourceLine { line: line + 1, ..here }))
                 } else {
                     Ok(Step::Next)
                 }
@@ -112,7 +112,7 @@ impl Reader {
             Keyword::Continue => {
                 let ends = [Keyword::EndWhile, Keyword::While, Keyword::EndRepeat];
                 match self.following(&name, here, &ends) {
-                    Some(line) => Ok(Step::Jump(Spot { line, ..here })),
+                    Some(line) => Ok(Step::Jump(SourceLine { line, ..here })),
                     None => at(Err(NcProblem::syntax(format!("`{name} continue` outside of a loop")))),
                 }
             }
@@ -120,12 +120,12 @@ impl Reader {
     }
 
     /// A jump backwards: loops end by a budget.
-    pub(crate) fn turn(&mut self, to: Spot) -> Step {
+    pub(crate) fn turn(&mut self, to: SourceLine) -> Step {
         self.turned = Some(to);
         Step::Jump(to)
     }
 
-    fn following(&self, name: &Label, here: Spot, keywords: &[Keyword]) -> Option<usize> {
+    fn following(&self, name: &Label, here: SourceLine, keywords: &[Keyword]) -> Option<usize> {
         let labels = self.sources[here.source].labels();
         let found = labels
             .after(name, here.line)
@@ -133,21 +133,21 @@ impl Reader {
         found.map(|(line, _)| line)
     }
 
-    fn preceding(&self, name: &Label, here: Spot, wanted: Keyword) -> Option<usize> {
+    fn preceding(&self, name: &Label, here: SourceLine, wanted: Keyword) -> Option<usize> {
         let labels = self.sources[here.source].labels();
         let found = labels.before(name, here.line).find(|(_, keyword)| *keyword == wanted);
         found.map(|(line, _)| line)
     }
 
-    fn after(&self, name: &Label, here: Spot, keywords: &[Keyword], end: &str) -> Result<Step, NcProblem> {
+    fn after(&self, name: &Label, here: SourceLine, keywords: &[Keyword], end: &str) -> Result<Step, NcProblem> {
         match self.following(name, here, keywords) {
-            Some(line) => Ok(Step::Jump(Spot { line: line + 1, ..here })),
+            Some(line) => Ok(Step::Jump(SourceLine { line: line + 1, ..here })),
             None => Err(NcProblem::syntax(format!("there is no `{name} {end}` after this line"))),
         }
     }
 
     /// The `do` of a loop that ends with this `while`.
-    fn loop_start(&self, name: &Label, here: Spot) -> Option<usize> {
+    fn loop_start(&self, name: &Label, here: SourceLine) -> Option<usize> {
         let labels = self.sources[here.source].labels();
         let ends = [Keyword::Do, Keyword::While, Keyword::EndWhile];
         let (line, keyword) = labels
@@ -156,18 +156,18 @@ impl Reader {
         (keyword == Keyword::Do).then_some(line)
     }
 
-    fn skip_subroutine(&mut self, name: &Label, here: Spot) -> Result<Step, NcProblem> {
+    fn skip_subroutine(&mut self, name: &Label, here: SourceLine) -> Result<Step, NcProblem> {
         let end = self.end_of_subroutine(name, here)?;
-        if matches!(self.frame().kind, FrameKind::Subroutine(_)) {
+        if matches!(self.level().kind, CallKind::Subroutine(_)) {
             return Err(NcProblem::syntax(
                 "a subroutine within a subroutine: expected one after the other",
             ));
         }
-        Ok(Step::Jump(Spot { line: end + 1, ..here }))
+        Ok(Step::Jump(SourceLine { line: end + 1, ..here }))
     }
 
     /// The line where the subroutine that begins at a line ends.
-    pub(crate) fn end_of_subroutine(&self, name: &Label, here: Spot) -> Result<usize, NcProblem> {
+    pub(crate) fn end_of_subroutine(&self, name: &Label, here: SourceLine) -> Result<usize, NcProblem> {
         let Some(end) = self.following(name, here, &[Keyword::EndSub]) else {
             return Err(NcProblem::syntax(format!(
                 "there is no `{name} endsub` after the line where it begins"
@@ -183,7 +183,7 @@ impl Reader {
     }
 
     /// After an `if` that does not hold: the first `elseif` that does, or the `else`.
-    fn next_branch(&mut self, name: &Label, here: Spot) -> Result<Step, Located> {
+    fn next_branch(&mut self, name: &Label, here: SourceLine) -> Result<Step, Located> {
         let mut line = here.line;
         loop {
             let labels = self.sources[here.source].labels();
@@ -194,7 +194,7 @@ impl Reader {
             };
             line = next;
             if found != Keyword::ElseIf {
-                return Ok(Step::Jump(Spot { line: line + 1, ..here }));
+                return Ok(Step::Jump(SourceLine { line: line + 1, ..here }));
             }
             let source = std::rc::Rc::clone(&self.sources[here.source]);
             let Some(mut cursor) = after_letter(source.line(line)) else {
@@ -204,7 +204,7 @@ impl Reader {
             keyword(&mut cursor);
             // A problem there is reported there.
             match self.condition(cursor) {
-                Ok(true) => return Ok(Step::Jump(Spot { line: line + 1, ..here })),
+                Ok(true) => return Ok(Step::Jump(SourceLine { line: line + 1, ..here })),
                 Ok(false) => {}
                 Err((problem, _)) => return Err((problem, 0..usize::MAX)),
             }
@@ -242,9 +242,9 @@ impl Reader {
     }
 
     /// `O1000`: the number of a program. What follows it is a block.
-    fn program_number(&mut self, name: &Label, cursor: Cursor, here: Spot) -> Result<Step, Located> {
+    fn program_number(&mut self, name: &Label, cursor: Cursor, here: SourceLine) -> Result<Step, Located> {
         let span = 0..cursor.at;
-        let main = self.frame().kind == FrameKind::Main;
+        let main = self.level().kind == CallKind::Main;
         match main {
             true if self.numbered => {
                 self.track

@@ -174,7 +174,7 @@ impl Reader {
             "_value" | "_value_returned" => Ok(self.variables.global.get(name).copied().unwrap_or(0.0)),
             "_task" => Ok(0.0),
             "_vmajor" => Ok(2.9),
-            "_call_level" => Ok(self.frames.len() as f64 - 1.0),
+            "_call_level" => Ok(self.levels.len() as f64 - 1.0),
             _ => return None,
         })
     }

@@ -3,7 +3,7 @@
 //! Sources: *LinuxCNC G-code reference, Canned Cycles*; Fanuc B-63944EN, *Canned cycle for drilling*. Each is expanded into the moves that
 //! the control makes.
 
-use crate::gcode::codes::{MotionMode, Turning};
+use crate::gcode::codes::{MotionMode, SpindleTurning};
 use crate::gcode::modes::CycleWords;
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::syntax::block::Block;
@@ -236,14 +236,14 @@ impl Reader {
                 point
             };
             self.straight(place(initial, false), true)?;
-            self.turn_spindle(Turning::Stopped)?;
+            self.turn_spindle(SpindleTurning::Stopped)?;
             self.straight(place(initial, true), false)?;
             self.straight(place(deep, true), true)?;
             self.straight(place(deep, false), false)?;
-            self.turn_spindle(Turning::Clockwise)?;
+            self.turn_spindle(SpindleTurning::Clockwise)?;
             self.straight(place(top, false), false)?;
             self.rest_for(sticky.dwell.unwrap_or(0.0))?;
-            self.turn_spindle(Turning::Stopped)?;
+            self.turn_spindle(SpindleTurning::Stopped)?;
             self.straight(place(top, true), false)?;
             self.straight(place(initial, true), true)?;
             self.straight(place(initial, false), false)?;
@@ -296,14 +296,14 @@ impl Reader {
             74 | 84 => {
                 self.straight(bottom, false)?;
                 let turning = self.modes.spindle;
-                self.turn_spindle(Turning::Stopped)?;
+                self.turn_spindle(SpindleTurning::Stopped)?;
                 self.turn_spindle(match turning {
-                    Turning::CounterClockwise => Turning::Clockwise,
-                    _ => Turning::CounterClockwise,
+                    SpindleTurning::CounterClockwise => SpindleTurning::Clockwise,
+                    _ => SpindleTurning::CounterClockwise,
                 })?;
                 self.rest_for(words.dwell.unwrap_or(0.0))?;
                 self.straight(plane, false)?;
-                self.turn_spindle(Turning::Stopped)?;
+                self.turn_spindle(SpindleTurning::Stopped)?;
                 self.turn_spindle(turning)?;
                 if hole.clear == hole.plane {
                     Ok(())
@@ -325,7 +325,7 @@ impl Reader {
             76 => {
                 self.straight(bottom, false)?;
                 self.rest_for(words.dwell.unwrap_or(0.0))?;
-                self.turn_spindle(Turning::Stopped)?;
+                self.turn_spindle(SpindleTurning::Stopped)?;
                 let [u, v, _] = self.modes.plane;
                 let shift = words.shift.unwrap_or_default();
                 if words.shift.is_none() && words.peck.is_some() {
@@ -352,7 +352,7 @@ impl Reader {
                     self.rest_for(words.dwell.unwrap_or(0.0))?;
                 }
                 if matches!(cycle, 86 | 88) {
-                    self.turn_spindle(Turning::Stopped)?;
+                    self.turn_spindle(SpindleTurning::Stopped)?;
                 }
                 if cycle == 88 {
                     self.track.event(EventKind::Stop)?;
@@ -371,12 +371,12 @@ impl Reader {
         self.rest(if self.fanuc() { p / 1000.0 } else { p })
     }
 
-    pub(crate) fn turn_spindle(&mut self, turning: Turning) -> Result<(), NcProblem> {
+    pub(crate) fn turn_spindle(&mut self, turning: SpindleTurning) -> Result<(), NcProblem> {
         let rpm = self.modes.speed;
         self.track.event(EventKind::Spindle(match turning {
-            Turning::Stopped => Spindle::Stopped,
-            Turning::Clockwise => Spindle::Clockwise { rpm },
-            Turning::CounterClockwise => Spindle::CounterClockwise { rpm },
+            SpindleTurning::Stopped => Spindle::Stopped,
+            SpindleTurning::Clockwise => Spindle::Clockwise { rpm },
+            SpindleTurning::CounterClockwise => Spindle::CounterClockwise { rpm },
         }))
     }
 }

@@ -1,6 +1,6 @@
 //! Programmed moves, and the switch of cutter compensation.
 
-use crate::drive::{Corners, Side, Stroke};
+use crate::drive::{CompensationSettings, Corners, Stroke};
 use crate::gcode::run::interpreter::Reader;
 use crate::gcode::run::tools::ToolRow;
 use crate::gcode::syntax::block::Block;
@@ -50,7 +50,7 @@ impl Reader {
             (false, d) => self.cutter_diameter(d)?,
         };
         let linuxcnc = self.controller == Some(Controller::LinuxCnc);
-        let side = Side {
+        let side = CompensationSettings {
             left: left != (diameter < 0.0),
             radius: 0.5 * diameter.abs(),
             corners: if self.fanuc() { Corners::Lines } else { Corners::Arcs },
