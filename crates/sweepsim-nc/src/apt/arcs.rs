@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use super::frames::{Vector, add, cross, dot, norm, sub, turned};
-use crate::drive::Arc;
+use crate::drive::{Arc, radii_differ, radius_slack};
 
 /// An arc whose end is not known yet, in millimetres in the frame of the poses.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,19 +20,8 @@ pub(super) struct PendingArc {
     pub line: usize,
 }
 
-/// How much the radii at both ends of an arc may differ, in mm,
-const RADIUS_SLACK: f64 = 0.0127;
-/// in proportion to the radius,
-const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
-/// and at most: as for arcs of G-code.
-const RADIUS_SLACK_LARGEST: f64 = 0.5;
 /// Ends within this distance, in mm, are the same: files have four to six decimals.
 const SAME_END: f64 = 2e-4;
-
-fn differs(a: f64, b: f64) -> bool {
-    let apart = (a - b).abs();
-    !(apart <= RADIUS_SLACK_LARGEST && apart <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * a.max(b)))
-}
 
 impl PendingArc {
     fn radial(&self, point: Vector) -> Vector {
@@ -52,7 +41,7 @@ impl PendingArc {
         self.own_end(start).is_none_or(|own| {
             let apart = sub(own, end);
             let across = add(apart, -dot(apart, self.normal), self.normal);
-            norm(across) <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * norm(self.radial(start)))
+            norm(across) <= radius_slack(norm(self.radial(start)))
         })
     }
 
@@ -65,12 +54,12 @@ impl PendingArc {
                 "the arc has no radius: its ends are {ra} and {rb} mm from its axis"
             ));
         }
-        if differs(ra, rb) {
+        if radii_differ(ra, rb) {
             return Err(format!(
                 "the arc has two radii: its start is {ra} mm and its end {rb} mm from its axis, expected the same"
             ));
         }
-        if let Some(radius) = self.radius.filter(|&radius| differs(radius, ra)) {
+        if let Some(radius) = self.radius.filter(|&radius| radii_differ(radius, ra)) {
             return Err(format!(
                 "the arc's radius is {radius} mm, but its start is {ra} mm from its axis"
             ));

@@ -27,6 +27,17 @@ const RADIUS_SLACK_RELATIVE: f64 = 1e-3;
 /// and at most. These are LinuxCNC's limits, for which many programs are written.
 const RADIUS_SLACK_LARGEST: f64 = 0.5;
 
+/// By how much a point may miss an arc of this radius.
+pub(crate) fn radius_slack(radius: f64) -> f64 {
+    RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * radius)
+}
+
+/// Whether the distances of an arc's ends from its axis are not the same.
+pub(crate) fn radii_differ(a: f64, b: f64) -> bool {
+    let apart = (a - b).abs();
+    !(apart <= RADIUS_SLACK_LARGEST && apart <= radius_slack(a.max(b)))
+}
+
 impl CircularArc {
     /// The arc about `centre`. `turns` is 1 for less than a full turn, and one more for each further full turn.
     pub(crate) fn about(
@@ -45,8 +56,7 @@ impl CircularArc {
                 "the arc has no radius: its ends are {ra} and {rb} mm from its centre"
             ));
         }
-        let apart = (ra - rb).abs();
-        if apart > RADIUS_SLACK_LARGEST || apart > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * ra.max(rb)) {
+        if radii_differ(ra, rb) {
             return Err(format!(
                 "the arc has two radii: its start is {ra} mm and its end {rb} mm from its centre, expected the same"
             ));
@@ -90,7 +100,7 @@ impl CircularArc {
             return Err("an arc with R cannot end where it starts (a full circle needs its centre: I, J, K)".into());
         }
         let square = radius * radius - 0.25 * length * length;
-        if square < 0.0 && 0.5 * length - radius.abs() > RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * radius.abs()) {
+        if square < 0.0 && 0.5 * length - radius.abs() > radius_slack(radius.abs()) {
             return Err(format!(
                 "the arc's radius {} mm is too small: its ends are {length} mm apart",
                 radius.abs()
@@ -140,7 +150,7 @@ impl CircularArc {
         let rise = self.end[w] - self.start[w];
         let turns = self.sweep.abs() / TAU;
         let pitch = rise / turns;
-        let near = |a: f64, b: f64| (a - b).abs() <= RADIUS_SLACK.max(RADIUS_SLACK_RELATIVE * b.abs());
+        let near = |a: f64, b: f64| (a - b).abs() <= radius_slack(b.abs());
         // Controls differ in the sign of a pitch.
         if near(word.abs(), rise.abs())
             || near(word.abs(), pitch.abs())

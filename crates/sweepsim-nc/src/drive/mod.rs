@@ -17,7 +17,7 @@ pub use check::{AxisFault, AxisFinding, check};
 pub use rapids::RapidPoint;
 
 pub(crate) use arcs::Arc;
-pub(crate) use circular_arc::CircularArc;
+pub(crate) use circular_arc::{CircularArc, radii_differ, radius_slack};
 pub(crate) use contour::{ArcPlane, Bend, CompensationSettings, Corner, CornerShape, Corners, ProgramPlace, Stroke};
 pub(crate) use driver::{Coordinates, Sense};
 pub(crate) use trace::{Canonical, Trace};
