@@ -76,7 +76,7 @@ impl Reader<'_> {
             } else {
                 CornerShape::Cut(size)
             },
-            plane: self.plane,
+            plane: self.modes.plane,
             place: ProgramPlace::default(),
             feed,
             word,
@@ -115,7 +115,7 @@ impl Reader<'_> {
         abc: [f64; 3],
     ) -> Result<(), NcProblem> {
         let Some(start) = self.track.known() else { return Ok(()) };
-        let plane = self.plane;
+        let plane = self.modes.plane;
         let [u, v, _] = plane;
         let ends = (start, target);
         let sense = words.counter_clockwise;
@@ -125,12 +125,12 @@ impl Reader<'_> {
             "C" => CircularArc::about(
                 ends,
                 plane,
-                self.centre.ok_or_else(need_centre)?,
+                self.modes.centre.ok_or_else(need_centre)?,
                 sense.ok_or_else(need_sense)?,
                 1.0,
             ),
             "CP" => {
-                let centre = self.centre.ok_or_else(need_centre)?;
+                let centre = self.modes.centre.ok_or_else(need_centre)?;
                 let counter_clockwise = sense.ok_or_else(need_sense)?;
                 // An incremental angle may be more than a turn, IPA+1080 with IZ is a thread, and is the turn whatever its ends are.
                 let swept = match words.polar[1] {

@@ -272,10 +272,10 @@ impl Reader<'_> {
                 "a cycle at an unknown position: expected a move to X, Y and Z before it",
             ));
         };
-        let (w, abc) = (self.plane[2], self.track.abc);
+        let (w, abc) = (self.modes.plane[2], self.track.abc);
         let modal = self.track.feed;
         self.track.calls()?;
-        let [u, v, _] = self.plane;
+        let [u, v, _] = self.modes.plane;
         let mut aside = [0.0; 2];
         let go = |reader: &mut Self, aside: [f64; 2], height: f64, feed: Option<Option<f64>>| {
             let mut target = here;
@@ -336,7 +336,7 @@ impl Reader<'_> {
                     let arc = CircularArc {
                         start,
                         end,
-                        plane: self.plane,
+                        plane: self.modes.plane,
                         centre: [here[u], here[v]],
                         sweep: sense * turns * TAU,
                     };

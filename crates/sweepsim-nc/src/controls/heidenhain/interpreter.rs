@@ -36,24 +36,31 @@ pub(super) enum LevelKind {
     },
 }
 
-pub(super) struct Reader<'a> {
-    pub track: Track,
-    pub parameters: Parameters,
-    pub frames: Frames,
+/// What stays in effect until another word changes it.
+pub(super) struct Modes {
     pub inch: bool,
     pub plane: [usize; 3],
     pub tip_control: bool,
     pub shortest: bool,
     /// The centre of CC, in the frame.
     pub centre: Option<[f64; 2]>,
-    /// The last move's end is made by the RND or CHF that follows.
-    pub rounded: bool,
     /// The side of the contour: RL.
     pub compensated: Option<bool>,
     /// The radii of TOOL DEF, in mm.
     pub radii: BTreeMap<u32, f64>,
     /// DR of TOOL CALL, in mm.
     pub oversize: f64,
+    pub speed: Option<f64>,
+    pub spindle: Spindle,
+}
+
+pub(super) struct Reader<'a> {
+    pub track: Track,
+    pub parameters: Parameters,
+    pub frames: Frames,
+    pub modes: Modes,
+    /// The last move's end is made by the RND or CHF that follows.
+    pub rounded: bool,
     pub cycle: Option<Cycle>,
     pub uncertain: bool,
     pub(super) library: Library<'a>,
@@ -63,8 +70,6 @@ pub(super) struct Reader<'a> {
     pub(super) stack: Vec<Level>,
     pub(super) ended: bool,
     pub(super) tools: BTreeMap<String, u32>,
-    pub(super) speed: Option<f64>,
-    pub(super) spindle: Spindle,
     pub(super) stock: [[Option<f64>; 3]; 2],
 }
 
@@ -74,15 +79,19 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         track: Track::new(options, Sense::Tool),
         parameters: Parameters::default(),
         frames: Frames::default(),
-        inch: options.inch,
-        plane: [0, 1, 2],
-        tip_control: options.machine.tip_control,
-        shortest: false,
-        centre: None,
+        modes: Modes {
+            inch: options.inch,
+            plane: [0, 1, 2],
+            tip_control: options.machine.tip_control,
+            shortest: false,
+            centre: None,
+            compensated: None,
+            radii: BTreeMap::new(),
+            oversize: 0.0,
+            speed: None,
+            spindle: Spindle::Stopped,
+        },
         rounded: false,
-        compensated: None,
-        radii: BTreeMap::new(),
-        oversize: 0.0,
         cycle: None,
         uncertain: false,
         library,
@@ -96,8 +105,6 @@ pub(crate) fn read(text: &Rc<String>, options: &ReadOptions, library: Library) -
         }],
         ended: false,
         tools: BTreeMap::new(),
-        speed: None,
-        spindle: Spindle::Stopped,
         stock: [[None; 3]; 2],
     };
     run::run(&mut reader, text, options)?;
@@ -170,7 +177,7 @@ impl Reader<'_> {
         }
         self.track.program.format = Some(Format::Gcode);
         self.track.program.controller = Some(Controller::Heidenhain);
-        self.track.program.units = if self.inch { Units::Inch } else { Units::Mm };
+        self.track.program.units = if self.modes.inch { Units::Inch } else { Units::Mm };
         self.track.finish()
     }
 
@@ -216,7 +223,7 @@ impl Reader<'_> {
 
     /// Millimetres per unit of length.
     pub(super) fn unit(&self) -> f64 {
-        if self.inch { 25.4 } else { 1.0 }
+        if self.modes.inch { 25.4 } else { 1.0 }
     }
 
     fn block(&mut self, line: &Line, unit: usize, index: usize) -> Result<(), Located> {
@@ -230,7 +237,7 @@ impl Reader<'_> {
         match line.word(0) {
             "BEGIN" if line.word(1) == "PGM" => {
                 if self.stack.len() == 1 {
-                    self.inch = line.tokens.last().is_some_and(|token| token.text == "INCH");
+                    self.modes.inch = line.tokens.last().is_some_and(|token| token.text == "INCH");
                     self.track.program.title = line
                         .tokens
                         .get(2)

@@ -129,7 +129,11 @@ impl Reader<'_> {
             if let Some((value, relative)) = words.axes[3 + k] {
                 let target = if relative { abc[k] + value } else { value };
                 let nearest = target + 360.0 * ((abc[k] - target) / 360.0).round();
-                abc[k] = if self.shortest && !relative { nearest } else { target };
+                abc[k] = if self.modes.shortest && !relative {
+                    nearest
+                } else {
+                    target
+                };
             }
         }
         let linear = [0, 1, 2].map(|k| words.axes[k].is_some());
@@ -145,7 +149,7 @@ impl Reader<'_> {
             self.track.leave(linear);
             return Ok(());
         }
-        if abc != self.track.abc && self.frames.tilted() && !self.tip_control {
+        if abc != self.track.abc && self.frames.tilted() && !self.modes.tip_control {
             return Err(whole(NcProblem::unsupported(
                 "turning an axis in a tilted plane is",
                 "the plane would turn with it; expected PLANE RESET before it",
@@ -155,7 +159,9 @@ impl Reader<'_> {
         if !goes && words.tool.iter().all(Option::is_none) {
             if abc != self.track.abc {
                 match self.track.known() {
-                    Some(here) if !words.rapid || self.tip_control || self.track.driver.kinematics().is_some() => {
+                    Some(here)
+                        if !words.rapid || self.modes.tip_control || self.track.driver.kinematics().is_some() =>
+                    {
                         self.track.line(here, abc, words.rapid).map_err(whole)?;
                     }
                     _ => {
@@ -189,7 +195,7 @@ impl Reader<'_> {
         let whole = |problem| (problem, line.all());
         let cuts = !words.rapid;
         let polar = words.polar.iter().any(Option::is_some) || matches!(kind, "LP" | "CP");
-        let [u, v, _] = self.plane;
+        let [u, v, _] = self.modes.plane;
         for k in 0..3 {
             let relative = words.axes[k].is_some_and(|(_, relative)| relative);
             let given = words.axes[k].is_some() || polar && (k == u || k == v);
@@ -200,7 +206,7 @@ impl Reader<'_> {
         }
         let mut xyz = self.track.xyz;
         if polar {
-            let Some(centre) = self.centre else {
+            let Some(centre) = self.modes.centre else {
                 return Err(whole(NcProblem::syntax(
                     "polar coordinates without a pole: expected CC before them",
                 )));
@@ -248,7 +254,7 @@ impl Reader<'_> {
     }
 
     fn centre_block(&mut self, words: &Words) -> Result<(), NcProblem> {
-        let [u, v, _] = self.plane;
+        let [u, v, _] = self.modes.plane;
         let mut centre = [0.0; 2];
         let given = words.axes[u].is_some() || words.axes[v].is_some();
         for (place, k) in centre.iter_mut().zip([u, v]) {
@@ -257,7 +263,7 @@ impl Reader<'_> {
                 (Some((value, false)), _) => value,
                 (Some((value, true)), Some(now)) => now + value,
                 // The other coordinate stays that of the last centre; alone, CC is the current position.
-                (None, Some(now)) => match self.centre {
+                (None, Some(now)) => match self.modes.centre {
                     Some(before) if given => before[usize::from(k == v)],
                     _ => now,
                 },
@@ -269,7 +275,7 @@ impl Reader<'_> {
                 }
             };
         }
-        self.centre = Some(centre);
+        self.modes.centre = Some(centre);
         Ok(())
     }
 
@@ -282,13 +288,13 @@ impl Reader<'_> {
                     "the tool vector TX TY TZ is (0, 0, 0): expected a direction",
                 )));
             }
-            if !self.tip_control {
+            if !self.modes.tip_control {
                 return Err(whole(NcProblem::syntax(
                     "a tool vector without tip control: expected M128 or FUNCTION TCPM before it",
                 )));
             }
             let normal = words.normal.iter().any(Option::is_some);
-            if normal && self.oversize != 0.0 {
+            if normal && self.modes.oversize != 0.0 {
                 return Err(whole(NcProblem::unsupported(
                     "LN with surface normals and a tool with DR is",
                     "expected DR+0: the path of the tool itself",
@@ -302,7 +308,7 @@ impl Reader<'_> {
 
     /// `RL` and `RR`: from this move on.
     fn compensate(&mut self, left: bool, words: &Words, kind: &str) -> Result<(), NcProblem> {
-        if self.compensated == Some(left) && self.track.compensates() {
+        if self.modes.compensated == Some(left) && self.track.compensates() {
             return Ok(());
         }
         if !matches!(kind, "L" | "LP") || words.rapid && words.machine {
@@ -323,7 +329,7 @@ impl Reader<'_> {
                 "the radius of tool {tool} for cutter compensation is not known: expected it in the tool table, or TOOL DEF {tool} L… R…"
             )));
         };
-        self.compensated = Some(left);
+        self.modes.compensated = Some(left);
         let side = CompensationSettings {
             left: left == (radius >= 0.0),
             radius: radius.abs(),
@@ -332,7 +338,7 @@ impl Reader<'_> {
             round_ends: false,
             tangent: 1e-6,
         };
-        self.track.compensate(side, self.plane)
+        self.track.compensate(side, self.modes.plane)
     }
 
     /// The radius of the tool with the oversize of its call.
@@ -342,6 +348,6 @@ impl Reader<'_> {
         let table = table
             .or(self.options.diameters.get(&tool).copied())
             .map(|diameter| 0.5 * diameter);
-        Some(self.radii.get(&tool).copied().or(table)? + self.oversize)
+        Some(self.modes.radii.get(&tool).copied().or(table)? + self.modes.oversize)
     }
 }

@@ -69,8 +69,8 @@ pub(super) fn is_frame_cycle(number: u32) -> bool {
 impl Reader<'_> {
     fn apply_frames(&mut self) -> Result<(), NcProblem> {
         // Centres are of the old frame.
-        self.centre = None;
-        self.track.set_frame(self.frames.total(self.plane))
+        self.modes.centre = None;
+        self.track.set_frame(self.frames.total(self.modes.plane))
     }
 
     pub(super) fn frame_cycle(&mut self, number: u32, part: &str, line: &Line) -> Result<(), Located> {
@@ -243,7 +243,7 @@ impl Reader<'_> {
             Some(_) => {
                 // Coordinates become the tip's first: the frame is the part's.
                 self.frames.tilt = tilt;
-                self.control(self.tip_control).map_err(whole)?;
+                self.control(self.modes.tip_control).map_err(whole)?;
                 self.apply_frames().map_err(whole)?;
             }
             None => {
@@ -252,12 +252,12 @@ impl Reader<'_> {
                 if turns && self.track.turn_to([0.0, 0.0, 1.0], turn).map_err(whole)? {
                     self.track.note("PLANE turns the rotary axes: the path breaks here");
                 }
-                self.control(self.tip_control).map_err(whole)?;
+                self.control(self.modes.tip_control).map_err(whole)?;
                 return Ok(());
             }
         }
         if turns {
-            let normal = self.frames.total(self.plane).direction([0.0, 0.0, 1.0]);
+            let normal = self.frames.total(self.modes.plane).direction([0.0, 0.0, 1.0]);
             if self.track.turn_to(normal, turn).map_err(whole)? {
                 self.track.note("PLANE turns the rotary axes: the path breaks here");
             }

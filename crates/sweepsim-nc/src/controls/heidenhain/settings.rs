@@ -48,7 +48,7 @@ impl Reader<'_> {
             let text = token.text.as_str();
             match text {
                 "X" | "Y" | "Z" => {
-                    self.plane = match text {
+                    self.modes.plane = match text {
                         "X" => [1, 2, 0],
                         "Y" => [2, 0, 1],
                         _ => [0, 1, 2],
@@ -71,7 +71,7 @@ impl Reader<'_> {
                     // 5.1 is the first indexed offset of tool 5.
                     tool = Some(value as u32);
                 }
-                _ if text.starts_with('S') => self.speed = Some(self.parameters.value(&text[1..]).map_err(here)?),
+                _ if text.starts_with('S') => self.modes.speed = Some(self.parameters.value(&text[1..]).map_err(here)?),
                 _ if text.starts_with('F') && text.len() > 1 => {
                     if let Ok(feed) = self.parameters.value(&text[1..]) {
                         self.track.feed = Some(feed);
@@ -105,7 +105,7 @@ impl Reader<'_> {
             self.track.lengthen(longer.unwrap_or(0.0)).map_err(whole)?;
         }
         if tool.is_some() || larger.is_some() {
-            self.oversize = larger.unwrap_or(0.0);
+            self.modes.oversize = larger.unwrap_or(0.0);
         }
         Ok(())
     }
@@ -122,7 +122,7 @@ impl Reader<'_> {
                     .value(radius)
                     .map_err(|problem| (problem, token.span.clone()))?;
                 let radius = radius * self.unit();
-                self.radii.insert(number, radius);
+                self.modes.radii.insert(number, radius);
             }
         }
         Ok(())
@@ -139,7 +139,7 @@ impl Reader<'_> {
             else {
                 continue;
             };
-            let rpm = self.speed;
+            let rpm = self.modes.speed;
             match code {
                 0 | 1 => self.event(
                     if code == 0 {
@@ -158,8 +158,8 @@ impl Reader<'_> {
                 8 => self.event(EventKind::Coolant(Coolant::Flood), line)?,
                 9 => self.event(EventKind::Coolant(Coolant::Off), line)?,
                 99 => calls = true,
-                126 => self.shortest = true,
-                127 => self.shortest = false,
+                126 => self.modes.shortest = true,
+                127 => self.modes.shortest = false,
                 128 => self.control(true).map_err(|problem| (problem, token.span.clone()))?,
                 129 => self.control(false).map_err(|problem| (problem, token.span.clone()))?,
                 94 => {
@@ -183,15 +183,15 @@ impl Reader<'_> {
     }
 
     pub(super) fn turn_spindle(&mut self, spindle: Spindle, line: &Line) -> Result<(), Located> {
-        if spindle == self.spindle {
+        if spindle == self.modes.spindle {
             return Ok(());
         }
-        self.spindle = spindle;
+        self.modes.spindle = spindle;
         self.event(EventKind::Spindle(spindle), line)
     }
 
     pub(super) fn control(&mut self, on: bool) -> Result<(), NcProblem> {
-        self.tip_control = on;
+        self.modes.tip_control = on;
         let tip = on || self.frames.tilted();
         self.track
             .set_coordinates(if tip { Coordinates::Tip } else { Coordinates::Axes })

@@ -36,6 +36,27 @@ pub(crate) enum Step {
     End,
 }
 
+/// The length offset in effect.
+#[derive(Default)]
+pub(crate) struct LengthOffset {
+    pub offset: [f64; 3],
+    /// Whether it is a known one.
+    pub known: bool,
+    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
+    pub used: bool,
+}
+
+/// What has switched tip control on.
+#[derive(Default)]
+pub(crate) struct TipControl {
+    /// The machine's kinematics (M428).
+    pub kinematics: bool,
+    /// The length offset (G43.4).
+    pub by_length: bool,
+    /// G43.5: tool vectors.
+    pub vectors: bool,
+}
+
 /// The interpreter.
 pub(crate) struct Reader {
     pub track: Track,
@@ -67,23 +88,13 @@ pub(crate) struct Reader {
     pub plane_blocks: Option<PlaneBlocks>,
     /// The last move was one of G45 to G48.
     pub stretched: bool,
-    /// The length offset in effect,
-    pub length: [f64; 3],
-    /// and whether it is a known one.
-    pub length_known: bool,
-    /// Whether the program uses length offsets at all; otherwise its coordinates are those of the tip.
-    pub uses_length: bool,
+    pub length: LengthOffset,
     /// Selected by a T word, not yet in the spindle.
     pub selected_tool: Option<u32>,
     pub tool_changed: bool,
     /// The homes of G28 and G30 in machine coordinates, as far as they are known.
     pub homes: [Option<[f64; 3]>; 2],
-    /// Tip control by the machine's kinematics (M428).
-    pub kinematics: bool,
-    /// Tip control by the length offset (G43.4).
-    pub length_control: bool,
-    /// G43.5: tool vectors.
-    pub vectors: bool,
+    pub tip: TipControl,
     /// A program number has come.
     pub numbered: bool,
     pub begun: bool,
@@ -176,15 +187,17 @@ impl Reader {
             nurbs: None,
             plane_blocks: None,
             stretched: false,
-            length: [0.0; 3],
-            length_known: false,
-            uses_length: input.text.contains("G43") || input.text.contains("g43"),
+            length: LengthOffset {
+                used: input.text.contains("G43") || input.text.contains("g43"),
+                ..LengthOffset::default()
+            },
             selected_tool: None,
             tool_changed: false,
             homes: [home(5161), home(5181)],
-            kinematics: options.machine.tip_control,
-            length_control: false,
-            vectors: false,
+            tip: TipControl {
+                kinematics: options.machine.tip_control,
+                ..TipControl::default()
+            },
             numbered: false,
             begun: false,
             uncertain: false,

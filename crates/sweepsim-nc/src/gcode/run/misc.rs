@@ -51,7 +51,7 @@ impl Reader {
                     let tool = block.get('Q').map(Self::tool_number).transpose().map_err(at)?;
                     self.change_tool(tool).map_err(at)?;
                 }
-                Misc::TipControl(on) => self.kinematics = on,
+                Misc::TipControl(on) => self.tip.kinematics = on,
                 Misc::Call { .. } | Misc::Return => {
                     let several = block.words().iter().filter(|w| w.letter == 'M').count() > 1;
                     let last = block.words().iter().rfind(|w| w.letter == 'M');

@@ -231,24 +231,24 @@ impl Reader {
                 Code::Feed(mode) => self.modes.feed_mode = mode,
                 Code::RetractToPlane(to_plane) => self.modes.retract_to_plane = to_plane,
                 Code::TipControl(on) => {
-                    self.length_control = on;
-                    self.vectors = false;
+                    self.tip.by_length = on;
+                    self.tip.vectors = false;
                 }
                 Code::TipVectors => {
-                    self.length_control = true;
-                    self.vectors = true;
+                    self.tip.by_length = true;
+                    self.tip.vectors = true;
                 }
                 Code::TipControlByLetters => {
                     self.track.driver.prefer(Sense::Tool);
-                    self.length_control = true;
-                    self.vectors = false;
+                    self.tip.by_length = true;
+                    self.tip.vectors = false;
                 }
                 Code::CancelLength => {
-                    self.length_control = false;
+                    self.tip.by_length = false;
                     plan.length = Some((Code::CancelLength, word));
                 }
                 Code::Length(code) => {
-                    self.length_control = false;
+                    self.tip.by_length = false;
                     let by_words = matches!(code, LengthCode::Words | LengthCode::Add) && !block.has('H');
                     let slot = Some((Code::Length(code), word));
                     if by_words {

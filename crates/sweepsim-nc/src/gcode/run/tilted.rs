@@ -12,7 +12,7 @@ use crate::text::error::NcProblem;
 impl Reader {
     /// Whether coordinates are those of the tip, outside of tilted planes as well.
     fn tip_control(&self) -> bool {
-        self.kinematics || self.length_control
+        self.tip.kinematics || self.tip.by_length
     }
 
     /// Switches tip control as the codes of a block say: the tool stays where it is.
@@ -143,8 +143,8 @@ impl Reader {
 
     /// Whether I, J and K of a block are a tool vector.
     pub(crate) fn has_vector(&self, block: &Block, motion: MotionMode) -> bool {
-        self.vectors
-            && self.length_control
+        self.tip.vectors
+            && self.tip.by_length
             && matches!(motion, MotionMode::Rapid | MotionMode::Feed)
             && block.first("IJK").is_some()
     }

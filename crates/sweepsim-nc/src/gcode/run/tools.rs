@@ -76,7 +76,11 @@ impl Reader {
     pub(crate) fn set_length(&mut self, code: LengthCode, block: &Block) -> Result<(), NcProblem> {
         self.refuse_compensation("a change of the length offset")?;
         let table = matches!(code, LengthCode::Table | LengthCode::Opposite | LengthCode::Add);
-        let mut offset = if code == LengthCode::Add { self.length } else { [0.0; 3] };
+        let mut offset = if code == LengthCode::Add {
+            self.length.offset
+        } else {
+            [0.0; 3]
+        };
         if table && (block.has('H') || code != LengthCode::Add) {
             let number = match block.get('H') {
                 Some(h) => Self::tool_number(h)?,
@@ -98,7 +102,7 @@ impl Reader {
                 offset[k] += sign * row.offset[k];
             }
             // A length that is not known is that of the tool.
-            self.length_known = self.tools.get(number).is_some();
+            self.length.known = self.tools.get(number).is_some();
         } else {
             let words = self.lengths(block, ['X', 'Y', 'Z']);
             for k in 0..3 {
@@ -107,10 +111,10 @@ impl Reader {
                     (Some(word), _) => offset[k] = word,
                     (None, LengthCode::Add) => {}
                     // G43.1 leaves the axes that it does not name.
-                    (None, _) => offset[k] = self.length[k],
+                    (None, _) => offset[k] = self.length.offset[k],
                 }
             }
-            self.length_known = true;
+            self.length.known = true;
         }
         self.use_length(offset)
     }
@@ -118,10 +122,10 @@ impl Reader {
     /// Puts a length offset into effect: the machine stays where it is.
     pub(crate) fn use_length(&mut self, offset: [f64; 3]) -> Result<(), NcProblem> {
         self.reframe(|reader| {
-            reader.length = offset;
+            reader.length.offset = offset;
             Ok(())
         })?;
-        let length = self.length.map(|x| x / self.unit());
+        let length = self.length.offset.map(|x| x / self.unit());
         self.trace([Canonical::ToolOffset(length)]);
         Ok(())
     }

@@ -47,7 +47,7 @@ impl Reader {
         let Some(inverse) = self.frame_map().inverse() else {
             return Ok(());
         };
-        let end = inverse.point(std::array::from_fn(|k| control[k] - self.length[k]));
+        let end = inverse.point(std::array::from_fn(|k| control[k] - self.length.offset[k]));
         let stroke = self.stroke_to(end, self.track.abc, rapid);
         self.give(stroke)
     }
