@@ -12,7 +12,7 @@
 //!     line.push([LayerEnd::at(0.0, [0.0, 0.0, -1.0]), LayerEnd::at(if i < 20 { 8.0 } else { 5.0 }, [0.0, 0.0, 1.0])]);
 //! });
 //! let mut page = Page::new("bracket");
-//! page.verdict = Some(Verdict::good("May be run: nothing was found that does harm."));
+//! page.verdict = Some(Verdict::good("Nothing was found that does harm."));
 //! page.scene = Some(Scene::new(part));
 //! let html = page.html();
 //! assert!(html.starts_with("<!doctype html>") && html.len() < 200_000);
@@ -38,7 +38,7 @@ mod viewer;
 
 pub use findings::{Excerpt, Finding};
 pub use html::measure;
-pub use page::{Page, Picture, Verdict};
+pub use page::{Page, Picture, Verdict, VerdictState};
 pub use plots::{Bar, Histogram, Plot};
 pub use scene::{
     Area, Course, DexelLayer, KeyFrame, LayerEnd, ProgramText, Scene, Solid, SolidKind, ToolPart, ToolShape, Track,

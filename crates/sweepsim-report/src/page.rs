@@ -32,11 +32,23 @@ const SCRIPTS: [&str; 11] = [
     include_str!("../assets/page.js"),
 ];
 
+/// What an answer is worth: each has its own colour and sign.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum VerdictState {
+    /// Nothing is wrong with what was looked at.
+    Good,
+    /// Nothing was found, but not everything was looked at.
+    #[default]
+    Partial,
+    /// Something is wrong, or not decided.
+    Bad,
+}
+
 /// Whether the program may be run, in words.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
-    /// Whether it may.
-    pub is_good: bool,
+    /// What the answer is.
+    pub state: VerdictState,
     /// The answer: one sentence.
     pub headline: String,
     /// What was found, in a few words each.
@@ -44,23 +56,30 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// The program may be run.
-    #[must_use]
-    pub fn good(headline: impl Into<String>) -> Self {
+    fn new(state: VerdictState, headline: impl Into<String>) -> Self {
         Self {
-            is_good: true,
+            state,
             headline: headline.into(),
             details: Vec::new(),
         }
     }
 
-    /// The program may not be run.
+    /// Nothing is wrong.
+    #[must_use]
+    pub fn good(headline: impl Into<String>) -> Self {
+        Self::new(VerdictState::Good, headline)
+    }
+
+    /// Nothing was found, but not everything was looked at.
+    #[must_use]
+    pub fn partial(headline: impl Into<String>) -> Self {
+        Self::new(VerdictState::Partial, headline)
+    }
+
+    /// The program may not be run, or that is not decided.
     #[must_use]
     pub fn bad(headline: impl Into<String>) -> Self {
-        Self {
-            is_good: false,
-            ..Self::good(headline)
-        }
+        Self::new(VerdictState::Bad, headline)
     }
 }
 
@@ -184,10 +203,10 @@ impl Page {
             escape(&self.lead)
         );
         if let Some(verdict) = &self.verdict {
-            let (class, sign) = if verdict.is_good {
-                ("good", "✓")
-            } else {
-                ("bad", "✕")
+            let (class, sign) = match verdict.state {
+                VerdictState::Good => ("good", "✓"),
+                VerdictState::Partial => ("partial", "!"),
+                VerdictState::Bad => ("bad", "✕"),
             };
             let _ = write!(
                 html,

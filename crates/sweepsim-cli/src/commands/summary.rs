@@ -123,9 +123,19 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         return;
     };
     if verdict == Verdict::Pass {
-        line("verdict", "PASS: nothing was found that does harm");
+        let text = "PASS on the dexels' lines only: nothing was found on them that does harm";
+        line("verdict", text);
+    } else if findings.is_empty() {
+        line("verdict", "FAIL: the part deviates from its target");
     } else {
         line("verdict", &format!("FAIL: {}", found(findings).join(", ")));
+    }
+    if let Some(scope) = &report.scope {
+        let lines = words::looked_at(scope);
+        line("looked at", &format!("lines {lines}; nothing between them"));
+        for missing in &scope.not_looked_at {
+            line("not at", &format!("{} (needs {})", missing.about, missing.needs));
+        }
     }
     for finding in findings.iter().take(NAMED) {
         line(&finding.kind, &sentence(finding, report));
@@ -140,7 +150,7 @@ fn verdict(line: &mut impl FnMut(&str, &str), report: &Report) {
         if let Some(found) = found {
             // Rounding is nothing.
             let max = if found.max < 1e-9 { 0.0 } else { found.max };
-            line(name, &format!("at most {} mm", words::measure(max)));
+            line(name, &format!("largest found {} mm", words::measure(max)));
         }
     }
 }
@@ -204,7 +214,7 @@ fn worked(work: &WorkSummary) -> String {
     }
     if let (Some(depth), Some(width), Some(idle)) = (work.depth, work.width, work.idle_moves) {
         text += &format!(
-            ", at most {} mm deep and {} mm wide, {} that remove nothing",
+            ", up to {} mm deep and {} mm wide on the lines, {} that remove nothing",
             words::measure(depth),
             words::measure(width),
             words::counted(idle as u64, "feed move")

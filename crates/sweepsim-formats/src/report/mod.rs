@@ -43,6 +43,9 @@ pub struct Report {
     /// `pass` or `fail` (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<Verdict>,
+    /// What was looked at, and what was not (`verify`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scope: Option<Scope>,
     /// The moves that do harm, in the program's order, then the places where too much is left (`verify`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub findings: Option<Vec<ReportedFinding>>,
@@ -105,7 +108,7 @@ impl ReportedDexel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct DeviationSummary {
-    /// The largest deviation.
+    /// The largest that was found: no bound of what is between the dexels.
     pub max: f64,
     /// The mean over the samples that deviate.
     pub mean: f64,
@@ -125,6 +128,47 @@ pub enum Verdict {
     Pass,
     /// Something was found.
     Fail,
+}
+
+/// What a verdict is about: it says nothing of anything else.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Scope {
+    /// Where harm was looked for: `lines`, on the lines of the dexels and nowhere between them.
+    pub extent: String,
+    /// The lines, by direction.
+    pub lines: Vec<ScopeLines>,
+    /// What nobody asked for, or could not be looked at.
+    pub not_looked_at: Vec<NotLookedAt>,
+}
+
+/// Parallel lines on which harm was looked for.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ScopeLines {
+    /// Their direction: `x`, `y` or `z`, in the frame of the grid.
+    pub along: String,
+    /// How far apart they are, both ways, in mm.
+    pub spacing: [f64; 2],
+}
+
+/// Something that was not looked at.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct NotLookedAt {
+    /// What: `gouges and excess`, `fixtures`, …
+    pub about: String,
+    /// What it needs.
+    pub needs: String,
+}
+
+impl NotLookedAt {
+    /// Something, and what it needs.
+    #[must_use]
+    pub fn new(about: impl Into<String>, needs: impl Into<String>) -> Self {
+        let (about, needs) = (about.into(), needs.into());
+        Self { about, needs }
+    }
 }
 
 /// A move that does harm, or a place where too much is left.

@@ -1,6 +1,6 @@
 //! Numbers and findings for people.
 
-use sweepsim_formats::{Report, ReportedFinding};
+use sweepsim_formats::{Report, ReportedFinding, Scope};
 
 /// `1234567` as `1,234,567`.
 #[must_use]
@@ -143,6 +143,30 @@ pub fn found(findings: &[ReportedFinding]) -> Vec<String> {
 pub fn setup_name(report: &Report, number: Option<usize>) -> Option<&str> {
     let setups = report.setups.as_deref()?;
     Some(&setups.get(number?)?.name)
+}
+
+/// The lines that were looked at: `along x and y, 0.5 mm apart, …`.
+#[must_use]
+pub fn looked_at(scope: &Scope) -> String {
+    // Directions with lines equally far apart are named together.
+    let mut groups: Vec<([f64; 2], Vec<&str>)> = Vec::new();
+    for lines in &scope.lines {
+        match groups.iter_mut().find(|(spacing, _)| *spacing == lines.spacing) {
+            Some((_, along)) => along.push(&lines.along),
+            None => groups.push((lines.spacing, vec![&lines.along])),
+        }
+    }
+    let group = |(spacing, along): &([f64; 2], Vec<&str>)| {
+        let along = match along.split_last() {
+            Some((last, [])) => (*last).to_owned(),
+            Some((last, first)) => format!("{} and {last}", first.join(", ")),
+            None => String::new(),
+        };
+        let [a, b] = spacing.map(length);
+        let apart = if a == b { a } else { format!("{a} × {b}") };
+        format!("along {along} {apart} mm apart")
+    };
+    groups.iter().map(group).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

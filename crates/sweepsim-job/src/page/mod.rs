@@ -166,7 +166,10 @@ fn facts(source: &PageSource) -> Vec<Fact> {
         }
         None => facts.push(Fact::new("Swept", format!("{} mm³", measure(volume)), "")),
     }
-    for (name, found) in [("Deepest gouge", report.gouge), ("Highest excess", report.excess)] {
+    for (name, found) in [
+        ("Deepest gouge found", report.gouge),
+        ("Highest excess found", report.excess),
+    ] {
         if let Some(found) = found {
             let max = if found.max < 1e-9 { 0.0 } else { found.max };
             let small = format!("beyond the limit on {} mm²", measure(found.area));

@@ -1,7 +1,7 @@
 //! The answer in words, and the findings.
 
 use super::program::Programs;
-use crate::base::words::{counted, found, setup_name};
+use crate::base::words::{counted, found, looked_at, setup_name};
 use std::collections::BTreeSet;
 use sweepsim_formats::{Report, ReportedFinding};
 use sweepsim_report::{Finding, Verdict, measure};
@@ -18,10 +18,17 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
             Verdict::bad("May not be run: the part deviates from its target.")
         }
         (0, 0) if open > 0 => Verdict::bad("Not decided: nothing was found, but some lines are unresolved."),
-        (0, 0) if report.gouge.is_some() => {
-            Verdict::good("May be run: no move does harm, and the part is within its limits.")
+        (0, 0)
+            if report
+                .scope
+                .as_ref()
+                .is_some_and(|scope| scope.not_looked_at.is_empty()) =>
+        {
+            Verdict::good(
+                "Nothing was found that does harm, and the part is within its limits: on the lines that were looked at.",
+            )
         }
-        (0, 0) => Verdict::good("May be run: no move does harm."),
+        (0, 0) => Verdict::partial("Nothing was found that does harm, but not everything was looked at."),
         (0, left) => Verdict::bad(format!(
             "The part is not finished: material is left in {}.",
             counted(left, "place")
@@ -30,6 +37,15 @@ pub(super) fn verdict(report: &Report) -> Option<Verdict> {
         (moves, _) => Verdict::bad(format!("May not be run: {} do harm.", counted(moves, "move"))),
     };
     verdict.details = found(findings);
+    if let Some(scope) = &report.scope {
+        let lines = looked_at(scope);
+        verdict
+            .details
+            .push(format!("looked at: lines {lines}; nothing between them"));
+        let missing = scope.not_looked_at.iter();
+        let missing = missing.map(|missing| format!("not looked at: {} (needs {})", missing.about, missing.needs));
+        verdict.details.extend(missing);
+    }
     if open > 0 {
         verdict.details.push(format!("{} unresolved", counted(open, "dexel")));
     }

@@ -85,6 +85,7 @@ pub(super) fn gathered(session: Session, pieces: Pieces, report: &mut Report) ->
     if session.request.task == Task::Verify {
         let judged = tiling.sets.iter().take_while(|set| set.purpose != Purpose::Cut).count();
         let aside = sets.split_off(judged);
+        report.notes.extend(verify::sets(session)?.1);
         let done = verify::merged(session, &tiling.sets[..judged], sets, report)?;
         return Ok(Computed {
             aside,

@@ -137,7 +137,7 @@ pub(super) fn tiling(session: Session) -> Result<Tiling, JobError> {
     let (job, request) = (session.job, session.request);
     let tile = request.sweeping.tile;
     let mut sets = match request.task {
-        Task::Verify => verify::sets(session)?,
+        Task::Verify => verify::sets(session)?.0,
         Task::Simulate | Task::Sweep | Task::Section => vec![TilingSet::new("along z", job.grid, None, tile)],
     };
     let outputs = [Output::Mesh, Output::Picture, Output::Tridexels];
@@ -201,9 +201,9 @@ fn tiles(session: Session, tiling: &Tiling, number: ShardNumber) -> Result<Vec<P
                             deviation,
                             ..notes(number, tile.crossings, &tile.unresolved)
                         },
-                        // Only what is left along z is part of the result.
-                        dexels: match direction {
-                            0 => tile.remaining,
+                        // What is left is part of the result along z, and compared with the target along x and y.
+                        dexels: match set.purpose {
+                            Purpose::Judge { .. } => tile.remaining,
                             _ => Dexels::empty(*tile.remaining.grid()),
                         },
                     }),

@@ -133,6 +133,16 @@ pub(crate) fn grids_aside(job: &Job) -> Result<Option<([Grid; 2], Stock)>, TriDe
     Ok(Some(([*along_x.grid(), *along_y.grid()], Stock::Block { min, max })))
 }
 
+/// The same with lines so many times as far apart; nothing if the job goes on with the result of an earlier run.
+pub(crate) fn coarse_grids_aside(job: &Job, times: usize) -> Option<([Grid; 2], Stock)> {
+    let range = stock_heights(job).filter(|_| earlier(&job.stock).is_empty())?;
+    let cells = job.grid.cells().map(|n| n.div_ceil(times));
+    let grid = Grid::new(job.grid.min(), job.grid.max(), cells).ok()?;
+    let (min, max, cells) = lattice(&grid, range);
+    let [along_x, along_y, _] = TriDexels::empty(min, max, cells).ok()?.into_sets();
+    Some(([*along_x.grid(), *along_y.grid()], Stock::Block { min, max }))
+}
+
 /// The stock of a job along x and along y; nothing if it is empty.
 pub(crate) fn stock_aside(job: &Job) -> Result<Vec<Dexels>, TriDexelsError> {
     let Some(range) = stock_heights(job) else {

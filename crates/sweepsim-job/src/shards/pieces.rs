@@ -149,7 +149,7 @@ pub(crate) fn gather(
         for tile in own {
             let purpose = tiling.sets[tile.notes.set].purpose;
             let judged = purpose != Purpose::Cut;
-            let compared = matches!(purpose, Purpose::Judge { compare: true, .. });
+            let compared = matches!(purpose, Purpose::Judge { compare: Some(_), .. });
             let fits = |record: &TileRecord| judged && record.is_of(moves);
             if !tile.notes.record.as_ref().map_or(!judged, fits) || tile.notes.deviation.is_some() != compared {
                 return Err(refused(

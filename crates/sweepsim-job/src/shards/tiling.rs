@@ -4,6 +4,7 @@ use crate::shards::ShardNumber;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use sweepsim::Cut;
+use sweepsim::verify::AreaShare;
 use sweepsim_dexel::{Dexels, Grid, Operation, Stock, StockError};
 use sweepsim_formats::Job;
 
@@ -13,7 +14,10 @@ pub(crate) enum Purpose {
     /// What is left of the stock.
     Cut,
     /// The same, and which moves do harm on the way; what each move does, and how the rest differs from the target, if asked for.
-    Judge { each_move: bool, compare: bool },
+    Judge {
+        each_move: bool,
+        compare: Option<AreaShare>,
+    },
     /// Which moves of a set-up touch its fixtures.
     Fixtures(usize),
 }
@@ -62,7 +66,15 @@ impl TilingSet {
 
     /// The stock on a tile.
     pub fn stock(&self, stock: &Stock, tile: usize) -> Result<Dexels, StockError> {
-        let grid = &self.tiles[tile];
+        self.stock_on(stock, &self.tiles[tile])
+    }
+
+    /// The stock on all tiles.
+    pub fn whole_stock(&self, stock: &Stock) -> Result<Dexels, StockError> {
+        self.stock_on(stock, &self.grid)
+    }
+
+    fn stock_on(&self, stock: &Stock, grid: &Grid) -> Result<Dexels, StockError> {
         let mut dexels = stock.dexels(grid)?;
         if let Some(within) = &self.within {
             dexels.combine(Operation::Intersection, &within.dexels(grid)?)?;

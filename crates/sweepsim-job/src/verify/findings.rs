@@ -34,7 +34,11 @@ pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, 
     });
     report.paths = Some(paths.collect());
     if let Some(found) = found {
-        report.gouge = Some(targets::summed(&found.gouge));
+        let mut gouge = targets::summed(&found.gouge);
+        // A move that gouges is in the figure whatever direction saw it.
+        let deepest = findings.iter().filter(|finding| finding.kind == "gouge");
+        gouge.max = deepest.map(|finding| finding.depth).fold(gouge.max, f64::max);
+        report.gouge = Some(gouge);
         report.excess = Some(targets::summed(&found.excess));
         report.regions = Some(targets::regions(found, job.limits.as_ref()));
         let excess = found
@@ -60,10 +64,6 @@ pub(super) fn describe(report: &mut Report, session: Session, done: &Judgement, 
                 targets::LIMIT
             ));
         }
-    } else if job.target.is_none() {
-        report
-            .notes
-            .push("the job has no target: gouges and excess were not looked for".to_owned());
     }
     for (number, moved) in &done.undecided {
         report.notes.push(format!(

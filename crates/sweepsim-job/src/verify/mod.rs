@@ -1,9 +1,11 @@
 //! `verify`: what is wrong with a program, and how far its result is from the target.
 
 mod axes;
+mod directions;
 mod findings;
 mod fixtures;
 mod program;
+mod scope;
 pub(crate) mod targets;
 mod texts;
 mod work;
@@ -11,12 +13,12 @@ mod work;
 pub(crate) use work::setups;
 
 use crate::base::{JobError, words};
-use crate::request::{Directions, Output};
-use crate::session::{Session, grids_aside, phase, reported};
+use crate::request::Output;
+use crate::session::{Session, phase, reported};
 use crate::shards::{Gathered, Purpose, TilingSet};
 use program::{JudgedProgram, JudgedTile};
 use std::collections::BTreeMap;
-use sweepsim::verify::{Judgement, Target, TileDeviation, deviations_of_tiles, joined};
+use sweepsim::verify::{AreaShare, Deviations, Judgement, Look, Target, TileDeviation, deviations_along, joined};
 use sweepsim_dexel::{Dexels, Grid};
 use sweepsim_formats::{MoveSummary, Report, ReportedDexel};
 
@@ -36,27 +38,24 @@ pub(crate) struct Verified {
     pub moves: Vec<MoveSummary>,
 }
 
-/// The tiles on which a program is judged: along z first, along x and y if asked for, then the fixtures of each set-up as seen along each of these.
-pub(crate) fn sets(session: Session) -> Result<Vec<TilingSet>, JobError> {
+/// The tiles on which a program is judged: along z first, along x and y if asked for or if there are walls, then the fixtures of each set-up as seen along each
+/// of these; and what is to be said of the directions.
+pub(crate) fn sets(session: Session) -> Result<(Vec<TilingSet>, Option<String>), JobError> {
     let (job, request) = (session.job, session.request);
     let (judging, tile) = (&request.judging, request.sweeping.tile);
     // The page plots what each move does, where that costs little.
     let plotted = request.wants(Output::Report) && job.moves() <= PLOTTED;
     let each_move = judging.moves || plotted;
-    let compare = job.target.is_some() && !judging.first;
-    let along_z = Purpose::Judge { each_move, compare };
-    let mut sets = vec![TilingSet::new("verify", job.grid, None, tile).to(along_z)];
-    if request.directions == Some(Directions::Xyz) {
-        let aside = grids_aside(job).map_err(|error| session.failure(format!("--directions xyz: {error}")))?;
-        if let Some((grids, within)) = aside {
-            for (grid, name) in grids.into_iter().zip(["along x", "along y"]) {
-                let set = TilingSet::new(name, grid, Some(within.clone()), tile);
-                sets.push(set.to(Purpose::Judge {
-                    each_move: false,
-                    compare: false,
-                }));
-            }
-        }
+    let along_z = |share| Purpose::Judge {
+        each_move,
+        compare: directions::compared(session).then_some(share),
+    };
+    let whole = TilingSet::new("verify", job.grid, None, tile);
+    let mut sets = vec![whole.to(along_z(AreaShare::Whole))];
+    let aside = directions::aside(session, &sets[0])?;
+    if let Some(grids) = &aside.grids {
+        sets[0].purpose = along_z(AreaShare::OfThree);
+        sets.extend(directions::sets(session, grids));
     }
     let grids: Vec<Grid> = sets.iter().map(|set| set.grid).collect();
     for grid in grids {
@@ -66,7 +65,7 @@ pub(crate) fn sets(session: Session) -> Result<Vec<TilingSet>, JobError> {
             sets.extend(set.map(|set| set.to(Purpose::Fixtures(number))));
         }
     }
-    Ok(sets)
+    Ok((sets, aside.note))
 }
 
 /// Judges some tiles of a set, for a shard.
@@ -77,7 +76,8 @@ pub(crate) fn judged_tiles(session: Session, set: &TilingSet, tiles: &[usize]) -
 /// Verifies the job of a session, and describes the findings in the report.
 pub(crate) fn verified(session: Session, report: &mut Report) -> Result<Verified, JobError> {
     let judging = &session.request.judging;
-    let sets = sets(session)?;
+    let (sets, note) = sets(session)?;
+    report.notes.extend(note);
     let program = JudgedProgram::new(session)?;
     let before = Before::new(session, report)?;
     let mut order: Vec<usize> = (0..sets.len()).collect();
@@ -158,16 +158,16 @@ impl Before {
     ) -> Result<Verified, JobError> {
         let Self { stock, target } = self;
         program::note_margins(session.job, &session.request.judging, report);
-        let mut looks = sets.iter().zip(looks);
-        let (_, along_z) = looks.next().ok_or_else(|| JobError::run("nothing was judged"))?;
-        let mut done = Judgement::of_tiles(&along_z.records);
-        let mut findings = vec![std::mem::take(&mut done.findings)];
-        let mut uncertified = 0;
-        for (_, look) in looks {
-            let more = Judgement::of_tiles(&look.records);
-            findings.push(more.findings);
-            done.undecided.extend(more.undecided);
-            done.stopped |= more.stopped;
+        let (mut done, mut findings, mut uncertified) = (Judgement::default(), Vec::new(), 0);
+        for (number, look) in looks.iter().enumerate() {
+            let mut own = Judgement::of_tiles(&look.records);
+            findings.push(std::mem::take(&mut own.findings));
+            if number == 0 {
+                done = own;
+                continue;
+            }
+            done.undecided.append(&mut own.undecided);
+            done.stopped |= own.stopped;
             uncertified += look.unresolved.len();
         }
         done.findings = joined(findings);
@@ -180,26 +180,69 @@ impl Before {
             ));
         }
         session.phase("deviation");
-        let remaining = along_z.dexels;
-        let differ = |target: &Target| {
-            // Not known where the first finding was looked for, but nothing was found.
-            let own: Vec<TileDeviation> = match &along_z.deviations[..] {
-                [] => vec![TileDeviation::new(&stock, &remaining, target)],
-                known => known.to_vec(),
-            };
-            deviations_of_tiles(&own, &stock, &remaining, target)
+        let found = match &target {
+            Some(target) if !done.stopped => {
+                let differ = || deviating(session, (&stock, target), sets, &looks);
+                Some(phase(report, "deviation", differ)?)
+            }
+            _ => None,
         };
-        let compared = target.as_ref().filter(|_| !done.stopped);
-        let found = compared.map(|target| phase(report, "deviation", || differ(target)));
         findings::describe(report, session, &done, found.as_ref());
+        report.scope = Some(scope::scope(session, sets));
+        let along_z = looks.into_iter().next();
+        let along_z = along_z.ok_or_else(|| JobError::run("nothing was judged"))?;
         Ok(Verified {
-            volume_removed: stock.volume() - remaining.volume(),
+            volume_removed: stock.volume() - along_z.dexels.volume(),
             moves: work::describe(report, session, &done),
-            remaining,
+            remaining: along_z.dexels,
             crossings: along_z.crossings,
             unresolved: along_z.unresolved,
             uncertified,
             target,
         })
     }
+}
+
+/// How the part differs from the target, on the lines along all directions on which it was compared. Known: the stock and the target along z.
+fn deviating(
+    session: Session,
+    (stock, target): (&Dexels, &Target),
+    sets: &[TilingSet],
+    looks: &[Gathered],
+) -> Result<Deviations, JobError> {
+    let job = session.job;
+    let own;
+    let along_z = match (&looks[0].deviations[..], &looks[0].dexels) {
+        // Not known where the first finding was looked for, but nothing was found.
+        ([], remaining) => {
+            own = [TileDeviation::new(stock, remaining, target, AreaShare::Whole)];
+            &own[..]
+        }
+        (known, _) => known,
+    };
+    let aside = sets.iter().zip(looks).skip(1);
+    let aside = aside.filter(|(set, _)| matches!(set.purpose, Purpose::Judge { compare: Some(_), .. }));
+    let known = |(set, look): (&TilingSet, _)| {
+        let stock = set.whole_stock(&job.stock);
+        let stock = stock.map_err(|error| session.failure(format!("stock: {error}")))?;
+        let target = targets::of_job(job, &set.grid);
+        let target = target.map_err(|error| session.failure(format!("target: {error}")))?;
+        Ok((stock, target, look))
+    };
+    let aside: Vec<(Dexels, Option<Target>, &Gathered)> = aside.map(known).collect::<Result<_, JobError>>()?;
+    let mut all = vec![Look {
+        tiles: along_z,
+        stock,
+        remaining: &looks[0].dexels,
+        target,
+    }];
+    all.extend(aside.iter().filter_map(|(stock, target, look)| {
+        Some(Look {
+            tiles: &look.deviations,
+            stock,
+            remaining: &look.dexels,
+            target: target.as_ref()?,
+        })
+    }));
+    Ok(deviations_along(&all))
 }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use sweepsim::motion::{Assembly, Tool};
 use sweepsim::verify::{
-    MoveState, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
+    AreaShare, MoveState, Scene, Target, TileDeviation, TileVerification, ToolPath, VerifyOptions, verify_tiles,
 };
 use sweepsim_dexel::{Dexels, StockError};
 use sweepsim_formats::{Job, JobPath, Report};
@@ -97,12 +97,11 @@ impl<'a> JudgedProgram<'a> {
                 let done = done.map_err(|error| self.session.failed(error))?;
                 // Computed again: to keep all of it would take twice the memory.
                 let compared = |((tile, target), done): ((&usize, &Option<Target>), TileVerification)| {
-                    let target = target.as_ref().filter(|_| compare);
-                    let differs = |target: &Target| {
+                    let differs = |(target, share): (&Target, AreaShare)| {
                         let before = on_tile(tile)?;
-                        Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target))
+                        Ok::<_, StockError>(TileDeviation::new(&before, &done.remaining, target, share))
                     };
-                    let deviation = target.map(differs).transpose()?;
+                    let deviation = target.as_ref().zip(compare).map(differs).transpose()?;
                     Ok((done, deviation))
                 };
                 let tiles = tiles.par_iter().zip(&targets).zip(done).with_max_len(1);

@@ -5,11 +5,11 @@
 //! of the target's surface count there as well, with their distance from the part, but at most the thickness of what is missing.
 
 use super::depth::{Side, greatest};
-use super::lines::{Heights, Lines};
+use super::lines::Lines;
+use super::regions::{Extent, Webs, connected, joined};
 use super::target::Target;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use sweepsim_dexel::{Dexels, Grid};
+use sweepsim_dexel::Dexels;
 
 /// On which side of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -68,7 +68,7 @@ pub struct Deviations {
     pub beyond_stock: f64,
 }
 
-/// How what remains on a tile differs from the target there: what can be joined with [other tiles](deviations_of_tiles). It can be stored with the feature `serde`.
+/// How what remains on a tile differs from the target there: what can be joined with [other tiles](deviations_along). It can be stored with the feature `serde`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TileDeviation {
@@ -80,10 +80,32 @@ pub struct TileDeviation {
     beyond_stock: f64,
 }
 
+/// How much of the surface an end of an interval stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum AreaShare {
+    /// All of it: the cell, projected onto the surface.
+    Whole,
+    /// What this direction sees of it, if lines run along three axes: the squares of the normal's components add up to 1.
+    OfThree,
+}
+
+impl AreaShare {
+    /// The area of an end whose cell has this area and whose normal has this component along the line.
+    fn of(self, cell: f64, along: f32) -> f64 {
+        let along = f64::from(along.abs());
+        match self {
+            // Of a steep wall, at most a thousand cells.
+            Self::Whole => cell / along.max(1e-3),
+            Self::OfThree => cell * along,
+        }
+    }
+}
+
 impl TileDeviation {
     /// Of a stock, what remains of it, and the target, all on the lines of one tile.
     #[must_use]
-    pub fn new(stock: &Dexels, remaining: &Dexels, target: &Target) -> Self {
+    pub fn new(stock: &Dexels, remaining: &Dexels, target: &Target, share: AreaShare) -> Self {
         let grid = *stock.grid();
         let [dx, dy] = grid.spacing();
         let (before, rest, solid) = (all(stock), all(remaining), all(target.solid()));
@@ -91,7 +113,7 @@ impl TileDeviation {
         let outside = rest.minus(&solid);
         let to = target.distance();
         Self {
-            sums: surface(remaining, target),
+            sums: surface(remaining, target, share),
             greatest: [
                 greatest(&inside, &grid, to, Side::Inside).0,
                 greatest(&outside, &grid, to, Side::Outside).0,
@@ -110,32 +132,59 @@ fn all(dexels: &Dexels) -> Lines {
 /// ends of intervals.
 #[must_use]
 pub fn deviations(stock: &Dexels, remaining: &Dexels, target: &Target) -> Deviations {
-    deviations_of_tiles(
-        &[TileDeviation::new(stock, remaining, target)],
+    let tiles = &[TileDeviation::new(stock, remaining, target, AreaShare::Whole)];
+    deviations_along(&[Look {
+        tiles,
         stock,
         remaining,
         target,
-    )
+    }])
 }
 
-/// The same if it is known of all tiles how they differ, in the order of the tiles: only regions are looked for, since they cross tiles.
+/// How a part differs from its target on the lines along one direction, tile by tile.
+#[derive(Clone, Copy, Debug)]
+pub struct Look<'a> {
+    /// How each tile differs, in the order of the tiles.
+    pub tiles: &'a [TileDeviation],
+    /// The stock before the first cut, on the whole grid.
+    pub stock: &'a Dexels,
+    /// What remains of it.
+    pub remaining: &'a Dexels,
+    /// The target on the same grid.
+    pub target: &'a Target,
+}
+
+impl Look<'_> {
+    /// The pieces of material beyond the limits: they cross tiles.
+    fn regions(&self) -> Vec<Extent> {
+        let grid = *self.stock.grid();
+        let rest = all(self.remaining);
+        let missing = all(self.target.core()).intersection(&all(self.stock), 0.0).minus(&rest);
+        let left = rest.minus(&all(self.target.allowed()));
+        let webs = Webs {
+            remaining: self.remaining,
+            target: self.target,
+        };
+        let mut regions = connected(&missing, &grid, self.target, DeviationKind::Gouge, &webs);
+        regions.extend(connected(&left, &grid, self.target, DeviationKind::Excess, &webs));
+        regions
+    }
+}
+
+/// Compares a part with its target on the lines along one or three directions: the largest distances are those of all directions, and a region that several of
+/// them see counts once. `beyond_stock` is that of the first.
 #[must_use]
-pub fn deviations_of_tiles(tiles: &[TileDeviation], stock: &Dexels, remaining: &Dexels, target: &Target) -> Deviations {
-    let grid = *stock.grid();
-    let rest = all(remaining);
-    let missing = all(target.core()).intersection(&all(stock), 0.0).minus(&rest);
-    let left = rest.minus(&all(target.allowed()));
-    let webs = Webs { remaining, target };
-    let mut regions = connected(&missing, &grid, target, DeviationKind::Gouge, &webs);
-    regions.extend(connected(&left, &grid, target, DeviationKind::Excess, &webs));
+pub fn deviations_along(looks: &[Look]) -> Deviations {
+    let regions = joined(looks.iter().map(Look::regions).collect());
     let mut sums = [Sums::default(); 2];
     let mut greatest = [0.0_f64; 2];
-    for tile in tiles {
+    for tile in looks.iter().flat_map(|look| look.tiles) {
         for side in 0..2 {
             sums[side].merge(&tile.sums[side]);
             greatest[side] = greatest[side].max(tile.greatest[side]);
         }
     }
+    let first = looks.first().map_or(&[][..], |look| look.tiles);
     let [mut gouge, mut excess] = sums.map(|sums| sums.deviation());
     gouge.max = gouge.max.max(greatest[0]);
     excess.max = excess.max.max(greatest[1]);
@@ -149,51 +198,8 @@ pub fn deviations_of_tiles(tiles: &[TileDeviation], stock: &Dexels, remaining: &
     Deviations {
         gouge,
         excess,
-        beyond_stock: tiles.iter().map(|tile| tile.beyond_stock).sum::<f64>().max(0.0),
+        beyond_stock: first.iter().map(|tile| tile.beyond_stock).sum::<f64>().max(0.0),
         regions,
-    }
-}
-
-/// Finds where the target is missing from one side to the other.
-struct Webs<'a> {
-    remaining: &'a Dexels,
-    target: &'a Target,
-}
-
-impl Webs<'_> {
-    /// The thickness of what is missing, where it is missing along whole intervals of the target: on each line at most the distance of their ends from what
-    /// remains. Walls that are off sideways are nearer than two lines to it, and no webs.
-    fn thickest(&self, missing: &Lines) -> f64 {
-        let grid = self.remaining.grid();
-        let [dx, dy] = grid.spacing();
-        let mut whole: Vec<(u32, [f64; 2])> = Vec::new();
-        for (line, heights) in &missing.0 {
-            // What is missing is a part of the core, which is the target less its skin.
-            let own: Heights = self.target.core().at(*line as usize).heights().collect();
-            let all = self.target.solid().at(*line as usize);
-            let around = |piece: &[f64; 2]| all.heights().find(|[low, high]| *low <= piece[0] && piece[1] <= *high);
-            let through = heights.iter().filter(|piece| own.contains(piece)).filter_map(around);
-            whole.extend(through.map(|piece| (*line, piece)));
-        }
-        whole.sort_by(|a, b| (b.1[1] - b.1[0]).total_cmp(&(a.1[1] - a.1[0])));
-        let mut best = 0.0_f64;
-        for (line, piece) in whole {
-            if piece[1] - piece[0] <= best {
-                break;
-            }
-            let (i, j) = grid.place(line as usize);
-            let near = piece.map(|z| {
-                let place = grid.frame().to_world([grid.x(i), grid.y(j), z]);
-                self.remaining
-                    .nearest_end(place)
-                    .map_or(f64::INFINITY, |near| near.distance)
-            });
-            let near = near[0].min(near[1]);
-            if near > 2.0 * dx.hypot(dy) {
-                best = best.max(near.min(piece[1] - piece[0]));
-            }
-        }
-        best
     }
 }
 
@@ -242,7 +248,7 @@ impl Sums {
 }
 
 /// The distances of all ends: inside the target, and outside.
-fn surface(remaining: &Dexels, target: &Target) -> [Sums; 2] {
+fn surface(remaining: &Dexels, target: &Target, share: AreaShare) -> [Sums; 2] {
     let grid = *remaining.grid();
     let [dx, dy] = grid.spacing();
     let lines: Vec<usize> = remaining.iter().map(|(line, _)| line).collect();
@@ -258,8 +264,7 @@ fn surface(remaining: &Dexels, target: &Target) -> [Sums; 2] {
                     let Some(near) = target.distance().nearest(place) else {
                         continue;
                     };
-                    // Of a steep wall, at most a thousand cells.
-                    let area = dx * dy / f64::from(end.normal[2].abs()).max(1e-3);
+                    let area = share.of(dx * dy, end.normal[2]);
                     let is_beyond = target.is_beyond(place, near.distance);
                     sums[usize::from(near.distance >= 0.0)].add(near.distance.abs(), area, is_beyond);
                 }
@@ -274,82 +279,4 @@ fn surface(remaining: &Dexels, target: &Target) -> [Sums; 2] {
         }
     }
     all
-}
-
-/// Lines this many columns or rows apart are neighbours: what is thinner than their distance is on some of them only.
-const NEAR: usize = 3;
-
-/// The connected pieces of material: intervals of neighbouring lines that overlap.
-fn connected(material: &Lines, grid: &Grid, target: &Target, kind: DeviationKind, webs: &Webs) -> Vec<Region> {
-    let [dx, dy] = grid.spacing();
-    let pieces: Vec<(u32, [f64; 2])> = material
-        .0
-        .iter()
-        .flat_map(|(line, heights)| heights.iter().map(move |h| (*line, *h)))
-        .collect();
-    let mut parent: Vec<usize> = (0..pieces.len()).collect();
-    let first = |line: u32| pieces.partition_point(|(at, _)| *at < line);
-    for (n, (line, [low, high])) in pieces.iter().enumerate() {
-        let (i, j) = grid.place(*line as usize);
-        // Half of the neighbours: the others look at this one.
-        let ahead = (1..=NEAR).flat_map(|a| (0..=2 * NEAR).map(move |b| (i + a, (j + b).wrapping_sub(NEAR))));
-        for (a, b) in ahead.chain((1..=NEAR).map(|b| (i, j + b))) {
-            let Some(other) = grid.index(a, b) else { continue };
-            let others = pieces[first(other as u32)..]
-                .iter()
-                .take_while(|(at, _)| *at as usize == other);
-            for (k, (_, [below, above])) in others.enumerate() {
-                if below.max(*low) <= above.min(*high) {
-                    let (p, q) = (root(&mut parent, n), root(&mut parent, first(other as u32) + k));
-                    parent[p.max(q)] = p.min(q);
-                }
-            }
-        }
-    }
-    let mut groups: BTreeMap<usize, Vec<(u32, Heights)>> = BTreeMap::new();
-    for (n, (line, piece)) in pieces.iter().enumerate() {
-        let group = groups.entry(root(&mut parent, n)).or_default();
-        match group.last_mut() {
-            Some((at, heights)) if at == line => heights.push(*piece),
-            _ => group.push((*line, Heights::from_slice(&[*piece]))),
-        }
-    }
-    let side = match kind {
-        DeviationKind::Gouge => Side::Inside,
-        DeviationKind::Excess => Side::Outside,
-    };
-    let mut regions: Vec<Region> = groups
-        .into_values()
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|group| {
-            let group = Lines(group);
-            let (depth, place) = greatest(&group, grid, target.distance(), side);
-            let web = if kind == DeviationKind::Gouge {
-                webs.thickest(&group)
-            } else {
-                0.0
-            };
-            let depth = depth.max(web);
-            Region {
-                kind,
-                part: target.part_at(place),
-                place,
-                depth,
-                area: group.0.len() as f64 * dx * dy,
-                volume: group.length() * dx * dy,
-            }
-        })
-        .collect();
-    regions.sort_by(|a, b| b.depth.total_cmp(&a.depth));
-    regions
-}
-
-fn root(parent: &mut [usize], mut n: usize) -> usize {
-    while parent[n] != n {
-        parent[n] = parent[parent[n]];
-        n = parent[n];
-    }
-    n
 }

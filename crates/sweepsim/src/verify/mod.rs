@@ -21,13 +21,16 @@ mod driver;
 mod finding;
 mod lines;
 mod record;
+mod regions;
 mod run;
 mod scene;
 mod search;
 mod solid;
 mod target;
 
-pub use deviation::{Deviation, DeviationKind, Deviations, Region, TileDeviation, deviations, deviations_of_tiles};
+pub use deviation::{
+    AreaShare, Deviation, DeviationKind, Deviations, Look, Region, TileDeviation, deviations, deviations_along,
+};
 pub use driver::{TileVerification, verify, verify_tiles};
 pub use finding::{Finding, FindingKind, MoveState, RapidCourses, joined};
 pub use record::{Judgement, TileRecord};

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use sweepsim::SweepError;
 use sweepsim::prelude::*;
 use sweepsim::verify::{
-    FindingKind, Judgement, MoveState, Scene, Target, TileDeviation, TileRecord, TileVerification, ToolPath,
-    Verification, VerifyOptions, deviations, deviations_of_tiles, verify, verify_tiles,
+    AreaShare, FindingKind, Judgement, Look, MoveState, Scene, Target, TileDeviation, TileRecord, TileVerification,
+    ToolPath, Verification, VerifyOptions, deviations, deviations_along, verify, verify_tiles,
 };
 use sweepsim_dexel::{Grid, TriangleSoup};
 use sweepsim_motion::{Assembly, BodyKind};
@@ -227,10 +227,20 @@ fn deviations_of_tiles_are_those_of_the_whole() {
     for side in [13, 40] {
         let on = |tile: &Grid| {
             let part = |dexels: &Dexels| dexels.tile(tile).unwrap();
-            TileDeviation::new(&part(&stock), &part(&done.remaining), &target.tile(tile).unwrap())
+            TileDeviation::new(
+                &part(&stock),
+                &part(&done.remaining),
+                &target.tile(tile).unwrap(),
+                AreaShare::Whole,
+            )
         };
         let tiles: Vec<TileDeviation> = grid.tiles(side).iter().map(on).collect();
-        let joined = deviations_of_tiles(&tiles, &stock, &done.remaining, &target);
+        let joined = deviations_along(&[Look {
+            tiles: &tiles,
+            stock: &stock,
+            remaining: &done.remaining,
+            target: &target,
+        }]);
         assert_eq!(joined.regions, whole.regions);
         for (a, b) in [(joined.gouge, whole.gouge), (joined.excess, whole.excess)] {
             assert_eq!(a.count, b.count);

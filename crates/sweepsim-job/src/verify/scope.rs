@@ -1,0 +1,62 @@
+//! What a verdict is about, and what it is not.
+
+use crate::request::Input;
+use crate::session::Session;
+use crate::shards::{Purpose, TilingSet};
+use sweepsim_formats::{NotLookedAt, Scope, ScopeLines};
+
+/// What was looked at on these tiles, and what was not.
+pub(super) fn scope(session: Session, sets: &[TilingSet]) -> Scope {
+    let mut scope = Scope::default();
+    scope.extent = "lines".to_owned();
+    let judged = sets.iter().filter(|set| matches!(set.purpose, Purpose::Judge { .. }));
+    scope.lines = judged
+        .zip(["z", "x", "y"])
+        .map(|(set, along)| {
+            let mut lines = ScopeLines::default();
+            (lines.along, lines.spacing) = (along.to_owned(), set.grid.spacing());
+            lines
+        })
+        .collect();
+    scope.not_looked_at = not_looked_at(session);
+    scope
+}
+
+fn not_looked_at(session: Session) -> Vec<NotLookedAt> {
+    let job = session.job;
+    let is_job = match session.request.input() {
+        Input::File(file) => file.extension().is_some_and(|e| e.eq_ignore_ascii_case("ron")),
+        Input::Job { .. } => true,
+        Input::Program { .. } => false,
+    };
+    let needs = |of_job: &str, of_program: &str| if is_job { of_job } else { of_program }.to_owned();
+    let mut all = Vec::new();
+    if job.target.is_none() {
+        let needs = needs("`target` in the job", "--target FILE");
+        all.push(NotLookedAt::new("gouges and excess", needs));
+    } else if session.request.judging.first {
+        all.push(NotLookedAt::new("excess", "a run without --first"));
+    }
+    let is_bare = |number: &&u32| job.bodies.get(*number).is_none_or(Vec::is_empty);
+    let bare: Vec<String> = job.tools.keys().filter(is_bare).map(u32::to_string).collect();
+    if !bare.is_empty() {
+        let about = match bare.len() == job.tools.len() {
+            true => "shanks and holders".to_owned(),
+            false => format!("shanks and holders of the tools {}", bare.join(", ")),
+        };
+        let needs = needs(
+            "`bodies` in the job",
+            "a library with holders (--tools), or a job with `bodies`",
+        );
+        all.push(NotLookedAt::new(about, needs));
+    }
+    if job.setups.iter().all(|setup| setup.fixtures.is_empty()) {
+        let needs = needs("`fixtures` in the job", "a job with `fixtures`");
+        all.push(NotLookedAt::new("fixtures", needs));
+    }
+    if session.plan.guessed().iter().any(|guess| guess.about == "stock") {
+        let needs = needs("`stock` in the job", "--stock");
+        all.push(NotLookedAt::new("rapids through the real stock: it was guessed", needs));
+    }
+    all
+}

@@ -1,0 +1,5 @@
+//! Integration tests of `sweepsim-job`, in one binary: it links once.
+
+mod memory;
+mod scope;
+mod walls;

@@ -1,0 +1,141 @@
+//! A slot between lines 1 mm apart: faults of its walls are narrower than that, and found all the same.
+
+use sweepsim_job::dexel::{Stock, TriangleSoup};
+use sweepsim_job::motion::Tool;
+use sweepsim_job::{Directions, Outcome, Request, Verdict};
+
+/// A slot along x, 10 mm wide about y = 20 and 4 mm deep, by an end mill of 10 mm.
+pub const PROGRAM: &str = "G21 G90\nT1 M6\nS6000 M3\nG0 X-8 Y20 Z5\nG0 Z-4\nG1 X68 F500\nG0 Z5\nM30\n";
+const LIMIT: f64 = 0.02;
+
+/// A block of 60 × 40 × 10 mm with a slot along x: its sides and its floor.
+pub fn slotted([near, far]: [f64; 2], floor: f64) -> TriangleSoup {
+    let outline = [
+        [0.0, -10.0],
+        [40.0, -10.0],
+        [40.0, 0.0],
+        [far, 0.0],
+        [far, floor],
+        [near, floor],
+        [near, 0.0],
+        [0.0, 0.0],
+    ];
+    let caps = [[1, 2, 3], [1, 3, 4], [1, 4, 5], [1, 5, 0], [0, 5, 6], [0, 6, 7]];
+    let at = |x: f64, n: usize| [x, outline[n][0], outline[n][1]];
+    let mut triangles = Vec::new();
+    for [a, b, c] in caps {
+        triangles.push([at(60.0, a), at(60.0, b), at(60.0, c)]);
+        triangles.push([at(0.0, a), at(0.0, c), at(0.0, b)]);
+    }
+    for n in 0..8 {
+        let m = (n + 1) % 8;
+        triangles.push([at(0.0, n), at(0.0, m), at(60.0, m)]);
+        triangles.push([at(0.0, n), at(60.0, m), at(60.0, n)]);
+    }
+    let soup = TriangleSoup { triangles };
+    assert_eq!(soup.check_closed(), Ok(()));
+    soup
+}
+
+pub fn request(target: TriangleSoup) -> Request {
+    complete(Request::from_program("slot.nc", PROGRAM), target)
+}
+
+/// With tool, stock, target and limits.
+pub fn complete(request: Request, target: TriangleSoup) -> Request {
+    request
+        .tool(1, Tool::flat(5.0, 30.0).unwrap())
+        .stock(Stock::Block {
+            min: [0.0, 0.0, -10.0],
+            max: [60.0, 40.0, 0.0],
+        })
+        .target(target)
+        .limits(LIMIT, LIMIT)
+        .cells([60, 40])
+}
+
+fn judged(target: TriangleSoup) -> Outcome {
+    request(target).plan().unwrap().run(&()).unwrap()
+}
+
+/// The kinds of the findings with their lines, and the largest gouge and excess.
+fn found(outcome: &Outcome) -> (Vec<(String, Option<usize>)>, [f64; 2]) {
+    let findings = outcome.findings().iter();
+    let report = outcome.report();
+    let largest = [report.gouge, report.excess].map(|side| side.unwrap().max);
+    (
+        findings.map(|found| (found.kind.clone(), found.line)).collect(),
+        largest,
+    )
+}
+
+/// A gouge in the only feed move.
+fn gouge() -> Vec<(String, Option<usize>)> {
+    vec![("gouge".to_owned(), Some(6))]
+}
+
+/// Ends of lines are exact to the job's tolerance, and walls are planes: rounding is all that is left.
+const EXACT: f64 = 1e-5;
+
+#[test]
+fn the_right_slot_passes() {
+    let outcome = judged(slotted([15.0, 25.0], -4.0));
+    let (findings, largest) = found(&outcome);
+    assert_eq!(findings, []);
+    assert_eq!(outcome.verdict(), Some(Verdict::Pass));
+    assert!(largest.iter().all(|largest| *largest < EXACT), "{largest:?}");
+}
+
+#[test]
+fn faults_of_walls_and_floors_are_found() {
+    for (sides, floor, depth) in [
+        ([15.1, 25.0], -4.0, 0.1),
+        ([15.0, 24.9], -4.0, 0.1),
+        ([15.021, 25.0], -4.0, 0.021),
+        ([15.0, 25.0], -3.95, 0.05),
+        ([15.0, 25.0], -3.979, 0.021),
+    ] {
+        let outcome = judged(slotted(sides, floor));
+        let (findings, [deepest, highest]) = found(&outcome);
+        assert_eq!(findings, gouge(), "{sides:?} {floor}");
+        assert!((deepest - depth).abs() < EXACT, "{deepest} instead of {depth}");
+        assert!(highest < EXACT, "{highest}");
+    }
+    // Within the limits.
+    for (sides, floor) in [([15.019, 25.0], -4.0), ([15.0, 25.0], -3.981)] {
+        let outcome = judged(slotted(sides, floor));
+        let (findings, [deepest, _]) = found(&outcome);
+        assert_eq!(findings, [], "{sides:?} {floor}");
+        assert!((deepest - 0.019).abs() < EXACT, "{deepest}");
+    }
+}
+
+#[test]
+fn what_is_left_standing_along_a_wall_is_found() {
+    let outcome = judged(slotted([14.9, 25.0], -4.0));
+    let (findings, [deepest, highest]) = found(&outcome);
+    assert_eq!(findings, [("excess".to_owned(), None)]);
+    assert!((highest - 0.1).abs() < EXACT && deepest < EXACT, "{deepest} {highest}");
+    assert_eq!(outcome.verdict(), Some(Verdict::Fail));
+    // One region, whatever directions see it: the wall, as thick as it is beyond the limit.
+    let regions = outcome.report().regions.as_ref().unwrap();
+    assert_eq!(regions.len(), 1);
+    let volume = regions[0].volume;
+    assert!((volume - 60.0 * 4.0 * 0.08).abs() < 1e-3, "{volume}");
+}
+
+#[test]
+fn a_rib_that_is_milled_away_is_found() {
+    let mut target = slotted([15.0, 25.0], -4.0);
+    let rib = TriangleSoup::block([30.2, 16.0, -4.0], [30.3, 24.0, 0.0]);
+    target.triangles.extend(rib.triangles);
+    let outcome = judged(target.clone());
+    let (findings, [deepest, _]) = found(&outcome);
+    assert_eq!(findings, gouge());
+    // As deep as it is thick, or half of that at its middle.
+    assert!((0.05 - EXACT..0.1 + EXACT).contains(&deepest), "{deepest}");
+    // Along z alone no line meets it: the other directions found it.
+    let along_z = request(target).directions(Directions::Z);
+    let outcome = along_z.plan().unwrap().run(&()).unwrap();
+    assert_eq!(outcome.verdict(), Some(Verdict::Pass));
+}
